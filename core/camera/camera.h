@@ -1,0 +1,31 @@
+// camera.h -- the kinds of camera and the one function that they share. A camera is a pure function of
+// named random numbers: a film point, a lens sample, a time and a wavelength give a ray and a weight.
+//
+// Camera frame: metres, origin = centre of the entrance pupil, -z along the view, +x right, +y up.
+// Film points: mm, as the picture is seen upright: +x right, +y up, (0,0) on the optical axis.
+// Adding a kind: x.h/x.cpp with generate(), and an alternative of LensKind.
+#pragma once
+#include <span>
+#include <variant>
+
+#include "camera/exact.h"
+#include "camera/pinhole.h"
+#include "camera/thin.h"
+#include "geometry/ray.h"
+#include "math/transform.h"
+
+namespace dg {
+
+using LensKind = std::variant<Pinhole, ThinLens, ExactLens>;
+
+struct Camera {
+    Affine3d world_from_camera;   // rigid; metres
+    LensKind lens;
+};
+
+/// Fills rays[i] for samples[i]; a ray with weight 0 was stopped by glass or iris. A white world of
+/// luminance 1 has mean weight 1 on the optical axis: weights are exposures divided by H0.
+void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
+                   std::span<CameraRay> rays);
+
+}  // namespace dg

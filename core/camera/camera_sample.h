@@ -1,0 +1,20 @@
+// camera_sample.h -- the small records that go into and come out of every kind of camera.
+#pragma once
+#include "geometry/ray.h"
+#include "math/vec.h"
+
+namespace dg {
+
+struct CameraSample {
+    Vec2f film_mm;          // upright picture, +x right, +y up
+    Vec2f u_lens;           // [0,1)^2
+    float time_s;
+    float wavelength_nm;
+};
+
+struct CameraRay {
+    Ray ray;                // each kind fills it in the camera frame (m); generate_rays moves it to the world
+    float weight = 0;       // relative exposure; 0: stopped
+};
+
+}  // namespace dg

@@ -1,0 +1,50 @@
+// intersector.h -- what the scene asks of a ray tracer. The only implementation is embree.cpp, the
+// only file that includes Embree (3.13 or 4).
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "geometry/ray.h"
+#include "math/transform.h"
+
+namespace dg {
+
+/// Where a ray met the geometry; barycentrics as glTF and Embree have them: p = (1-u-v) a + u b + v c.
+struct RawHit {
+    float t;
+    float u, v;
+    Vec3f ng;                   // geometric normal of the triangle in INSTANCE space, not normalised
+    std::uint32_t instance;     // index into the instances; kSphere for sphere lights
+    std::uint32_t primitive;    // triangle, or index of the sphere
+    static constexpr std::uint32_t kSphere = 0xffffffffu;
+};
+
+struct InstanceGeometry {
+    std::uint32_t mesh;
+    Affine3f world_from_local;
+    bool cutout = false;        // some texel may be transparent: the cutout function decides each hit
+};
+
+/// Returns true when the surface lets the ray pass there (alpha). Must be thread safe and a pure
+/// function of its arguments, so that frames do not depend on the order of traversal.
+using CutoutFunction = std::function<bool(const Ray&, const RawHit&)>;
+
+class Intersector {
+  public:
+    /// Builds the acceleration structures once; meshes may be shared by instances. The meshes must
+    /// outlive the intersector. Throws Error when memory runs out.
+    static std::unique_ptr<Intersector> build(const std::vector<Mesh>& meshes,
+                                              const std::vector<InstanceGeometry>& instances,
+                                              const std::vector<Sphere>& spheres,
+                                              CutoutFunction cutout);
+    virtual ~Intersector() = default;
+    virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
+    virtual bool occluded(const Ray& ray) const = 0;
+    virtual const char* name() const = 0;   // "Embree 3.13.5"
+};
+
+}  // namespace dg

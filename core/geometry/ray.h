@@ -1,0 +1,17 @@
+// ray.h -- a ray in the world (m) at one instant.
+#pragma once
+#include <limits>
+
+#include "math/vec.h"
+
+namespace dg {
+
+struct Ray {
+    Vec3f origin;           // m
+    Vec3f direction;        // unit
+    float time = 0;         // s; every ray that descends from a camera ray keeps it
+    float t_min = 0;        // m
+    float t_max = std::numeric_limits<float>::infinity();
+};
+
+}  // namespace dg

@@ -1,0 +1,32 @@
+// environment.h -- light from infinity: an equirectangular picture, or one colour.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "math/distribution.h"
+#include "math/transform.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+
+/// Picture: row 0 is the zenith (+y up, as glTF); the centre column looks along -z; 1.0 is `scale` cd/m2.
+/// Lookup is bilinear, wrapping in azimuth; sampling follows luminance x sin(theta) of that same
+/// bilinear function's cells, so that pdf > 0 wherever radiance > 0.
+struct EnvironmentImage {
+    int width = 0, height = 0;
+    std::vector<Rgb> pixels;
+};
+
+class Environment {
+  public:
+    static Environment constant(Rgb luminance);
+    static Environment image(EnvironmentImage image, float scale, const Affine3f& world_from_environment);
+
+    Rgb luminance(Vec3f direction) const;
+    struct Sample { Vec3f direction; float pdf; };
+    Sample sample(Vec2f u) const;
+    float pdf(Vec3f direction) const;
+    float mean_luminance() const;   // over the sphere
+};
+
+}  // namespace dg

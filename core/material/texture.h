@@ -1,0 +1,37 @@
+// texture.h -- images on surfaces. Values are linear when they leave here.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace dg {
+
+enum class Wrap { repeat, mirror, clamp };
+enum class TextureFilter { linear, nearest };
+
+/// 8-bit (srgb or linear) or float pixels; row 0 is the top row, as in glTF: uv (0,0) is its left corner.
+struct Texture {
+    std::string name;
+    int width = 0, height = 0, channels = 0;  // channels 1..4
+    std::variant<std::vector<std::uint8_t>, std::vector<float>> pixels;
+    bool srgb = false;        // decode the first three channels on lookup (8-bit only)
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    TextureFilter filter = TextureFilter::linear;
+
+    struct Texel { float r, g, b, a; };     // missing channels: grey r=g=b for 1 and 2, a = 1
+    Texel lookup(Vec2f uv) const;
+};
+
+/// Use of a texture by a material slot (KHR_texture_transform included). index < 0: none.
+struct TextureSlot {
+    int index = -1;
+    int uv_set = 0;
+    // uv' = (m[0] u + m[1] v + m[2], m[3] u + m[4] v + m[5])
+    float m[6] = {1, 0, 0, 0, 1, 0};
+    bool used() const { return index >= 0; }
+};
+
+}  // namespace dg

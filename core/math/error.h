@@ -1,0 +1,32 @@
+// error.h -- bad input is dg::Error (what, where, wanted, got); an impossible state is DG_CHECK.
+#pragma once
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace dg {
+
+/// Input that cannot be used. The message is one sentence a user can act on; Python sees ValueError.
+struct Error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// "where: what: wanted ..., got ..."
+inline Error input_error(const std::string& where, const std::string& what,
+                         const std::string& wanted, const std::string& got) {
+    return Error(where + ": " + what + ": wanted " + wanted + ", got " + got);
+}
+
+template <typename A, typename B>
+[[noreturn]] void check_failed(const char* file, int line, const char* expr, const A& a, const B& b) {
+    std::ostringstream s;
+    s << file << ":" << line << ": impossible state: " << expr << " (" << a << " against " << b << ")";
+    throw std::logic_error(s.str());
+}
+
+}  // namespace dg
+
+#define DG_CHECK(a, op, b)                                                         \
+    do {                                                                           \
+        if (!((a)op(b))) ::dg::check_failed(__FILE__, __LINE__, #a " " #op " " #b, a, b); \
+    } while (0)

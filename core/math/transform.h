@@ -1,0 +1,43 @@
+// transform.h -- affine transforms, column vectors: world = matrix * local.
+#pragma once
+#include <array>
+
+#include "math/vec.h"
+
+namespace dg {
+
+template <typename T>
+struct Affine {
+    // Columns of the linear part, and the translation.
+    Vec3<T> x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin{0, 0, 0};
+
+    Vec3<T> point(Vec3<T> p) const { return x * p.x + y * p.y + z * p.z + origin; }
+    Vec3<T> vector(Vec3<T> v) const { return x * v.x + y * v.y + z * v.z; }
+    T determinant() const { return dot(x, cross(y, z)); }
+
+    /// Normals transform by the cofactor matrix; the result is not normalised and keeps its side
+    /// also when the transform mirrors.
+    Vec3<T> normal(Vec3<T> n) const {
+        const Vec3<T> m = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
+        return determinant() < 0 ? -m : m;
+    }
+
+    friend Affine operator*(const Affine& a, const Affine& b) {
+        return {a.vector(b.x), a.vector(b.y), a.vector(b.z), a.point(b.origin)};
+    }
+};
+
+/// Inverse; the caller makes sure that the determinant is not 0.
+template <typename T>
+Affine<T> inverse(const Affine<T>& a) {
+    const T s = T(1) / a.determinant();
+    const Vec3<T> r0 = cross(a.y, a.z) * s, r1 = cross(a.z, a.x) * s, r2 = cross(a.x, a.y) * s;
+    Affine<T> r{{r0.x, r1.x, r2.x}, {r0.y, r1.y, r2.y}, {r0.z, r1.z, r2.z}, {}};
+    r.origin = -r.vector(a.origin);
+    return r;
+}
+
+using Affine3f = Affine<float>;
+using Affine3d = Affine<double>;
+
+}  // namespace dg

@@ -1,0 +1,21 @@
+// path.h -- radiance along a ray. Knows neither camera nor film, so it can be held against a furnace.
+#pragma once
+#include "film/film.h"
+#include "geometry/ray.h"
+#include "math/sampler.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+struct PathSettings {
+    int max_depth = 16;      // surface vertices
+    int roulette_depth = 4;  // vertices before Russian roulette
+    enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
+};
+
+/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
+/// sampling. `aov`, if given, receives the first hit.
+Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count);
+
+}  // namespace dg
