@@ -1,12 +1,42 @@
-# The system libraries that Daguerre stands on. A missing one is an error that names the package.
-find_package(TBB REQUIRED)
-find_package(HWY 1.0.3 REQUIRED)
+# dependencies.cmake -- the system libraries that Daguerre stands on. All missing ones are named in
+# one error, with the packages that bring them.
+set(DG_MISSING "")
 
-# Embree 4 where the system has it, else 3.13. Only core/geometry/embree.h sees the difference.
-find_package(embree 4 QUIET)
-if(NOT embree_FOUND)
-    find_package(embree 3.13 REQUIRED)
+find_package(TBB QUIET)
+if(NOT TARGET TBB::tbb)
+    string(APPEND DG_MISSING "\n  oneTBB                     libtbb-dev")
 endif()
+
+find_package(HWY 1.0.3 QUIET)
+if(NOT TARGET hwy::hwy)
+    string(APPEND DG_MISSING "\n  Highway 1.0.3 or newer     libhwy-dev")
+endif()
+
+# Embree 4 where the system has it, else 3.13. Only core/geometry/embree.cpp sees the difference.
+# Embree's own CMake file stops with an error of its own where oneTBB is missing, so that comes first.
+if(TARGET TBB::tbb)
+    find_package(embree 4 QUIET)
+    if(NOT embree_FOUND)
+        find_package(embree 3.13 QUIET)
+    endif()
+endif()
+if(NOT TARGET embree)
+    string(APPEND DG_MISSING "\n  Embree 4 or 3.13           libembree-dev")
+endif()
+
+if(DG_TESTS)
+    find_package(doctest QUIET)
+    if(NOT TARGET doctest::doctest)
+        string(APPEND DG_MISSING "\n  doctest (for DG_TESTS)     doctest-dev")
+    endif()
+endif()
+
+if(DG_MISSING)
+    message(FATAL_ERROR "Missing libraries, and the Debian/Ubuntu packages that bring them:"
+        "${DG_MISSING}\n"
+        "Install them with apt, or run script/setup, which does.")
+endif()
+
 string(REGEX MATCH "^[0-9]+" DG_EMBREE_MAJOR "${embree_VERSION}")
 message(STATUS "Embree ${embree_VERSION}, TBB ${TBB_VERSION}, Highway ${HWY_VERSION}")
 add_library(dg_embree INTERFACE)
