@@ -1,0 +1,47 @@
+"""What can go wrong, and with which exit code. Every message names what, where, wanted and got."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class DaguerreError(ValueError):
+    """Base of all errors that a user can act on."""
+
+    exit_code = 3
+
+
+class UsageError(DaguerreError):
+    """A wrong command line or parameter (exit code 2)."""
+
+    exit_code = 2
+
+
+class InputError(DaguerreError):
+    """An unreadable or invalid input file, scene or lens (exit code 3)."""
+
+    exit_code = 3
+
+
+class MismatchError(DaguerreError):
+    """Passes or checkpoints that do not belong together (exit code 4)."""
+
+    exit_code = 4
+
+
+class OutputError(DaguerreError):
+    """An output that cannot be written (exit code 5)."""
+
+    exit_code = 5
+
+
+def suggest(name: str, known: Iterable[str]) -> str:
+    """``" (did you mean 'a' or 'b'?)"`` with the nearest known names, or all of a short list."""
+    names = sorted(known)
+    near = difflib.get_close_matches(name, names, n=3, cutoff=0.5) or (
+        names if len(names) <= 8 else []
+    )
+    if not near:
+        return ""
+    return " (did you mean " + " or ".join(repr(n) for n in near) + "?)"

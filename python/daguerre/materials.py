@@ -1,0 +1,93 @@
+"""What surfaces are made of. Colours are linear Rec.709 triples; emission is in cd/m2."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class TextureSlot:
+    """Use of a texture by a material.
+
+    Attributes:
+        texture: Index returned by ``Scene.add_texture``.
+        uv_set: 0 or 1.
+        transform: uv' = (a u + b v + c, d u + e v + f), as (a, b, c, d, e, f).
+    """
+
+    texture: int
+    uv_set: int = 0
+    transform: tuple[float, float, float, float, float, float] = (1, 0, 0, 0, 1, 0)
+
+
+@dataclass(frozen=True)
+class Diffuse:
+    """Lambert on both sides."""
+
+    reflectance: Color = (0.5, 0.5, 0.5)
+
+
+@dataclass(frozen=True)
+class Conductor:
+    """GGX microfacets of constant reflectance, both sides. ``alpha`` below 1e-3 is a mirror."""
+
+    reflectance: Color = (1.0, 1.0, 1.0)
+    alpha: float = 0.1
+
+
+@dataclass(frozen=True)
+class Dielectric:
+    """Clear glass, smooth (``alpha`` below 1e-3) or GGX rough; the normal's side is outside."""
+
+    ior: float = 1.5
+    alpha: float = 0.0
+    tint: Color = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Gltf:
+    """glTF 2.0 metallic-roughness with KHR emissive_strength, ior, transmission, volume, specular."""
+
+    base_color: Color = (1.0, 1.0, 1.0)
+    base_alpha: float = 1.0
+    base_color_texture: TextureSlot | None = None
+    metallic: float = 1.0
+    roughness: float = 1.0
+    metallic_roughness_texture: TextureSlot | None = None
+    normal_scale: float = 1.0
+    normal_texture: TextureSlot | None = None
+    occlusion_texture: TextureSlot | None = None
+    emissive: Color = (0.0, 0.0, 0.0)
+    emissive_texture: TextureSlot | None = None
+    alpha_mode: str = "opaque"
+    alpha_cutoff: float = 0.5
+    double_sided: bool = False
+    ior: float = 1.5
+    specular: float = 1.0
+    specular_texture: TextureSlot | None = None
+    specular_color: Color = (1.0, 1.0, 1.0)
+    specular_color_texture: TextureSlot | None = None
+    transmission: float = 0.0
+    transmission_texture: TextureSlot | None = None
+    thickness: float = 0.0
+    attenuation_distance: float = math.inf
+    attenuation_color: Color = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Material:
+    """A named material: one of the kinds above, and emission on top of it.
+
+    Attributes:
+        kind: Diffuse, Conductor, Dielectric or Gltf.
+        emission: Luminance added on the front side, cd/m2.
+        two_sided_emission: Emit from the back too.
+    """
+
+    kind: Diffuse | Conductor | Dielectric | Gltf = field(default_factory=Diffuse)
+    name: str = ""
+    emission: Color = (0.0, 0.0, 0.0)
+    two_sided_emission: bool = False
