@@ -1,0 +1,72 @@
+"""The order of floors holds in core/, and the check that says so catches planted faults."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def run_check(core: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, str(ROOT / "script" / "check-floors"), str(core)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def plant(tmp_path: Path, path: str, include: str) -> Path:
+    """A small core/ that is in order but for one line."""
+    core = tmp_path / "core"
+    for good, line in {
+        "math/vec.h": "#include <cmath>",
+        "camera/camera.h": '#include "math/vec.h"',
+        "material/material.h": '#include "geometry/hit.h"',
+        "geometry/embree.cpp": "#include <embree4/rtcore.h>",
+    }.items():
+        (core / good).parent.mkdir(parents=True, exist_ok=True)
+        (core / good).write_text(line + "\n")
+    file = core / path
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(f"// planted\n{include}\n")
+    return core
+
+
+def test_core_is_in_order():
+    result = run_check(ROOT / "core")
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_order_without_fault_passes(tmp_path):
+    assert run_check(plant(tmp_path, "film/film.h", '#include "math/vec.h"')).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("path", "include", "message"),
+    [
+        ("math/bad.h", '#include "camera/camera.h"', "points up"),
+        ("camera/bad.cpp", '#include "scene/scene.h"', "points up"),
+        ("camera/bad.h", '  #  include "render/render.h"', "points up"),
+        ("film/bad.h", '#include "optics/lens.h"', "neighbour"),
+        ("light/bad.cpp", '#include "camera/camera.h"', "neighbour"),
+        ("geometry/bad.h", '#include "material/material.h"', "neighbour"),
+        ("render/bad.cpp", "#include <embree4/rtcore.h>", "only geometry/embree"),
+        ("render/bad.cpp", "#include <math/vec.h>", "written with quotes"),
+        ("cellar/bad.h", '#include "math/vec.h"', "not in the table"),
+        ("math/bad.h", '#include "vec.h"', "names its room"),
+    ],
+)
+def test_planted_fault_is_caught(tmp_path, path, include, message):
+    result = run_check(plant(tmp_path, path, include))
+    assert result.returncode == 1
+    assert message in result.stdout
+    assert f"core/{path}:2" in result.stdout
+
+
+def test_empty_folder_is_an_error(tmp_path):
+    assert run_check(tmp_path).returncode == 2
