@@ -14,10 +14,10 @@
 namespace dg {
 
 /// Where a ray met the geometry; barycentrics as glTF and Embree have them: p = (1-u-v) a + u b + v c.
+/// No normal: the scene computes it from the vertices, with the side that the instance gives it.
 struct RawHit {
     float t;
     float u, v;
-    Vec3f ng;                   // geometric normal of the triangle in INSTANCE space, not normalised
     std::uint32_t instance;     // index into the instances; kSphere for sphere lights
     std::uint32_t primitive;    // triangle, or index of the sphere
     static constexpr std::uint32_t kSphere = 0xffffffffu;
@@ -35,8 +35,10 @@ using CutoutFunction = std::function<bool(const Ray&, const RawHit&)>;
 
 class Intersector {
   public:
-    /// Builds the acceleration structures once; meshes may be shared by instances. The meshes must
-    /// outlive the intersector. Throws Error when memory runs out.
+    /// Builds the acceleration structures once; meshes may be shared by instances. The meshes must be
+    /// valid, and outlive the intersector unchanged: their arrays are read in place (positions only
+    /// where the vector's capacity has room for one more, since Embree reads 16 bytes at the last
+    /// vertex; otherwise they are copied). Throws Error when memory runs out.
     static std::unique_ptr<Intersector> build(const std::vector<Mesh>& meshes,
                                               const std::vector<InstanceGeometry>& instances,
                                               const std::vector<Sphere>& spheres,
@@ -45,6 +47,10 @@ class Intersector {
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
     virtual bool occluded(const Ray& ray) const = 0;
     virtual const char* name() const = 0;   // "Embree 3.13.5"
+
+    /// True when hits on the instance are found in world space, against vertices that were
+    /// transformed once, and not by a ray transformed into the space of the mesh (see layout.h).
+    virtual bool is_flattened(std::uint32_t instance) const = 0;
 };
 
 }  // namespace dg

@@ -1,0 +1,308 @@
+// embree.cpp -- ray tracing by Embree, 3.13 or 4: the only file that includes it.
+//
+// One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world space
+// (flattened) or as an Embree instance of the mesh's own scene; geometry `instances.size()` holds the
+// sphere lights. So Embree's ids are ours, and no table stands between them.
+#include <atomic>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "geometry/intersector.h"
+#include "geometry/layout.h"
+#include "math/error.h"
+
+#if DG_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace dg {
+namespace {
+
+#if DG_EMBREE_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+void init_context(QueryContext& c) { rtcInitRayQueryContext(&c); }
+void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context;
+    rtcIntersect1(scene, &ray_hit, &arguments);
+}
+void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context;
+    rtcOccluded1(scene, &ray, &arguments);
+}
+#else
+using QueryContext = RTCIntersectContext;
+void init_context(QueryContext& c) { rtcInitIntersectContext(&c); }
+void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
+    rtcIntersect1(scene, &context, &ray_hit);
+}
+void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
+    rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+/// Embree hands its context to the filter; the world-space ray travels behind it, because inside an
+/// instance the filter sees the transformed one.
+struct Context {
+    QueryContext embree;
+    const Ray* ray;
+};
+
+/// Owners of Embree's handles.
+struct ReleaseDevice { void operator()(RTCDevice d) const { rtcReleaseDevice(d); } };
+struct ReleaseScene { void operator()(RTCScene s) const { rtcReleaseScene(s); } };
+struct ReleaseGeometry { void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); } };
+using DeviceOwner = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using SceneOwner = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+using GeometryOwner = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
+
+/// Errors come by callback, from any thread; the first one is kept and thrown by check().
+class Device {
+  public:
+    Device() : handle_(rtcNewDevice(nullptr)) {
+        if (!handle_) {
+            throw Error("Embree: no device: error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                        " (the CPU or the installation of Embree is not supported)");
+        }
+        rtcSetDeviceErrorFunction(handle_.get(), &Device::on_error, this);
+    }
+    RTCDevice get() const { return handle_.get(); }
+
+    void check(const std::string& what) {
+        const std::lock_guard lock(mutex_);
+        if (code_ == RTC_ERROR_NONE) return;
+        if (code_ == RTC_ERROR_OUT_OF_MEMORY) throw Error(what + ": out of memory");
+        throw Error(what + ": Embree error " + std::to_string(code_) + ": " + message_);
+    }
+
+  private:
+    static void on_error(void* self, RTCError code, const char* message) {
+        Device& device = *static_cast<Device*>(self);
+        const std::lock_guard lock(device.mutex_);
+        if (device.code_ != RTC_ERROR_NONE) return;
+        device.code_ = code;
+        device.message_ = message ? message : "";
+    }
+
+    DeviceOwner handle_;
+    std::mutex mutex_;
+    RTCError code_ = RTC_ERROR_NONE;
+    std::string message_;
+};
+
+class EmbreeIntersector final : public Intersector {
+  public:
+    EmbreeIntersector(const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
+                      const std::vector<Sphere>& spheres, CutoutFunction cutout);
+
+    std::optional<RawHit> intersect(const Ray& ray) const override;
+    bool occluded(const Ray& ray) const override;
+    const char* name() const override { return name_.c_str(); }
+    bool is_flattened(std::uint32_t instance) const override { return flattened_[instance]; }
+
+  private:
+    SceneOwner new_scene();
+    GeometryOwner triangles_of(const Mesh& mesh);
+    void set_positions(RTCGeometry geometry, const Mesh& mesh);
+    void set_world_positions(RTCGeometry geometry, const Mesh& mesh, const Affine3f& transform);
+    void set_cutout(RTCGeometry geometry);
+    void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
+    void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
+    void attach_spheres(const std::vector<Sphere>& spheres);
+    RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
+    RawHit raw_hit(float t, const RTCHit& hit) const;
+    static void filter(const RTCFilterFunctionNArguments* arguments);
+
+    Device device_;
+    CutoutFunction cutout_;
+    std::vector<bool> flattened_;
+    std::map<std::pair<std::uint32_t, bool>, SceneOwner> mesh_scenes_;  // by mesh and cutout
+    SceneOwner top_;
+    unsigned sphere_geometry_;
+    std::string name_;
+};
+
+RTCBuildQuality build_quality() {
+    return RTC_BUILD_QUALITY_MEDIUM;
+}
+
+std::string version_name(RTCDevice device) {
+    auto property = [&](RTCDeviceProperty p) { return std::to_string(rtcGetDeviceProperty(device, p)); };
+    return "Embree " + property(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." +
+           property(RTC_DEVICE_PROPERTY_VERSION_MINOR) + "." +
+           property(RTC_DEVICE_PROPERTY_VERSION_PATCH);
+}
+
+EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
+                                     const std::vector<InstanceGeometry>& instances,
+                                     const std::vector<Sphere>& spheres, CutoutFunction cutout)
+    : cutout_(std::move(cutout)), flattened_(choose_flattened(meshes, instances)),
+      top_(new_scene()), sphere_geometry_(static_cast<unsigned>(instances.size())),
+      name_(version_name(device_.get())) {
+    for (unsigned i = 0; i < instances.size(); ++i) {
+        const Mesh& mesh = meshes[instances[i].mesh];
+        if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
+    }
+    if (!spheres.empty()) attach_spheres(spheres);
+    rtcCommitScene(top_.get());
+    device_.check("building the acceleration structure of the scene");
+}
+
+SceneOwner EmbreeIntersector::new_scene() {
+    SceneOwner scene(rtcNewScene(device_.get()));
+    device_.check("creating an acceleration structure");
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), build_quality());
+    return scene;
+}
+
+GeometryOwner EmbreeIntersector::triangles_of(const Mesh& mesh) {
+    GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    device_.check("mesh '" + mesh.name + "'");
+    rtcSetGeometryBuildQuality(geometry.get(), build_quality());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
+                               mesh.triangles.size());
+    return geometry;
+}
+
+void EmbreeIntersector::set_positions(RTCGeometry geometry, const Mesh& mesh) {
+    const std::vector<Vec3f>& p = mesh.positions;
+    if (p.capacity() > p.size()) {  // 16 bytes may be read at the last vertex
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, p.data(),
+                                   0, sizeof(Vec3f), p.size());
+        return;
+    }
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                         sizeof(Vec3f), p.size());
+    device_.check("vertices of mesh '" + mesh.name + "'");
+    std::memcpy(copy, p.data(), p.size() * sizeof(Vec3f));
+}
+
+void EmbreeIntersector::set_world_positions(RTCGeometry geometry, const Mesh& mesh,
+                                            const Affine3f& transform) {
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                         sizeof(Vec3f), mesh.positions.size());
+    device_.check("vertices of mesh '" + mesh.name + "'");
+    auto* world = static_cast<Vec3f*>(copy);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        world[i] = transform.point(mesh.positions[i]);
+    }
+}
+
+void EmbreeIntersector::set_cutout(RTCGeometry geometry) {
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryIntersectFilterFunction(geometry, &EmbreeIntersector::filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, &EmbreeIntersector::filter);
+}
+
+void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned id) {
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene, geometry.get(), id);  // the scene keeps a reference of its own
+}
+
+RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance, const Mesh& mesh) {
+    SceneOwner& scene = mesh_scenes_[{instance.mesh, instance.cutout}];
+    if (scene) return scene.get();
+    scene = new_scene();
+    GeometryOwner geometry = triangles_of(mesh);
+    set_positions(geometry.get(), mesh);
+    if (instance.cutout) set_cutout(geometry.get());
+    attach(scene.get(), std::move(geometry), 0);
+    rtcCommitScene(scene.get());
+    device_.check("building the acceleration structure of mesh '" + mesh.name + "'");
+    return scene.get();
+}
+
+void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& instance,
+                                        const Mesh& mesh) {
+    if (flattened_[id]) {
+        GeometryOwner geometry = triangles_of(mesh);
+        set_world_positions(geometry.get(), mesh, instance.world_from_local);
+        if (instance.cutout) set_cutout(geometry.get());
+        attach(top_.get(), std::move(geometry), id);
+        return;
+    }
+    GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    device_.check("instance of mesh '" + mesh.name + "'");
+    rtcSetGeometryInstancedScene(geometry.get(), mesh_scene(instance, mesh));
+    // Affine3f is four columns of three floats: exactly this format.
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                            &instance.world_from_local);
+    attach(top_.get(), std::move(geometry), id);
+}
+
+void EmbreeIntersector::attach_spheres(const std::vector<Sphere>& spheres) {
+    static_assert(sizeof(Sphere) == 16, "read in place as x, y, z, radius");
+    GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+    device_.check("sphere lights");
+    void* copy = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                         RTC_FORMAT_FLOAT4, sizeof(Sphere), spheres.size());
+    device_.check("sphere lights");
+    std::memcpy(copy, spheres.data(), spheres.size() * sizeof(Sphere));
+    attach(top_.get(), std::move(geometry), sphere_geometry_);
+}
+
+RawHit EmbreeIntersector::raw_hit(float t, const RTCHit& hit) const {
+    RawHit result{t, hit.u, hit.v, hit.instID[0], hit.primID};
+    if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+        result.instance = hit.geomID == sphere_geometry_ ? RawHit::kSphere : hit.geomID;
+    }
+    return result;
+}
+
+void EmbreeIntersector::filter(const RTCFilterFunctionNArguments* arguments) {
+    if (arguments->valid[0] == 0) return;
+    const auto& self = *static_cast<const EmbreeIntersector*>(arguments->geometryUserPtr);
+    const auto& context = *reinterpret_cast<const Context*>(arguments->context);
+    // Only single rays are traced, so N is 1 and the packets are plain structures.
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (self.cutout_(*context.ray, self.raw_hit(ray.tfar, hit))) arguments->valid[0] = 0;
+}
+
+RTCRay embree_ray(const Ray& ray) {
+    return {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min,
+            ray.direction.x, ray.direction.y, ray.direction.z, 0,
+            ray.t_max, 0xffffffffu, 0, 0};
+}
+
+std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
+    Context context;
+    init_context(context.embree);
+    context.ray = &ray;
+    RTCRayHit ray_hit;
+    ray_hit.ray = embree_ray(ray);
+    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    query(top_.get(), context.embree, ray_hit);
+    if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return raw_hit(ray_hit.ray.tfar, ray_hit.hit);
+}
+
+bool EmbreeIntersector::occluded(const Ray& ray) const {
+    Context context;
+    init_context(context.embree);
+    context.ray = &ray;
+    RTCRay shadow_ray = embree_ray(ray);
+    query(top_.get(), context.embree, shadow_ray);
+    return shadow_ray.tfar < 0;  // Embree's sign for "something was met"
+}
+
+}  // namespace
+
+std::unique_ptr<Intersector> Intersector::build(const std::vector<Mesh>& meshes,
+                                                const std::vector<InstanceGeometry>& instances,
+                                                const std::vector<Sphere>& spheres,
+                                                CutoutFunction cutout) {
+    return std::make_unique<EmbreeIntersector>(meshes, instances, spheres, std::move(cutout));
+}
+
+}  // namespace dg

@@ -1,0 +1,65 @@
+// mesh.cpp -- the check that a mesh can be used.
+#include "geometry/mesh.h"
+
+#include <cmath>
+
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+bool finite(Vec2f v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+bool finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const std::array<float, 4>& v) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) && std::isfinite(v[3]);
+}
+
+std::string text(Vec2f v) { return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")"; }
+std::string text(Vec3f v) {
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
+}
+std::string text(const std::array<float, 4>& v) {
+    return "(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]) +
+           ", " + std::to_string(v[3]) + ")";
+}
+
+template <typename T>
+void check_array(const std::string& where, const char* what, const std::vector<T>& values,
+                 std::size_t vertices) {
+    if (values.size() != vertices) {
+        throw input_error(where, std::string("length of ") + what,
+                          std::to_string(vertices) + " (one per vertex)",
+                          std::to_string(values.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!finite(values[i])) {
+            throw input_error(where, std::string(what) + " of vertex " + std::to_string(i),
+                              "finite numbers", text(values[i]));
+        }
+    }
+}
+
+}  // namespace
+
+void Mesh::validate() const {
+    const std::string where = "mesh '" + name + "'";
+    const std::size_t n = positions.size();
+    check_array(where, "positions", positions, n);
+    if (!normals.empty()) check_array(where, "normals", normals, n);
+    for (int set = 0; set < 2; ++set) {
+        const char* what = set == 0 ? "texture coordinates 0" : "texture coordinates 1";
+        if (!uv[set].empty()) check_array(where, what, uv[set], n);
+    }
+    if (!tangents.empty()) check_array(where, "tangents", tangents, n);
+    if (!colors.empty()) check_array(where, "colours", colors, n);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        for (std::uint32_t vertex : triangles[i]) {
+            if (vertex >= n) {
+                throw input_error(where, "vertex index of triangle " + std::to_string(i),
+                                  "less than " + std::to_string(n), std::to_string(vertex));
+            }
+        }
+    }
+}
+
+}  // namespace dg
