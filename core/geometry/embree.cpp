@@ -3,7 +3,6 @@
 // One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world space
 // (flattened) or as an Embree instance of the mesh's own scene; geometry `instances.size()` holds the
 // sphere lights. So Embree's ids are ours, and no table stands between them.
-#include <atomic>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -129,9 +128,11 @@ class EmbreeIntersector final : public Intersector {
     std::string name_;
 };
 
-RTCBuildQuality build_quality() {
-    return RTC_BUILD_QUALITY_MEDIUM;
-}
+// Robust traversal: without it one ray in 10^7 leaks through an edge of a closed mesh, and one in 20 to
+// 1000 of those aimed at an edge (measured; with it none of 4 * 10^7). It costs 12 to 15 % of traversal.
+constexpr RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST;
+// High quality (spatial splits) traced no faster in robust mode.
+constexpr RTCBuildQuality kBuildQuality = RTC_BUILD_QUALITY_MEDIUM;
 
 std::string version_name(RTCDevice device) {
     auto property = [&](RTCDeviceProperty p) { return std::to_string(rtcGetDeviceProperty(device, p)); };
@@ -158,15 +159,15 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
 SceneOwner EmbreeIntersector::new_scene() {
     SceneOwner scene(rtcNewScene(device_.get()));
     device_.check("creating an acceleration structure");
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene.get(), build_quality());
+    rtcSetSceneFlags(scene.get(), kSceneFlags);
+    rtcSetSceneBuildQuality(scene.get(), kBuildQuality);
     return scene;
 }
 
 GeometryOwner EmbreeIntersector::triangles_of(const Mesh& mesh) {
     GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     device_.check("mesh '" + mesh.name + "'");
-    rtcSetGeometryBuildQuality(geometry.get(), build_quality());
+    rtcSetGeometryBuildQuality(geometry.get(), kBuildQuality);
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                mesh.triangles.size());

@@ -1,0 +1,74 @@
+// mesh_test.cpp -- bad meshes are named, good ones pass; the rule for flattening.
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "geometry/layout.h"
+#include "math/error.h"
+
+using namespace dg;
+
+namespace {
+
+Mesh triangle_mesh() {
+    Mesh mesh;
+    mesh.name = "tri";
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+}
+
+std::string message(const Mesh& mesh) {
+    try {
+        mesh.validate();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+Mesh mesh_of_size(std::size_t triangles) {
+    Mesh mesh = triangle_mesh();
+    mesh.triangles.assign(triangles, {0, 1, 2});
+    return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a valid mesh passes") {
+    Mesh mesh = triangle_mesh();
+    CHECK(message(mesh) == "");
+    mesh.normals.assign(3, {0, 0, 1});
+    mesh.uv[1].assign(3, {0, 0});
+    CHECK(message(mesh) == "");
+    CHECK(message(Mesh{}) == "");
+}
+
+TEST_CASE("a bad mesh is an error that names mesh and element") {
+    Mesh mesh = triangle_mesh();
+    mesh.positions[1].y = std::numeric_limits<float>::quiet_NaN();
+    CHECK(message(mesh).find("mesh 'tri': positions of vertex 1: wanted finite") == 0);
+
+    mesh = triangle_mesh();
+    mesh.triangles[0][2] = 3;
+    CHECK(message(mesh) ==
+          "mesh 'tri': vertex index of triangle 0: wanted less than 3, got 3");
+
+    mesh = triangle_mesh();
+    mesh.uv[1].assign(2, {0, 0});
+    CHECK(message(mesh) ==
+          "mesh 'tri': length of texture coordinates 1: wanted 3 (one per vertex), got 2");
+
+    mesh = triangle_mesh();
+    mesh.colors.assign(3, {1, 1, 1, std::numeric_limits<float>::infinity()});
+    CHECK(message(mesh).find("colours of vertex 0") != std::string::npos);
+}
+
+TEST_CASE("meshes used once are flattened, shared ones while the total stays small") {
+    const std::vector<Mesh> meshes{mesh_of_size(1000), mesh_of_size(10), mesh_of_size(30)};
+    const std::vector<InstanceGeometry> instances{{0, {}, false}, {1, {}, false}, {1, {}, false},
+                                                  {2, {}, false}, {2, {}, false}};
+    CHECK(choose_flattened(meshes, instances, 0) == std::vector{true, false, false, false, false});
+    CHECK(choose_flattened(meshes, instances, 50) == std::vector{true, true, true, false, false});
+    CHECK(choose_flattened(meshes, instances) == std::vector<bool>(5, true));
+}
