@@ -23,9 +23,12 @@ struct Camera {
     LensKind lens;
 };
 
-/// Fills rays[i] for samples[i]; a ray with weight 0 was stopped by glass or iris. A white world of
+/// Fills rays[i] (camera frame) for samples[i]; weight 0: stopped by glass or iris. A white world of
 /// luminance 1 has mean weight 1 on the optical axis: weights are exposures divided by H0.
 void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
                    std::span<CameraRay> rays);
+
+/// The wall between the camera's frame and the world's.
+Ray to_world(const Camera& camera, const Ray& ray);
 
 }  // namespace dg

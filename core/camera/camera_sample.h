@@ -13,8 +13,9 @@ struct CameraSample {
 };
 
 struct CameraRay {
-    Ray ray;                // each kind fills it in the camera frame (m); generate_rays moves it to the world
+    Ray ray;                // camera frame, m
     float weight = 0;       // relative exposure; 0: stopped
+    float aim_weight = 0;   // exact lens: the weight before the glass's transmittance
 };
 
 }  // namespace dg

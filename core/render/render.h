@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "camera/camera.h"
+#include "camera/sensor.h"
 #include "film/film.h"
 #include "film/filter.h"
 #include "render/path.h"
@@ -12,9 +13,7 @@
 namespace dg {
 
 struct RenderSettings {
-    int width = 0, height = 0;                  // full frame, px
-    double sensor_width_mm = 36, sensor_height_mm = 24;   // the part that the frame covers
-    Vec2d sensor_center_mm{0, 0};               // film shift
+    Sensor sensor;
     std::uint32_t sample_begin = 0, sample_end = 1;
     std::uint64_t seed = 0;
     int threads = 0;                            // 0: all
@@ -30,6 +29,7 @@ struct RenderCounters {
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region. `progress` is called
 /// from worker threads with the fraction done; returning false stops early (the film is then invalid).
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
-                      const RenderSettings& settings, const std::function<bool(double)>& progress);
+                      const RenderSettings& settings,
+                      const std::function<bool(double)>& progress);
 
 }  // namespace dg

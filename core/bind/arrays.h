@@ -1,0 +1,49 @@
+// arrays.h -- numpy arrays in and out. Copies: the core owns what it keeps.
+#pragma once
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstring>
+#include <vector>
+
+#include "math/transform.h"
+
+namespace dg::bind {
+
+namespace nb = nanobind;
+
+template <typename T, typename... Shape>
+using In = nb::ndarray<const T, nb::shape<Shape...>, nb::c_contig, nb::device::cpu>;
+using Rows2f = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Rows3f = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Rows4f = nb::ndarray<const float, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
+using Rows3u = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Matrix4 = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+
+/// Rows of a C-contiguous array as a vector of T, bit for bit.
+template <typename T, typename Array>
+std::vector<T> to_vector(const Array& array) {
+    std::vector<T> out(array.shape(0));
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!out.empty()) std::memcpy(out.data(), array.data(), array.nbytes());
+    return out;
+}
+
+inline Affine3d to_affine(const Matrix4& m) {
+    const double* p = m.data();
+    return {{p[0], p[4], p[8]}, {p[1], p[5], p[9]}, {p[2], p[6], p[10]}, {p[3], p[7], p[11]}};
+}
+
+inline Affine3f to_float(const Affine3d& a) {
+    return {dg::to_float(a.x), dg::to_float(a.y), dg::to_float(a.z), dg::to_float(a.origin)};
+}
+
+/// A numpy array that owns a vector; shape must multiply to its size.
+template <typename T>
+nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+    auto* owned = new std::vector<T>(std::move(values));
+    nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+    return nb::ndarray<nb::numpy, T>(owned->data(), shape, owner);
+}
+
+}  // namespace dg::bind

@@ -1,0 +1,78 @@
+// bind_camera.cpp -- the kinds of camera.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "bind/arrays.h"
+#include "camera/camera.h"
+#include "math/error.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Picture = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+/// Rays for explicit film points and lens samples, as arrays in the world (m): for tests and maps.
+auto rays(const dg::Camera& camera, const dg::bind::Rows2f& film_mm, const dg::bind::Rows2f& u_lens,
+          const nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>& wavelength_nm) {
+    const std::size_t n = film_mm.shape(0);
+    if (u_lens.shape(0) != n || wavelength_nm.shape(0) != n)
+        throw dg::input_error("camera rays", "arrays", "equal lengths", std::to_string(n) + " film points");
+    std::vector<dg::CameraSample> samples(n);
+    for (std::size_t i = 0; i < n; ++i)
+        samples[i] = {{film_mm(i, 0), film_mm(i, 1)}, {u_lens(i, 0), u_lens(i, 1)}, 0, wavelength_nm(i)};
+    std::vector<dg::CameraRay> out(n);
+    {
+        nb::gil_scoped_release release;
+        generate_rays(camera, samples, out);
+    }
+    std::vector<float> origins, directions, weights;
+    for (const dg::CameraRay& r : out) {
+        const dg::Ray world = r.weight > 0 ? to_world(camera, r.ray) : dg::Ray{};
+        for (int k = 0; k < 3; ++k) origins.push_back(world.origin[k]);
+        for (int k = 0; k < 3; ++k) directions.push_back(world.direction[k]);
+        weights.push_back(r.weight);
+    }
+    return std::tuple{dg::bind::to_numpy(std::move(origins), {n, std::size_t(3)}),
+                      dg::bind::to_numpy(std::move(directions), {n, std::size_t(3)}),
+                      dg::bind::to_numpy(std::move(weights), {n})};
+}
+
+}  // namespace
+
+void bind_camera(nb::module_& m) {
+    using namespace dg;
+    using dg::bind::Matrix4;
+    nb::class_<Iris>(m, "Iris")
+        .def(nb::init<>())
+        .def_static("polygon", &Iris::polygon, "blades"_a, "rotation_deg"_a, "curvature"_a)
+        .def_static("image", [](const Picture& p) {
+            return Iris::image(int(p.shape(1)), int(p.shape(0)),
+                               std::vector<float>(p.data(), p.data() + p.size()));
+        });
+    nb::class_<Camera>(m, "Camera")
+        .def_static("pinhole",
+                    [](const Matrix4& world, double film_distance_mm, bool natural_vignetting) {
+                        return Camera{dg::bind::to_affine(world),
+                                      Pinhole{film_distance_mm, natural_vignetting}};
+                    },
+                    "world_from_camera"_a, "film_distance_mm"_a, "natural_vignetting"_a = false)
+        .def_static("thin",
+                    [](const Matrix4& world, double film_distance_mm, double aperture_radius_mm,
+                       double focus_distance_m, const Iris& iris, bool natural_vignetting) {
+                        return Camera{dg::bind::to_affine(world),
+                                      ThinLens{film_distance_mm, aperture_radius_mm,
+                                               focus_distance_m, iris, natural_vignetting}};
+                    },
+                    "world_from_camera"_a, "film_distance_mm"_a, "aperture_radius_mm"_a,
+                    "focus_distance_m"_a, "iris"_a, "natural_vignetting"_a = false)
+        .def_static("exact",
+                    [](const Matrix4& world, const ExactLens& lens) {
+                        return Camera{dg::bind::to_affine(world), lens};
+                    },
+                    "world_from_camera"_a, "lens"_a)
+        .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
+             "(origins, directions, weights) in the world for explicit film points (mm, upright).");
+}

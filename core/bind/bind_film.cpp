@@ -1,0 +1,75 @@
+// bind_film.cpp -- exact sums per pixel.
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "bind/arrays.h"
+#include "film/film.h"
+#include "film/filter.h"
+#include "spectrum/wavelengths.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+template <typename T>
+auto plane(const dg::Film& film, std::vector<T> values) {
+    const auto& l = film.layout();
+    return dg::bind::to_numpy(std::move(values), {std::size_t(l.height), std::size_t(l.width)});
+}
+
+template <typename T>
+auto triples(const dg::Film& film, std::vector<T> values) {
+    const auto& l = film.layout();
+    return dg::bind::to_numpy(std::move(values),
+                              {std::size_t(l.height), std::size_t(l.width), std::size_t(3)});
+}
+
+std::vector<float> mean_rgb(const dg::Film& film) {
+    std::vector<float> values = film.mean_xyz();
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+        const dg::Rgb c = dg::rgb_from_xyz({values[i], values[i + 1], values[i + 2]});
+        values[i] = c.x;
+        values[i + 1] = c.y;
+        values[i + 2] = c.z;
+    }
+    return values;
+}
+
+using Words = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+}  // namespace
+
+void bind_film(nb::module_& m) {
+    using namespace dg;
+    nb::class_<Film>(m, "Film")
+        .def("__init__",
+             [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs) {
+                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs});
+             },
+             "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false)
+        .def_prop_ro("shape",
+                     [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
+        .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
+        .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
+        .def("mean_rgb", [](const Film& f) { return triples(f, mean_rgb(f)); })
+        .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
+        .def("sample_counts", [](const Film& f) { return plane(f, f.sample_counts()); })
+        .def("aov", [](const Film& f, const std::string& name) { return plane(f, f.aov(name)); })
+        .def("object_ids", [](const Film& f) { return plane(f, f.object_ids()); })
+        .def_prop_ro("bad_sample_count", &Film::bad_sample_count)
+        .def_prop_ro("bad_samples",
+                     [](const Film& f) {
+                         std::vector<std::tuple<int, int, std::uint32_t>> out;
+                         for (const BadSample& b : f.bad_samples()) out.emplace_back(b.x, b.y, b.sample);
+                         return out;
+                     })
+        .def("state_channels", &Film::state_channels)
+        .def("state",
+             [](const Film& f, const std::string& channel) { return plane(f, f.state(channel)); })
+        .def("set_state", [](Film& f, const std::string& channel, const Words& words) {
+            f.set_state(channel, std::vector<std::uint32_t>(words.data(), words.data() + words.size()));
+        });
+}

@@ -1,0 +1,112 @@
+// bind_render.cpp -- draw samples into a film.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "bind/arrays.h"
+#include "math/error.h"
+#include "render/render.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+/// Python's callback, called at most every 100 ms from whichever thread comes first.
+class Progress {
+  public:
+    explicit Progress(nb::object callback) : callback_(std::move(callback)) {}
+
+    bool operator()(double fraction) {
+        if (callback_.is_none()) return true;
+        const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+        auto last = last_.load();
+        constexpr auto kPeriod = std::chrono::steady_clock::duration(std::chrono::milliseconds(100)).count();
+        if (now - last < kPeriod || !last_.compare_exchange_strong(last, now)) return !stopped_;
+        nb::gil_scoped_acquire gil;
+        try {
+            if (!nb::cast<bool>(callback_(fraction))) stopped_ = true;
+        } catch (nb::python_error& e) {
+            e.discard_as_unraisable("daguerre progress callback");
+            stopped_ = true;
+        }
+        return !stopped_;
+    }
+
+  private:
+    nb::object callback_;
+    std::atomic<std::chrono::steady_clock::rep> last_{0};
+    std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+void bind_render(nb::module_& m) {
+    using namespace dg;
+    nb::class_<Filter>(m, "Filter")
+        .def("__init__",
+             [](Filter* f, const std::string& kind, float radius) {
+                 new (f) Filter(Filter::from_name(kind, radius));
+             },
+             "kind"_a, "radius"_a = 0.f, "kind: box, gaussian, blackman_harris, mitchell; radius in px, 0: its default.");
+
+    nb::class_<RenderSettings>(m, "RenderSettings")
+        .def(nb::init<>())
+        .def_prop_rw("resolution",
+                     [](const RenderSettings& s) { return std::tuple{s.sensor.width, s.sensor.height}; },
+                     [](RenderSettings& s, std::tuple<int, int> v) {
+                         std::tie(s.sensor.width, s.sensor.height) = v;
+                     })
+        .def_prop_rw("sensor_size_mm",
+                     [](const RenderSettings& s) {
+                         return std::tuple{s.sensor.width_mm, s.sensor.height_mm};
+                     },
+                     [](RenderSettings& s, std::tuple<double, double> v) {
+                         std::tie(s.sensor.width_mm, s.sensor.height_mm) = v;
+                     })
+        .def_prop_rw("sensor_center_mm",
+                     [](const RenderSettings& s) {
+                         return std::tuple{s.sensor.center_mm.x, s.sensor.center_mm.y};
+                     },
+                     [](RenderSettings& s, std::tuple<double, double> v) {
+                         s.sensor.center_mm = {std::get<0>(v), std::get<1>(v)};
+                     })
+        .def_rw("seed", &RenderSettings::seed)
+        .def_rw("threads", &RenderSettings::threads)
+        .def_rw("shutter_open_s", &RenderSettings::shutter_open_s)
+        .def_rw("shutter_close_s", &RenderSettings::shutter_close_s)
+        .def_rw("filter", &RenderSettings::filter)
+        .def_prop_rw("max_depth", [](const RenderSettings& s) { return s.path.max_depth; },
+                     [](RenderSettings& s, int v) { s.path.max_depth = v; })
+        .def_prop_rw("strategy",
+                     [](const RenderSettings& s) { return int(s.path.strategy); },
+                     [](RenderSettings& s, const std::string& name) {
+                         if (name == "mis") s.path.strategy = PathSettings::Strategy::mis;
+                         else if (name == "light") s.path.strategy = PathSettings::Strategy::light;
+                         else if (name == "bsdf") s.path.strategy = PathSettings::Strategy::bsdf;
+                         else throw input_error("render", "strategy", "mis, light or bsdf", name);
+                     });
+
+    m.def("render",
+          [](const Scene& scene, const Camera& camera, Film& film, RenderSettings settings,
+             std::uint32_t begin, std::uint32_t end, nb::object callback) {
+              settings.sample_begin = begin;
+              settings.sample_end = end;
+              Progress progress(std::move(callback));
+              std::atomic<bool> complete{true};
+              RenderCounters counters;
+              {
+                  nb::gil_scoped_release release;
+                  counters = render(scene, camera, film, settings, [&](double fraction) {
+                      const bool go = progress(fraction);
+                      if (!go) complete = false;
+                      return go;
+                  });
+              }
+              return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays};
+          },
+          "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
+          "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, stopped rays, rays).");
+}

@@ -1,0 +1,253 @@
+// bind_scene.cpp -- scenes from arrays.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+
+#include "bind/arrays.h"
+#include "math/error.h"
+#include "scene/scene.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace dg::bind {
+namespace {
+
+using Triple = std::array<float, 3>;
+Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
+
+template <typename Enum>
+Enum choose(const std::string& what, const std::string& name,
+            std::initializer_list<std::pair<const char*, Enum>> known) {
+    std::string names;
+    for (const auto& [key, value] : known) {
+        if (name == key) return value;
+        names += (names.empty() ? "" : ", ") + std::string(key);
+    }
+    throw input_error("texture", what, names, name);
+}
+
+/// A slot as (texture, uv_set, transform) or None.
+TextureSlot to_slot(nb::handle value) {
+    TextureSlot slot;
+    if (value.is_none()) return slot;
+    const auto [index, set, m] = nb::cast<std::tuple<int, int, std::array<float, 6>>>(value);
+    slot.index = index;
+    slot.uv_set = set;
+    std::copy(m.begin(), m.end(), slot.m);
+    return slot;
+}
+
+GltfMaterial to_gltf(const nb::dict& d) {
+    const auto number = [&](const char* key) { return nb::cast<float>(d[key]); };
+    const auto rgb = [&](const char* key) { return to_rgb(nb::cast<Triple>(d[key])); };
+    const auto slot = [&](const char* key) { return to_slot(d[key]); };
+    GltfMaterial m;
+    m.base_color = rgb("base_color");
+    m.base_alpha = number("base_alpha");
+    m.base_color_texture = slot("base_color_texture");
+    m.metallic = number("metallic");
+    m.roughness = number("roughness");
+    m.metallic_roughness_texture = slot("metallic_roughness_texture");
+    m.normal_scale = number("normal_scale");
+    m.normal_texture = slot("normal_texture");
+    m.occlusion_texture = slot("occlusion_texture");
+    m.emissive = rgb("emissive");
+    m.emissive_texture = slot("emissive_texture");
+    m.alpha_mode = choose<GltfMaterial::AlphaMode>("alpha_mode",
+                                                   nb::cast<std::string>(d["alpha_mode"]),
+                                                   {{"opaque", GltfMaterial::AlphaMode::opaque},
+                                                    {"mask", GltfMaterial::AlphaMode::mask},
+                                                    {"blend", GltfMaterial::AlphaMode::blend}});
+    m.alpha_cutoff = number("alpha_cutoff");
+    m.double_sided = nb::cast<bool>(d["double_sided"]);
+    m.ior = number("ior");
+    m.specular = number("specular");
+    m.specular_texture = slot("specular_texture");
+    m.specular_color = rgb("specular_color");
+    m.specular_color_texture = slot("specular_color_texture");
+    m.transmission = number("transmission");
+    m.transmission_texture = slot("transmission_texture");
+    m.thickness = number("thickness");
+    m.attenuation_distance = number("attenuation_distance");
+    m.attenuation_color = rgb("attenuation_color");
+    return m;
+}
+
+using Pixels8 = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using PixelsF = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+
+template <typename Array>
+auto flat(const Array& a) {
+    using T = std::remove_const_t<typename Array::Scalar>;
+    return std::vector<T>(a.data(), a.data() + a.size());
+}
+
+/// Collects the parts; Scene::build checks them.
+struct Builder {
+    SceneDescription description;
+
+    int add_mesh(const std::string& name, const Rows3f& positions, const Rows3u& triangles,
+                 std::optional<Rows3f> normals, std::optional<Rows2f> uv0,
+                 std::optional<Rows2f> uv1, std::optional<Rows4f> tangents,
+                 std::optional<Rows4f> colors, bool double_sided) {
+        Mesh mesh;
+        mesh.name = name;
+        mesh.positions = to_vector<Vec3f>(positions);
+        mesh.triangles = to_vector<std::array<std::uint32_t, 3>>(triangles);
+        if (normals) mesh.normals = to_vector<Vec3f>(*normals);
+        if (uv0) mesh.uv[0] = to_vector<Vec2f>(*uv0);
+        if (uv1) mesh.uv[1] = to_vector<Vec2f>(*uv1);
+        if (tangents) mesh.tangents = to_vector<std::array<float, 4>>(*tangents);
+        if (colors) mesh.colors = to_vector<std::array<float, 4>>(*colors);
+        mesh.double_sided = double_sided;
+        description.meshes.push_back(std::move(mesh));
+        return int(description.meshes.size()) - 1;
+    }
+
+    int add_texture(const std::string& name, std::variant<Pixels8, PixelsF> pixels, bool srgb,
+                    const std::string& wrap_u, const std::string& wrap_v,
+                    const std::string& filter) {
+        Texture t;
+        t.name = name;
+        std::visit(
+            [&](const auto& p) {
+                t.height = int(p.shape(0));
+                t.width = int(p.shape(1));
+                t.channels = int(p.shape(2));
+                t.pixels = flat(p);
+            },
+            pixels);
+        t.srgb = srgb;
+        const auto wrap = [](const std::string& name) {
+            return choose<Wrap>("wrap", name,
+                                {{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}});
+        };
+        t.wrap_u = wrap(wrap_u);
+        t.wrap_v = wrap(wrap_v);
+        t.filter = choose<TextureFilter>("filter", filter,
+                                         {{"linear", TextureFilter::linear}, {"nearest", TextureFilter::nearest}});
+        description.textures.push_back(std::move(t));
+        return int(description.textures.size()) - 1;
+    }
+
+    template <typename Kind>
+    int add_material(const std::string& name, Kind kind, const Triple& emission, bool two_sided) {
+        description.materials.push_back({name, std::move(kind), to_rgb(emission), two_sided});
+        return int(description.materials.size()) - 1;
+    }
+
+    int add_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
+                     const Matrix4& matrix) {
+        description.instances.push_back({name, mesh, material, to_float(to_affine(matrix))});
+        return int(description.instances.size()) - 1;
+    }
+
+    void add_light(Light light) { description.lights.push_back(std::move(light)); }
+};
+
+Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
+
+std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, const Triple& origin,
+                                                          const Triple& direction) {
+    Ray ray;
+    ray.origin = vec(origin);
+    ray.direction = normalize(vec(direction));
+    const auto hit = scene.intersect(ray);
+    if (!hit) return std::nullopt;
+    return std::tuple{hit->surface.t, hit->surface.instance};
+}
+
+}  // namespace
+}  // namespace dg::bind
+
+void bind_scene(nb::module_& m) {
+    using namespace dg;
+    using namespace dg::bind;
+    nb::class_<Scene>(m, "Scene")
+        .def_prop_ro("triangle_count", &Scene::triangle_count)
+        .def_prop_ro("intersector", &Scene::intersector_name)
+        .def_prop_ro("bounds",
+                     [](const Scene& s) {
+                         const auto b = s.bounds();
+                         return std::tuple{Triple{b.min.x, b.min.y, b.min.z},
+                                           Triple{b.max.x, b.max.y, b.max.z}};
+                     })
+        .def("first_hit", &first_hit, "origin"_a, "direction"_a,
+             "Distance (m) and instance index of the nearest surface, or None.");
+
+    nb::class_<Builder>(m, "SceneBuilder")
+        .def(nb::init<>())
+        .def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
+             "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
+             "colors"_a.none(), "double_sided"_a = true)
+        .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
+             "wrap_v"_a, "filter"_a)
+        .def("add_diffuse",
+             [](Builder& b, const std::string& name, const Triple& reflectance,
+                const Triple& emission, bool two_sided) {
+                 return b.add_material(name, DiffuseMaterial{to_rgb(reflectance)}, emission, two_sided);
+             })
+        .def("add_conductor",
+             [](Builder& b, const std::string& name, const Triple& reflectance, float alpha,
+                const Triple& emission, bool two_sided) {
+                 return b.add_material(name, ConductorMaterial{to_rgb(reflectance), alpha}, emission,
+                                       two_sided);
+             })
+        .def("add_dielectric",
+             [](Builder& b, const std::string& name, float ior, float alpha, const Triple& tint,
+                const Triple& emission, bool two_sided) {
+                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint)}, emission,
+                                       two_sided);
+             })
+        .def("add_gltf",
+             [](Builder& b, const std::string& name, const nb::dict& values,
+                const Triple& emission, bool two_sided) {
+                 return b.add_material(name, to_gltf(values), emission, two_sided);
+             })
+        .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a)
+        .def("add_point_light",
+             [](Builder& b, const Triple& position, const Triple& intensity, float range) {
+                 b.add_light(PointLight{vec(position), to_rgb(intensity), range});
+             })
+        .def("add_spot_light",
+             [](Builder& b, const Triple& position, const Triple& direction,
+                const Triple& intensity, float inner_rad, float outer_rad, float range) {
+                 b.add_light(SpotLight{vec(position), normalize(vec(direction)), to_rgb(intensity),
+                                       inner_rad, outer_rad, range});
+             })
+        .def("add_directional_light",
+             [](Builder& b, const Triple& direction, const Triple& illuminance) {
+                 b.add_light(DirectionalLight{normalize(vec(direction)), to_rgb(illuminance)});
+             })
+        .def("add_sphere_light",
+             [](Builder& b, const Triple& center, float radius, const Triple& luminance) {
+                 b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance)});
+             })
+        .def("set_environment_image",
+             [](Builder& b, const PixelsF& pixels, float scale, const Matrix4& matrix) {
+                 EnvironmentImage image;
+                 image.height = int(pixels.shape(0));
+                 image.width = int(pixels.shape(1));
+                 image.pixels.resize(std::size_t(image.width) * image.height);
+                 if (pixels.shape(2) != 3)
+                     throw input_error("environment", "channels", "3", std::to_string(pixels.shape(2)));
+                 std::memcpy(image.pixels.data(), pixels.data(), pixels.nbytes());
+                 b.description.environment =
+                     Environment::image(std::move(image), scale, to_float(to_affine(matrix)));
+             })
+        .def("set_environment_color",
+             [](Builder& b, const Triple& luminance) {
+                 b.description.environment = Environment::constant(to_rgb(luminance));
+             })
+        .def("build",
+             [](Builder& b) {
+                 nb::gil_scoped_release release;
+                 return std::const_pointer_cast<Scene>(Scene::build(std::move(b.description)));
+             },
+             "Checks everything, finds emissive triangles and builds the ray tracer; the builder is "
+             "empty afterwards.");
+}

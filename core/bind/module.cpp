@@ -1,0 +1,29 @@
+// module.cpp -- daguerre._core. Thin: arrays in, arrays out, no logic.
+#include <nanobind/nanobind.h>
+
+#include "math/error.h"
+#include "version.h"
+
+namespace nb = nanobind;
+
+void bind_optics(nb::module_& m);
+void bind_scene(nb::module_& m);
+void bind_camera(nb::module_& m);
+void bind_film(nb::module_& m);
+void bind_render(nb::module_& m);
+
+NB_MODULE(_core, m) {
+    m.attr("__version__") = DG_VERSION;
+    nb::register_exception_translator([](const std::exception_ptr& p, void*) {
+        try {
+            std::rethrow_exception(p);
+        } catch (const dg::Error& e) {
+            PyErr_SetString(PyExc_ValueError, e.what());
+        }
+    });
+    bind_optics(m);
+    bind_scene(m);
+    bind_camera(m);
+    bind_film(m);
+    bind_render(m);
+}

@@ -1,0 +1,17 @@
+#include "camera/camera.h"
+
+namespace dg {
+
+void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
+                   std::span<CameraRay> rays) {
+    std::visit([&](const auto& lens) { lens.generate(samples, rays); }, camera.lens);
+}
+
+Ray to_world(const Camera& camera, const Ray& ray) {
+    Ray world = ray;
+    world.origin = to_float(camera.world_from_camera.point(to_double(ray.origin)));
+    world.direction = normalize(to_float(camera.world_from_camera.vector(to_double(ray.direction))));
+    return world;
+}
+
+}  // namespace dg

@@ -1,0 +1,24 @@
+// pinhole.h -- everything is sharp: all rays pass one point.
+#pragma once
+#include <span>
+
+#include "camera/camera_sample.h"
+
+namespace dg {
+
+/// film_distance_mm fixes the field of view: tan(half angle) = half film / film_distance.
+struct Pinhole {
+    double film_distance_mm = 50;
+    bool natural_vignetting = false;   // darken by cos^4 of the field angle
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+};
+
+/// Direction (unit, camera frame) through the centre of an ideal lens, and the cosine of its angle.
+struct IdealDirection {
+    Vec3f direction;
+    float cosine;
+};
+IdealDirection ideal_direction(Vec2f film_mm, float film_distance_mm);
+
+}  // namespace dg

@@ -1,0 +1,23 @@
+// sensor.h -- where pixels lie on the film: the wall between px and mm.
+#pragma once
+#include "math/vec.h"
+
+namespace dg {
+
+/// Pixel (0,0) has its top left corner at px (0,0); film mm are upright with +y up.
+struct Sensor {
+    int width = 0, height = 0;              // px
+    double width_mm = 36, height_mm = 24;   // what the frame covers
+    Vec2d center_mm{0, 0};                  // film shift: where the frame's centre lies
+
+    Vec2f mm_from_px(Vec2f px) const {
+        return {float((px.x / width - 0.5) * width_mm + center_mm.x),
+                float((0.5 - px.y / height) * height_mm + center_mm.y)};
+    }
+    Vec2f px_from_mm(Vec2f mm) const {
+        return {float(((mm.x - center_mm.x) / width_mm + 0.5) * width),
+                float((0.5 - (mm.y - center_mm.y) / height_mm) * height)};
+    }
+};
+
+}  // namespace dg

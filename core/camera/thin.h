@@ -1,0 +1,23 @@
+// thin.h -- the lecture's lens: an iris of some diameter and one plane in perfect focus.
+#pragma once
+#include <span>
+
+#include "camera/camera_sample.h"
+#include "optics/stop.h"
+
+namespace dg {
+
+/// film_distance_mm is that of the equivalent pinhole: the focal length, or the image distance
+/// f s / (s - f) when the lens breathes. The circle of confusion of a point at distance s is then
+/// 2 aperture_radius |s - focus| / s * film_distance / focus on the film.
+struct ThinLens {
+    double film_distance_mm = 50;
+    double aperture_radius_mm = 4.5;   // of the round iris; other shapes have its area
+    double focus_distance_m = 1;       // along the axis; infinity is allowed
+    Iris iris;                         // shape of unit radius
+    bool natural_vignetting = false;   // darken by cos^4 of the field angle
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+};
+
+}  // namespace dg

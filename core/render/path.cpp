@@ -1,0 +1,157 @@
+#include "render/path.h"
+
+#include <algorithm>
+
+namespace dg {
+namespace {
+
+/// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
+float power_heuristic(float pdf, float other) {
+    const float ratio = other / pdf;   // a ratio, as the square of a large pdf overflows
+    return 1.f / (1.f + ratio * ratio);
+}
+
+/// What the path carries from vertex to vertex.
+struct Walk {
+    Ray ray;
+    Spectrum throughput{1.f};
+    Vec3f previous;              // where the ray left from, for the density of light sampling
+    float bsdf_pdf = 0;
+    bool from_delta = true;      // camera, or a mirror: light sampling cannot have found this
+    float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
+    Interior medium;
+};
+
+/// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
+float emission_weight(const Walk& walk, float light_pdf, PathSettings::Strategy strategy) {
+    if (walk.from_delta || strategy == PathSettings::Strategy::bsdf) return 1;
+    if (strategy == PathSettings::Strategy::light) return 0;
+    return power_heuristic(walk.bsdf_pdf, light_pdf);
+}
+
+Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavelengths& wl,
+                              PathSettings::Strategy strategy) {
+    const LightSet& lights = scene.lights();
+    if (!lights.has_environment()) return 0.f;
+    const float pdf = walk.from_delta ? 0 : lights.pdf_environment(walk.ray.direction);
+    return lights.environment_radiance(walk.ray.direction, wl) *
+           emission_weight(walk, pdf, strategy);
+}
+
+Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit& hit,
+                          const Wavelengths& wl, PathSettings::Strategy strategy) {
+    const Material& material = scene.material(hit);
+    if (!emits(material)) return 0.f;
+    const Rgb luminance = emitted(material, scene.textures(), hit);
+    if (max_component(luminance) <= 0) return 0.f;
+    const float pdf = walk.from_delta ? 0
+                                      : scene.lights().pdf_triangle(hit.instance, hit.primitive, hit.t,
+                                                                    std::abs(dot(hit.ng, hit.wo)));
+    return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
+}
+
+/// Next-event estimation at one vertex.
+template <typename BsdfKind>
+Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf, float u_select,
+                      Vec2f u, float time, const Wavelengths& wl, PathSettings::Strategy strategy,
+                      std::uint64_t& rays) {
+    const auto light = scene.sample_light(u_select, u, hit.position, wl);
+    if (!light || light->pdf <= 0) return 0.f;
+    if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
+    const auto [f_cos, pdf] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
+    if (f_cos.is_black()) return 0.f;
+    const Ray shadow = spawn_ray(hit, light->wi, time);
+    ++rays;
+    if (scene.occluded(shadow.origin, light->wi, light->distance, time)) return 0.f;
+    const bool alone = light->delta || strategy == PathSettings::Strategy::light;
+    const float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
+    return f_cos * light->radiance * (weight / light->pdf);
+}
+
+void record_first_hit(const Scene& scene, const SurfaceHit& hit, AovSample& aov) {
+    aov.hit = true;
+    aov.position = hit.position;
+    aov.normal = hit.ns;
+    aov.albedo = albedo(scene.material(hit), scene.textures(), hit);
+    aov.object_id = hit.instance + 1;
+}
+
+/// False: the path ends. Survival follows the throughput without the 1/eta^2 of radiance inside glass,
+/// and is divided out, so that the mean does not change.
+bool survives_roulette(Walk& walk, float u) {
+    const float survival = std::min(walk.throughput.max() * walk.eta_squared, 0.95f);
+    if (u >= survival) return false;
+    walk.throughput *= 1.f / survival;
+    return true;
+}
+
+}  // namespace
+
+Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count) {
+    Spectrum result{0.f};
+    Walk walk;
+    walk.ray = ray;
+    walk.previous = ray.origin;
+    std::uint64_t rays = 0;
+    for (int vertex = 0;; ++vertex) {
+        ++rays;
+        auto found = scene.intersect(walk.ray);
+        if (!found) {
+            result += walk.throughput *
+                      environment_emission(scene, walk, wavelengths, settings.strategy);
+            break;
+        }
+        SurfaceHit& hit = found->surface;
+        if (walk.medium.present)
+            walk.throughput *= pow(walk.medium.color, hit.t / walk.medium.distance);
+        if (found->sphere_light >= 0) {
+            const auto sphere = std::uint32_t(found->sphere_light);
+            const float pdf =
+                walk.from_delta ? 0 : scene.lights().pdf_sphere(sphere, walk.previous);
+            result += walk.throughput * scene.lights().sphere_radiance(sphere, wavelengths) *
+                      emission_weight(walk, pdf, settings.strategy);
+            break;
+        }
+        result += walk.throughput *
+                  surface_emission(scene, walk, hit, wavelengths, settings.strategy);
+        if (vertex == settings.max_depth) break;
+
+        const Bsdf bsdf = shade(scene.material(hit), scene.textures(), hit, wavelengths);
+        if (aov && vertex == 0) record_first_hit(scene, hit, *aov);
+        // Every vertex draws the same numbers, whatever it does with them: stratification stays.
+        const float u_select = sampler.next_1d();
+        const Vec2f u_light = sampler.next_2d();
+        const float u_lobe = sampler.next_1d();
+        const Vec2f u_direction = sampler.next_2d();
+        const bool alive = std::visit(
+            [&](const auto& kind) {
+                if (!kind.is_specular())
+                    result += walk.throughput *
+                              direct_light(scene, hit, kind, u_select, u_light, walk.ray.time,
+                                           wavelengths, settings.strategy, rays);
+                const auto sample = kind.sample(hit.wo, u_lobe, u_direction);
+                if (!sample || sample->weight.is_black()) return false;
+                walk.throughput *= sample->weight;
+                walk.bsdf_pdf = sample->pdf;
+                walk.from_delta = sample->specular;
+                if (sample->transmitted) {
+                    walk.eta_squared *= sample->eta * sample->eta;
+                    const Interior interior = kind.interior();
+                    walk.medium = dot(sample->wi, hit.ng) < 0 ? interior : Interior{};
+                }
+                walk.previous = hit.position;
+                walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);
+                return true;
+            },
+            bsdf);
+        if (!alive) break;
+        if (vertex + 1 >= settings.roulette_depth &&
+            !survives_roulette(walk, sampler.next_1d()))
+            break;
+    }
+    if (ray_count) *ray_count += rays;
+    return result;
+}
+
+}  // namespace dg

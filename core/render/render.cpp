@@ -1,0 +1,200 @@
+#include "render/render.h"
+
+#include <oneapi/tbb/blocked_range2d.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "render/dispersion.h"
+
+namespace dg {
+namespace {
+
+constexpr int kTileSize = 16;      // px: neighbours share geometry in the caches
+constexpr int kBatchSize = 1024;   // camera samples per call of the lens: fills the SIMD lanes
+
+/// One camera sample on its way from random numbers to the film.
+struct Sample {
+    Pixel pixel;
+    std::uint32_t index;
+    Vec2f px;              // film point
+    float filter_weight;
+    PathSampler sampler;
+    Wavelengths wavelengths;
+};
+
+/// Buffers of one thread, kept from tile to tile.
+struct Workspace {
+    std::vector<Sample> samples;
+    std::vector<CameraSample> camera_samples;
+    std::vector<CameraRay> rays;
+    std::vector<CameraRay> secondary_rays;        // of the samples that passed, three each
+    std::vector<float> secondary_nm;
+    std::vector<Reprojection> reprojections;
+    SplatBuffer splats;
+    RenderCounters counters;
+};
+
+class Renderer {
+  public:
+    Renderer(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings)
+        : scene_(scene), camera_(camera), film_(film), settings_(settings),
+          exact_(std::get_if<ExactLens>(&camera.lens)),
+          density_(settings.filter, film.layout()) {}
+
+    void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x)
+                for (std::uint32_t i = settings_.sample_begin; i < settings_.sample_end; ++i) {
+                    add_sample(work, {x, y}, i);
+                    if (work.samples.size() == kBatchSize) draw_batch(work);
+                }
+        draw_batch(work);
+    }
+
+  private:
+    /// Order of drawing: film point, time, wavelengths; the lens follows for the whole batch.
+    void add_sample(Workspace& work, Pixel pixel, std::uint32_t index) const {
+        const PathSampler sampler(pixel.x, pixel.y, index, settings_.seed);
+        const CameraRandom u = sampler.camera();
+        const FilterSample f = settings_.filter.sample(u.film);
+        const Vec2f px{pixel.x + 0.5f + f.offset.x, pixel.y + 0.5f + f.offset.y};
+        const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
+        const double open = settings_.shutter_open_s, close = settings_.shutter_close_s;
+        work.camera_samples.push_back({settings_.sensor.mm_from_px(px), u.lens,
+                                       float(open + u.time * (close - open)),
+                                       wavelengths.nm[0]});
+        work.samples.push_back({pixel, index, px, f.weight, sampler, wavelengths});
+    }
+
+    void draw_batch(Workspace& work) const {
+        const std::size_t n = work.samples.size();
+        work.rays.assign(n, CameraRay{});
+        generate_rays(camera_, work.camera_samples, work.rays);
+        if (exact_) reproject(work);
+        std::size_t passed = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Sample& sample = work.samples[i];
+            film_.count(sample.pixel.x, sample.pixel.y);
+            if (work.rays[i].weight > 0) draw_sample(work, i, passed++);
+        }
+        work.counters.camera_rays += n;
+        work.counters.stopped_rays += n - passed;
+        work.samples.clear();
+        work.camera_samples.clear();
+    }
+
+    /// Film points of the secondary wavelengths, for the rays that passed.
+    void reproject(Workspace& work) const {
+        work.secondary_rays.clear();
+        work.secondary_nm.clear();
+        for (std::size_t i = 0; i < work.rays.size(); ++i) {
+            if (work.rays[i].weight <= 0) continue;
+            for (int k = 1; k < kWavelengths; ++k) {
+                work.secondary_rays.push_back(work.rays[i]);
+                work.secondary_nm.push_back(work.samples[i].wavelengths.nm[k]);
+            }
+        }
+        work.reprojections.assign(work.secondary_rays.size(), Reprojection{});
+        exact_->reproject(work.secondary_rays, work.secondary_nm, work.reprojections);
+    }
+
+    void draw_sample(Workspace& work, std::size_t i, std::size_t passed) const {
+        Sample& sample = work.samples[i];
+        const CameraRay& camera_ray = work.rays[i];
+        const Ray ray = to_world(camera_, camera_ray.ray);
+        AovSample aov;
+        AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
+        const Spectrum light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
+                                        settings_.path, wanted, &work.counters.rays);
+        if (wanted) add_aov(sample, camera_ray.ray, aov);
+        if (exact_) {
+            const auto first = work.reprojections.begin() + passed * (kWavelengths - 1);
+            splat(work, sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
+        } else {
+            film_.add(sample.pixel.x, sample.pixel.y, sample.index,
+                      sample.wavelengths.to_xyz(light * (camera_ray.weight * sample.filter_weight)));
+        }
+    }
+
+    /// Each wavelength at its own film point; those of one pixel are added as one value.
+    void splat(Workspace& work, const Sample& sample, const CameraRay& camera_ray,
+               std::span<const Reprojection> others, Spectrum light) const {
+        const Hero hero{sample.px, sample.pixel, camera_ray.weight, camera_ray.aim_weight};
+        PathSampler sampler = sample.sampler;
+        auto landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
+        for (int k = 0; k < kWavelengths; ++k) {
+            if (landings[k].weight == 0) continue;
+            Spectrum here{0.f};
+            const Pixel pixel = landings[k].pixel;
+            for (int j = k; j < kWavelengths; ++j) {
+                if (landings[j].pixel.x != pixel.x || landings[j].pixel.y != pixel.y) continue;
+                here.set(j, light[j] * landings[j].weight);
+                landings[j].weight = 0;
+            }
+            const Vec3f xyz = sample.wavelengths.to_xyz(here);
+            if (pixel.x == sample.pixel.x && pixel.y == sample.pixel.y)
+                film_.add(pixel.x, pixel.y, sample.index, xyz);
+            else
+                work.splats.add(pixel.x, pixel.y, sample.index, xyz);
+        }
+    }
+
+    void add_aov(const Sample& sample, const Ray& camera_ray, AovSample& aov) const {
+        aov.alpha = aov.hit ? 1 : 0;
+        if (aov.hit) {
+            const Affine3d& camera = camera_.world_from_camera;
+            aov.depth = float(-dot(to_double(aov.position) - camera.origin, camera.z));
+        }
+        (void)camera_ray;
+        film_.add_aov(sample.pixel.x, sample.pixel.y, sample.index, aov);
+    }
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Film& film_;
+    const RenderSettings& settings_;
+    const ExactLens* exact_;
+    FilmDensity density_;
+};
+
+}  // namespace
+
+RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
+                      const RenderSettings& settings,
+                      const std::function<bool(double)>& progress) {
+    const FilmLayout& region = film.layout();
+    const int x0 = region.offset_x, y0 = region.offset_y;
+    const int columns = (region.width + kTileSize - 1) / kTileSize;
+    const int rows = (region.height + kTileSize - 1) / kTileSize;
+    const Renderer renderer(scene, camera, film, settings);
+    oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
+    std::atomic<int> done{0};
+    std::atomic<bool> stop{false};
+    const auto draw = [&](int tile) {
+        if (stop) return;
+        const int x = x0 + (tile % columns) * kTileSize, y = y0 + (tile / columns) * kTileSize;
+        renderer.draw_tile(workspaces.local(), x, y, std::min(x + kTileSize, x0 + region.width),
+                           std::min(y + kTileSize, y0 + region.height));
+        if (progress && !progress(double(++done) / (columns * rows))) stop = true;
+    };
+    oneapi::tbb::task_arena arena(settings.threads > 0 ? settings.threads
+                                                       : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(0, columns * rows, draw);
+    });
+    RenderCounters counters;
+    for (Workspace& work : workspaces) {
+        film.merge_splats(work.splats);
+        counters.camera_rays += work.counters.camera_rays;
+        counters.stopped_rays += work.counters.stopped_rays;
+        counters.rays += work.counters.rays;
+    }
+    return counters;
+}
+
+}  // namespace dg

@@ -1,0 +1,79 @@
+"""Daguerre: a physically based camera renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._core import __version__
+from .camera import Camera
+from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
+from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
+from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from .scene import Scene
+
+if TYPE_CHECKING:
+    from . import lenses
+    from .frame import Frame
+    from .render import Session, iter_render, render
+
+__all__ = [
+    "Camera",
+    "Conductor",
+    "DaguerreError",
+    "Dielectric",
+    "Diffuse",
+    "DirectionalLight",
+    "Frame",
+    "Gltf",
+    "InputError",
+    "Material",
+    "MismatchError",
+    "OutputError",
+    "PointLight",
+    "Scene",
+    "Session",
+    "SphereLight",
+    "SpotLight",
+    "TextureSlot",
+    "UsageError",
+    "__version__",
+    "iter_render",
+    "lenses",
+    "load",
+    "render",
+]
+
+# Imported on first use, so that `import daguerre` and the command line start quickly.
+_LAZY = {"Frame": "frame", "Session": "render", "iter_render": "render", "render": "render"}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "lenses":
+        return import_module(".lenses", __name__)
+    if name in _LAZY:
+        value = getattr(import_module("." + _LAZY[name], __name__), name)
+        globals()[name] = value  # the function render wins over the module of that name
+        return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path] = ()) -> Scene:
+    """Reads a scene file (.glb or .gltf) at a time in seconds.
+
+    Args:
+        path: The file.
+        time: Where the animations are evaluated, s.
+        allow_dirs: Folders outside the file's own that it may refer to.
+
+    Raises:
+        InputError: The file cannot be used; the message names the file and the place in it.
+    """
+    from .io import gltf
+
+    suffix = Path(path).suffix.lower()
+    if suffix not in (".glb", ".gltf"):
+        raise InputError(f"{path}: format: wanted .glb or .gltf, got {suffix or 'no suffix'}")
+    return gltf.read(path, time=time, allow_dirs=allow_dirs)
