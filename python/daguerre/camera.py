@@ -42,7 +42,6 @@ class Camera:
         shift: Film shift, mm.
         shutter_time: s; None: the file's.
         iso, exposure_compensation: For development; they never change ``frame.rgb``.
-        near: Nothing nearer than this is seen, m.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -67,7 +66,6 @@ class Camera:
     shutter_time: float | None = None
     iso: float = 100.0
     exposure_compensation: float = 0.0
-    near: float = 0.0
 
     def with_(self, **changes: Any) -> Camera:
         """A copy with some parameters changed; unknown names are an error that suggests the nearest."""

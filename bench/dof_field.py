@@ -1,0 +1,110 @@
+"""Daguerre's side of ``bench/peers.py``: the dof-field scene, built from arrays.
+
+Takes the arguments of the peers' scripts, writes OUT.npy (H, W, 3 float32) and prints ``RESULT {json}``.
+The module ``scene`` of the peers' folder must be importable.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import time
+
+import numpy as np
+import scene as dof_field  # type: ignore[import-not-found]
+
+import daguerre as dg
+from daguerre.render import Session
+
+QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
+
+
+def cpu_seconds() -> float:
+    """User and system time of this process."""
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime
+
+
+def material(name: str) -> dg.Material:
+    """One of the scene's five materials and its ground."""
+    kind, value = dof_field.MATERIALS[name]
+    if kind == "diffuse":
+        return dg.Material(dg.Diffuse(tuple(value)))
+    if kind == "glossy":
+        return dg.Material(dg.Conductor(tuple(value), alpha=dof_field.ALPHA))
+    return dg.Material(dg.Dielectric(ior=value))
+
+
+def build() -> dg.Scene:
+    """The scene: ground, 200 instances of three meshes, an area light and a constant sky."""
+    source = dof_field.build()
+    scene = dg.Scene()
+    materials = {name: scene.add_material(material(name)) for name in dof_field.MATERIALS}
+    ground = scene.add_mesh(QUAD * 60, [(0, 1, 2), (0, 2, 3)])
+    scene.add_instance(ground, materials["ground"])
+    meshes = {name: scene.add_mesh(v, f) for name, (v, f) in source["meshes"].items()}
+    for item in source["inst"]:
+        scene.add_instance(meshes[item["mesh"]], materials[item["mat"]], item["M0"])
+    lamp = dg.Material(dg.Diffuse((0.0, 0.0, 0.0)), emission=tuple(dof_field.LIGHT["radiance"]))
+    quad = scene.add_mesh(QUAD * dof_field.LIGHT["half"], [(0, 2, 1), (0, 3, 2)])
+    scene.add_instance(quad, lamp, dof_field.light_matrix())
+    scene.set_environment(color=dof_field.ENV)
+    return scene
+
+
+def camera(mode: str) -> dg.Camera:
+    """50 mm on 36 mm, f/1.4, focused as the scene says."""
+    cam = dof_field.CAM
+    return dg.Camera(
+        transform=dof_field.lookat(cam["origin"], cam["target"], cam["up"]),
+        lens="pinhole" if mode == "pinhole" else "thin",
+        focal_length=cam["focal_mm"],
+        f_stop=None if mode == "pinhole" else cam["fstop"],
+        focus_distance=None if mode == "pinhole" else cam["focus"],
+    )
+
+
+def main() -> None:
+    """Renders once and reports."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--mode", choices=("pinhole", "thin"), default="thin")
+    parser.add_argument("--w", type=int, default=640)
+    parser.add_argument("--h", type=int, default=360)
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--strategy", default="mis")
+    parser.add_argument("--out", required=True)
+    options = parser.parse_args()
+    scene = build()
+    started = time.perf_counter()
+    session = Session(
+        scene,
+        camera(options.mode),
+        resolution=(options.w, options.h),
+        seed=options.seed,
+        filter="box",
+        threads=options.threads,
+        max_depth=8,
+        strategy=options.strategy,
+    )
+    ready, cpu = time.perf_counter(), cpu_seconds()
+    session.draw(0, options.spp)
+    cpu, wall = cpu_seconds() - cpu, time.perf_counter() - ready
+    picture = session.frame().rgb
+    np.save(options.out + ".npy", picture)
+    result = {
+        "renderer": f"daguerre {dg.__version__}",
+        "build_s": round(ready - started, 3),
+        "render_s": round(wall, 3),
+        "cpu_s": round(cpu, 2),
+        "rays": session.rays,
+        "peak_rss_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+        "mean": float(picture.mean()),
+    }
+    print("RESULT " + json.dumps(result), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,113 @@
+"""The dof-field scene through Daguerre and, where installed, its peers, in one run.
+
+    python bench/peers.py --json [--mode thin] [--spp 64] [--only daguerre] [--scene-dir DIR]
+
+Two seeds give the error without a reference: relMSE = mean((A - B)^2 / 2 / (((A + B) / 2)^2 + 0.01)).
+CPU seconds to relMSE 0.01 are CPU seconds x relMSE / 0.01, as the error falls with 1 / samples.
+Each renderer runs in a process of its own; Mitsuba needs an interpreter that can import it
+(--mitsuba-python, default: this one).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+DEFAULT_SCENE = HERE.parent.parent / "shared" / "peers"
+
+
+def relative_mse(a: np.ndarray, b: np.ndarray) -> float:
+    """Error of one of two independent renders, (H, W, 3) each, relative to their mean."""
+    mean = (a + b) / 2
+    return float(np.mean((a - b) ** 2 / 2 / (mean**2 + 0.01)))
+
+
+def run(command: list[str], environment: dict[str, str]) -> dict[str, Any]:
+    """Runs one renderer; its last line ``RESULT {...}`` is the answer."""
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    for line in reversed(done.stdout.splitlines()):
+        if line.startswith("RESULT "):
+            return dict(json.loads(line[7:]))
+    raise RuntimeError(f"{command[1]} failed: {done.stderr.strip()[-400:]}")
+
+
+def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[str, Any]:
+    """Two seeds of one renderer: cost, error, and cost to a fixed error."""
+    environment = dict(os.environ, PYTHONPATH=str(options.scene_dir))
+    results, pictures = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in (1, 2):
+            out = str(Path(folder) / f"{name}{seed}")
+            arguments = ["--mode", options.mode, "--spp", str(options.spp), "--seed", str(seed)]
+            arguments += ["--threads", str(options.threads), "--out", out]
+            results.append(run([*command, *arguments], environment))
+            pictures.append(np.load(out + ".npy").astype(np.float64))
+    cpu = float(np.mean([r["cpu_s"] for r in results]))
+    error = relative_mse(*pictures)
+    samples = pictures[0].shape[0] * pictures[0].shape[1] * options.spp
+    return {
+        "renderer": results[0]["renderer"],
+        "cpu_s": round(cpu, 2),
+        "relmse": error,
+        "cpu_s_to_relmse_0.01": round(cpu * error / 0.01, 2),
+        "samples_per_cpu_second": round(samples / cpu),
+        "setup_seconds": results[0].get("build_s"),
+        "peak_memory_mb": results[0].get("peak_rss_mb"),
+        "mean": [round(float(v), 5) for v in np.mean(pictures, axis=(0, 1, 2))],
+    }
+
+
+def can_import(python: str, module: str) -> bool:
+    """Whether that interpreter has the module."""
+    return subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0
+
+
+def main() -> None:
+    """Parses the command line, runs what is installed and prints one JSON object."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--json", action="store_true", help="accepted for symmetry; always JSON")
+    parser.add_argument("--mode", choices=("pinhole", "thin"), default="thin")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--only", choices=("daguerre", "mitsuba"))
+    parser.add_argument("--scene-dir", type=Path, default=DEFAULT_SCENE)
+    parser.add_argument("--mitsuba-python", default=sys.executable)
+    options = parser.parse_args()
+    if not (options.scene_dir / "scene.py").is_file():
+        sys.exit(f"peers: no scene.py in {options.scene_dir}; name its folder with --scene-dir")
+    out: dict[str, Any] = {
+        "benchmark": "dof-field",
+        "mode": options.mode,
+        "spp": options.spp,
+        "threads": options.threads,
+        "machine": f"{platform.machine()}, {os.cpu_count()} cores",
+    }
+    if options.only != "mitsuba":
+        own = [sys.executable, str(HERE / "dof_field.py")]
+        out["daguerre"] = measure("daguerre", own, options)
+        for key in ("cpu_s_to_relmse_0.01", "samples_per_cpu_second", "setup_seconds", "peak_memory_mb"):
+            out[key] = out["daguerre"][key]
+    if options.only != "daguerre":
+        if can_import(options.mitsuba_python, "mitsuba"):
+            peer = [options.mitsuba_python, str(options.scene_dir / "r_mitsuba.py")]
+            out["mitsuba"] = measure("mitsuba", peer, options)
+        else:
+            out["mitsuba"] = None
+    if out.get("daguerre") and out.get("mitsuba"):
+        key = "cpu_s_to_relmse_0.01"
+        out["ratio_to_mitsuba"] = round(out["daguerre"][key] / out["mitsuba"][key], 3)
+    print(json.dumps(out, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,349 @@
+"""Pictures: a session draws ranges of samples into one film; ``render`` is the whole of it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import platform
+import time
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .build import build, content_hash
+from .camera import Camera
+from .camera_setup import set_up
+from .errors import MismatchError, UsageError, suggest
+from .frame import Frame
+from .scene import Scene
+
+FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
+AOV_NAMES = (
+    "depth.Z",
+    "P.X",
+    "P.Y",
+    "P.Z",
+    "N.X",
+    "N.Y",
+    "N.Z",
+    "albedo.R",
+    "albedo.G",
+    "albedo.B",
+)
+MAX_RESOLUTION = 65536
+MAX_SAMPLES = 1 << 31
+
+
+class Session:
+    """One picture in the making: scene, camera and a film of exact sums.
+
+    Any split of the samples into ranges, in any order and on any number of threads, gives the same bits.
+
+    Args:
+        scene: What is seen.
+        camera: What sees it; None: the scene's own.
+        resolution: Width and height, px.
+        seed: Of all random numbers.
+        filter: box, gaussian, blackman_harris or mitchell; ``"name:radius"`` sets the radius in px.
+        aovs: Keep depth, normal, position, albedo and object id.
+        crop: Pixel region (x0, y0, x1, y1) to draw, end exclusive; None: all.
+        threads: 0: all cores.
+        max_depth: Largest number of surfaces at which a path scatters.
+        strategy: mis, or light or bsdf alone (to check one against the other).
+
+    Raises:
+        UsageError: A parameter is out of its range.
+        InputError: The scene or the lens cannot be used.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera | None = None,
+        *,
+        resolution: tuple[int, int] = (960, 540),
+        seed: int = 0,
+        filter: str = "blackman_harris",
+        aovs: bool = False,
+        crop: tuple[int, int, int, int] | None = None,
+        threads: int = 0,
+        max_depth: int = 16,
+        strategy: str = "mis",
+    ) -> None:
+        self.width, self.height = _resolution(resolution)
+        self.crop = _crop(crop, self.width, self.height)
+        kind, radius = _filter(filter)
+        if not 0 <= seed < 1 << 64:
+            raise UsageError(f"seed: wanted 0 .. 2^64 - 1, got {seed}")
+        if not 0 <= threads <= 1024:
+            raise UsageError(f"threads: wanted 0 (all) .. 1024, got {threads}")
+        if not 1 <= max_depth <= 4096:
+            raise UsageError(f"max_depth: wanted 1 .. 4096, got {max_depth}")
+        self.scene = scene
+        self.camera = camera if camera is not None else scene.camera()
+        self.aovs = aovs
+        started = time.perf_counter()
+        self._core_scene = build(scene)
+        self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
+        self.setup_seconds = time.perf_counter() - started
+        self.notes = list(self._setup.notes)
+        self._settings = _core.RenderSettings()
+        self._settings.resolution = (self.width, self.height)
+        self._settings.sensor_size_mm = self._setup.frame_size
+        self._settings.sensor_center_mm = tuple(self.camera.shift)
+        self._settings.seed = seed
+        self._settings.threads = threads
+        self._settings.filter = _core.Filter(kind, radius)
+        self._settings.max_depth = max_depth
+        self._settings.strategy = strategy
+        self._film = self._new_film()
+        self.ranges: list[tuple[int, int]] = []
+        self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
+        self._identity = {
+            "resolution": [self.width, self.height],
+            "crop": list(self.crop),
+            "seed": seed,
+            "filter": kind,
+            "filter_radius": radius,
+            "max_depth": max_depth,
+            "aovs": aovs,
+            "strategy": strategy,
+        }
+
+    def _new_film(self) -> _core.Film:
+        x0, y0, x1, y1 = self.crop
+        return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs)
+
+    def draw(
+        self, begin: int, end: int, progress: Callable[[float], bool] | None = None
+    ) -> bool:
+        """Draws samples [begin, end) of every pixel.
+
+        Args:
+            begin: First sample index.
+            end: One past the last.
+            progress: Told the fraction done, now and then, from any thread; False stops.
+
+        Returns:
+            False if stopped; the film is then as it was before the call.
+        """
+        if not 0 <= begin < end <= MAX_SAMPLES:
+            raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
+        for a, b in self.ranges:
+            if begin < b and a < end:
+                raise MismatchError(f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already")
+        # Drawn apart and added when complete, so that a pass that stops midway leaves no trace.
+        film = self._film if progress is None else self._new_film()
+        complete, camera_rays, stopped, rays = _core.render(
+            self._core_scene, self._setup.core, film, self._settings, begin, end, progress
+        )
+        if not complete:
+            return False
+        if film is not self._film:
+            self._film.merge(film)
+        self.camera_rays += camera_rays
+        self.stopped_rays += stopped
+        self.rays += rays
+        self.samples += camera_rays
+        self.ranges = merge_ranges([*self.ranges, (begin, end)])
+        return True
+
+    def frame(self) -> Frame:
+        """The picture of the samples drawn so far."""
+        film = self._film
+        xyz = film.mean_xyz()
+        aovs: dict[str, NDArray[Any]] = {}
+        alpha = np.ones(xyz.shape[:2], np.float32)
+        if self.aovs:
+            aovs = {name: film.aov(name) for name in AOV_NAMES}
+            aovs["object_id"] = film.object_ids()
+            alpha = film.aov("alpha")
+        return Frame(
+            rgb=film.mean_rgb(),
+            xyz=xyz,
+            alpha=alpha,
+            variance=film.variance_rgb(),
+            samples=film.sample_counts(),
+            aovs=aovs,
+            metadata=self.metadata,
+            bad_samples=self.bad_samples,
+        )
+
+    @property
+    def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
+        """Number of dropped (NaN, Inf) samples, and (x, y, sample) of the first ones."""
+        return self._film.bad_sample_count, list(self._film.bad_samples)
+
+    def state(self) -> dict[str, NDArray[np.uint32]]:
+        """The film's exact sums as planes of 32-bit words, shape (H, W) of the crop."""
+        return {name: self._film.state(name) for name in self._film.state_channels()}
+
+    def set_state(
+        self, state: dict[str, NDArray[np.uint32]], ranges: list[tuple[int, int]]
+    ) -> None:
+        """Continues from sums that ``state`` gave, drawn from these sample ranges.
+
+        Raises:
+            MismatchError: A channel is missing, unknown or of another size.
+        """
+        film = self._new_film()
+        wanted = film.state_channels()
+        if set(state) != set(wanted):
+            odd = sorted(set(state) ^ set(wanted))
+            raise MismatchError(f"film state: wanted {len(wanted)} channels, differs in {odd[:4]}")
+        shape = tuple(film.shape)
+        for name in wanted:
+            if state[name].shape != shape:
+                raise MismatchError(
+                    f"film state: {name}: wanted shape {shape}, got {state[name].shape}"
+                )
+            film.set_state(name, np.ascontiguousarray(state[name], np.uint32))
+        self._film = film
+        self.ranges = merge_ranges(ranges)
+
+    @cached_property
+    def key(self) -> dict[str, str]:
+        """What passes must share to be added: hashes of scene, camera and settings, and the build."""
+        return {
+            "scene": content_hash(self.scene),
+            "camera": _hash_json(self._setup.facts),
+            "settings": _hash_json(self._identity),
+            "build": f"{_core.__version__} {platform.machine()} {self._core_scene.intersector}",
+        }
+
+    @property
+    def metadata(self) -> dict[str, Any]:
+        """Camera and picture facts, in the names and units of the EXR attributes."""
+        facts, camera = self._setup.facts, self.camera
+        matrix = np.asarray(facts["world_from_camera"])
+        width, height = self._setup.frame_size
+        out: dict[str, Any] = {
+            "isoSpeed": camera.iso,
+            "expTime": camera.shutter_time,
+            "aperture": facts.get("f_stop"),
+            "focus": facts.get("focus_distance_m"),
+            "nominalFocalLength": facts.get("focal_length_mm"),
+            "effectiveFocalLength": facts.get("effective_focal_length_mm", facts.get("focal_length_mm")),
+            "pinholeFocalLength": self._setup.pinhole_focal_length,
+            "entrancePupilOffset": facts.get("entrance_pupil_offset_mm"),
+            "lensModel": facts.get("lens"),
+            "sensorPhotositePitch": width / self.width * 1e3,
+            "sensorOverallDimensions": (width, height),
+            "sensorCenterOffset": (camera.shift[0] * 1e3, camera.shift[1] * 1e3),
+            "worldToCamera": _world_to_camera(matrix),
+            "worldToNDC": _world_to_ndc(matrix, self._setup.pinhole_focal_length, width, height),
+            "h0": facts.get("h0"),
+            "camera": facts,
+            "seed": self._identity["seed"],
+            "samples": sum(b - a for a, b in self.ranges),
+            "resolution": (self.width, self.height),
+            "crop": self.crop,
+            "filter": self._identity["filter"],
+            "version": _core.__version__,
+            "intersector": self._core_scene.intersector,
+        }
+        return {name: value for name, value in out.items() if value is not None}
+
+
+def render(
+    scene: Scene, camera: Camera | None = None, *, spp: int = 64, **options: Any
+) -> Frame:
+    """Renders a picture.
+
+    Args:
+        scene: What is seen.
+        camera: What sees it; None: the scene's own.
+        spp: Samples per pixel.
+        **options: As of :class:`Session`: resolution, seed, filter, aovs, crop, threads, max_depth.
+
+    Returns:
+        The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
+    """
+    if not 1 <= spp <= MAX_SAMPLES:
+        raise UsageError(f"spp: wanted 1 .. 2^31, got {spp}")
+    session = Session(scene, camera, **options)
+    session.draw(0, spp)
+    return session.frame()
+
+
+def iter_render(
+    scene: Scene, camera: Camera | None = None, *, spp: int = 64, **options: Any
+) -> Iterator[Frame]:
+    """Yields the picture again and again as it refines: after 1, 2, 4, ... and at last ``spp`` samples."""
+    if not 1 <= spp <= MAX_SAMPLES:
+        raise UsageError(f"spp: wanted 1 .. 2^31, got {spp}")
+    session = Session(scene, camera, **options)
+    begin, end = 0, 1
+    while begin < spp:
+        session.draw(begin, min(end, spp))
+        yield session.frame()
+        begin, end = end, 2 * end
+
+
+def merge_ranges(ranges: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Sorted half-open ranges with the touching ones joined; overlap is the caller's business."""
+    out: list[tuple[int, int]] = []
+    for begin, end in sorted(ranges):
+        if out and out[-1][1] == begin:
+            out[-1] = (out[-1][0], end)
+        else:
+            out.append((begin, end))
+    return out
+
+
+def _resolution(resolution: tuple[int, int]) -> tuple[int, int]:
+    width, height = (int(v) for v in resolution)
+    if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):
+        raise UsageError(f"resolution: wanted 1 .. {MAX_RESOLUTION} px a side, got {width}x{height}")
+    return width, height
+
+
+def _crop(
+    crop: tuple[int, int, int, int] | None, width: int, height: int
+) -> tuple[int, int, int, int]:
+    if crop is None:
+        return 0, 0, width, height
+    x0, y0, x1, y1 = (int(v) for v in crop)
+    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
+        raise UsageError(
+            f"crop: wanted x0 < x1 and y0 < y1 within {width}x{height}, got {x0},{x1},{y0},{y1} "
+            "(as x0,x1,y0,y1)"
+        )
+    return x0, y0, x1, y1
+
+
+def _filter(text: str) -> tuple[str, float]:
+    kind, _, radius = text.replace("-", "_").partition(":")
+    if kind not in FILTERS:
+        raise UsageError(f"filter: wanted {', '.join(FILTERS)}, got {kind!r}{suggest(kind, FILTERS)}")
+    try:
+        value = float(radius) if radius else 0.0
+    except ValueError:
+        value = math.nan
+    if radius and not 0.25 <= value <= 16:
+        raise UsageError(f"filter: radius: wanted 0.25 .. 16 px, got {radius!r}")
+    return kind, value
+
+
+def _hash_json(value: Any) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def _world_to_camera(world_from_camera: NDArray[np.float64]) -> NDArray[np.float64]:
+    """OpenEXR's convention: row vectors, left-handed camera with +z forward, +x right, +y up."""
+    camera_from_world = np.linalg.inv(world_from_camera)
+    return (np.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world).T
+
+
+def _world_to_ndc(
+    world_from_camera: NDArray[np.float64], focal_length: float, width: float, height: float
+) -> NDArray[np.float64]:
+    """Row-vector matrix to NDC (-1 .. 1, y up) of the pinhole with the same framing."""
+    scale = np.diag([2 * focal_length / width, 2 * focal_length / height, 1.0, 0.0])
+    scale[2, 3] = 1.0  # w = z
+    return _world_to_camera(world_from_camera) @ scale
