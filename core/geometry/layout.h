@@ -16,8 +16,7 @@ namespace dg {
 inline constexpr std::size_t kFlattenLimit = 600'000;
 
 /// One flag per instance: true where its triangles go into the top level in world space. Meshes used
-/// once always do (it costs no memory); shared ones while the total stays under `limit`, smallest
-/// copies first.
+/// once always do (it costs no memory); shared ones if all their instances together stay within `limit`.
 std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
                                    const std::vector<InstanceGeometry>& instances,
                                    std::size_t limit = kFlattenLimit);

@@ -69,6 +69,7 @@ TEST_CASE("meshes used once are flattened, shared ones while the total stays sma
     const std::vector<InstanceGeometry> instances{{0, {}, false}, {1, {}, false}, {1, {}, false},
                                                   {2, {}, false}, {2, {}, false}};
     CHECK(choose_flattened(meshes, instances, 0) == std::vector{true, false, false, false, false});
-    CHECK(choose_flattened(meshes, instances, 50) == std::vector{true, true, true, false, false});
+    CHECK(choose_flattened(meshes, instances, 79) == std::vector{true, false, false, false, false});
+    CHECK(choose_flattened(meshes, instances, 80) == std::vector<bool>(5, true));
     CHECK(choose_flattened(meshes, instances) == std::vector<bool>(5, true));
 }
