@@ -1,6 +1,7 @@
-// material.h -- what surfaces are made of. Adding a kind: a struct here, a bsdf_x.h/.cpp with its
-// BSDF, an alternative in both variants, and a line in material.cpp's shade().
+// material.h -- what surfaces are made of. Adding a kind: a struct here, a bsdf_x.h/.cpp
+// with its BSDF, an alternative in both variants, and a line in material.cpp's shade().
 #pragma once
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,71 +18,86 @@ struct DiffuseMaterial {
     Rgb reflectance{0.5f, 0.5f, 0.5f};
 };
 
-/// GGX microfacets whose reflectance is `reflectance` at every angle (no Fresnel), both sides.
+/// GGX microfacets whose reflectance is `reflectance` at every angle (no Fresnel), both
+/// sides.
 struct ConductorMaterial {
     Rgb reflectance{1, 1, 1};
-    float alpha = 0.1f;   // GGX alpha (roughness squared); < 1e-3 is a perfect mirror
+    float alpha = 0.1f;  // GGX alpha (roughness squared); < 1e-3 is a perfect mirror
 };
 
 /// Clear dielectric, smooth or GGX rough; the normal's side is outside.
 struct DielectricMaterial {
     float ior = 1.5f;
-    float alpha = 0;      // < 1e-3 smooth
-    Rgb tint{1, 1, 1};    // multiplies transmission
+    float alpha = 0;    // < 1e-3 smooth
+    Rgb tint{1, 1, 1};  // multiplies transmission
 };
 
-/// glTF 2.0 metallic-roughness with KHR_materials_{emissive_strength, ior, transmission, volume,
-/// specular}; formulas of glTF 2.0 Appendix B and of the extensions.
+/// glTF 2.0 metallic-roughness with KHR_materials_{emissive_strength, ior, transmission,
+/// volume, specular}; formulas of glTF 2.0 Appendix B and of the extensions.
 struct GltfMaterial {
     Rgb base_color{1, 1, 1};
     float base_alpha = 1;
     TextureSlot base_color_texture;
     float metallic = 1, roughness = 1;
-    TextureSlot metallic_roughness_texture;      // G roughness, B metallic
+    TextureSlot metallic_roughness_texture;  // G roughness, B metallic
     float normal_scale = 1;
     TextureSlot normal_texture;
-    TextureSlot occlusion_texture;               // read, and not used: light transport does it
-    Rgb emissive{0, 0, 0};                       // factor x strength, cd/m2
+    TextureSlot occlusion_texture;  // read, and not used: light transport does it
+    Rgb emissive{0, 0, 0};          // factor x strength, cd/m2
     TextureSlot emissive_texture;
     enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
     float ior = 1.5f;
     float specular = 1;
-    TextureSlot specular_texture;                // A
+    TextureSlot specular_texture;  // A
     Rgb specular_color{1, 1, 1};
-    TextureSlot specular_color_texture;          // RGB
+    TextureSlot specular_color_texture;  // RGB
     float transmission = 0;
-    TextureSlot transmission_texture;            // R
-    float thickness = 0;                         // > 0: a volume with refraction; 0: thin-walled
+    TextureSlot transmission_texture;  // R
+    float thickness = 0;               // > 0: a volume with refraction; 0: thin-walled
     float attenuation_distance = std::numeric_limits<float>::infinity();  // m
     Rgb attenuation_color{1, 1, 1};
 };
 
 struct Material {
     std::string name;
-    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, GltfMaterial> kind;
+    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, GltfMaterial>
+        kind;
     /// Extra emission of any kind, cd/m2 (front side only, unless two_sided_emission).
     Rgb emission{0, 0, 0};
     bool two_sided_emission = false;
 };
 
-/// BSDF at a hit: textures read, normal map applied. The hit's ns is replaced by the mapped normal.
-Bsdf shade(const Material& material, const std::vector<Texture>& textures, SurfaceHit& hit,
-           const Wavelengths& wavelengths);
+/// Throws Error naming the material and the field: a factor that is not finite or out of
+/// its range, a texture slot that points at no texture. What passes here is not looked at
+/// again in the loop.
+void validate(const Material& material, const std::vector<Texture>& textures);
 
-/// Emitted radiance toward hit.wo as Rgb in cd/m2 (D65-shaped); 0 from the back of a one-sided emitter.
-Rgb emitted(const Material& material, const std::vector<Texture>& textures, const SurfaceHit& hit);
+/// BSDF at a hit: textures read, normal map applied. The hit's ns is replaced by the
+/// mapped normal, bent toward ng where wo or its mirror image would fall below the
+/// surface (that would be black). Single-sided surfaces are shaded from behind too, with
+/// the normal turned round: a camera inside a room sees walls.
+Bsdf shade(const Material& material, const std::vector<Texture>& textures,
+           SurfaceHit& hit, const Wavelengths& wavelengths);
+
+/// Emitted radiance toward hit.wo as Rgb in cd/m2 (D65-shaped); 0 from the back of a
+/// one-sided emitter.
+Rgb emitted(const Material& material, const std::vector<Texture>& textures,
+            const SurfaceHit& hit);
 
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);
 
-/// Opacity in [0,1] at uv with vertex colour alpha; 1 for opaque materials. mask gives 0 or 1.
-float opacity(const Material& material, const std::vector<Texture>& textures, const Vec2f uv[2],
-              float vertex_alpha);
+/// False where the material is opaque everywhere, so that rays need not ask.
 bool has_cutout(const Material& material, const std::vector<Texture>& textures);
+/// Opacity in [0,1] at uv with vertex colour alpha; 1 for opaque materials. mask gives 0
+/// or 1.
+float opacity(const Material& material, const std::vector<Texture>& textures,
+              const Vec2f uv[2], float vertex_alpha);
 
 /// Diffuse + specular albedo for the `albedo` AOV (Rgb, first hit).
-Rgb albedo(const Material& material, const std::vector<Texture>& textures, const SurfaceHit& hit);
+Rgb albedo(const Material& material, const std::vector<Texture>& textures,
+           const SurfaceHit& hit);
 
 }  // namespace dg

@@ -12,17 +12,24 @@ namespace dg {
 enum class Wrap { repeat, mirror, clamp };
 enum class TextureFilter { linear, nearest };
 
-/// 8-bit (srgb or linear) or float pixels; row 0 is the top row, as in glTF: uv (0,0) is its left corner.
+/// 8-bit (srgb or linear) or float pixels; row 0 is the top row, as in glTF: uv (0,0) is
+/// its left corner.
 struct Texture {
     std::string name;
     int width = 0, height = 0, channels = 0;  // channels 1..4
     std::variant<std::vector<std::uint8_t>, std::vector<float>> pixels;
-    bool srgb = false;        // decode the first three channels on lookup (8-bit only)
+    bool srgb = false;  // decode the first three channels on lookup (8-bit only)
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;
 
-    struct Texel { float r, g, b, a; };     // missing channels: grey r=g=b for 1 and 2, a = 1
+    struct Texel {
+        float r, g, b, a;
+    };  // missing channels: grey r=g=b for 1 and 2, a = 1
+    /// Any uv, also NaN or infinite (those read as 0). An empty texture is white.
     Texel lookup(Vec2f uv) const;
+
+    /// Throws Error if the pixels are not width x height x channels, or not finite.
+    void validate() const;
 };
 
 /// Use of a texture by a material slot (KHR_texture_transform included). index < 0: none.
@@ -32,6 +39,9 @@ struct TextureSlot {
     // uv' = (m[0] u + m[1] v + m[2], m[3] u + m[4] v + m[5])
     float m[6] = {1, 0, 0, 0, 1, 0};
     bool used() const { return index >= 0; }
+    Vec2f transform(Vec2f uv) const {
+        return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+    }
 };
 
 }  // namespace dg

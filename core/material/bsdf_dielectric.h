@@ -1,0 +1,70 @@
+// bsdf_dielectric.h -- clear glass, smooth or GGX rough; the side of the normals is
+// outside. Radiance is transported: light that enters a medium of relative index eta is
+// compressed into a smaller solid angle, so radiance inside is eta^2 times that outside,
+// and a path traced from the eye carries 1 / eta^2 (Veach 1997, 5.2). Into the glass and
+// out again the factors cancel.
+#pragma once
+#include <optional>
+
+#include "material/bsdf_sample.h"
+#include "material/fresnel.h"
+#include "material/ggx.h"
+
+namespace dg {
+
+struct DielectricBsdf {
+    Vec3f ns, ng;
+    Spectrum tint{1.f};
+    float ior = 1.5f;
+    float alpha = 0;
+
+    /// An interface without a change of index has no facet normals to scatter about: a
+    /// window.
+    bool is_specular() const { return alpha < kSmoothAlpha || std::abs(ior - 1) < 1e-3f; }
+
+    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
+        const Facing side(ns, ng, wo);
+        if (is_specular() || side.cos_o <= 0) return {};
+        const float cos_i = dot(side.ns, wi), eta = side.front ? ior : 1 / ior;
+        const bool reflected = side.reflects(wi);
+        if (reflected ? cos_i <= 0 : cos_i >= 0) return {};
+        const float a2 = alpha * alpha;
+        const Facet f =
+            reflected ? reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2)
+                      : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2, eta);
+        const float r = fresnel_dielectric(f.cos_h, eta);
+        if (reflected) return {Spectrum(r * f.f_cos), r * f.pdf};
+        return {tint * ((1 - r) * f.f_cos), (1 - r) * f.pdf};
+    }
+    Spectrum evaluate(Vec3f wo, Vec3f wi) const {
+        return evaluate_with_pdf(wo, wi).f_cos;
+    }
+    float pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).pdf; }
+
+    std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const {
+        const Facing side(ns, ng, wo);
+        if (side.cos_o <= 0) return std::nullopt;
+        const bool smooth = is_specular();
+        const float eta = side.front ? ior : 1 / ior;
+        const Vec3f h = smooth ? side.ns : sample_visible_normal(side.ns, wo, alpha, u);
+        const float r = fresnel_dielectric(dot(wo, h), eta);
+        const bool transmitted = u_lobe >= r;
+        const Vec3f wi = transmitted ? refract(wo, h, eta) : normalize(reflect(wo, h));
+        if (side.reflects(wi) == transmitted) return std::nullopt;
+        BsdfSample s{.wi = wi, .specular = smooth, .transmitted = transmitted};
+        if (transmitted) s.eta = eta;
+        if (smooth) {
+            s.pdf = transmitted ? 1 - r : r;
+            s.weight = transmitted ? tint / (eta * eta) : Spectrum(1.f);
+            return s;
+        }
+        const Evaluation e = evaluate_with_pdf(wo, wi);
+        if (!(e.pdf > 0)) return std::nullopt;
+        s.weight = e.f_cos / e.pdf;
+        s.pdf = e.pdf;
+        return s;
+    }
+    Interior interior() const { return {}; }
+};
+
+}  // namespace dg

@@ -1,0 +1,165 @@
+// bsdf_gltf.cpp -- set-up and sampling of the glTF material.
+#include "material/bsdf_gltf.h"
+
+namespace dg {
+namespace {
+
+/// Without a change of index there is no facet normal to refract about; a hair of one is
+/// invisible.
+float bending_ior(float ior) {
+    return std::abs(ior - 1) < kSmoothAlpha || ior <= 0 ? 1 + kSmoothAlpha : ior;
+}
+
+Spectrum clamped(Spectrum s, float low, float high) {
+    for (int i = 0; i < kWavelengths; ++i) s.set(i, std::clamp(s[i], low, high));
+    return s;
+}
+
+/// E_c = E + F'^2 (1 - Ess) written in the lanes of LobeAlbedo, for F' = F0 in the second
+/// term: light that one facet reflects into another has its second chance to get in, so
+/// F0 = 1 leaves nothing.
+Spectrum coupling_of(float f0, float f90) {
+    return {f0 - f0 * f0, f90 - f0 * f90, f0 * (f90 - f0), f0 * f0};
+}
+
+}  // namespace
+
+GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
+    : ns(shading),
+      ng(geometric),
+      alpha(s.roughness * s.roughness),
+      smooth(alpha < kSmoothAlpha) {
+    row = smooth ? GgxAlbedo::smooth_row() : GgxAlbedo::instance().row(s.roughness);
+
+    f0_ior = normal_reflectance(s.ior);  // 1 for ior 0, as KHR_materials_ior wants it
+    f0 = clamped(s.specular_color * f0_ior, 0, 1) * s.specular;
+    f0_max = f0.max();
+    f90 = s.specular;
+    ior = bending_ior(s.ior);
+    if (s.ior <= 0) f0_ior = 0;  // the exact curve below is that of the index 1
+
+    const float dielectric = 1 - s.metallic;
+    clear_weight = dielectric * s.transmission;
+    transmitted = s.base * clear_weight;
+    clear = clear_weight <= 0 ? Clear::none : s.volume ? Clear::volume : Clear::thin;
+
+    // A thin clear part reflects as the opaque one does; a volume follows the exact curve
+    // instead.
+    const float layered = clear == Clear::volume ? dielectric - clear_weight : dielectric;
+    const float r90 = s.metallic + f90 * layered;
+    r0 = s.base * s.metallic + f0 * layered;
+    r90_r0 = Spectrum(r90) - r0;
+    const float r0_mean = r0.average();
+    has_specular = r0_mean > 0 || r90 > 0 || clear_weight > 0;
+    specular_albedo = {r0_mean, r90, 0, transmitted.average() + 0.05f * clear_weight};
+
+    coupling = coupling_of(f0_max, f90);
+    const float entering = 1 - weigh(row.mean, coupling);
+    diffuse = s.base * (entering > 1e-4f ? dielectric - clear_weight : 0.f);
+    diffuse_albedo = diffuse.average();
+    if (diffuse_albedo > 0) diffuse = diffuse / entering;
+    if (clear == Clear::volume) inside = s.interior;
+}
+
+GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
+    const float s = schlick(cos_h);
+    Split p{.reflected = r0 + r90_r0 * s};
+    if (clear == Clear::none) return p;
+    float f_max = f0_max + (f90 - f0_max) * s;
+    if (clear == Clear::volume) {
+        const float exact = fresnel_dielectric(cos_h, eta);
+        const float shape = std::max(0.f, exact - f0_ior) / (1 - f0_ior);
+        f_max = exact < 1 ? f0_max + (f90 - f0_max) * shape : 1.f;
+        p.reflected +=
+            (exact < 1 ? lerp(shape, f0, Spectrum(f90)) : Spectrum(1.f)) * clear_weight;
+    }
+    p.transmitted = transmitted * (1 - f_max);
+    const float r = p.reflected.average(), t = p.transmitted.average();
+    p.reflect_probability = t > 0 ? r / (r + t) : 1.f;
+    return p;
+}
+
+GltfBsdf::Mix GltfBsdf::mix(float cos_o) const {
+    if (diffuse_albedo == 0) return {0, 0};
+    if (!has_specular) return {1, 0};
+    const LobeAlbedo albedo = row.at(cos_o);
+    const float e = weigh(albedo, coupling);
+    const float d = diffuse_albedo * (1 - e);
+    return {d / (d + weigh(albedo, specular_albedo)), e};
+}
+
+Evaluation GltfBsdf::evaluate_diffuse(const Mix& m, float cos_i) const {
+    if (m.diffuse_probability == 0) return {};
+    const float e_i = has_specular ? weigh(row.at(cos_i), coupling) : 0.f;
+    return {diffuse * ((1 - m.interface) * (1 - e_i) * cos_i / kPi),
+            m.diffuse_probability * cos_i / kPi};
+}
+
+Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
+    const Facing side(ns, ng, wo);
+    const float cos_i = dot(side.ns, wi);
+    if (side.cos_o <= 0) return {};
+    const Mix m = mix(side.cos_o);
+    const float specular = 1 - m.diffuse_probability, alpha2 = alpha * alpha;
+    if (side.reflects(wi)) {
+        if (cos_i <= 0) return {};
+        Evaluation e = evaluate_diffuse(m, cos_i);
+        if (smooth || !has_specular) return e;
+        const Facet f = reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha2);
+        const Split p = split(f.cos_h, eta(side.front));
+        e.f_cos += p.reflected * f.f_cos;
+        e.pdf += specular * p.reflect_probability * f.pdf;
+        return e;
+    }
+    if (cos_i >= 0 || smooth || clear == Clear::none) return {};
+    const Vec3f mirrored = wi - side.ns * (2 * cos_i);
+    const float n = eta(side.front);
+    const Facet f =
+        clear == Clear::thin
+            ? reflecting_facet(side.ns, wo, mirrored, side.cos_o, -cos_i, alpha2)
+            : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha2, n);
+    const Split p = split(f.cos_h, n);
+    return {p.transmitted * f.f_cos, specular * (1 - p.reflect_probability) * f.pdf};
+}
+
+std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) const {
+    const Facing side(ns, ng, wo);
+    if (side.cos_o <= 0) return std::nullopt;
+    const Mix m = mix(side.cos_o);
+    BsdfSample s;
+    if (u_lobe < m.diffuse_probability) {
+        s.wi = sample_cosine(side.ns, u);
+    } else {
+        if (!has_specular) return std::nullopt;  // black
+        const float specular = 1 - m.diffuse_probability, n = eta(side.front);
+        u_lobe = (u_lobe - m.diffuse_probability) / specular;
+        const Vec3f h = smooth ? side.ns : sample_visible_normal(side.ns, wo, alpha, u);
+        const float cos_h = dot(wo, h);
+        const Split p = split(cos_h, n);
+        s.transmitted = u_lobe >= p.reflect_probability;
+        s.wi = normalize(reflect(wo, h));
+        if (s.transmitted && clear == Clear::thin) {
+            s.wi = s.wi - side.ns * (2 * dot(side.ns, s.wi));
+        } else if (s.transmitted) {
+            s.wi = refract(wo, h, n);
+            s.eta = n;
+        }
+        if (smooth) {
+            const float chosen =
+                s.transmitted ? 1 - p.reflect_probability : p.reflect_probability;
+            if (side.reflects(s.wi) == s.transmitted) return std::nullopt;
+            s.specular = true;
+            s.pdf = specular * chosen;
+            s.weight = (s.transmitted ? p.transmitted / (n * n) : p.reflected) / s.pdf;
+            return s;
+        }
+    }
+    if (side.reflects(s.wi) == s.transmitted) return std::nullopt;
+    const Evaluation e = evaluate_with_pdf(wo, s.wi);
+    if (!(e.pdf > 0)) return std::nullopt;
+    s.weight = e.f_cos / e.pdf;
+    s.pdf = e.pdf;
+    return s;
+}
+
+}  // namespace dg

@@ -1,0 +1,62 @@
+// bsdf_sample.h -- what every BSDF hands back, and the side of the surface that it is
+// seen from.
+#pragma once
+#include <cmath>
+
+#include "math/vec.h"
+#include "spectrum/spectrum.h"
+
+namespace dg {
+
+struct BsdfSample {
+    Vec3f wi;
+    Spectrum weight{0.f};  // f * |cos| / pdf
+    float pdf = 0;    // solid angle; for a specular direction the discrete probability
+    bool specular = false;  // direction is a delta: no MIS, no light sampling
+    bool transmitted = false;
+    float eta =
+        1;  // relative index change of a refraction (for Russian roulette: eta^2 scaling)
+};
+
+/// Value and density of one pair of directions; delta lobes count in neither.
+struct Evaluation {
+    Spectrum f_cos{0.f};  // f * |cos wi|
+    float pdf = 0;        // of sample(), solid angle
+};
+
+/// Absorption of the medium behind the surface: spectral transmittance over `distance`
+/// metres is transmittance_per_distance ^ (distance / attenuation_distance).
+struct Interior {
+    bool present = false;
+    Spectrum color{1.f};
+    float distance = 1;
+
+    /// Beer-Lambert over `length` metres; `color` is what is left after `distance`
+    /// metres.
+    Spectrum transmittance(float length) const {
+        return present ? pow(color, length / distance) : Spectrum(1.f);
+    }
+};
+
+/// Both normals turned to the side of wo. The geometric normal decides what is reflection
+/// and what is transmission (no light leaks through a bumped surface); the shading normal
+/// gives the cosines.
+struct Facing {
+    Vec3f ns, ng;
+    float cos_o;
+    bool front;  // wo is on the side of the normals as they were given
+
+    Facing(Vec3f shading, Vec3f geometric, Vec3f wo) {
+        front = dot(geometric, wo) >= 0;
+        ns = front ? shading : -shading;
+        ng = front ? geometric : -geometric;
+        cos_o = dot(ns, wo);
+    }
+    bool reflects(Vec3f wi) const { return dot(ng, wi) > 0; }
+};
+
+/// GGX lobes narrower than this are perfect mirrors and windows: their peak, 1 / (pi
+/// alpha^2), would stand above what a float half vector resolves.
+inline constexpr float kSmoothAlpha = 1e-3f;
+
+}  // namespace dg

@@ -1,0 +1,108 @@
+// ggx.h -- the GGX microfacet distribution with height-correlated Smith masking and
+// shadowing. Sources: Walter et al. 2007, Microfacet Models for Refraction through Rough
+// Surfaces (W07); Heitz 2014, Understanding the Masking-Shadowing Function, JCGT 3(2)
+// (H14); Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps (DB23).
+// Everything is written with dot products: a frame is built only to sample.
+#pragma once
+#include <cmath>
+
+#include "math/vec.h"
+
+namespace dg {
+
+/// (cos, sin) of 2 pi u for u in [0,1]: quarter turns and Taylor's series on +-pi/4,
+/// error < 1e-7. The same bits whatever the C library.
+inline Vec2f unit_circle(float u) {
+    const int quarter = static_cast<int>(4 * u + 0.5f);
+    const float r = (4 * u - static_cast<float>(quarter)) * (kPi / 2), r2 = r * r;
+    const float s =
+        r * (1 + r2 * (-1 / 6.f + r2 * (1 / 120.f + r2 * (-1 / 5040.f + r2 / 362880))));
+    const float c = 1 + r2 * (-0.5f + r2 * (1 / 24.f + r2 * (-1 / 720.f + r2 / 40320)));
+    const float x = quarter & 1 ? s : c, y = quarter & 1 ? c : s;
+    return {(quarter + 1) & 2 ? -x : x, quarter & 2 ? -y : y};
+}
+
+/// Cosine-weighted direction about n; density cos / pi.
+inline Vec3f sample_cosine(Vec3f n, Vec2f u) {
+    const Vec2f d = unit_circle(u.x) * std::sqrt(u.y);
+    return Frame::from_normal(n).to_world({d.x, d.y, std::sqrt(std::max(0.f, 1 - u.y))});
+}
+
+/// cos * sqrt(1 + alpha^2 tan^2) of H14's Lambda = (that / cos - 1) / 2.
+inline float ggx_slope(float alpha2, float c) {
+    return std::sqrt(alpha2 + (1 - alpha2) * c * c);
+}
+
+/// Visible normal of GGX facets (world frame) seen from wo, which is above n (DB23).
+inline Vec3f sample_visible_normal(Vec3f n, Vec3f wo, float alpha, Vec2f u) {
+    const Frame frame = Frame::from_normal(n);
+    const Vec3f v = frame.to_local(wo);
+    const Vec3f hemi = normalize(Vec3f{alpha * v.x, alpha * v.y, v.z});
+    const Vec2f circle = unit_circle(u.x);
+    const float z = 1 - u.y * (1 + hemi.z);
+    const float r = std::sqrt(std::max(0.f, 1 - z * z));
+    const Vec3f c = Vec3f{r * circle.x, r * circle.y, z} + hemi;
+    return frame.to_world(
+        normalize(Vec3f{alpha * c.x, alpha * c.y, std::max(c.z, 1e-7f)}));
+}
+
+/// One facet that joins two directions, without its Fresnel factor.
+struct Facet {
+    float cos_h = 0;  // between wo and the facet's normal
+    float f_cos = 0;  // f * |cos wi|
+    float pdf = 0;    // of wi when the facet is a visible one of wo
+};
+
+/// D of the unnormalised half vector h (W07 eq. 33). |n x h| keeps full precision where 1
+/// - cos^2 would cancel: narrow lobes depend on it.
+inline float ggx_d(Vec3f n, Vec3f h, float h2, float alpha2) {
+    const float cos_h = dot(n, h);
+    const float d = (alpha2 * cos_h * cos_h + length_squared(cross(n, h))) / h2;
+    return alpha2 / (kPi * d * d);
+}
+
+/// Reflection: f cos = D G2 / (4 cos_o), pdf = D G1 / (4 cos_o) (W07 eq. 20, H14 eq. 99).
+inline Facet reflecting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
+                              float alpha2) {
+    const Vec3f h = wo + wi;
+    const float h2 = length_squared(h);
+    const float d = ggx_d(n, h, h2, alpha2);
+    const float slope_o = ggx_slope(alpha2, cos_o), slope_i = ggx_slope(alpha2, cos_i);
+    return {dot(wo, h) / std::sqrt(h2),
+            d * cos_i / (2 * (cos_i * slope_o + cos_o * slope_i)),
+            d / (2 * (cos_o + slope_o))};
+}
+
+/// Refraction from wo (above n) to wi (below), eta = index at wi / index at wo (W07 eq.
+/// 16, 17, 21). Radiance is transported: f carries 1 / eta^2. Empty when no facet joins
+/// the two.
+inline Facet refracting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
+                              float alpha2, float eta) {
+    Vec3f h = wo + wi * eta;
+    const float h2 = length_squared(h);
+    if (h2 == 0) return {};
+    h *= 1 / std::sqrt(h2);
+    if (dot(n, h) < 0) h = -h;
+    const float oh = dot(wo, h), ih = dot(wi, h);
+    if (oh <= 0 || ih >= 0) return {};
+    const float slope_o = ggx_slope(alpha2, cos_o), slope_i = ggx_slope(alpha2, cos_i);
+    const float d = ggx_d(n, h, 1, alpha2);
+    const float root = eta * ih + oh;
+    const float pdf = d * 2 * oh / (cos_o + slope_o) * (-ih * eta * eta / (root * root));
+    const float masking =
+        -cos_i * (cos_o + slope_o) / (-cos_i * slope_o + cos_o * slope_i);
+    return {oh, pdf * masking / (eta * eta), pdf};
+}
+
+inline Vec3f reflect(Vec3f wo, Vec3f n) {
+    return n * (2 * dot(wo, n)) - wo;
+}
+
+/// wo is above n and not totally reflected; eta as above.
+inline Vec3f refract(Vec3f wo, Vec3f n, float eta) {
+    const float cos_o = dot(wo, n);
+    const float cos_t = std::sqrt(std::max(0.f, 1 - (1 - cos_o * cos_o) / (eta * eta)));
+    return normalize(n * (cos_o / eta - cos_t) - wo * (1 / eta));
+}
+
+}  // namespace dg

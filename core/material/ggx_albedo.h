@@ -1,0 +1,58 @@
+// ggx_albedo.h -- how much light a GGX lobe reflects, tabulated over angle and roughness.
+// With Schlick's F = F0 (1 - s) + F90 s the albedo is linear in F0 and F90, so two tables
+// serve every interface: A = integral of (1 - s), B = integral of s over the lobe. A
+// third, b, is the mean of s over the visible facets alone, so that F' = F0 (1 - b) + F90
+// b is the mean reflectance of a facet.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "material/fresnel.h"
+#include "spectrum/spectrum.h"
+
+namespace dg {
+
+/// A, B, b and 1 in the four lanes, to be weighted by four coefficients at once.
+using LobeAlbedo = Spectrum;
+
+class GgxAlbedo {
+  public:
+    static constexpr int kAngles = 32,
+                         kRoughnesses = 24;  // uniform in sqrt(cos) and in sqrt(alpha)
+
+    /// Computed on the first call.
+    static const GgxAlbedo& instance();
+
+    /// One roughness of the table; the smooth one is Schlick's curve itself.
+    struct Row {
+        const LobeAlbedo *low = nullptr, *high = nullptr;  // nullptr: smooth
+        float blend = 0;
+        LobeAlbedo mean;  // of this very interpolant, weighted by cos
+
+        LobeAlbedo at(float cos_angle) const {
+            if (!low) {
+                const float s = schlick(cos_angle);
+                return {1 - s, s, s, 1};
+            }
+            const float x = std::sqrt(std::clamp(cos_angle, 0.f, 1.f)) * (kAngles - 1);
+            const int i = std::min(static_cast<int>(x), kAngles - 2);
+            const float t = x - static_cast<float>(i);
+            return lerp(blend, lerp(t, low[i], low[i + 1]),
+                        lerp(t, high[i], high[i + 1]));
+        }
+    };
+    static Row smooth_row();
+    Row row(float roughness) const;
+
+  private:
+    GgxAlbedo();
+    LobeAlbedo table_[kRoughnesses][kAngles];
+    LobeAlbedo mean_[kRoughnesses];
+};
+
+/// Weighted sum of the four lanes.
+inline float weigh(LobeAlbedo albedo, Spectrum coefficients) {
+    return 4 * (albedo * coefficients).average();
+}
+
+}  // namespace dg

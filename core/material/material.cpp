@@ -1,0 +1,197 @@
+// material.cpp -- from a material and a hit to a BSDF, an emission, an opacity.
+#include "material/material.h"
+
+namespace dg {
+namespace {
+
+using Textures = std::vector<Texture>;
+
+Texture::Texel read(const TextureSlot& slot, const Textures& textures,
+                    const Vec2f uv[2]) {
+    return textures[slot.index].lookup(slot.transform(uv[slot.uv_set]));
+}
+Rgb rgb(const Texture::Texel& t) {
+    return {t.r, t.g, t.b};
+}
+Rgb clamped(Rgb c) {
+    const auto unit = [](float v) { return v > 0 ? std::min(v, 1.f) : 0.f; };  // NaN is 0
+    return {unit(c.x), unit(c.y), unit(c.z)};
+}
+
+/// Normal map (glTF 2.0, 3.9.3): xy scaled, in the frame (tangent, bitangent, normal). On
+/// the front side of the surface, like hit.ns.
+Vec3f mapped_normal(const GltfMaterial& m, const Textures& textures,
+                    const SurfaceHit& hit) {
+    const Texture::Texel t = read(m.normal_texture, textures, hit.uv);
+    const Vec3f bitangent = cross(hit.ns, hit.tangent) * hit.tangent_sign;
+    const Vec3f n = hit.tangent * ((2 * t.r - 1) * m.normal_scale) +
+                    bitangent * ((2 * t.g - 1) * m.normal_scale) + hit.ns * (2 * t.b - 1);
+    const float l2 = length_squared(n);
+    return l2 > 1e-12f ? n / std::sqrt(l2) : hit.ns;
+}
+
+/// ns, or what lies nearest to it on the way to ng from where both wo and its mirror
+/// image are above the surface: at least a tenth as high as wo itself. Without this,
+/// normal maps and interpolated normals at silhouettes are black where they turn away
+/// from the viewer.
+Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
+    const float g = dot(ng, wo), height = std::abs(g);
+    const auto good = [&](Vec3f n) {
+        const float c = std::copysign(1.f, g) * dot(n, wo);
+        return c >= 0.1f * height && 2 * c * dot(n, ng) - height >= 0.1f * height;
+    };
+    if (good(ns)) return ns;
+    Vec3f best = ng;
+    float low = 0, high = 1;
+    for (int i = 0; i < 6; ++i) {
+        const float t = 0.5f * (low + high);
+        const Vec3f n = normalize(ns * (1 - t) + ng * t);
+        if (good(n)) {
+            high = t;
+            best = n;
+        } else {
+            low = t;
+        }
+    }
+    return best;
+}
+
+Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
+    Rgb c = m.base_color * Rgb{hit.color[0], hit.color[1], hit.color[2]};
+    if (m.base_color_texture.used())
+        c = c * rgb(read(m.base_color_texture, textures, hit.uv));
+    return clamped(c);
+}
+
+void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
+                             const SurfaceHit& hit, GltfSurface& s) {
+    s.metallic = m.metallic;
+    s.roughness = m.roughness;
+    if (!m.metallic_roughness_texture.used()) return;
+    const Texture::Texel t = read(m.metallic_roughness_texture, textures, hit.uv);
+    s.metallic = clamped({m.metallic * t.b, 0, 0}).x;
+    s.roughness = clamped({m.roughness * t.g, 0, 0}).x;
+}
+
+Rgb read_specular(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,
+                  GltfSurface& s) {
+    s.ior = m.ior;
+    s.specular = m.specular;
+    if (m.specular_texture.used())
+        s.specular *= clamped({read(m.specular_texture, textures, hit.uv).a, 0, 0}).x;
+    if (!m.specular_color_texture.used()) return m.specular_color;
+    return m.specular_color * rgb(read(m.specular_color_texture, textures, hit.uv));
+}
+
+/// More than 1 is allowed here: KHR_materials_specular clamps F0 later.
+Spectrum specular_spectrum(Rgb c, const Wavelengths& wavelengths) {
+    if (c == Rgb{1, 1, 1}) return 1.f;
+    return wavelengths.reflectance(c);
+}
+
+Bsdf shade_kind(const DiffuseMaterial& m, const Textures&, SurfaceHit& hit,
+                const Wavelengths& wavelengths) {
+    const Rgb c = m.reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]};
+    return DiffuseBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(c))};
+}
+
+Bsdf shade_kind(const ConductorMaterial& m, const Textures&, SurfaceHit& hit,
+                const Wavelengths& wavelengths) {
+    return ConductorBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.reflectance)),
+                         m.alpha};
+}
+
+Bsdf shade_kind(const DielectricMaterial& m, const Textures&, SurfaceHit& hit,
+                const Wavelengths& wavelengths) {
+    return DielectricBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.tint)), m.ior,
+                          m.alpha};
+}
+
+Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
+                const Wavelengths& wavelengths) {
+    GltfSurface s;
+    s.base = wavelengths.reflectance(base_color(m, textures, hit));
+    read_metallic_roughness(m, textures, hit, s);
+    s.specular_color = specular_spectrum(read_specular(m, textures, hit, s), wavelengths);
+    s.transmission = m.transmission;
+    if (m.transmission_texture.used())
+        s.transmission *=
+            clamped({read(m.transmission_texture, textures, hit.uv).r, 0, 0}).x;
+    s.volume = m.thickness > 0;
+    if (s.volume && std::isfinite(m.attenuation_distance))
+        s.interior = {true, wavelengths.reflectance(m.attenuation_color),
+                      m.attenuation_distance};
+    return Bsdf(std::in_place_type<GltfBsdf>, s, hit.ns, hit.ng);
+}
+
+float masked(const GltfMaterial& m, float alpha) {
+    switch (m.alpha_mode) {
+        case GltfMaterial::AlphaMode::opaque:
+            return 1;
+        case GltfMaterial::AlphaMode::mask:
+            return alpha >= m.alpha_cutoff ? 1.f : 0.f;
+        default:
+            return clamped({alpha, 0, 0}).x;
+    }
+}
+
+}  // namespace
+
+Bsdf shade(const Material& material, const Textures& textures, SurfaceHit& hit,
+           const Wavelengths& wavelengths) {
+    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
+    if (gltf && gltf->normal_texture.used()) hit.ns = mapped_normal(*gltf, textures, hit);
+    hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
+    return std::visit(
+        [&](const auto& m) { return shade_kind(m, textures, hit, wavelengths); },
+        material.kind);
+}
+
+Rgb emitted(const Material& material, const Textures& textures, const SurfaceHit& hit) {
+    Rgb sum{0, 0, 0};
+    if (hit.front || material.two_sided_emission) sum = material.emission;
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m || !(hit.front || m->double_sided) || m->emissive == Rgb{0, 0, 0}) return sum;
+    if (!m->emissive_texture.used()) return sum + m->emissive;
+    return sum + m->emissive * rgb(read(m->emissive_texture, textures, hit.uv));
+}
+
+bool emits(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    const Rgb none{0, 0, 0};
+    return material.emission != none || (m && m->emissive != none);
+}
+
+float opacity(const Material& material, const Textures& textures, const Vec2f uv[2],
+              float vertex_alpha) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m || m->alpha_mode == GltfMaterial::AlphaMode::opaque) return 1;
+    const float alpha = m->base_alpha * vertex_alpha;
+    if (!m->base_color_texture.used()) return masked(*m, alpha);
+    return masked(*m, alpha * read(m->base_color_texture, textures, uv).a);
+}
+
+bool has_cutout(const Material& material, const Textures&) {
+    // A mesh may bring its own alpha at the vertices, so factor and texture alone prove
+    // nothing.
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return m && m->alpha_mode != GltfMaterial::AlphaMode::opaque;
+}
+
+Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit& hit) {
+    if (const auto* m = std::get_if<DiffuseMaterial>(&material.kind))
+        return clamped(m->reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]});
+    if (const auto* m = std::get_if<ConductorMaterial>(&material.kind))
+        return m->reflectance;
+    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return m->tint;
+    const auto& m = std::get<GltfMaterial>(material.kind);
+    const Rgb base = base_color(m, textures, hit);
+    GltfSurface s;
+    read_metallic_roughness(m, textures, hit, s);
+    const Rgb colour = read_specular(m, textures, hit, s);
+    const Rgb f0 = clamped(colour * normal_reflectance(s.ior)) * s.specular;
+    const Rgb dielectric = base * (1 - max_component(f0)) + f0;
+    return clamped(dielectric * (1 - s.metallic) + base * s.metallic);
+}
+
+}  // namespace dg

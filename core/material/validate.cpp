@@ -1,0 +1,90 @@
+// validate.cpp -- the one place where a material's numbers are held against their ranges.
+#include <cmath>
+
+#include "material/material.h"
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+struct Checker {
+    std::string where;
+    const std::vector<Texture>& textures;
+
+    void number(const char* field, float v, float low, float high) const {
+        if (v >= low && v <= high) return;  // false for NaN
+        const std::string wanted =
+            std::isfinite(high) ? "a number from " + text(low) + " to " + text(high)
+                                : "a finite number of at least " + text(low);
+        throw input_error(where, field, wanted, text(v));
+    }
+    void color(const char* field, Rgb c, float high) const {
+        for (int i = 0; i < 3; ++i) number(field, c[i], 0, high);
+    }
+    void slot(const char* field, const TextureSlot& s) const {
+        if (!s.used()) return;
+        if (static_cast<std::size_t>(s.index) >= textures.size())
+            throw input_error(where, field,
+                              "one of " + std::to_string(textures.size()) + " textures",
+                              "index " + std::to_string(s.index));
+        if (s.uv_set != 0 && s.uv_set != 1)
+            throw input_error(where, std::string(field) + ": texture set", "0 or 1",
+                              std::to_string(s.uv_set));
+        for (float m : s.m) number(field, m, -kLargest, kLargest);
+    }
+    static std::string text(float v) {
+        std::ostringstream s;
+        s << v;
+        return s.str();
+    }
+    static constexpr float kLargest = std::numeric_limits<float>::max();
+};
+
+void check(const Checker& c, const DiffuseMaterial& m) {
+    c.color("reflectance", m.reflectance, 1);
+}
+void check(const Checker& c, const ConductorMaterial& m) {
+    c.color("reflectance", m.reflectance, 1);
+    c.number("alpha", m.alpha, 0, 1);
+}
+void check(const Checker& c, const DielectricMaterial& m) {
+    c.number("ior", m.ior, 0.1f, 10);
+    c.number("alpha", m.alpha, 0, 1);
+    c.color("tint", m.tint, 1);
+}
+void check(const Checker& c, const GltfMaterial& m) {
+    c.color("base_color", m.base_color, 1);
+    c.number("base_alpha", m.base_alpha, 0, 1);
+    c.number("metallic", m.metallic, 0, 1);
+    c.number("roughness", m.roughness, 0, 1);
+    c.number("normal_scale", m.normal_scale, -Checker::kLargest, Checker::kLargest);
+    c.color("emissive", m.emissive, Checker::kLargest);
+    c.number("alpha_cutoff", m.alpha_cutoff, 0, Checker::kLargest);
+    if (m.ior != 0) c.number("ior (0 or at least 1)", m.ior, 1, Checker::kLargest);
+    c.number("specular", m.specular, 0, 1);
+    c.color("specular_color", m.specular_color, Checker::kLargest);
+    c.number("transmission", m.transmission, 0, 1);
+    c.number("thickness", m.thickness, 0, Checker::kLargest);
+    if (!(m.attenuation_distance > 0))
+        throw input_error(c.where, "attenuation_distance", "more than 0 m",
+                          Checker::text(m.attenuation_distance));
+    c.color("attenuation_color", m.attenuation_color, 1);
+    c.slot("base_color_texture", m.base_color_texture);
+    c.slot("metallic_roughness_texture", m.metallic_roughness_texture);
+    c.slot("normal_texture", m.normal_texture);
+    c.slot("occlusion_texture", m.occlusion_texture);
+    c.slot("emissive_texture", m.emissive_texture);
+    c.slot("specular_texture", m.specular_texture);
+    c.slot("specular_color_texture", m.specular_color_texture);
+    c.slot("transmission_texture", m.transmission_texture);
+}
+
+}  // namespace
+
+void validate(const Material& material, const std::vector<Texture>& textures) {
+    const Checker c{"material '" + material.name + "'", textures};
+    c.color("emission", material.emission, Checker::kLargest);
+    std::visit([&](const auto& kind) { check(c, kind); }, material.kind);
+}
+
+}  // namespace dg
