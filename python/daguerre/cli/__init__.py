@@ -1,0 +1,106 @@
+"""The command line: ``main`` turns every failure into one line and an exit code.
+
+Exit codes: 0 complete, 2 wrong command line, 3 unreadable or invalid input, 4 hash or range
+mismatch, 5 output or disk, 70 internal, 75 interrupted and resumable.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+from daguerre.errors import DaguerreError
+
+from . import console
+from .info import info
+from .lenses import lens, lenses
+from .merge import merge
+from .render import render
+from .version import version
+
+INTERNAL = 70
+INTERRUPTED = 75
+
+app = typer.Typer(
+    name="daguerre",
+    help="Renders what a real camera would have recorded.",
+    add_completion=False,
+    no_args_is_help=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (render, merge, info, lenses, lens, version):
+    app.command(name=command.__name__)(command)
+
+
+@app.callback(invoke_without_command=True)
+def _top(
+    context: typer.Context,
+    version: bool = typer.Option(False, "--version", help="Print the version."),
+) -> int | None:
+    if version:
+        from daguerre import __version__
+
+        print(f"daguerre {__version__}")
+        raise typer.Exit(0)
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+        raise typer.Exit(2)
+    return None
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command line; returns its exit code."""
+    console.argv = list(sys.argv[1:] if arguments is None else arguments)
+    console.quiet, console.writer = False, None
+    try:
+        code = app(args=console.argv, prog_name="daguerre", standalone_mode=False)
+        sys.stdout.flush()
+        return int(code or 0)
+    except DaguerreError as error:
+        return _fail(str(error), error.exit_code)
+    except BrokenPipeError:
+        # Whoever read our output has seen enough, as in `daguerre lenses | head -1`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted", INTERRUPTED)
+    except Exception as error:
+        if hasattr(error, "format_message"):  # Typer's own: a wrong command line
+            return _fail(_usage(error), 2)
+        return _internal(error)
+
+
+def _usage(error: Any) -> str:
+    """Typer's message, with a full stop less and a hint where help is."""
+    text = str(error.format_message()).strip().rstrip(".")
+    context = getattr(error, "ctx", None)
+    where = context.command_path if context is not None else "daguerre"
+    return f"{text[:1].lower()}{text[1:]} (see `{where} --help`)"
+
+
+def _internal(error: Exception) -> int:
+    if os.environ.get("DAGUERRE_DEBUG") == "1":
+        traceback.print_exception(error)
+    what = f"{type(error).__name__}: {error}"
+    if isinstance(error, MemoryError):
+        what = "not enough memory"
+    return _fail(
+        f"internal: {what}; this is a fault of daguerre, please report it with the command "
+        "and the output of DAGUERRE_DEBUG=1",
+        INTERNAL,
+    )
+
+
+def _fail(text: str, code: int) -> int:
+    if os.environ.get("DAGUERRE_DEBUG") == "1" and code != INTERNAL and sys.exc_info()[0]:
+        traceback.print_exc()
+    console.writer = None
+    console.error(text)
+    return code

@@ -1,0 +1,46 @@
+"""What the command line says: notes, warnings and errors on stderr, one line each."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Callable
+
+#: the arguments that this run was started with, without the program's name
+argv: list[str] = []
+
+#: what is said goes through here, so that a progress bar can make room for it
+writer: Callable[[str], None] | None = None
+quiet = False
+
+
+def say(text: str) -> None:
+    """A line on stderr, whatever ``--quiet`` says."""
+    line = " ".join(text.split())
+    if writer is not None:
+        writer(line)
+    else:
+        print(line, file=sys.stderr, flush=True)
+
+
+def note(text: str) -> None:
+    """Something good to know."""
+    if not quiet:
+        say(f"daguerre: {text}")
+
+
+def warn(text: str) -> None:
+    """Something that is probably not wanted."""
+    if not quiet:
+        say(f"daguerre: warning: {text}")
+
+
+def error(text: str) -> None:
+    """Why nothing more is done."""
+    say(f"daguerre: error: {text}")
+
+
+def command_line(*extra: str) -> str:
+    """This run's command, to be typed again, with flags added unless they are there."""
+    words = ["daguerre", *argv, *(flag for flag in extra if flag not in argv)]
+    return shlex.join(words)

@@ -1,0 +1,161 @@
+"""``daguerre info``: what is in a scene, and its cameras in mm, m and s."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import console
+from . import quantities as q
+from .flags import CameraFlags, SceneFlags, option, with_flags
+
+if TYPE_CHECKING:
+    from daguerre.info import Facts
+
+
+@with_flags(camera_flags=CameraFlags, scene_flags=SceneFlags)
+def info(
+    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
+    camera_flags: CameraFlags,
+    scene_flags: SceneFlags,
+    res: Annotated[
+        str | None, option("--res", metavar="WxH", help="Shape of the picture, px [960x540].")
+    ] = None,
+    json: Annotated[bool, option("--json", help="As one JSON object.")] = False,
+) -> int:
+    """Says what is in a scene; each camera with field of view and depth of field.
+
+    Flags of the camera are applied to what is shown, so that a lens or a stop can be tried.
+    """
+    from daguerre import info as facts_of
+    from daguerre.build import build
+    from daguerre.camera import Camera
+
+    resolution = q.resolution("--res", res, (960, 540)) if res else (960, 540)
+    changes = camera_flags.changes()
+    scene = scene_flags.load(scene_path)
+    names = [camera_flags.camera] if camera_flags.camera else list(scene.cameras)
+    cameras: dict[str, Camera] = {name: scene.camera(name).with_(**changes) for name in names}
+    content = facts_of.scene_facts(scene)
+    core_scene = None
+    if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):
+        core_scene = build(scene)
+    facts = {n: facts_of.camera_facts(c, scene, core_scene, resolution) for n, c in cameras.items()}
+    warnings = {n: facts_of.camera_warnings(c) for n, c in cameras.items()}
+    if json:
+        _print_json(content, facts, warnings, scene.default_camera)
+        return 0
+    print("\n".join(_scene_lines(content)))
+    for name, one in facts.items():
+        default = " (default)" if name == scene.default_camera else ""
+        print(f"camera {name!r}{default}")
+        print(
+            "\n".join(f"  {key:20} {value}" for key, value in camera_rows(one, resolution).items())
+        )
+    if not facts:
+        print("no camera")
+    for name, found in warnings.items():
+        for text in found:
+            console.warn(f"{scene_path}: camera {name!r}: {text}")
+    return 0
+
+
+def camera_rows(facts: Facts, resolution: tuple[int, int]) -> dict[str, str]:
+    """Rows of the table, with units."""
+    width, height = facts.sensor_mm
+    rows = {
+        "lens": facts.lens,
+        "focal length": f"{facts.focal_length_mm:.4g} mm",
+        "sensor": f"{width:.4g} x {height:.4g} mm",
+        "field of view": _angles(facts.field_of_view_deg),
+        f"at {resolution[0]}x{resolution[1]}": (
+            f"{_angles(facts.picture_field_of_view_deg)}, "
+            f"{facts.picture_mm[0]:.4g} x {facts.picture_mm[1]:.4g} mm, "
+            f"pixel pitch {facts.pixel_pitch_um:.4g} um"
+        ),
+        "f-stop": "none (pinhole: everything is sharp)"
+        if facts.f_stop is None
+        else f"f/{facts.f_stop:.3g}",
+    }
+    if facts.pupil_diameter_mm is not None:
+        rows["entrance pupil"] = f"{facts.pupil_diameter_mm:.4g} mm"
+        rows["focus distance"] = _metres(facts.focus_m)
+    if facts.hyperfocal_m is not None and facts.near_m is not None and facts.far_m is not None:
+        rows["hyperfocal distance"] = _metres(facts.hyperfocal_m)
+        rows["depth of field"] = (
+            f"{_metres(facts.near_m)} to {_metres(facts.far_m)} "
+            f"(circle of confusion {facts.coc_mm * 1000:.3g} um)"
+        )
+    if facts.shutter_s is not None:
+        rows["shutter"] = f"{_seconds(facts.shutter_s)}"
+    if facts.ev100 is not None:
+        rows["EV100"] = f"{facts.ev100:.2f}"
+    if facts.notes:
+        rows["note"] = "; ".join(facts.notes)
+    return rows
+
+
+def _scene_lines(content: dict[str, Any]) -> list[str]:
+    low, high = content["bounds_m"]
+    textures = content["textures"]
+    sizes = ", ".join(f"{t['width']}x{t['height']}" for t in textures[:8])
+    more = ", ..." if len(textures) > 8 else ""
+    lights = ", ".join(f"{n} {kind}" for kind, n in content["lights"].items())
+    rows = {
+        "scene": content["file"] or "",
+        "meshes": f"{content['meshes']} ({content['triangles']} triangles)",
+        "instances": f"{content['instances']} ({content['triangles_placed']} triangles)",
+        "size": "empty"
+        if low is None
+        else " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True)) + " m",
+        "materials": f"{content['materials']}",
+        "textures": f"{len(textures)}" + (f" ({sizes}{more})" if textures else ""),
+        "lights": lights or "none",
+        "emissive": f"{content['emissive_instances']} instances",
+        "environment": content["environment"] or "none",
+    }
+    if content["animation_duration_s"]:
+        rows["animation"] = f"{content['animation_duration_s']:.4g} s"
+    lines = [f"{key:12} {value}" for key, value in rows.items()]
+    return lines + [f"note: {text}" for text in content["warnings"]]
+
+
+def _print_json(
+    content: dict[str, Any],
+    facts: dict[str, Facts],
+    warnings: dict[str, list[str]],
+    default: str | None,
+) -> None:
+    from json import dumps
+
+    cameras = {
+        name: {**asdict(one), "default": name == default, "warnings": warnings[name]}
+        for name, one in facts.items()
+    }
+    print(dumps(_no_infinity({**content, "cameras": cameras}), indent=2))
+
+
+def _no_infinity(value: Any) -> Any:
+    """JSON has no infinity; the text "inf" is read back by every float()."""
+    if isinstance(value, dict):
+        return {key: _no_infinity(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_no_infinity(inner) for inner in value]
+    return "inf" if isinstance(value, float) and math.isinf(value) else value
+
+
+def _angles(angles: tuple[float, float, float]) -> str:
+    h, v, d = angles
+    return f"{h:.2f} x {v:.2f} deg ({d:.2f} diagonal)"
+
+
+def _metres(value: float) -> str:
+    return "infinity" if math.isinf(value) else f"{value:.4g} m"
+
+
+def _seconds(value: float) -> str:
+    return f"1/{1 / value:.4g} s" if 0 < value < 0.5 else f"{value:.4g} s"

@@ -1,0 +1,236 @@
+"""Draws a picture pass by pass; between passes it saves, answers signals and reports."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from daguerre.errors import DaguerreError, MismatchError
+from daguerre.io import passes as pass_files
+
+from . import console
+from .progress import Silent, Status
+
+if TYPE_CHECKING:
+    from daguerre.render import Session
+
+#: A pass lasts about this long, so that Ctrl-C and checkpoints need not wait.
+PASS_S = 3.0
+#: After Ctrl-C a pass may still take this long; then it is given up.
+PATIENCE_S = 5.0
+
+
+class Signals:
+    """Ctrl-C, SIGTERM, SIGHUP: stop, twice: at once; SIGUSR1: snapshot."""
+
+    def __init__(self) -> None:
+        self.stops = 0
+        self.stopped_at = 0.0
+        self.snapshot = False
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        # Handlers can be set in the main thread only; elsewhere the caller keeps its own.
+        with suppress(ValueError):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                self._before[number] = signal.signal(number, self._stop)
+            self._before[signal.SIGUSR1] = signal.signal(signal.SIGUSR1, self._snapshot)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _stop(self, number: int, frame: FrameType | None) -> None:
+        self.stops += 1
+        self.stopped_at = self.stopped_at or time.monotonic()
+
+    def _snapshot(self, number: int, frame: FrameType | None) -> None:
+        self.snapshot = True
+
+
+class Loop:
+    """Draws samples [begin, end) of a session.
+
+    Args:
+        session: What draws.
+        wanted: Samples, [begin, end).
+        checkpoint: Where the sums are kept until the picture is complete.
+        interval_s: Time between checkpoints; 0: only when interrupted.
+        reporter: How progress is shown.
+        snapshot: Writes what is there so far under another name.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        wanted: tuple[int, int],
+        checkpoint: Path,
+        interval_s: float,
+        reporter: Silent,
+        snapshot: Callable[[], None],
+    ) -> None:
+        self.session = session
+        self.wanted = wanted
+        self.checkpoint = checkpoint
+        self.interval_s = interval_s
+        self.reporter = reporter
+        self.snapshot = snapshot
+        self.bad_before: tuple[int, list[tuple[int, int, int]]] = (0, [])
+        self.started = time.monotonic()
+        self.drawn_here = 0
+
+    def resume(self) -> bool:
+        """Takes up the checkpoint, if there is one.
+
+        Raises:
+            MismatchError: It is of another picture, or holds samples that are not wanted.
+        """
+        if not self.checkpoint.exists():
+            return False
+        saved = pass_files.read_pass(self.checkpoint)
+        pass_files.check_key(saved, pass_files.pass_of(self.session))
+        begin, end = self.wanted
+        for a, b in saved.ranges:
+            if a < begin or b > end:
+                raise MismatchError(
+                    f"{self.checkpoint}: holds samples {a}:{b}, wanted only {begin}:{end}; "
+                    f"ask for {min(a, begin)}:{max(b, end)} or remove the file"
+                )
+        self.session.set_state(saved.state, saved.ranges)
+        self.bad_before = saved.bad_samples
+        return True
+
+    def run(self, signals: Signals) -> bool:
+        """Draws until all is there, or until a signal asks to stop; True: complete."""
+        self.started = time.monotonic()
+        saved_at = self.started
+        size, seconds_per_sample = 0, 0.0
+        self._report(0, 0.0)
+        while missing := self.missing():
+            if signals.stops:
+                return False
+            size = pass_size(missing[0], size, seconds_per_sample)
+            begin = missing[0][0]
+            before = time.monotonic()
+            if not self._draw(begin, begin + size, signals):
+                return False
+            self.drawn_here += size
+            seconds_per_sample = (time.monotonic() - before) / size
+            if signals.snapshot:
+                signals.snapshot = False
+                self.snapshot()
+            due = self.interval_s > 0 and time.monotonic() - saved_at >= self.interval_s
+            if due and self.missing():
+                self.save()
+                saved_at = time.monotonic()
+            self._report(0, 0.0)
+        return True
+
+    def missing(self) -> list[tuple[int, int]]:
+        """Samples that are still to be drawn."""
+        return pass_files.missing_ranges(self.session.ranges, self.wanted)
+
+    def done(self) -> int:
+        """Samples per pixel that are complete."""
+        begin, end = self.wanted
+        return end - begin - sum(b - a for a, b in self.missing())
+
+    def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
+        """Those of this run and of the runs before it."""
+        count, places = self.session.bad_samples
+        return count + self.bad_before[0], sorted({*map(tuple, places), *self.bad_before[1]})[:100]
+
+    def drawn(self) -> pass_files.Pass:
+        """What is there so far, as a pass."""
+        return replace(pass_files.pass_of(self.session), bad_samples=self.bad_samples())
+
+    def save(self) -> bool:
+        """Writes the checkpoint; False, with a warning, if that fails: the render goes on."""
+        frame = replace(self.session.frame(), aovs={})
+        try:
+            pass_files.write_pass(self.checkpoint, frame, self.drawn())
+        except DaguerreError as error:
+            console.warn(f"checkpoint not saved: {error}")
+            return False
+        self.reporter.event("checkpoint", path=str(self.checkpoint), samples=self.done())
+        return True
+
+    def _draw(self, begin: int, end: int, signals: Signals) -> bool:
+        """One pass, in a thread of its own: Python runs signal handlers in the main thread only."""
+        fraction = 0.0
+        result: list[bool] = []
+        failure: list[BaseException] = []
+
+        def progress(share: float) -> bool:
+            nonlocal fraction
+            fraction = share
+            return not _out_of_patience(signals)
+
+        def work() -> None:
+            try:
+                result.append(self.session.draw(begin, end, progress))
+            except BaseException as error:
+                failure.append(error)
+
+        thread = threading.Thread(target=work, name="draw", daemon=True)
+        thread.start()
+        while thread.is_alive():
+            thread.join(0.1)
+            self._report(end - begin, fraction)
+        if failure:
+            raise failure[0]
+        return result[0]
+
+    def _report(self, size: int, fraction: float) -> None:
+        begin, end = self.wanted
+        pixels = frame_pixels(self.session)
+        elapsed = max(time.monotonic() - self.started, 1e-9)
+        done, here = self.done(), self.drawn_here
+        # While a thread draws, the session may already count its samples as done.
+        total = min((done + size * fraction) / (end - begin), 1.0)
+        rate = (here + size * fraction) / elapsed
+        left = (end - begin) * (1 - total) / rate if rate > 0 else None
+        rays = float(self.session.rays) / elapsed
+        self.reporter.update(Status(total, done, end - begin, rate * pixels, rays, elapsed, left))
+
+
+def pass_size(missing: tuple[int, int], last: int, seconds_per_sample: float) -> int:
+    """How many samples the next pass draws: 1, 1, 2, 4, ... on aligned powers of two.
+
+    Args:
+        missing: The first range that is missing, [begin, end).
+        last: Size of the pass before; 0: there was none.
+        seconds_per_sample: Measured by the pass before; 0: unknown.
+    """
+    begin, end = missing
+    limit = max(1, 2 * last)
+    if seconds_per_sample > 0:
+        limit = max(1, min(limit, int(PASS_S / seconds_per_sample)))
+    size = 1
+    while size * 2 <= limit and begin % (size * 2) == 0:
+        size *= 2
+    return min(size, end - begin)
+
+
+def frame_pixels(session: Session) -> int:
+    """Pixels that are drawn."""
+    x0, y0, x1, y1 = session.crop or (0, 0, session.width, session.height)
+    return int((x1 - x0) * (y1 - y0))
+
+
+def _out_of_patience(signals: Signals) -> bool:
+    late = time.monotonic() - signals.stopped_at > PATIENCE_S
+    return signals.stops >= 2 or (signals.stops == 1 and late)

@@ -1,0 +1,82 @@
+"""``daguerre merge``: adds passes of one picture, exactly, in any order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from daguerre.errors import MismatchError, UsageError
+
+from . import console
+from .flags import option
+
+
+def merge(
+    passes: Annotated[
+        list[Path], typer.Argument(metavar="PASS.exr...", help="Files of `render --samples`.")
+    ],
+    output: Annotated[
+        list[Path], option("-o", "--output", metavar="FILE", help=".exr or .png; may be repeated.")
+    ],
+    strict: Annotated[bool, option("--strict", help="A missing range is an error.")] = False,
+    keep_sums: Annotated[
+        bool, option("--keep-sums", help="Write a pass again, to be merged further.")
+    ] = False,
+    denoise: Annotated[bool, option("--denoise", help="Needs the extra `denoise`.")] = False,
+    tone: Annotated[str, option("--tone", metavar="srgb|soft", help="Curve of a PNG.")] = "srgb",
+    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+) -> int:
+    """Adds passes to one picture, with the bits of a render in one go."""
+    from daguerre.frame import TONES, check_format
+    from daguerre.io import atomic
+    from daguerre.io import passes as pass_files
+
+    console.quiet = quiet
+    formats = [check_format(path) for path in output]
+    if tone not in TONES:
+        raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}")
+    if keep_sums and (denoise or ".exr" not in formats):
+        raise UsageError("--keep-sums: wanted an .exr output, and no --denoise")
+    for path in output:
+        atomic.check_writable(path)
+    if denoise:
+        from daguerre.denoise import check_available
+
+        check_available()
+    frame, total = pass_files.merge(passes)
+    _name_missing(total.ranges, strict=strict)
+    if denoise:
+        from daguerre.denoise import denoise as clean
+
+        frame = clean(frame)
+    wanted = total.metadata.get("aovs")
+    if wanted is not None:
+        keep = {name: p for name, p in frame.aovs.items() if name.split(".")[0] in wanted}
+        frame = replace(frame, aovs=keep)
+    for path in output:
+        if keep_sums and path.suffix.lower() == ".exr":
+            pass_files.write_pass(path, frame, total)
+        else:
+            frame.save(path, tone=tone)
+    count, places = frame.bad_samples
+    if count:
+        x, y, sample = places[0] if places else ("?", "?", "?")
+        console.warn(f"{count} bad samples; the first is sample {sample} of pixel ({x}, {y})")
+    names = ", ".join(map(str, output))
+    console.note(f"wrote {names} (samples {pass_files.show_ranges(total.ranges)})")
+    return 0
+
+
+def _name_missing(ranges: list[tuple[int, int]], *, strict: bool) -> None:
+    from daguerre.io import passes as pass_files
+
+    gaps = pass_files.missing_ranges(ranges)
+    if not gaps:
+        return
+    text = f"samples {pass_files.show_ranges(gaps)} are missing between the passes"
+    if strict:
+        raise MismatchError(f"merge: {text}")
+    console.warn(text)

@@ -1,0 +1,172 @@
+"""How a render says how far it is: a bar on a terminal, lines in a log, JSON for programs."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from types import TracebackType
+from typing import Any, Self
+
+from . import console
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a render is.
+
+    Attributes:
+        fraction: Share of the wanted samples that is drawn, 0 .. 1.
+        samples: Samples per pixel that are complete.
+        samples_wanted: Samples per pixel in the end.
+        samples_per_s: Camera samples (all pixels) per second.
+        rays_per_s: Rays of all kinds per second.
+        elapsed_s: Since this run began to draw.
+        left_s: Estimated time left; None until there is a rate.
+    """
+
+    fraction: float
+    samples: int
+    samples_wanted: int
+    samples_per_s: float
+    rays_per_s: float
+    elapsed_s: float
+    left_s: float | None
+
+
+class Silent:
+    """Says nothing; the base of the others."""
+
+    def update(self, status: Status) -> None:
+        """Shows the newest status."""
+
+    def event(self, name: str, **facts: Any) -> None:
+        """Something that happened once: done, checkpoint, interrupted."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        console.writer = None
+
+
+class Lines(Silent):
+    """A plain line every ten seconds, for logs."""
+
+    period_s = 10.0
+
+    def __init__(self) -> None:
+        self._next = time.monotonic() + self.period_s
+
+    def update(self, status: Status) -> None:
+        """Prints a line if it is time."""
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + self.period_s
+            console.say(f"daguerre: {describe(status)}")
+
+
+class JsonLines(Silent):
+    """One JSON object a line on stdout: ``{"event": "progress", "fraction": 0.25, ...}``."""
+
+    period_s = 0.5
+
+    def __init__(self) -> None:
+        self._next = 0.0
+        console.writer = lambda line: self.event("message", text=line)
+
+    def update(self, status: Status) -> None:
+        """Prints an object twice a second, and at the end."""
+        if time.monotonic() >= self._next or status.fraction >= 1:
+            self._next = time.monotonic() + self.period_s
+            self.event("progress", **asdict(status))
+
+    def event(self, name: str, **facts: Any) -> None:
+        """Prints one object."""
+        print(json.dumps({"event": name, **facts}), flush=True)
+
+
+class Bar(Silent):
+    """A bar on a terminal, with rates and time left."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        screen = Console(stderr=True)
+        self._progress = Progress(
+            TextColumn("[progress.percentage]{task.percentage:>3.0f}%"),
+            BarColumn(),
+            TextColumn("{task.description}"),
+            console=screen,
+            transient=True,
+        )
+        self._task = self._progress.add_task("starting", total=1.0)
+
+    def update(self, status: Status) -> None:
+        """Moves the bar."""
+        self._progress.update(
+            self._task, completed=status.fraction, description=describe(status, percent=False)
+        )
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        screen = self._progress.console
+        console.writer = lambda line: screen.print(
+            line, markup=False, highlight=False, soft_wrap=True
+        )
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        self._progress.stop()
+        super().__exit__(kind, value, tb)
+
+
+def choose(*, quiet: bool, as_json: bool) -> Silent:
+    """JSON if asked for, nothing if quiet, else a bar on a terminal and lines elsewhere."""
+    if as_json:
+        return JsonLines()
+    if quiet:
+        return Silent()
+    return Bar() if sys.stderr.isatty() else Lines()
+
+
+def describe(status: Status, *, percent: bool = True) -> str:
+    """One line: samples, rates, elapsed and left."""
+    left = "?" if status.left_s is None else duration(status.left_s)
+    words = [
+        f"{status.samples}/{status.samples_wanted} spp",
+        f"{quantity(status.samples_per_s)} samples/s",
+        f"{quantity(status.rays_per_s)} rays/s",
+        f"elapsed {duration(status.elapsed_s)}",
+        f"left {left}",
+    ]
+    return ", ".join([f"{100 * status.fraction:.1f}%", *words] if percent else words)
+
+
+def quantity(value: float) -> str:
+    """``1.23 M``: three digits and a letter."""
+    for limit, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= limit:
+            return f"{value / limit:.3g} {letter}"
+    return f"{value:.3g}"
+
+
+def duration(seconds: float) -> str:
+    """``42 s``, ``3:07``, ``1:02:03``."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    minutes, s = divmod(whole, 60)
+    hours, m = divmod(minutes, 60)
+    return f"{hours}:{m:02}:{s:02}" if hours else f"{m}:{s:02}"

@@ -1,0 +1,164 @@
+"""Quantities as people type them: ``250cm``, ``2in``, ``1/48``, ``16.6ms``, ``f/2.8``, ``36x24``.
+
+Every parser names its flag in its message; a number without a unit is in the unit of the parameter.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from fractions import Fraction
+
+from daguerre.errors import UsageError, suggest
+
+#: metres
+LENGTHS = {
+    "nm": 1e-9,
+    "um": 1e-6,
+    "mm": 1e-3,
+    "cm": 1e-2,
+    "m": 1.0,
+    "km": 1e3,
+    "in": 0.0254,
+    "ft": 0.3048,
+}
+#: seconds
+TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
+#: degrees
+ANGLES = {"deg": 1.0, "rad": 180 / math.pi}
+#: Width x height, mm. s35: the camera aperture of 35 mm film, 4 perforations (SMPTE ST 59).
+SENSORS = {
+    "ff": (36.0, 24.0),
+    "apsc": (23.6, 15.7),
+    "apsc-canon": (22.3, 14.9),
+    "mft": (17.3, 13.0),
+    "1inch": (13.2, 8.8),
+    "s35": (24.89, 18.66),
+    "s16": (12.52, 7.41),
+    "645": (56.0, 41.5),
+}
+
+_NUMBER = re.compile(
+    r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?:/\d+\.?\d*)?|[-+]?inf)\s*([a-z]*)"
+)
+
+
+def length_mm(flag: str, text: str) -> float:
+    """A length in mm; without a unit it is mm."""
+    return _quantity(flag, text, LENGTHS, "mm", "a length such as 50, 50mm, 5cm or 2in") * 1e3
+
+
+def distance_m(flag: str, text: str) -> float:
+    """A distance in m; without a unit it is m. ``inf`` is allowed."""
+    return _quantity(flag, text, LENGTHS, "m", "a distance such as 2.5, 250cm, 8ft or inf")
+
+
+def time_s(flag: str, text: str) -> float:
+    """A time in s; without a unit it is s."""
+    return _finite(
+        flag, text, _quantity(flag, text, TIMES, "s", "a time such as 1/48, 0.02 or 16.6ms")
+    )
+
+
+def angle_deg(flag: str, text: str) -> float:
+    """An angle in degrees; without a unit it is degrees."""
+    value = _quantity(flag, text, ANGLES, "deg", "an angle such as 30, 30deg or 0.5rad")
+    return _finite(flag, text, value)
+
+
+def f_number(flag: str, text: str) -> float:
+    """``2.8`` or ``f/2.8``."""
+    number = re.sub(r"^[fF]/?", "", text.strip())
+    return _finite(
+        flag, text, _quantity(flag, number, {"": 1.0}, "", "an f-stop such as 2.8 or f/2.8")
+    )
+
+
+def numbers(flag: str, text: str, count: int, example: str) -> tuple[float, ...]:
+    """``count`` finite numbers between commas."""
+    wanted = f"{count} numbers such as {example}"
+    parts = text.split(",")
+    if len(parts) != count:
+        raise _bad(flag, wanted, text)
+    values = tuple(_quantity(flag, part, {"": 1.0}, "", wanted) for part in parts)
+    return tuple(_finite(flag, text, value) for value in values)
+
+
+def integers(flag: str, text: str, count: int, example: str) -> tuple[int, ...]:
+    """``count`` whole numbers between commas."""
+    values = numbers(flag, text, count, example)
+    if any(value != int(value) for value in values):
+        raise _bad(flag, f"{count} whole numbers such as {example}", text)
+    return tuple(int(value) for value in values)
+
+
+def sensor_mm(flag: str, text: str) -> tuple[float, float]:
+    """``36x24`` in mm, or the name of a common size."""
+    name = text.strip().lower()
+    if name in SENSORS:
+        return SENSORS[name]
+    parts = name.split("x")
+    if len(parts) != 2 or not name[:1].isdigit():
+        raise UsageError(
+            f"{flag}: wanted a size in mm such as 36x24, or one of {', '.join(SENSORS)}; "
+            f"got {text!r}{suggest(name, SENSORS)}"
+        )
+    width, height = (length_mm(flag, part) for part in parts)
+    if not (0 < width < math.inf and 0 < height < math.inf):
+        raise _bad(flag, "a size above 0 such as 36x24", text)
+    return width, height
+
+
+def resolution(flag: str, text: str, default: tuple[int, int]) -> tuple[int, int]:
+    """``960x540``, or a share of the default such as ``50%``; px."""
+    wanted = "a size in pixels such as 960x540, or a share such as 50%"
+    share = re.fullmatch(r"\s*(\d+\.?\d*)\s*%\s*", text)
+    if share:
+        factor = float(share[1]) / 100
+        size = (round(default[0] * factor), round(default[1] * factor))
+    else:
+        match = re.fullmatch(r"\s*(\d+)\s*[xX]\s*(\d+)\s*", text)
+        if not match:
+            raise _bad(flag, wanted, text)
+        size = (int(match[1]), int(match[2]))
+    if not all(1 <= value <= 65536 for value in size):
+        raise _bad(flag, "1 to 65536 pixels each way", text)
+    return size
+
+
+def sample_range(flag: str, text: str) -> tuple[int, int]:
+    """``a:b``, the samples from a up to but without b."""
+    match = re.fullmatch(r"\s*(\d+)\s*:\s*(\d+)\s*", text)
+    if not match or not int(match[1]) < int(match[2]) < 2**32:
+        raise _bad(flag, "a range a:b with a < b, such as 32:64", text)
+    return int(match[1]), int(match[2])
+
+
+def _quantity(flag: str, text: str, units: dict[str, float], default: str, wanted: str) -> float:
+    match = _NUMBER.fullmatch(text.strip())
+    unit = (match[2] or default) if match else ""
+    if not match or unit not in units:
+        raise _bad(flag, wanted, text)
+    number = match[1]
+    try:
+        if "/" in number:
+            top, bottom = number.split("/")
+            value = float(Fraction(top) / Fraction(bottom))
+        else:
+            value = float(number)
+    except ZeroDivisionError:
+        raise _bad(flag, wanted, text) from None
+    # Divide where the factor is a whole reciprocal: 16.6ms is then the float nearest to 0.0166.
+    factor = units[unit]
+    inverse = round(1 / factor) if factor < 1 else 0
+    return value / inverse if inverse and math.isclose(inverse * factor, 1) else value * factor
+
+
+def _finite(flag: str, text: str, value: float) -> float:
+    if not math.isfinite(value):
+        raise _bad(flag, "a finite number", text)
+    return value
+
+
+def _bad(flag: str, wanted: str, text: str) -> UsageError:
+    return UsageError(f"{flag}: wanted {wanted}; got {text!r}")

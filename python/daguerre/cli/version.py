@@ -1,0 +1,28 @@
+"""``daguerre version``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from .flags import option
+
+
+def version(json: Annotated[bool, option("--json", help="As one JSON object.")] = False) -> int:
+    """Prints the version, and what it stands on."""
+    import platform
+    from importlib import metadata
+    from json import dumps
+
+    from daguerre import __version__
+
+    facts = {"daguerre": __version__, "python": platform.python_version()}
+    for name in ("numpy", "OpenImageIO", "OpenEXR", "pygltflib", "pyoidn"):
+        try:
+            facts[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    if json:
+        print(dumps(facts))
+    else:
+        print("\n".join(f"{name} {value}" for name, value in facts.items()))
+    return 0

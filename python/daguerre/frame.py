@@ -1,0 +1,163 @@
+"""A frame: what a camera recorded, scene-linear, with its auxiliary channels and its facts."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import UsageError, suggest
+
+if TYPE_CHECKING:
+    import os
+
+TONES = ("srgb", "soft")
+FORMATS = (".exr", ".png")
+
+
+@dataclass
+class Frame:
+    """A picture in the making or made.
+
+    Attributes:
+        rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
+        xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
+        alpha: Share of the samples that hit something, shape (H, W).
+        variance: Variance of the mean of R, G, B, shape (H, W, 3).
+        samples: Samples per pixel, shape (H, W).
+        aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``.
+        metadata: Facts of camera and render; see ``daguerre.io.exr``.
+        bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
+    """
+
+    rgb: NDArray[np.float32]
+    xyz: NDArray[np.float32] | None = None
+    alpha: NDArray[np.float32] | None = None
+    variance: NDArray[np.float32] | None = None
+    samples: NDArray[np.uint32] | None = None
+    aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
+    metadata: dict[str, Any] = field(default_factory=dict)
+    bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, [])
+
+    def __post_init__(self) -> None:
+        if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:
+            raise UsageError(f"frame: rgb: wanted shape (H, W, 3), got {self.rgb.shape}")
+        if self.alpha is None:
+            self.alpha = np.ones(self.rgb.shape[:2], np.float32)
+
+    @property
+    def width(self) -> int:
+        """Columns, px."""
+        return int(self.rgb.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Rows, px."""
+        return int(self.rgb.shape[0])
+
+    def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
+        """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
+
+        Args:
+            tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
+                above 0.8, so that small bright lamps keep some shape. Neither changes ``rgb``.
+                ISO and exposure compensation belong to development, not to this.
+        """
+        if tone not in TONES:
+            raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
+        linear = np.nan_to_num(self.rgb, nan=0.0, posinf=np.finfo(np.float32).max)
+        if tone == "soft":
+            linear = _shoulder(linear)
+        return np.rint(_srgb(linear) * 255).astype(np.uint8)
+
+    def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
+        """Writes the frame, whole or not at all; the end of the name chooses the format.
+
+        Args:
+            path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
+                ``.png`` is the picture for the eye.
+            tone: For PNG; see :meth:`display`.
+
+        Raises:
+            UsageError: Another ending.
+            OutputError: The file cannot be written.
+        """
+        if check_format(path) == ".exr":
+            from .io.exr import write_exr
+
+            write_exr(path, self)
+        else:
+            from .io.png import write_png
+
+            write_png(path, self, tone)
+
+    def __repr__(self) -> str:
+        spp = self.metadata.get("samples")
+        extra = f", {spp} samples" if spp is not None else ""
+        names = sorted({name.split(".")[0] for name in self.aovs})
+        aovs = f", aovs: {' '.join(names)}" if names else ""
+        return f"<Frame {self.width}x{self.height}{extra}{aovs}>"
+
+    def _repr_png_(self) -> bytes:
+        from .io.png import png_bytes
+
+        return png_bytes(self)
+
+    def _repr_html_(self) -> str:
+        from base64 import b64encode
+
+        data = b64encode(self._repr_png_()).decode("ascii")
+        caption = html.escape(self._caption())
+        return (
+            f'<figure><img src="data:image/png;base64,{data}" width="{self.width}" '
+            f'height="{self.height}" alt="{caption}"><figcaption>{caption}</figcaption></figure>'
+        )
+
+    def _caption(self) -> str:
+        facts = self.metadata
+        words = [f"{self.width} × {self.height}"]
+        if facts.get("lensModel"):
+            words.append(str(facts["lensModel"]))
+        if facts.get("nominalFocalLength"):
+            words.append(f"{facts['nominalFocalLength']:.4g} mm")
+        if facts.get("aperture"):
+            words.append(f"f/{facts['aperture']:.3g}")
+        if facts.get("focus"):
+            words.append(f"focus {facts['focus']:.4g} m")
+        if facts.get("samples") is not None:
+            words.append(f"{facts['samples']} samples")
+        return ", ".join(words)
+
+
+def check_format(path: str | os.PathLike[str]) -> str:
+    """The ending of an output, in lower case.
+
+    Raises:
+        UsageError: Not one that can be written; the message lists those.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        wanted = " or ".join(FORMATS)
+        raise UsageError(f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}")
+    return suffix
+
+
+def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The sRGB curve of IEC 61966-2-1, clipped to [0, 1]."""
+    x = np.clip(linear, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-8) ** (1 / 2.4) - 0.055)
+
+
+def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:
+    """Identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k), which joins smoothly.
+
+    Each channel by itself would shift hues, so the largest one sets the scale of its pixel.
+    """
+    peak = linear.max(axis=2, keepdims=True)
+    above = np.maximum(peak, knee)
+    rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
+    return np.asarray(linear * (rolled / above), np.float32)

@@ -1,0 +1,230 @@
+"""What a photographer wants to know of a camera and a scene, without rendering.
+
+Depth of field and hyperfocal distance: S. F. Ray, Applied Photographic Optics, 3rd ed., ch. 22,
+for a thin lens of focal length f, f-stop N and circle of confusion c (f, c in the same unit):
+H = f^2 / (N c) + f;  near = s (H - f) / (H + s - 2 f);  far = s (H - f) / (H - s).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .camera import Camera
+    from .scene import Instance, Scene
+
+#: A blur of 1/1500 of the diagonal is the classical limit of "sharp" (Ray, ch. 22).
+COC_PER_DIAGONAL = 1 / 1500
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A camera in numbers; None where something is unknown or without meaning.
+
+    Attributes:
+        lens: Name of the lens, or thin, or pinhole.
+        focal_length_mm: At infinity.
+        f_stop: None for a pinhole.
+        sensor_mm: Width, height.
+        picture_mm: The part of the sensor that a picture of the wanted shape covers.
+        field_of_view_deg: Of the sensor: horizontal, vertical, diagonal.
+        picture_field_of_view_deg: Of the picture, likewise.
+        focus_m: Distance of the sharp plane from the pupil; inf is infinity.
+        notes: How the focus was found, and what else was decided.
+        coc_mm: Circle of confusion that still counts as sharp.
+        hyperfocal_m: Focus here, and everything from half of it to infinity is sharp.
+        near_m: Where sharpness begins.
+        far_m: Where it ends.
+        pixel_pitch_um: Of the picture.
+        pupil_diameter_mm: Entrance pupil.
+        shutter_s: None: unknown.
+        ev100: log2(N^2 / t) - log2(ISO / 100), ISO 2720.
+    """
+
+    lens: str
+    focal_length_mm: float
+    f_stop: float | None
+    sensor_mm: tuple[float, float]
+    picture_mm: tuple[float, float]
+    field_of_view_deg: tuple[float, float, float]
+    picture_field_of_view_deg: tuple[float, float, float]
+    focus_m: float
+    notes: list[str]
+    coc_mm: float
+    hyperfocal_m: float | None
+    near_m: float | None
+    far_m: float | None
+    pixel_pitch_um: float
+    pupil_diameter_mm: float | None
+    shutter_s: float | None
+    ev100: float | None
+
+
+def camera_facts(
+    camera: Camera,
+    scene: Scene,
+    core_scene: Any = None,
+    resolution: tuple[int, int] = (960, 540),
+) -> Facts:
+    """The numbers of a camera, resolved as for a render.
+
+    Args:
+        camera: What is asked about.
+        scene: For ``focus_on``.
+        core_scene: For autofocus; see :func:`needs_autofocus`.
+        resolution: Shape of the picture, px.
+    """
+    from .camera_setup import set_up
+
+    setup = set_up(scene, camera, resolution, core_scene)
+    facts = setup.facts
+    focal, stop = float(facts["focal_length_mm"]), facts.get("f_stop")
+    focus = float(facts.get("focus_distance_m", math.inf))
+    coc = math.hypot(*camera.sensor_size) * COC_PER_DIAGONAL
+    hyperfocal = near = far = None
+    if stop is not None:
+        hyperfocal = hyperfocal_m(focal, stop, coc)
+        near, far = depth_of_field_m(focal, stop, coc, focus)
+    shutter = camera.shutter_time
+    ev100 = None
+    if stop is not None and shutter is not None and shutter > 0:
+        ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
+    return Facts(
+        str(facts.get("lens", "thin")),
+        focal,
+        stop,
+        camera.sensor_size,
+        setup.frame_size,
+        field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size),
+        field_of_view_deg(setup.pinhole_focal_length, setup.frame_size),
+        focus,
+        setup.notes,
+        coc,
+        hyperfocal,
+        near,
+        far,
+        setup.frame_size[0] / resolution[0] * 1000,
+        None if stop is None else focal / stop,
+        shutter,
+        ev100,
+    )
+
+
+def needs_autofocus(camera: Camera) -> bool:
+    """Whether the focus distance has to be measured in the scene."""
+    if camera.lens == "pinhole" or camera.lens_model == "pinhole":
+        return False
+    return camera.focus_distance is None or camera.focus_at is not None
+
+
+def hyperfocal_m(focal_mm: float, f_stop: float, coc_mm: float) -> float:
+    """H = f^2 / (N c) + f, m."""
+    return (focal_mm**2 / (f_stop * coc_mm) + focal_mm) / 1000
+
+
+def depth_of_field_m(
+    focal_mm: float, f_stop: float, coc_mm: float, focus_m: float
+) -> tuple[float, float]:
+    """Near and far limit of sharpness, m, for a focus distance from the lens, m."""
+    hyper = hyperfocal_m(focal_mm, f_stop, coc_mm)
+    f, s = focal_mm / 1000, focus_m
+    if math.isinf(s):
+        return hyper - f, math.inf
+    near = s * (hyper - f) / (hyper + s - 2 * f)
+    far = s * (hyper - f) / (hyper - s) if s < hyper else math.inf
+    return near, far
+
+
+def field_of_view_deg(focal_mm: float, size_mm: tuple[float, float]) -> tuple[float, float, float]:
+    """Full angles, 2 atan(d / 2 f): horizontal, vertical, diagonal.
+
+    ``focal_mm`` is that of the pinhole with the same framing.
+    """
+    sides = (*size_mm, math.hypot(*size_mm))
+    h, v, d = (math.degrees(2 * math.atan(side / (2 * focal_mm))) for side in sides)
+    return h, v, d
+
+
+def camera_warnings(camera: Camera) -> list[str]:
+    """Values that are probably a mistake of units."""
+    found = []
+    focal, width = camera.focal_length, camera.sensor_size[0]
+    if focal is not None and not 1 <= focal <= 2000:
+        found.append(
+            f"the camera has a focal length of {_mm(focal)}, outside 1 mm .. 2 m; "
+            "is its unit mm, or are the units of the file wrong?"
+        )
+    if not 0.5 <= width <= 200:
+        found.append(
+            f"the camera has a sensor {_mm(width)} wide, outside 0.5 .. 200 mm; "
+            "is its unit mm, or are the units of the file wrong?"
+        )
+    return found
+
+
+def scene_facts(scene: Scene) -> dict[str, Any]:
+    """What is in a scene, counted."""
+    triangles = [len(mesh.indices) for mesh in scene.meshes]
+    low, high = bounds(scene)
+    environment = scene.environment
+    light = None
+    if environment is not None:
+        image = environment.image
+        light = "even sky" if image is None else f"panorama {image.shape[1]} x {image.shape[0]}"
+    return {
+        "file": str(scene.path) if scene.path else None,
+        "meshes": len(scene.meshes),
+        "triangles": sum(triangles),
+        "instances": len(scene.instances),
+        "triangles_placed": sum(triangles[i.mesh] for i in scene.instances),
+        "bounds_m": [low, high],
+        "materials": len(scene.materials),
+        "textures": [
+            {
+                "name": texture.name,
+                "width": int(texture.pixels.shape[1]),
+                "height": int(texture.pixels.shape[0]),
+                "channels": int(texture.pixels.shape[2]),
+            }
+            for texture in scene.textures
+        ],
+        "lights": dict(Counter(type(light).__name__ for light, _ in scene.lights)),
+        "emissive_instances": sum(_emits(scene, i) for i in scene.instances),
+        "environment": light,
+        "time_s": scene.time,
+        "animation_duration_s": getattr(scene, "duration", None),
+        "warnings": list(scene.warnings),
+    }
+
+
+def bounds(scene: Scene) -> tuple[list[float] | None, list[float] | None]:
+    """Corners of the box around everything, world, m; None for an empty scene."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for instance in scene.instances:
+        points = scene.meshes[instance.mesh].positions
+        if not len(points):
+            continue
+        a, b = points.min(axis=0), points.max(axis=0)
+        corners = np.array(
+            [[x, y, z, 1] for x in (a[0], b[0]) for y in (a[1], b[1]) for z in (a[2], b[2])]
+        )
+        world = (instance.transform @ corners.T)[:3]
+        low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
+    if not np.isfinite(low).all():
+        return None, None
+    return low.tolist(), high.tolist()
+
+
+def _emits(scene: Scene, instance: Instance) -> bool:
+    material = scene.materials[instance.material]
+    own = getattr(material.kind, "emissive", (0, 0, 0))
+    return any(material.emission) or any(own)
+
+
+def _mm(value: float) -> str:
+    return f"{value / 1000:.3g} m" if abs(value) >= 1000 else f"{value:.3g} mm"

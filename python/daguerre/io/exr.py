@@ -1,0 +1,171 @@
+"""OpenEXR: the channels and attributes of a frame, by the names of the format and of Daguerre.
+
+Standard attributes: OpenEXR "Standard Optional Attributes"; those with ``daguerre:`` are our own.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from daguerre.errors import OutputError
+from numpy.typing import NDArray
+
+from .atomic import atomic_path
+
+if TYPE_CHECKING:
+    from daguerre.frame import Frame
+
+#: Rec.709 primaries and D65, ITU-R BT.709-6: red, green, blue, white as x, y.
+REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
+
+FLOATS = (
+    "isoSpeed", "expTime", "aperture", "tStop", "focus", "nominalFocalLength",
+    "effectiveFocalLength", "pinholeFocalLength", "entrancePupilOffset", "shutterAngle",
+    "whiteLuminance",
+)  # fmt: skip
+STRINGS = ("lensMake", "lensModel", "lensSerialNumber", "cameraMake", "cameraModel", "capDate")
+VECTORS = (
+    "sensorPhotositePitch", "sensorOverallDimensions", "sensorCenterOffset", "adoptedNeutral",
+)  # fmt: skip
+MATRICES = ("worldToCamera", "worldToNDC")
+RATIONALS = ("captureRate",)
+OWN_NUMBERS = ("samples", "seed", "h0", "time", "bad_samples")
+OWN_STRINGS = ("version", "scene_hash", "filter", "denoised")
+
+Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
+
+
+def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
+    """EXR header attributes with the types of the standard.
+
+    Args:
+        metadata: Facts by name, units and frames as the standard has them (matrices act on row
+            vectors). Unknown names, and None, are left out.
+    """
+    header: dict[str, Any] = {
+        "chromaticities": REC709,
+        "colorInteropID": "lin_rec709_scene",
+        "software": f"daguerre {metadata.get('version', '')}".strip(),
+    }
+    known = {key: value for key, value in metadata.items() if value is not None}
+    header |= {key: float(known[key]) for key in FLOATS if key in known}
+    header |= {key: str(known[key]) for key in STRINGS if known.get(key)}
+    header |= {key: _pair(known[key]) for key in VECTORS if key in known}
+    header |= {
+        key: np.ascontiguousarray(known[key], np.float32) for key in MATRICES if key in known
+    }
+    header |= {
+        key: _rational(known[key]) for key in RATIONALS if key in known and _positive(known[key])
+    }
+    header |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
+    header |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
+    if "camera" in known:
+        header["daguerre:camera"] = json.dumps(known["camera"], sort_keys=True, default=jsonable)
+    return header
+
+
+def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
+    """The channels of a frame: R G B A, its AOVs, variance.R/G/B and samples.Y."""
+    planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = dict(
+        zip("RGB", np.moveaxis(frame.rgb, 2, 0), strict=True)
+    )
+    planes["A"] = frame.alpha
+    planes |= frame.aovs
+    if frame.variance is not None:
+        planes |= {f"variance.{c}": frame.variance[:, :, i] for i, c in enumerate("RGB")}
+    if frame.samples is not None:
+        planes["samples.Y"] = frame.samples.astype(np.float32)
+    return {name: _plane(name, plane) for name, plane in planes.items()}
+
+
+def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
+    """Writes a frame, atomically, as one multichannel part."""
+    write_parts(path, [("beauty", attributes(frame.metadata), channels(frame))], frame)
+
+
+def write_parts(
+    path: str | os.PathLike[str], parts: list[tuple[str, dict[str, Any], Channels]], frame: Frame
+) -> None:
+    """Writes parts (name, attributes, channels) that share the windows of ``frame``.
+
+    Raises:
+        OutputError: The file cannot be written; nothing is left of it.
+    """
+    import OpenEXR
+
+    # The module's default is one thread; compression is most of the time of writing.
+    OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
+    windows = _windows(frame)
+    storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with atomic_path(path) as temp:
+        exr_parts = [
+            OpenEXR.Part(storage | windows | header, dict(planes), name)
+            for name, header, planes in parts
+        ]
+        try:
+            with OpenEXR.File(exr_parts) as file:
+                file.write(str(temp))
+        except (RuntimeError, OSError) as error:
+            reason = str(error).replace(str(temp), str(path))
+            raise OutputError(f"{path}: cannot write: {reason}") from error
+
+
+def jsonable(value: Any) -> Any:
+    """What ``json`` does not know by itself: arrays, numpy numbers, paths."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    return str(value) if isinstance(value, Path | Fraction) else repr(value)
+
+
+def _windows(frame: Frame) -> dict[str, Any]:
+    """A crop keeps its place: the data window lies inside the display window."""
+    height, width = frame.rgb.shape[:2]
+    full_width, full_height = frame.metadata.get("resolution") or (width, height)
+    x0, y0 = (frame.metadata.get("crop") or (0, 0))[:2]
+    corner = np.array([x0, y0], np.int32)
+    size = np.array([width - 1, height - 1], np.int32)
+    full = np.array([full_width - 1, full_height - 1], np.int32)
+    return {
+        "dataWindow": (corner, corner + size),
+        "displayWindow": (np.zeros(2, np.int32), full),
+    }
+
+
+def _plane(name: str, plane: NDArray[Any]) -> NDArray[np.float32] | NDArray[np.uint32]:
+    ids = name.endswith("_id")
+    return np.ascontiguousarray(plane, np.uint32 if ids else np.float32)
+
+
+def _pair(value: Any) -> NDArray[np.float32]:
+    """A v2f; one number stands for both axes."""
+    return np.ascontiguousarray(np.broadcast_to(np.asarray(value, np.float32), (2,)))
+
+
+def _positive(value: Any) -> bool:
+    number = float(_rational(value)) if isinstance(value, tuple | list) else float(value)
+    return math.isfinite(number) and number > 0
+
+
+def _rational(value: Any) -> Fraction:
+    """``rational`` has a signed 32-bit numerator; 23.976... becomes 24000/1001."""
+    if isinstance(value, tuple | list):
+        return Fraction(int(value[0]), int(value[1]))
+    fraction = Fraction(value)
+    near = fraction.limit_denominator(1001)
+    return near if abs(near - fraction) <= fraction / 10**6 else fraction.limit_denominator(10**6)
+
+
+def _number(value: Any) -> int | float | str:
+    """EXR integers have 32 bits; a longer one (a seed) travels as text."""
+    if isinstance(value, int | np.integer):
+        return int(value) if -(2**31) <= int(value) < 2**31 else str(int(value))
+    return float(value)

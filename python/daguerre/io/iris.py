@@ -1,0 +1,37 @@
+"""Pictures that shape a photograph: images of an iris."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from daguerre.errors import InputError
+from numpy.typing import NDArray
+
+
+def read_grey(path: Path) -> NDArray[np.float32]:
+    """The opening of an iris, shape (H, W): 1 lets light through, 0 stops it."""
+    pixels = _read(path)[:, :, :3]
+    grey = np.ascontiguousarray(pixels.mean(axis=2), np.float32)
+    if not (np.isfinite(grey).all() and grey.min() >= 0 and grey.max() > 0):
+        raise InputError(f"{path}: iris picture: wanted values of at least 0 and some above 0")
+    return grey
+
+
+def _read(path: Path) -> NDArray[np.float32]:
+    """Pixels (H, W, C), integers scaled to 0 .. 1."""
+    import OpenImageIO as oiio
+
+    if not path.is_file():
+        raise InputError(f"{path}: no such picture")
+    source: Any = oiio.ImageInput.open(str(path))
+    if source is None:
+        raise InputError(f"{path}: not a readable picture: {oiio.geterror()}")
+    try:
+        pixels = source.read_image(0, 0, 0, source.spec().nchannels, oiio.FLOAT)
+        if pixels is None:
+            raise InputError(f"{path}: damaged picture: {source.geterror()}")
+    finally:
+        source.close()
+    return np.atleast_3d(np.asarray(pixels, np.float32))
