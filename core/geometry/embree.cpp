@@ -1,8 +1,9 @@
 // embree.cpp -- ray tracing by Embree, 3.13 or 4: the only file that includes it.
 //
-// One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world space
-// (flattened) or as an Embree instance of the mesh's own scene; geometry `instances.size()` holds the
-// sphere lights. So Embree's ids are ours, and no table stands between them.
+// One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world
+// space (flattened) or as an Embree instance of the mesh's own scene; geometry
+// `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
+// stands between them.
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -23,7 +24,9 @@ namespace {
 
 #if DG_EMBREE_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
-void init_context(QueryContext& c) { rtcInitRayQueryContext(&c); }
+void init_context(QueryContext& c) {
+    rtcInitRayQueryContext(&c);
+}
 void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
@@ -38,7 +41,9 @@ void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
 }
 #else
 using QueryContext = RTCIntersectContext;
-void init_context(QueryContext& c) { rtcInitIntersectContext(&c); }
+void init_context(QueryContext& c) {
+    rtcInitIntersectContext(&c);
+}
 void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
     rtcIntersect1(scene, &context, &ray_hit);
 }
@@ -47,27 +52,35 @@ void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
 }
 #endif
 
-/// Embree hands its context to the filter; the world-space ray travels behind it, because inside an
-/// instance the filter sees the transformed one.
+/// Embree hands its context to the filter; the world-space ray travels behind it, because
+/// inside an instance the filter sees the transformed one.
 struct Context {
     QueryContext embree;
     const Ray* ray;
 };
 
 /// Owners of Embree's handles.
-struct ReleaseDevice { void operator()(RTCDevice d) const { rtcReleaseDevice(d); } };
-struct ReleaseScene { void operator()(RTCScene s) const { rtcReleaseScene(s); } };
-struct ReleaseGeometry { void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); } };
+struct ReleaseDevice {
+    void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+};
+struct ReleaseScene {
+    void operator()(RTCScene s) const { rtcReleaseScene(s); }
+};
+struct ReleaseGeometry {
+    void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); }
+};
 using DeviceOwner = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneOwner = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
-using GeometryOwner = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
+using GeometryOwner =
+    std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
 
 /// Errors come by callback, from any thread; the first one is kept and thrown by check().
 class Device {
   public:
     Device() : handle_(rtcNewDevice(nullptr)) {
         if (!handle_) {
-            throw Error("Embree: no device: error " + std::to_string(rtcGetDeviceError(nullptr)) +
+            throw Error("Embree: no device: error " +
+                        std::to_string(rtcGetDeviceError(nullptr)) +
                         " (the CPU or the installation of Embree is not supported)");
         }
         rtcSetDeviceErrorFunction(handle_.get(), &Device::on_error, this);
@@ -98,19 +111,23 @@ class Device {
 
 class EmbreeIntersector final : public Intersector {
   public:
-    EmbreeIntersector(const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
+    EmbreeIntersector(const std::vector<Mesh>& meshes,
+                      const std::vector<InstanceGeometry>& instances,
                       const std::vector<Sphere>& spheres, CutoutFunction cutout);
 
     std::optional<RawHit> intersect(const Ray& ray) const override;
     bool occluded(const Ray& ray) const override;
     const char* name() const override { return name_.c_str(); }
-    bool is_flattened(std::uint32_t instance) const override { return flattened_[instance]; }
+    bool is_flattened(std::uint32_t instance) const override {
+        return flattened_[instance];
+    }
 
   private:
     SceneOwner new_scene();
     GeometryOwner triangles_of(const Mesh& mesh);
     void set_positions(RTCGeometry geometry, const Mesh& mesh);
-    void set_world_positions(RTCGeometry geometry, const Mesh& mesh, const Affine3f& transform);
+    void set_world_positions(RTCGeometry geometry, const Mesh& mesh,
+                             const Affine3f& transform);
     void set_cutout(RTCGeometry geometry);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
@@ -122,20 +139,24 @@ class EmbreeIntersector final : public Intersector {
     Device device_;
     CutoutFunction cutout_;
     std::vector<bool> flattened_;
-    std::map<std::pair<std::uint32_t, bool>, SceneOwner> mesh_scenes_;  // by mesh and cutout
+    std::map<std::pair<std::uint32_t, bool>, SceneOwner>
+        mesh_scenes_;  // by mesh and cutout
     SceneOwner top_;
     unsigned sphere_geometry_;
     std::string name_;
 };
 
-// Robust traversal: without it one ray in 10^7 leaks through an edge of a closed mesh, and one in 20 to
-// 1000 of those aimed at an edge (measured; with it none of 4 * 10^7). It costs 12 to 15 % of traversal.
+// Robust traversal: without it one ray in 10^7 leaks through an edge of a closed mesh,
+// and one in 20 to 1000 of those aimed at an edge (measured; with it none of 4 * 10^7).
+// It costs 12 to 15 % of traversal.
 constexpr RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST;
 // High quality (spatial splits) traced no faster in robust mode.
 constexpr RTCBuildQuality kBuildQuality = RTC_BUILD_QUALITY_MEDIUM;
 
 std::string version_name(RTCDevice device) {
-    auto property = [&](RTCDeviceProperty p) { return std::to_string(rtcGetDeviceProperty(device, p)); };
+    auto property = [&](RTCDeviceProperty p) {
+        return std::to_string(rtcGetDeviceProperty(device, p));
+    };
     return "Embree " + property(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." +
            property(RTC_DEVICE_PROPERTY_VERSION_MINOR) + "." +
            property(RTC_DEVICE_PROPERTY_VERSION_PATCH);
@@ -143,9 +164,12 @@ std::string version_name(RTCDevice device) {
 
 EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
                                      const std::vector<InstanceGeometry>& instances,
-                                     const std::vector<Sphere>& spheres, CutoutFunction cutout)
-    : cutout_(std::move(cutout)), flattened_(choose_flattened(meshes, instances)),
-      top_(new_scene()), sphere_geometry_(static_cast<unsigned>(instances.size())),
+                                     const std::vector<Sphere>& spheres,
+                                     CutoutFunction cutout)
+    : cutout_(std::move(cutout)),
+      flattened_(choose_flattened(meshes, instances)),
+      top_(new_scene()),
+      sphere_geometry_(static_cast<unsigned>(instances.size())),
       name_(version_name(device_.get())) {
     for (unsigned i = 0; i < instances.size(); ++i) {
         const Mesh& mesh = meshes[instances[i].mesh];
@@ -177,20 +201,21 @@ GeometryOwner EmbreeIntersector::triangles_of(const Mesh& mesh) {
 void EmbreeIntersector::set_positions(RTCGeometry geometry, const Mesh& mesh) {
     const std::vector<Vec3f>& p = mesh.positions;
     if (p.capacity() > p.size()) {  // 16 bytes may be read at the last vertex
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, p.data(),
-                                   0, sizeof(Vec3f), p.size());
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   p.data(), 0, sizeof(Vec3f), p.size());
         return;
     }
-    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                         sizeof(Vec3f), p.size());
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                         RTC_FORMAT_FLOAT3, sizeof(Vec3f), p.size());
     device_.check("vertices of mesh '" + mesh.name + "'");
     std::memcpy(copy, p.data(), p.size() * sizeof(Vec3f));
 }
 
 void EmbreeIntersector::set_world_positions(RTCGeometry geometry, const Mesh& mesh,
                                             const Affine3f& transform) {
-    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                         sizeof(Vec3f), mesh.positions.size());
+    void* copy =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                sizeof(Vec3f), mesh.positions.size());
     device_.check("vertices of mesh '" + mesh.name + "'");
     auto* world = static_cast<Vec3f*>(copy);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -206,10 +231,12 @@ void EmbreeIntersector::set_cutout(RTCGeometry geometry) {
 
 void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned id) {
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(scene, geometry.get(), id);  // the scene keeps a reference of its own
+    rtcAttachGeometryByID(scene, geometry.get(),
+                          id);  // the scene keeps a reference of its own
 }
 
-RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance, const Mesh& mesh) {
+RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
+                                       const Mesh& mesh) {
     SceneOwner& scene = mesh_scenes_[{instance.mesh, instance.cutout}];
     if (scene) return scene.get();
     scene = new_scene();
@@ -244,8 +271,9 @@ void EmbreeIntersector::attach_spheres(const std::vector<Sphere>& spheres) {
     static_assert(sizeof(Sphere) == 16, "read in place as x, y, z, radius");
     GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
     device_.check("sphere lights");
-    void* copy = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                         RTC_FORMAT_FLOAT4, sizeof(Sphere), spheres.size());
+    void* copy =
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                RTC_FORMAT_FLOAT4, sizeof(Sphere), spheres.size());
     device_.check("sphere lights");
     std::memcpy(copy, spheres.data(), spheres.size() * sizeof(Sphere));
     attach(top_.get(), std::move(geometry), sphere_geometry_);
@@ -270,9 +298,18 @@ void EmbreeIntersector::filter(const RTCFilterFunctionNArguments* arguments) {
 }
 
 RTCRay embree_ray(const Ray& ray) {
-    return {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min,
-            ray.direction.x, ray.direction.y, ray.direction.z, 0,
-            ray.t_max, 0xffffffffu, 0, 0};
+    return {ray.origin.x,
+            ray.origin.y,
+            ray.origin.z,
+            ray.t_min,
+            ray.direction.x,
+            ray.direction.y,
+            ray.direction.z,
+            0,
+            ray.t_max,
+            0xffffffffu,
+            0,
+            0};
 }
 
 std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
@@ -299,11 +336,11 @@ bool EmbreeIntersector::occluded(const Ray& ray) const {
 
 }  // namespace
 
-std::unique_ptr<Intersector> Intersector::build(const std::vector<Mesh>& meshes,
-                                                const std::vector<InstanceGeometry>& instances,
-                                                const std::vector<Sphere>& spheres,
-                                                CutoutFunction cutout) {
-    return std::make_unique<EmbreeIntersector>(meshes, instances, spheres, std::move(cutout));
+std::unique_ptr<Intersector> Intersector::build(
+    const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
+    const std::vector<Sphere>& spheres, CutoutFunction cutout) {
+    return std::make_unique<EmbreeIntersector>(meshes, instances, spheres,
+                                               std::move(cutout));
 }
 
 }  // namespace dg

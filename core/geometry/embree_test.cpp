@@ -1,4 +1,5 @@
-// embree_test.cpp -- hits against closed forms, on both paths: flattened and through an instance.
+// embree_test.cpp -- hits against closed forms, on both paths: flattened and through an
+// instance.
 #include <doctest/doctest.h>
 
 #include <random>
@@ -14,7 +15,8 @@ struct Random {
     std::mt19937 generator{7};
     float operator()() { return std::uniform_real_distribution<float>(0, 1)(generator); }
     Vec3f direction() {
-        const float z = 2 * (*this)() - 1, phi = 2 * kPi * (*this)(), s = std::sqrt(1 - z * z);
+        const float z = 2 * (*this)() - 1, phi = 2 * kPi * (*this)(),
+                    s = std::sqrt(1 - z * z);
         return {s * std::cos(phi), s * std::sin(phi), z};
     }
 };
@@ -33,8 +35,10 @@ Ray make_ray(Vec3f origin, Vec3f direction) {
     return ray;
 }
 
-/// Enough copies of a mesh to keep it from being flattened; instance 0 is the one under test.
-std::vector<InstanceGeometry> crowd(const Mesh& mesh, const Affine3f& transform, bool cutout = false) {
+/// Enough copies of a mesh to keep it from being flattened; instance 0 is the one under
+/// test.
+std::vector<InstanceGeometry> crowd(const Mesh& mesh, const Affine3f& transform,
+                                    bool cutout = false) {
     std::vector<InstanceGeometry> all{{0, transform, cutout}};
     Affine3f far_away;
     far_away.origin = {0, 0, 1e6f};
@@ -44,13 +48,15 @@ std::vector<InstanceGeometry> crowd(const Mesh& mesh, const Affine3f& transform,
 
 }  // namespace
 
-TEST_CASE("a triangle: distance and barycentrics, on both paths, under shear and mirroring") {
+TEST_CASE(
+    "a triangle: distance and barycentrics, on both paths, under shear and mirroring") {
     const Vec3f a{0.1f, 0.2f, 0.3f}, b{1.3f, 0.1f, -0.2f}, c{0.2f, 1.5f, 0.4f};
     std::vector<Mesh> meshes{triangle_mesh(a, b, c)};
     meshes[0].triangles.resize(1000, {0, 0, 0});  // zero-area ones are never hit
-    const Affine3f transforms[] = {{},
-                                   {{-2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {3, 4, 5}},
-                                   {{1, 0.4f, 0}, {0.7f, 2, 0.1f}, {0, -0.3f, 0.5f}, {-1, 0, 2}}};
+    const Affine3f transforms[] = {
+        {},
+        {{-2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {3, 4, 5}},
+        {{1, 0.4f, 0}, {0.7f, 2, 0.1f}, {0, -0.3f, 0.5f}, {-1, 0, 2}}};
     Random random;
     for (const Affine3f& m : transforms) {
         for (bool flat : {true, false}) {

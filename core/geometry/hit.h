@@ -7,18 +7,20 @@
 namespace dg {
 
 struct SurfaceHit {
-    Vec3f position;         // m
-    Vec3f ng;               // unit geometric normal, as the winding gives it (front side)
-    Vec3f ns;               // unit shading normal, same hemisphere as ng
-    Vec3f tangent;          // unit, along +u of uv set 0 (glTF tangent if given), orthogonal to ns
-    float tangent_sign = 1; // bitangent = tangent_sign * cross(ns, tangent)
+    Vec3f position;  // m
+    Vec3f ng;        // unit geometric normal, as the winding gives it (front side)
+    Vec3f ns;        // unit shading normal, same hemisphere as ng
+    Vec3f
+        tangent;  // unit, along +u of uv set 0 (glTF tangent if given), orthogonal to ns
+    float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
-    float color[4] = {1, 1, 1, 1};   // vertex colour, linear RGBA
-    Vec3f wo;               // unit, toward where the ray came from
-    float t = 0;            // m along the ray
+    float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA
+    Vec3f wo;                       // unit, toward where the ray came from
+    float t = 0;                    // m along the ray
     std::uint32_t instance = 0, primitive = 0;
-    bool front = true;      // dot(ng, wo) > 0
-    float error = 0;        // m; offset for rays that leave here (scaled to the magnitude of position)
+    bool front = true;  // dot(ng, wo) > 0
+    float error =
+        0;  // m; offset for rays that leave here (scaled to the magnitude of position)
 };
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// intersector.h -- what the scene asks of a ray tracer. The only implementation is embree.cpp, the
-// only file that includes Embree (3.13 or 4).
+// intersector.h -- what the scene asks of a ray tracer. The only implementation is
+// embree.cpp, the only file that includes Embree (3.13 or 4).
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,43 +13,47 @@
 
 namespace dg {
 
-/// Where a ray met the geometry; barycentrics as glTF and Embree have them: p = (1-u-v) a + u b + v c.
-/// No normal: the scene computes it from the vertices, with the side that the instance gives it.
+/// Where a ray met the geometry; barycentrics as glTF and Embree have them: p = (1-u-v) a
+/// + u b + v c. No normal: the scene computes it from the vertices, with the side that
+/// the instance gives it.
 struct RawHit {
     float t;
     float u, v;
-    std::uint32_t instance;     // index into the instances; kSphere for sphere lights
-    std::uint32_t primitive;    // triangle, or index of the sphere
+    std::uint32_t instance;   // index into the instances; kSphere for sphere lights
+    std::uint32_t primitive;  // triangle, or index of the sphere
     static constexpr std::uint32_t kSphere = 0xffffffffu;
 };
 
 struct InstanceGeometry {
     std::uint32_t mesh;
     Affine3f world_from_local;
-    bool cutout = false;        // some texel may be transparent: the cutout function decides each hit
+    bool cutout =
+        false;  // some texel may be transparent: the cutout function decides each hit
 };
 
-/// Returns true when the surface lets the ray pass there (alpha). Must be thread safe and a pure
-/// function of its arguments, so that frames do not depend on the order of traversal.
+/// Returns true when the surface lets the ray pass there (alpha). Must be thread safe and
+/// a pure function of its arguments, so that frames do not depend on the order of
+/// traversal.
 using CutoutFunction = std::function<bool(const Ray&, const RawHit&)>;
 
 class Intersector {
   public:
-    /// Builds the acceleration structures once; meshes may be shared by instances. The meshes must be
-    /// valid, and outlive the intersector unchanged: their arrays are read in place (positions only
-    /// where the vector's capacity has room for one more, since Embree reads 16 bytes at the last
-    /// vertex; otherwise they are copied). Throws Error when memory runs out.
-    static std::unique_ptr<Intersector> build(const std::vector<Mesh>& meshes,
-                                              const std::vector<InstanceGeometry>& instances,
-                                              const std::vector<Sphere>& spheres,
-                                              CutoutFunction cutout);
+    /// Builds the acceleration structures once; meshes may be shared by instances. The
+    /// meshes must be valid, and outlive the intersector unchanged: their arrays are read
+    /// in place (positions only where the vector's capacity has room for one more, since
+    /// Embree reads 16 bytes at the last vertex; otherwise they are copied). Throws Error
+    /// when memory runs out.
+    static std::unique_ptr<Intersector> build(
+        const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
+        const std::vector<Sphere>& spheres, CutoutFunction cutout);
     virtual ~Intersector() = default;
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
     virtual bool occluded(const Ray& ray) const = 0;
-    virtual const char* name() const = 0;   // "Embree 3.13.5"
+    virtual const char* name() const = 0;  // "Embree 3.13.5"
 
-    /// True when hits on the instance are found in world space, against vertices that were
-    /// transformed once, and not by a ray transformed into the space of the mesh (see layout.h).
+    /// True when hits on the instance are found in world space, against vertices that
+    /// were transformed once, and not by a ray transformed into the space of the mesh
+    /// (see layout.h).
     virtual bool is_flattened(std::uint32_t instance) const = 0;
 };
 

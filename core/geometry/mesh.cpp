@@ -8,19 +8,27 @@
 namespace dg {
 namespace {
 
-bool finite(Vec2f v) { return std::isfinite(v.x) && std::isfinite(v.y); }
-bool finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(Vec2f v) {
+    return std::isfinite(v.x) && std::isfinite(v.y);
+}
+bool finite(Vec3f v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 bool finite(const std::array<float, 4>& v) {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) && std::isfinite(v[3]);
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) &&
+           std::isfinite(v[3]);
 }
 
-std::string text(Vec2f v) { return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")"; }
+std::string text(Vec2f v) {
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")";
+}
 std::string text(Vec3f v) {
-    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+           std::to_string(v.z) + ")";
 }
 std::string text(const std::array<float, 4>& v) {
-    return "(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]) +
-           ", " + std::to_string(v[3]) + ")";
+    return "(" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " +
+           std::to_string(v[2]) + ", " + std::to_string(v[3]) + ")";
 }
 
 template <typename T>
@@ -33,7 +41,8 @@ void check_array(const std::string& where, const char* what, const std::vector<T
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!finite(values[i])) {
-            throw input_error(where, std::string(what) + " of vertex " + std::to_string(i),
+            throw input_error(where,
+                              std::string(what) + " of vertex " + std::to_string(i),
                               "finite numbers", text(values[i]));
         }
     }
@@ -56,7 +65,8 @@ void Mesh::validate() const {
         for (std::uint32_t vertex : triangles[i]) {
             if (vertex >= n) {
                 throw input_error(where, "vertex index of triangle " + std::to_string(i),
-                                  "less than " + std::to_string(n), std::to_string(vertex));
+                                  "less than " + std::to_string(n),
+                                  std::to_string(vertex));
             }
         }
     }

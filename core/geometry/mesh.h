@@ -14,20 +14,21 @@ struct Mesh {
     std::string name;
     std::vector<Vec3f> positions;
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3f> normals;                    // unit, per vertex; absent: flat shading
-    std::array<std::vector<Vec2f>, 2> uv;          // two texture sets
-    std::vector<std::array<float, 4>> tangents;    // xyz, w = handedness
-    std::vector<std::array<float, 4>> colors;      // linear RGBA
-    bool double_sided = true;                      // informs nothing but emission and glTF culling
+    std::vector<Vec3f> normals;                  // unit, per vertex; absent: flat shading
+    std::array<std::vector<Vec2f>, 2> uv;        // two texture sets
+    std::vector<std::array<float, 4>> tangents;  // xyz, w = handedness
+    std::vector<std::array<float, 4>> colors;    // linear RGBA
+    bool double_sided = true;  // informs nothing but emission and glTF culling
 
-    /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array length.
+    /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
+    /// length.
     void validate() const;
 };
 
 /// A sphere light that rays can hit.
 struct Sphere {
-    Vec3f center;   // m, world
-    float radius;   // m
+    Vec3f center;  // m, world
+    float radius;  // m
 };
 
 }  // namespace dg

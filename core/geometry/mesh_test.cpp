@@ -56,8 +56,9 @@ TEST_CASE("a bad mesh is an error that names mesh and element") {
 
     mesh = triangle_mesh();
     mesh.uv[1].assign(2, {0, 0});
-    CHECK(message(mesh) ==
-          "mesh 'tri': length of texture coordinates 1: wanted 3 (one per vertex), got 2");
+    CHECK(
+        message(mesh) ==
+        "mesh 'tri': length of texture coordinates 1: wanted 3 (one per vertex), got 2");
 
     mesh = triangle_mesh();
     mesh.colors.assign(3, {1, 1, 1, std::numeric_limits<float>::infinity()});
@@ -65,11 +66,14 @@ TEST_CASE("a bad mesh is an error that names mesh and element") {
 }
 
 TEST_CASE("meshes used once are flattened, shared ones while the total stays small") {
-    const std::vector<Mesh> meshes{mesh_of_size(1000), mesh_of_size(10), mesh_of_size(30)};
-    const std::vector<InstanceGeometry> instances{{0, {}, false}, {1, {}, false}, {1, {}, false},
-                                                  {2, {}, false}, {2, {}, false}};
-    CHECK(choose_flattened(meshes, instances, 0) == std::vector{true, false, false, false, false});
-    CHECK(choose_flattened(meshes, instances, 79) == std::vector{true, false, false, false, false});
+    const std::vector<Mesh> meshes{mesh_of_size(1000), mesh_of_size(10),
+                                   mesh_of_size(30)};
+    const std::vector<InstanceGeometry> instances{
+        {0, {}, false}, {1, {}, false}, {1, {}, false}, {2, {}, false}, {2, {}, false}};
+    CHECK(choose_flattened(meshes, instances, 0) ==
+          std::vector{true, false, false, false, false});
+    CHECK(choose_flattened(meshes, instances, 79) ==
+          std::vector{true, false, false, false, false});
     CHECK(choose_flattened(meshes, instances, 80) == std::vector<bool>(5, true));
     CHECK(choose_flattened(meshes, instances) == std::vector<bool>(5, true));
 }

@@ -7,10 +7,10 @@
 namespace dg {
 
 struct Ray {
-    Vec3f origin;           // m
-    Vec3f direction;        // unit
-    float time = 0;         // s; every ray that descends from a camera ray keeps it
-    float t_min = 0;        // m
+    Vec3f origin;     // m
+    Vec3f direction;  // unit
+    float time = 0;   // s; every ray that descends from a camera ray keeps it
+    float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
 };
 

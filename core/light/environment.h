@@ -1,5 +1,6 @@
 // environment.h -- light from infinity: an equirectangular picture, or one colour.
 #pragma once
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,9 +10,10 @@
 
 namespace dg {
 
-/// Picture: row 0 is the zenith (+y up, as glTF); the centre column looks along -z; 1.0 is `scale` cd/m2.
-/// Lookup is bilinear, wrapping in azimuth; sampling follows luminance x sin(theta) of that same
-/// bilinear function's cells, so that pdf > 0 wherever radiance > 0.
+/// Picture: row 0 is the zenith (+y up, as glTF); the centre column looks along -z; 1.0
+/// is `scale` cd/m2. Lookup is bilinear, wrapping in azimuth; sampling follows the
+/// luminance of that same bilinear function (its rows interpolated in cos theta), so that
+/// pdf > 0 wherever radiance > 0.
 struct EnvironmentImage {
     int width = 0, height = 0;
     std::vector<Rgb> pixels;
@@ -20,13 +22,25 @@ struct EnvironmentImage {
 class Environment {
   public:
     static Environment constant(Rgb luminance);
-    static Environment image(EnvironmentImage image, float scale, const Affine3f& world_from_environment);
+    /// Throws Error on a wrong size, on values that are negative or not finite (by row
+    /// and column), and on a transform that is no rotation.
+    static Environment image(EnvironmentImage image, float scale,
+                             const Affine3f& world_from_environment);
 
     Rgb luminance(Vec3f direction) const;
-    struct Sample { Vec3f direction; float pdf; };
+    struct Sample {
+        Vec3f direction;
+        float pdf;
+    };
     Sample sample(Vec2f u) const;
     float pdf(Vec3f direction) const;
-    float mean_luminance() const;   // over the sphere
+    float mean_luminance() const { return mean_luminance_; }  // over the sphere
+
+  private:
+    struct Picture;
+    std::shared_ptr<const Picture> picture_;  // absent: constant
+    Rgb constant_{};
+    float mean_luminance_ = 0;
 };
 
 }  // namespace dg

@@ -1,12 +1,16 @@
 // light.h -- emitters: sample, pdf, emission. They take geometry, never the scene.
-// Photometric law: colours are Rgb of D65-shaped spectra; intensity cd, illuminance lux, luminance cd/m2.
+// Photometric law: colours are Rgb of D65-shaped spectra; intensity cd, illuminance lux,
+// luminance cd/m2.
 #pragma once
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "geometry/mesh.h"
 #include "light/environment.h"
+#include "light/light_tree.h"
 #include "math/distribution.h"
 #include "math/transform.h"
 #include "spectrum/wavelengths.h"
@@ -14,68 +18,107 @@
 namespace dg {
 
 struct PointLight {
-    Vec3f position;         // m
-    Rgb intensity;          // cd
-    float range = std::numeric_limits<float>::infinity();  // m; glTF window (KHR_lights_punctual)
+    Vec3f position;  // m
+    Rgb intensity;   // cd
+    float range =
+        std::numeric_limits<float>::infinity();  // m; glTF window (KHR_lights_punctual)
 };
 struct SpotLight {
-    Vec3f position;         // m
-    Vec3f direction;        // unit, where it shines
-    Rgb intensity;          // cd, on the axis
-    float inner_angle, outer_angle;   // rad, half angles
+    Vec3f position;                  // m
+    Vec3f direction;                 // unit, where it shines
+    Rgb intensity;                   // cd, on the axis
+    float inner_angle, outer_angle;  // rad, half angles
     float range = std::numeric_limits<float>::infinity();
 };
 struct DirectionalLight {
-    Vec3f direction;        // unit, where it shines
-    Rgb illuminance;        // lux
+    Vec3f direction;  // unit, where it shines
+    Rgb illuminance;  // lux
 };
 /// A ball that shines evenly; rays can hit it (Intersector sphere `sphere`).
 struct SphereLight {
     Sphere shape;
-    Rgb luminance;          // cd/m2
+    Rgb luminance;  // cd/m2
 };
 /// One emissive triangle, world space.
 struct TriangleLight {
     Vec3f a, b, c;
-    Rgb mean_luminance;     // cd/m2, mean over the triangle: steers the choice of lights only
+    Rgb mean_luminance;  // cd/m2, mean over the triangle: steers the choice of lights
+                         // only
     std::uint32_t instance, primitive;
     bool two_sided;
+    bool mirrored = false;  // the front is where a, b, c run clockwise (instance with
+                            // determinant < 0)
 };
-using Light = std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
+using Light =
+    std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
 struct LightSample {
-    Vec3f wi;               // unit, toward the light
-    float distance;         // m; infinity for directional and environment
-    Spectrum radiance;      // incident radiance; for a delta light the incident irradiance on a facing surface
-    float pdf;              // solid angle, selection included; for a delta light the selection probability
+    Vec3f wi;           // unit, toward the light
+    float distance;     // m; infinity for directional and environment
+    Spectrum radiance;  // incident radiance; for a delta light the incident irradiance on
+                        // a facing surface
+    float pdf;  // solid angle, selection included; for a delta light the selection
+                // probability
     bool delta;
-    /// For triangle lights: where it was sampled; the scene evaluates textured emission there.
+    /// Index of the triangle light in lights(), or -1, and where it was sampled (weights
+    /// of its second and third corner); the scene evaluates textured emission there.
     std::int64_t triangle_light = -1;
     Vec2f barycentric;
 };
 
-/// All lights of a scene with the law by which one is chosen (power, and the environment).
+/// All lights of a scene with the law by which one is chosen for a point: by an estimate
+/// of the illuminance that each brings there, so that neither a huge scene nor a near
+/// lamp starves the others. Lights from infinity (directional, environment) form one
+/// group, the rest a LightTree.
 class LightSet {
   public:
     LightSet() = default;
-    /// scene_radius: m, of the bounding sphere: makes powers of directional lights and environment comparable.
-    LightSet(std::vector<Light> lights, std::optional<Environment> environment, float scene_radius);
+    /// Throws Error naming light and value: not finite, negative colour, zero direction,
+    /// radius or range not positive, angles of a spot out of order.
+    LightSet(std::vector<Light> lights, std::optional<Environment> environment);
 
-    bool empty() const;
-    /// Radiance of triangle lights is mean_luminance here; LightSample::triangle_light tells the caller
-    /// to replace it by the textured value.
+    bool empty() const { return tree_.empty() && infinite_.empty(); }
+    /// Radiance of triangle lights is mean_luminance here; LightSample::triangle_light
+    /// tells the caller to replace it by the textured value. Empty when the choice cannot
+    /// light the position.
     std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position,
                                       const Wavelengths& wavelengths) const;
-    /// Solid-angle density (selection included) with which sample() would have chosen the direction
-    /// from `position` that met this triangle at `t` metres under |cos| at the light.
-    float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t, float cos_light) const;
+    /// Solid-angle density (selection included) with which sample() would have chosen the
+    /// direction from `position` that met this triangle at `t` metres under |cos| at the
+    /// light. 0 for triangles that are not lights. Two-sided or not is the caller's
+    /// knowledge: ask only where it emits. `position` is the one that sample() was given,
+    /// since the choice of the light depends on it.
+    float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
+                       float cos_light, Vec3f position) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position) const;
-    float pdf_environment(Vec3f direction) const;
+    float pdf_environment(Vec3f direction, Vec3f position) const;
     /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
     Spectrum sphere_radiance(std::uint32_t sphere, const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, const Wavelengths& wavelengths) const;
-    bool has_environment() const;
-    const std::vector<Light>& lights() const;
+    bool has_environment() const { return environment_.has_value(); }
+    const std::vector<Light>& lights() const { return lights_; }
+    const std::optional<Environment>& environment() const { return environment_; }
+
+  private:
+    static constexpr std::int32_t kEnvironment = -1, kNone = -2;
+    void build_groups();
+    void build_lookup();
+    float infinite_probability(Vec3f position) const;
+    float local_probability(Vec3f position, std::size_t light) const;
+
+    std::vector<Light> lights_;
+    std::optional<Environment> environment_;
+    LightTree tree_;
+    std::vector<std::uint32_t> tree_lights_;  // light by tree index
+    std::vector<std::int32_t> tree_index_;    // and back; kNone: dark
+    DiscreteDistribution infinite_;
+    std::vector<std::int32_t> infinite_lights_;  // light, or kEnvironment
+    float infinite_illuminance_ = 0;  // lux, all together, on a surface that faces them
+    float environment_pmf_ = 0;       // within the group
+    std::vector<std::uint32_t> spheres_;  // light by sphere
+    std::vector<std::int64_t>
+        first_slot_;  // by instance, into triangle_slots_; -1: no lights
+    std::vector<std::int32_t> triangle_slots_;  // light by primitive; kNone
 };
 
 }  // namespace dg

@@ -1,0 +1,130 @@
+// area.cpp -- lights with an extent: spheres and triangles.
+#include "light/emitter.h"
+#include "light/emitter_check.h"
+#include "math/warp.h"
+
+namespace dg {
+namespace {
+
+/// What both sphere functions need: the disc that the sphere shows to `position`.
+struct VisibleDisc {
+    Vec3f to_center;
+    float d2;             // squared distance of the centre
+    float one_minus_cos;  // of the cone; unused inside
+    bool inside;
+};
+
+VisibleDisc visible_disc(const Sphere& sphere, Vec3f position) {
+    VisibleDisc v;
+    v.to_center = sphere.center - position;
+    v.d2 = length_squared(v.to_center);
+    const float r2 = sphere.radius * sphere.radius;
+    v.inside = v.d2 <= r2;
+    v.one_minus_cos = v.inside ? 2 : one_minus_cos_from_sin2(r2 / v.d2);
+    return v;
+}
+
+/// Along the front side; twice the area long.
+Vec3f front_normal(const TriangleLight& t) {
+    const Vec3f n = cross(t.b - t.a, t.c - t.a);
+    return t.mirrored ? -n : n;
+}
+
+}  // namespace
+
+float triangle_area(const TriangleLight& light) {
+    return 0.5f * length(front_normal(light));
+}
+
+void check_emitter(const SphereLight& light, const std::string& where) {
+    check_finite(where, "centre", light.shape.center);
+    check_positive(where, "radius", light.shape.radius);
+    check_finite(where, "radius", {light.shape.radius, 0, 0});
+    check_color(where, "luminance", light.luminance);
+}
+
+void check_emitter(const TriangleLight& light, const std::string& where) {
+    check_finite(where, "corner", light.a);
+    check_finite(where, "corner", light.b);
+    check_finite(where, "corner", light.c);
+    check_color(where, "luminance", light.mean_luminance);
+}
+
+LightBounds emitter_bounds(const SphereLight& light) {
+    const float r = light.shape.radius;
+    LightBounds b;
+    b.min = light.shape.center - Vec3f{r, r, r};
+    b.max = light.shape.center + Vec3f{r, r, r};
+    b.intensity = selection_weight(light.luminance) * kPi * r * r;
+    return b;
+}
+
+LightBounds emitter_bounds(const TriangleLight& light) {
+    const Vec3f n = front_normal(light);
+    LightBounds b;
+    b.min = {std::min({light.a.x, light.b.x, light.c.x}),
+             std::min({light.a.y, light.b.y, light.c.y}),
+             std::min({light.a.z, light.b.z, light.c.z})};
+    b.max = {std::max({light.a.x, light.b.x, light.c.x}),
+             std::max({light.a.y, light.b.y, light.c.y}),
+             std::max({light.a.z, light.b.z, light.c.z})};
+    if (!(length(n) > 0)) return b;  // no area: intensity 0
+    b.axis = normalize(n);
+    b.spread = 0;
+    b.intensity = selection_weight(light.mean_luminance) * 0.5f * length(n);
+    b.two_sided = light.two_sided;
+    return b;
+}
+
+/// Uniform in the cone that the sphere fills; from inside, uniform over all directions.
+std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
+                                            Vec3f position) {
+    const VisibleDisc v = visible_disc(light.shape, position);
+    const float r2 = light.shape.radius * light.shape.radius;
+    Vec3f wi;
+    if (v.inside) {
+        wi = warp_sphere(u);
+    } else {
+        const Frame frame = Frame::from_normal(v.to_center * (1 / std::sqrt(v.d2)));
+        wi = normalize(frame.to_world(warp_cone(u, v.one_minus_cos)));
+    }
+    // Nearest point ahead; the squared distance of the centre from the line, without
+    // cancellation.
+    const float along = dot(v.to_center, wi);
+    const float half_chord =
+        std::sqrt(std::max(0.f, r2 - length_squared(v.to_center - wi * along)));
+    const float distance = v.inside ? along + half_chord : along - half_chord;
+    if (!(distance > 0)) return std::nullopt;
+    return EmitterSample{wi, distance, light.luminance, emitter_pdf(light, position),
+                         false};
+}
+
+float emitter_pdf(const SphereLight& light, Vec3f position) {
+    const VisibleDisc v = visible_disc(light.shape, position);
+    return v.inside ? warp_sphere_pdf() : warp_cone_pdf(v.one_minus_cos);
+}
+
+/// Uniform over the area.
+std::optional<EmitterSample> sample_emitter(const TriangleLight& light, Vec2f u,
+                                            Vec3f position) {
+    const Vec2f b = warp_triangle(u);
+    const Vec3f to =
+        light.a + (light.b - light.a) * b.x + (light.c - light.a) * b.y - position;
+    const float d2 = length_squared(to);
+    if (!(d2 > 0)) return std::nullopt;
+    const float d = std::sqrt(d2);
+    const Vec3f wi = to * (1 / d), n = front_normal(light);
+    const float cos_times_2_area = -dot(wi, n);
+    if (light.two_sided ? cos_times_2_area == 0 : cos_times_2_area <= 0)
+        return std::nullopt;
+    const float pdf = d2 / (0.5f * std::abs(cos_times_2_area));
+    if (!std::isfinite(pdf)) return std::nullopt;
+    return EmitterSample{wi, d, light.mean_luminance, pdf, false, b};
+}
+
+float emitter_pdf(const TriangleLight& light, float t, float cos_light) {
+    const float projected = std::abs(cos_light) * triangle_area(light);
+    return projected > 0 ? t * t / projected : 0;
+}
+
+}  // namespace dg

@@ -1,0 +1,41 @@
+// emitter_check.h -- checks that the kinds of light share, and the brightness by which
+// they are chosen.
+#pragma once
+#include <string>
+
+#include "math/error.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+
+inline std::string vector_text(Vec3f v) {
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+           std::to_string(v.z) + ")";
+}
+
+inline bool is_finite(Vec3f v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+inline void check_finite(const std::string& where, const char* what, Vec3f v) {
+    if (!is_finite(v)) throw input_error(where, what, "finite numbers", vector_text(v));
+}
+inline void check_color(const std::string& where, const char* what, Rgb c) {
+    if (is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0) return;
+    throw input_error(where, what, "finite values >= 0", vector_text(c));
+}
+inline void check_unit(const std::string& where, const char* what, Vec3f v) {
+    if (is_finite(v) && std::abs(length(v) - 1) < 1e-3f) return;
+    throw input_error(where, what, "a unit vector", vector_text(v));
+}
+inline void check_positive(const std::string& where, const char* what, float v) {
+    if (!(v > 0)) throw input_error(where, what, "a number > 0", std::to_string(v));
+}
+
+/// Luminance, and a share of the mean of the channels: a pure blue lamp is dim to the
+/// eye, but no less noisy in the picture's blue channel.
+inline float selection_weight(Rgb c) {
+    return 0.5f * (luminance(c) + (c.x + c.y + c.z) / 3);
+}
+
+}  // namespace dg

@@ -1,0 +1,195 @@
+// light.cpp -- the lights of a scene, and the choice among them.
+#include "light/light.h"
+
+#include "light/emitter.h"
+#include "light/emitter_check.h"
+
+namespace dg {
+namespace {
+
+// Neither the lights from infinity nor those nearby ever get less than this share where
+// both shine: the estimate knows nothing of walls between.
+constexpr float kLeastShare = 0.1f;
+// Nor any one light from infinity less than this share of their group.
+constexpr double kLeastInfiniteShare = 0.05;
+
+const char* kind_name(const Light& light) {
+    constexpr const char* names[] = {"point", "spot", "directional", "sphere",
+                                     "triangle"};
+    return names[light.index()];
+}
+
+}  // namespace
+
+LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment)
+    : lights_(std::move(lights)), environment_(std::move(environment)) {
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const std::string where =
+            "light " + std::to_string(i) + " (" + kind_name(lights_[i]) + ")";
+        std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
+    }
+    build_groups();
+    build_lookup();
+}
+
+void LightSet::build_groups() {
+    std::vector<LightBounds> bounds;
+    std::vector<double> weights;
+    tree_index_.assign(lights_.size(), kNone);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        if (const auto* sun = std::get_if<DirectionalLight>(&lights_[i])) {
+            const float lux = selection_weight(sun->illuminance);
+            if (lux <= 0) continue;
+            infinite_lights_.push_back(static_cast<std::int32_t>(i));
+            weights.push_back(lux);
+            continue;
+        }
+        const LightBounds b =
+            std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[i]);
+        if (!(b.intensity > 0) || !std::isfinite(b.intensity)) continue;
+        tree_index_[i] = static_cast<std::int32_t>(bounds.size());
+        tree_lights_.push_back(static_cast<std::uint32_t>(i));
+        bounds.push_back(b);
+    }
+    tree_ = LightTree(bounds);
+
+    if (environment_ && environment_->mean_luminance() > 0) {
+        infinite_lights_.push_back(kEnvironment);
+        weights.push_back(kPiD *
+                          environment_->mean_luminance());  // E = pi L under an even sky
+    }
+    double sum = 0;
+    for (double w : weights) sum += w;
+    infinite_illuminance_ = static_cast<float>(sum);
+    for (double& w : weights) w = std::max(w, kLeastInfiniteShare * sum);
+    if (!weights.empty())
+        infinite_ = DiscreteDistribution(std::span<const double>(weights));
+    if (!weights.empty() && infinite_lights_.back() == kEnvironment) {
+        environment_pmf_ = infinite_.pmf(infinite_.size() - 1);
+    }
+}
+
+void LightSet::build_lookup() {
+    std::vector<std::uint32_t> primitives;  // by instance, one more than the largest
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        if (std::holds_alternative<SphereLight>(lights_[i]))
+            spheres_.push_back(static_cast<std::uint32_t>(i));
+        const auto* t = std::get_if<TriangleLight>(&lights_[i]);
+        if (!t) continue;
+        if (t->instance >= primitives.size()) primitives.resize(t->instance + 1, 0);
+        primitives[t->instance] = std::max(primitives[t->instance], t->primitive + 1);
+    }
+    first_slot_.assign(primitives.size(), -1);
+    std::int64_t slots = 0;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        if (primitives[i] == 0) continue;
+        first_slot_[i] = slots;
+        slots += primitives[i];
+    }
+    // A primitive beyond the last light of its instance would find a slot of the next
+    // instance; it is told apart by the instance and primitive that the light itself
+    // names.
+    triangle_slots_.assign(slots, kNone);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const auto* t = std::get_if<TriangleLight>(&lights_[i]);
+        if (t)
+            triangle_slots_[first_slot_[t->instance] + t->primitive] =
+                static_cast<std::int32_t>(i);
+    }
+}
+
+float LightSet::infinite_probability(Vec3f position) const {
+    if (infinite_.empty()) return 0;
+    if (tree_.empty()) return 1;
+    const float local = tree_.importance(position);
+    if (!(local > 0)) return 1;
+    const float share = infinite_illuminance_ / (infinite_illuminance_ + local);
+    return std::clamp(share, kLeastShare, 1 - kLeastShare);
+}
+
+float LightSet::local_probability(Vec3f position, std::size_t light) const {
+    if (tree_index_[light] == kNone) return 0;
+    return (1 - infinite_probability(position)) *
+           tree_.probability(position, tree_index_[light]);
+}
+
+std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f position,
+                                            const Wavelengths& wavelengths) const {
+    if (empty()) return std::nullopt;
+    const float p_infinite = infinite_probability(position);
+    std::int64_t chosen;
+    float probability;
+    if (u_select < p_infinite) {
+        const DiscreteSample s =
+            infinite_.sample(std::min(u_select / p_infinite, 0x1.fffffep-1f));
+        chosen = infinite_lights_[s.index];
+        probability = p_infinite * s.pmf;
+    } else {
+        const float rest = (u_select - p_infinite) / (1 - p_infinite);
+        const auto choice = tree_.sample(position, std::min(rest, 0x1.fffffep-1f));
+        if (!choice) return std::nullopt;
+        chosen = tree_lights_[choice->light];
+        probability = (1 - p_infinite) * choice->probability;
+    }
+
+    if (chosen == kEnvironment) {
+        const Environment::Sample s = environment_->sample(u);
+        if (!(s.pdf > 0)) return std::nullopt;
+        return LightSample{s.direction,
+                           std::numeric_limits<float>::infinity(),
+                           environment_radiance(s.direction, wavelengths),
+                           s.pdf * probability,
+                           false,
+                           -1,
+                           {}};
+    }
+    const Light& light = lights_[chosen];
+    const auto s =
+        std::visit([&](const auto& l) { return sample_emitter(l, u, position); }, light);
+    if (!s) return std::nullopt;
+    const bool triangle = std::holds_alternative<TriangleLight>(light);
+    return LightSample{s->wi,
+                       s->distance,
+                       wavelengths.emission(s->value),
+                       s->pdf * probability,
+                       s->delta,
+                       triangle ? chosen : -1,
+                       s->barycentric};
+}
+
+float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
+                             float cos_light, Vec3f position) const {
+    if (instance >= first_slot_.size() || first_slot_[instance] < 0) return 0;
+    const std::size_t slot = first_slot_[instance] + primitive;
+    if (slot >= triangle_slots_.size() || triangle_slots_[slot] == kNone) return 0;
+    const std::size_t light = triangle_slots_[slot];
+    const auto& triangle = std::get<TriangleLight>(lights_[light]);
+    if (triangle.instance != instance || triangle.primitive != primitive) return 0;
+    return emitter_pdf(triangle, t, cos_light) * local_probability(position, light);
+}
+
+float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position) const {
+    const std::size_t light = spheres_[sphere];
+    return emitter_pdf(std::get<SphereLight>(lights_[light]), position) *
+           local_probability(position, light);
+}
+
+float LightSet::pdf_environment(Vec3f direction, Vec3f position) const {
+    if (environment_pmf_ <= 0) return 0;
+    return infinite_probability(position) * environment_pmf_ *
+           environment_->pdf(direction);
+}
+
+Spectrum LightSet::sphere_radiance(std::uint32_t sphere,
+                                   const Wavelengths& wavelengths) const {
+    return wavelengths.emission(
+        std::get<SphereLight>(lights_[spheres_[sphere]]).luminance);
+}
+
+Spectrum LightSet::environment_radiance(Vec3f direction,
+                                        const Wavelengths& wavelengths) const {
+    if (!environment_) return Spectrum(0.f);
+    return wavelengths.emission(environment_->luminance(direction));
+}
+
+}  // namespace dg

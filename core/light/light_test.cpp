@@ -1,0 +1,250 @@
+// light_test.cpp -- each kind of light against closed forms; samplers against densities.
+#include "light/light.h"
+
+#include <doctest/doctest.h>
+
+#include "light/direction_test.h"
+#include "light/emitter.h"
+#include "math/error.h"
+
+using namespace dg;
+
+namespace {
+
+/// Lanes are red, green, blue and white: lights can be tested without the tables of
+/// spectrum/.
+Wavelengths rgb_lanes() {
+    Wavelengths w;
+    w.red = {1, 0, 0, 1 / 3.f};
+    w.green = {0, 1, 0, 1 / 3.f};
+    w.blue = {0, 0, 1, 1 / 3.f};
+    w.d65 = Spectrum(1.f);
+    return w;
+}
+
+Vec2f uniform_2d(int i) {
+    return {float(hash_uniform(5, 2 * i)), float(hash_uniform(5, 2 * i + 1))};
+}
+
+/// Illuminance (white lane) on a facet, by the estimator.
+double illuminance(const LightSet& lights, Vec3f position, Vec3f normal, int n = 40000) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+        const auto s =
+            lights.sample(float((i + 0.5) / n), uniform_2d(i), position, rgb_lanes());
+        if (s) sum += s->radiance[3] * std::max(0.f, dot(normal, s->wi)) / s->pdf;
+    }
+    return sum / n;
+}
+
+LightSet one(Light light) {
+    return LightSet({std::move(light)}, std::nullopt);
+}
+
+TriangleLight triangle(Vec3f a, Vec3f b, Vec3f c, std::uint32_t primitive = 0,
+                       bool two_sided = false) {
+    return {a, b, c, {1, 1, 1}, 0, primitive, two_sided, false};
+}
+
+}  // namespace
+
+TEST_CASE("point light: I / d^2 times the cosine, and the range window") {
+    PointLight light{{0, 2, 0}, {8, 8, 8}};
+    CHECK(illuminance(one(light), {0, 0, 0}, {0, 1, 0}, 10) == doctest::Approx(2));
+    CHECK(illuminance(one(light), {2, 0, 0}, {0, 1, 0}, 10) ==
+          doctest::Approx(std::sqrt(0.5)));
+    light.range = 4;
+    CHECK(illuminance(one(light), {0, 0, 0}, {0, 1, 0}, 10) ==
+          doctest::Approx(2 * (1 - 1 / 16.0)));
+    CHECK(illuminance(one(light), {0, -2.01f, 0}, {0, 1, 0}, 10) == 0);
+    CHECK_FALSE(one(light).sample(0.5f, {}, {0, 2, 0}, rgb_lanes()).has_value());
+}
+
+TEST_CASE("spot light: the angular attenuation of KHR_lights_punctual") {
+    CHECK(spot_attenuation(1, 0.2f, 0.5f) == 1);
+    CHECK(spot_attenuation(std::cos(0.2f), 0.2f, 0.5f) == doctest::Approx(1));
+    CHECK(spot_attenuation(std::cos(0.5f), 0.2f, 0.5f) == doctest::Approx(0));
+    CHECK(spot_attenuation(std::cos(0.6f), 0.2f, 0.5f) == 0);
+    const double t = (std::cos(0.4) - std::cos(0.5)) / (std::cos(0.2) - std::cos(0.5));
+    CHECK(spot_attenuation(std::cos(0.4f), 0.2f, 0.5f) ==
+          doctest::Approx(t * t).epsilon(1e-5));
+
+    const LightSet spot = one(SpotLight{{0, 3, 0}, {0, -1, 0}, {9, 9, 9}, 0.2f, 0.5f});
+    CHECK(illuminance(spot, {0, 0, 0}, {0, 1, 0}, 10) == doctest::Approx(1));
+    const Vec3f aside{3 * std::tan(0.4f), 0, 0};
+    CHECK(illuminance(spot, aside, {0, 1, 0}, 10) ==
+          doctest::Approx(t * t * std::pow(std::cos(0.4), 3)).epsilon(1e-4));
+    CHECK(illuminance(spot, {3 * std::tan(0.51f), 0, 0}, {0, 1, 0}, 10) == 0);
+    CHECK(illuminance(spot, {0, 6, 0}, {0, -1, 0}, 10) == 0);
+}
+
+TEST_CASE("directional light: its illuminance, anywhere") {
+    const LightSet sun = one(DirectionalLight{{0, -1, 0}, {3, 3, 3}});
+    CHECK(illuminance(sun, {1e4f, -7, 3}, {0, 1, 0}, 10) == doctest::Approx(3));
+    CHECK(illuminance(sun, {0, 0, 0}, {0, 0.6f, 0.8f}, 10) == doctest::Approx(1.8));
+    CHECK(sun.sample(0.5f, {}, {}, rgb_lanes())->distance ==
+          std::numeric_limits<float>::infinity());
+}
+
+TEST_CASE("sphere light: E = pi L (r/d)^2 on a facet that faces it, far, near and tiny") {
+    for (float r : {1e-3f, 0.5f, 1.9f, 1.999f}) {
+        const LightSet lights = one(SphereLight{{{0, 2, 0}, r}, {5, 5, 5}});
+        CHECK(illuminance(lights, {0, 0, 0}, {0, 1, 0}) ==
+              doctest::Approx(kPiD * 5 * r * r / 4).epsilon(0.005));
+    }
+    // From inside, half of all directions count.
+    const LightSet around = one(SphereLight{{{0, 0, 0}, 2}, {5, 5, 5}});
+    CHECK(illuminance(around, {0.3f, 1, 0}, {0, 1, 0}) ==
+          doctest::Approx(kPiD * 5).epsilon(0.01));
+}
+
+TEST_CASE("triangle light: form factor of a parallel rectangle above a corner facet") {
+    // Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
+    const float a = 1.5f, b = 0.7f, c = 1.1f;
+    const double A = a / c, B = b / c;
+    const double factor =
+        (A / std::sqrt(1 + A * A) * std::atan(B / std::sqrt(1 + A * A)) +
+         B / std::sqrt(1 + B * B) * std::atan(A / std::sqrt(1 + B * B))) /
+        (2 * kPiD);
+    const Vec3f p{0, c, 0}, q{a, c, 0}, r{a, c, b}, s{0, c, b};
+    for (bool two_sided : {false, true}) {
+        const LightSet lights(
+            {triangle(p, q, r, 0, two_sided), triangle(p, r, s, 1, two_sided)},
+            std::nullopt);
+        CHECK(illuminance(lights, {0, 0, 0}, {0, 1, 0}) ==
+              doctest::Approx(kPiD * factor).epsilon(0.01));
+        const double above = illuminance(lights, {0, 2 * c, 0}, {0, -1, 0});
+        CHECK(above == doctest::Approx(two_sided ? kPiD * factor : 0).epsilon(0.01));
+    }
+}
+
+TEST_CASE("chi-square: directions toward spheres and triangles follow their density") {
+    const Vec3f position{0.2f, -0.3f, 0.1f};
+    struct Case {
+        Sphere sphere;
+        bool whole;
+    };
+    for (const Case& c : {Case{{{1, 2, 3}, 0.5f}, false}, Case{{{1, 2, 3}, 3.5f}, false},
+                          Case{{{0.3f, 0, 0}, 2}, true}}) {
+        const SphereLight light{c.sphere, {1, 1, 1}};
+        DirectionGrid grid;
+        const Vec3f to = light.shape.center - position;
+        if (!c.whole) {  // the cone itself is the grid: its edge is the test's edge
+            grid.frame = Frame::from_normal(normalize(to));
+            grid.cos_min = std::sqrt(1 - double(light.shape.radius) * light.shape.radius /
+                                             length_squared(to));
+        }
+        auto sample = [&](Vec2f u) {
+            return std::optional(sample_emitter(light, u, position)->wi);
+        };
+        auto p_value = [&](double fault, int n) {
+            return direction_p_value(
+                grid, sample, [&](Vec3f) { return fault * emitter_pdf(light, position); },
+                n);
+        };
+        CHECK(p_value(1, 200000) > 1e-3);
+        CHECK(p_value(1.02, 1000000) < 1e-6);
+    }
+
+    const TriangleLight t = triangle({-1, 1.5f, -1}, {2, 1, 0.5f}, {-0.5f, 2, 1.5f});
+    const Vec3f e1 = t.b - t.a, e2 = t.c - t.a, n = normalize(cross(e1, e2));
+    auto pdf = [&](Vec3f w) -> double {  // Moeller and Trumbore 1997, in plain form
+        const Vec3f pv = cross(w, e2), tv = position - t.a, qv = cross(tv, e1);
+        const float det = dot(e1, pv), u = dot(tv, pv) / det, v = dot(w, qv) / det,
+                    d = dot(e2, qv) / det;
+        const bool hit = u >= 0 && v >= 0 && u + v <= 1 && d > 0;
+        return hit ? emitter_pdf(t, d, dot(n, w)) : 0;
+    };
+    TriangleLight facing = t;
+    if (dot(n, t.a - position) > 0) std::swap(facing.b, facing.c);
+    DirectionGrid grid;
+    grid.frame = Frame::from_normal(normalize(t.a + t.b + t.c - position * 3));
+    grid.cos_min = 0;
+    auto sample = [&](Vec2f u) {
+        return std::optional(sample_emitter(facing, u, position)->wi);
+    };
+    CHECK(direction_p_value(grid, sample, pdf, 200000, 64) > 1e-3);
+    CHECK(direction_p_value(
+              grid, sample, [&](Vec3f w) { return 1.02 * pdf(w); }, 1000000, 64) < 1e-6);
+}
+
+TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
+    std::vector<Light> lights{SphereLight{{{1, 2, 3}, 0.5f}, {1, 2, 3}},
+                              PointLight{{0, 3, 0}, {1, 1, 1}},
+                              triangle({0, 2, 0}, {1, 2, 0}, {1, 2, 1}, 4),
+                              DirectionalLight{{0, -1, 0}, {1, 1, 1}},
+                              SphereLight{{{-3, 1, 0}, 0.1f}, {9, 9, 9}},
+                              triangle({5, 0, 0}, {5, 1, 0}, {5, 0, 1}, 9, true)};
+    std::get<TriangleLight>(lights[5]).instance = 2;
+    EnvironmentImage sky{8, 4, {}};
+    for (int i = 0; i < 32; ++i)
+        sky.pixels.push_back(Rgb{1, 1, 1} * float(0.1 + hash_uniform(1, i)));
+    const LightSet set(lights, Environment::image(sky, 1, {}));
+    int kinds[4] = {};
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3f p{float(hash_uniform(2, i)) * 4 - 2, float(hash_uniform(3, i)),
+                      float(hash_uniform(4, i))};
+        const auto s =
+            set.sample(float(hash_uniform(6, i)), uniform_2d(i), p, rgb_lanes());
+        if (!s) continue;
+        float pdf = s->pdf;
+        if (s->triangle_light >= 0) {
+            ++kinds[0];
+            const auto& t = std::get<TriangleLight>(set.lights()[s->triangle_light]);
+            const float cosine = dot(normalize(cross(t.b - t.a, t.c - t.a)), s->wi);
+            pdf = set.pdf_triangle(t.instance, t.primitive, s->distance, std::abs(cosine),
+                                   p);
+            const Vec3f on =
+                t.a + (t.b - t.a) * s->barycentric.x + (t.c - t.a) * s->barycentric.y;
+            CHECK(length(on - p - s->wi * s->distance) < 1e-4f);
+        } else if (!s->delta && s->distance < 100) {
+            ++kinds[1];
+            const bool second = s->radiance[0] == 9;
+            pdf = set.pdf_sphere(second, p);
+            CHECK(set.sphere_radiance(second, rgb_lanes())[0] == s->radiance[0]);
+        } else if (!s->delta) {
+            ++kinds[2];
+            pdf = set.pdf_environment(s->wi, p);
+        } else {
+            ++kinds[3];
+        }
+        CHECK(s->pdf == doctest::Approx(pdf).epsilon(1e-3));
+    }
+    for (int k : kinds) CHECK(k > 100);
+    CHECK(set.pdf_triangle(0, 3, 1, 1, {}) == 0);
+    CHECK(set.pdf_triangle(0, 5, 1, 1, {}) == 0);
+    CHECK(set.pdf_triangle(1, 0, 1, 1, {}) == 0);
+    CHECK(set.pdf_triangle(7, 0, 1, 1, {}) == 0);
+}
+
+TEST_CASE("the sum of many lights and a sky is the sum of each") {
+    std::vector<Light> lights;
+    double expected = kPiD * 0.2;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3f p{float(hash_uniform(1, i)) * 20 - 10,
+                      0.5f + 3 * float(hash_uniform(2, i)),
+                      float(hash_uniform(3, i)) * 20 - 10};
+        lights.push_back(PointLight{p, {1, 1, 1}});
+        expected += p.y / std::pow(length_squared(p), 1.5);
+    }
+    lights.push_back(DirectionalLight{{0, -1, 0}, {0.1f, 0.1f, 0.1f}});
+    lights.push_back(PointLight{{0, 1, 0}, {0, 0, 0}});  // dark ones are never chosen
+    expected += 0.1;
+    const LightSet set(lights, Environment::constant({0.2f, 0.2f, 0.2f}));
+    CHECK(illuminance(set, {0, 0, 0}, {0, 1, 0}, 400000) ==
+          doctest::Approx(expected).epsilon(0.01));
+}
+
+TEST_CASE("no light, bad light") {
+    CHECK(LightSet().empty());
+    CHECK_FALSE(LightSet().sample(0.5f, {}, {}, rgb_lanes()).has_value());
+    CHECK(LightSet({PointLight{{}, {0, 0, 0}}}, std::nullopt).empty());
+    CHECK(LightSet().environment_radiance({0, 1, 0}, rgb_lanes())[0] == 0);
+    CHECK_THROWS_WITH_AS(
+        one(PointLight{{}, {-1, 0, 0}}),
+        doctest::Contains("light 0 (point): intensity: wanted finite values >= 0"),
+        Error);
+    CHECK_THROWS_AS(one(SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0.5f, 0.4f}), Error);
+    CHECK_THROWS_AS(one(DirectionalLight{{0, -2, 0}, {1, 1, 1}}), Error);
+    CHECK_THROWS_AS(one(SphereLight{{{}, 0}, {1, 1, 1}}), Error);
+}

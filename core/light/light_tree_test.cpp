@@ -1,0 +1,100 @@
+// light_tree_test.cpp -- probabilities add to 1, match the samples, and never forget a
+// light that shines.
+#include "light/light_tree.h"
+
+#include <doctest/doctest.h>
+
+#include "light/direction_test.h"
+
+using namespace dg;
+
+namespace {
+
+Vec3f random_vector(std::uint64_t stream, int i) {
+    return {float(hash_uniform(stream, 3 * i)) - 0.5f,
+            float(hash_uniform(stream, 3 * i + 1)) - 0.5f,
+            float(hash_uniform(stream, 3 * i + 2)) - 0.5f};
+}
+
+/// Small facets with normals of their own.
+std::vector<LightBounds> random_lights(int n) {
+    std::vector<LightBounds> lights(n);
+    for (int i = 0; i < n; ++i) {
+        const Vec3f p = random_vector(1, i) * 10;
+        lights[i].min = p - Vec3f{0.1f, 0.1f, 0.1f};
+        lights[i].max = p + Vec3f{0.1f, 0.1f, 0.1f};
+        lights[i].axis = normalize(random_vector(2, i));
+        lights[i].spread = i % 3 == 0 ? kPi : 0.3f;
+        lights[i].two_sided = i % 5 == 0;
+        lights[i].intensity = float(0.1 + hash_uniform(3, i));
+    }
+    return lights;
+}
+
+/// May a point of the light's box, under some normal of its cone, shine at p?
+bool shines(const LightBounds& b, Vec3f p) {
+    const Vec3f to = normalize(p - (b.min + b.max) * 0.5f);
+    float cosine = dot(to, b.axis);
+    if (b.two_sided) cosine = std::abs(cosine);
+    return std::acos(std::clamp(cosine, -1.f, 1.f)) < b.spread + b.falloff;
+}
+
+}  // namespace
+
+TEST_CASE("probabilities: they add to 1, and no light that shines has none") {
+    for (int n : {1, 2, 7, 9, 100}) {
+        const auto lights = random_lights(n);
+        const LightTree tree(lights);
+        for (int k = 0; k < 50; ++k) {
+            const Vec3f p = random_vector(4, k) * 20;
+            double sum = 0;
+            bool any = false;
+            for (int i = 0; i < n; ++i) {
+                const float probability = tree.probability(p, i);
+                sum += probability;
+                if (!shines(lights[i], p)) continue;
+                any = true;
+                CHECK(probability > 0);
+            }
+            // What is missing belongs to branches whose light turned out to face away.
+            CHECK(sum < 1.0001);
+            if (any && n == 1) CHECK(sum == doctest::Approx(1));
+        }
+    }
+}
+
+TEST_CASE("samples follow the probabilities: chi-square, and 2 % would be noticed") {
+    const int n = 60, draws = 1000000;
+    const LightTree tree(random_lights(n));
+    const Vec3f p{1, 2, -1};
+    std::vector<double> observed(n + 1, 0), expected(n + 1, draws);
+    for (int i = 0; i < draws; ++i) {
+        const auto choice = tree.sample(p, float(hash_uniform(9, i)));
+        if (!choice) {
+            observed[n] += 1;
+            continue;
+        }
+        observed[choice->light] += 1;
+        if (i < 1000)
+            CHECK(choice->probability ==
+                  doctest::Approx(tree.probability(p, choice->light)).epsilon(1e-4));
+    }
+    for (int i = 0; i < n; ++i) {
+        expected[i] = draws * double(tree.probability(p, i));
+        expected[n] -= expected[i];
+    }
+    expected[n] = expected[n] < 1 ? 0 : expected[n];
+    CHECK(chi_square_test(observed, expected).p_value > 1e-3);
+    for (int i = 0; i < n; ++i) expected[i] *= i % 2 ? 1.02 : 0.98;
+    CHECK(chi_square_test(observed, expected).p_value < 1e-6);
+}
+
+TEST_CASE("a near lamp wins over a far one") {
+    std::vector<LightBounds> lights(2);
+    for (LightBounds& b : lights) b.intensity = 1;
+    lights[1].min = lights[1].max = {10, 0, 0};
+    const LightTree tree(lights);
+    CHECK(tree.probability({1, 0, 0}, 0) == doctest::Approx(81.0 / 82));
+    CHECK(tree.probability({9, 0, 0}, 0) == doctest::Approx(1.0 / 82));
+    CHECK(tree.importance({5, 0, 0}) == doctest::Approx(2.0 / 25));
+}
