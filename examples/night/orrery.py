@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from kit import shapes, textures
 
+from kit import shapes, textures
 from night.stage import Stage, turn_y
 
 

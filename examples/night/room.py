@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from kit import shapes, textures
 
+from kit import shapes, textures
 from night.stage import COOL, PALETTE, WARM, Stage, look, turn_y
 
 

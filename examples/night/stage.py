@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+
 from kit import shapes, textures
 from kit.glb import Glb, Shape
 
