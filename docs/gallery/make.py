@@ -99,10 +99,10 @@ PICTURES = [
 ]
 
 CREDITS = """
-The night table is made by [examples/night_table.py](../../examples/night_table.py). The chess set is
-"Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0. The
-panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that holds them.
-Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
+The night table is made by [examples/night_table.py](../../examples/night_table.py). The chess set
+is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
+The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
+holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
 """
 
 
