@@ -1,5 +1,6 @@
-// film.h -- linear sums per pixel. Every sum is exact (fixed point, 128 bits), so that neither the order
-// of samples, nor the number of threads, nor the way a frame was split and merged changes a bit.
+// film.h -- linear sums per pixel. Every sum is exact (fixed point, 128 bits), so that
+// neither the order of samples, nor the number of threads, nor the way a frame was split
+// and merged changes a bit.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "film/fixed_sum.h"
+#include "film/splat_buffer.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -17,53 +19,103 @@ struct BadSample {
     std::uint32_t sample;
 };
 
-/// Auxiliary values of one camera sample's first hit; only samples that passed the lens bring them.
+/// Auxiliary values of one camera sample's first hit; only samples that passed the lens
+/// bring them.
 struct AovSample {
     bool hit = false;
-    float depth = 0;             // m, along the camera's -z
+    float depth = 0;  // m, along the camera's -z
     Vec3f position, normal, albedo;
-    std::uint32_t object_id = 0; // instance index + 1; 0 is nothing
-    float alpha = 1;             // 1 where something was hit
+    std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
+    float alpha = 1;              // 1 where something was hit
 };
 
 struct FilmLayout {
-    int width = 0, height = 0;                  // of the region that is stored
-    int offset_x = 0, offset_y = 0;             // of that region in the full frame
+    int width = 0, height = 0;       // of the region that is stored
+    int offset_x = 0, offset_y = 0;  // of that region in the full frame
     bool aovs = false;
+    friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
+/// 112 bytes per pixel; 304 with aovs.
 class Film {
   public:
+    /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels.
     explicit Film(FilmLayout layout);
-    const FilmLayout& layout() const;
+    const FilmLayout& layout() const { return layout_; }
 
-    /// Adds one sample to a pixel (full-frame coordinates; outside the region: ignored). Each value of
-    /// xyz is a float; NaN, Inf or beyond the accumulator: the sample is counted as bad, and 0 is added.
-    /// Not thread safe for the same pixel: tiles own their pixels, or use FilmTile.
+    /// Adds one sample to a pixel (full-frame coordinates; outside the region: ignored).
+    /// NaN, Inf or beyond kMaxFilmValue: the sample is counted as bad, and 0 is added.
+    /// What one camera sample brings to one pixel should come as one sum: its square is
+    /// what the variance is made of. Not thread safe for the same pixel: tiles own their
+    /// pixels; what lands elsewhere goes through a SplatBuffer.
     void add(int x, int y, std::uint32_t sample, Vec3f xyz);
+    /// Values that are not finite: counted as bad, nothing added.
     void add_aov(int x, int y, std::uint32_t sample, const AovSample& aov);
     /// To be called once per camera sample and pixel: the divisor of the mean.
     void count(int x, int y);
+    /// Adds each splat as add() does; nobody else may write meanwhile. Any order of
+    /// splats and buffers gives the same bits.
+    void merge_splats(const SplatBuffer& splats);
 
-    /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if layouts differ.
+    /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
+    /// layouts differ.
     void merge(const Film& other);
 
-    /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height.
+    /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height; 0 without
+    /// samples.
     std::vector<float> mean_xyz() const;
-    /// Variance of the mean of linear Rec.709 R, G, B (see film.cpp for the estimator).
+    /// Variance of the mean of linear Rec.709 R, G, B (see film.cpp); 0 for less than two
+    /// samples.
     std::vector<float> variance_rgb() const;
     std::vector<std::uint32_t> sample_counts() const;
-    std::vector<float> aov(const std::string& name) const;  // depth.Z, P.X ..., N.X ..., albedo.R ..., alpha
+    /// Mean over the samples that brought one, 0 where none did. Names: aov_names(); else
+    /// Error.
+    std::vector<float> aov(const std::string& name) const;
+    /// Object of the lowest sample index that hit something.
     std::vector<std::uint32_t> object_ids() const;
+    /// depth.Z, P.X/Y/Z, N.X/Y/Z (over samples that hit), albedo.R/G/B, alpha (over all
+    /// that passed).
+    static const std::vector<std::string>& aov_names();
 
-    const std::vector<BadSample>& bad_samples() const;  // the first 100
+    /// The first bad sample of each of the first 100 pixels that have one, rows from the
+    /// top; full-frame coordinates. Kept per pixel, so it depends on no order and
+    /// survives merging.
+    std::vector<BadSample> bad_samples() const;
     std::uint64_t bad_sample_count() const;
 
-    /// The whole state as plain 32-bit words (little endian by value): one vector per named channel,
-    /// each width*height words. What pass files store and read back.
+    /// The whole state as plain 32-bit words (little endian by value): one vector per
+    /// named channel, each width*height words. What pass files store and read back.
     std::vector<std::string> state_channels() const;
     std::vector<std::uint32_t> state(const std::string& channel) const;
     void set_state(const std::string& channel, const std::vector<std::uint32_t>& words);
+
+  private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    struct Pixel {
+        ValueSum xyz[3];
+        SquareSum rgb_squares[3];
+        std::uint32_t count = 0, bad = 0, first_bad = kNone, reserved = 0;
+    };
+    struct AovPixel {
+        ValueSum sums[11];  // in the order of aov_names()
+        std::uint32_t passed = 0, hits = 0, object_sample = kNone, object_id = 0;
+    };
+
+    /// Index of a full-frame pixel, or -1 outside the region.
+    std::int64_t find(int x, int y) const;
+    static void mark_bad(Pixel& pixel, std::uint32_t sample);
+    /// Where a state channel lies: word of a Pixel or of an AovPixel.
+    struct WordPlace {
+        bool in_aovs;
+        std::size_t word;
+    };
+    WordPlace find_word(const std::string& channel) const;
+    const std::vector<AovPixel>& require_aovs() const;
+
+    FilmLayout layout_;
+    std::array<Vec3f, 3> rgb_from_xyz_;  // rows
+    std::vector<Pixel> pixels_;
+    std::vector<AovPixel> aovs_;
 };
 
 }  // namespace dg

@@ -1,0 +1,220 @@
+// film.cpp -- exact sums and what is read from them.
+//
+// Variance of the mean of n samples s: (sum s^2 - (sum s)^2 / n) / (n (n - 1)), which
+// takes samples as independent; stratified ones scatter less, so it errs on the safe
+// side. A splat adds its value and its square but no count: the pixel then is a sum of
+// independent arrivals (compound Poisson), whose variance is the expected sum of squares,
+// so the same formula holds. Splats of one camera sample in one pixel would be
+// correlated: the caller adds them up first.
+#include "film/film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/error.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+namespace {
+
+constexpr int kHitSums =
+    7;  // depth, position, normal: the rest is a mean over all that passed
+
+Vec3f float_transform(const std::array<Vec3f, 3>& rows, Vec3f v) {
+    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
+}
+
+std::array<float, 11> aov_values(const AovSample& s) {
+    return {s.depth,    s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y,
+            s.normal.z, s.albedo.x,   s.albedo.y,   s.albedo.z,   s.alpha};
+}
+
+}  // namespace
+
+Film::Film(FilmLayout layout) : layout_(layout) {
+    const std::int64_t pixels = std::int64_t(layout.width) * layout.height;
+    if (layout.width < 1 || layout.height < 1 || pixels > (std::int64_t(1) << 31))
+        throw input_error(
+            "film", "size in px", "at least 1 x 1 and at most 2^31 pixels",
+            std::to_string(layout.width) + " x " + std::to_string(layout.height));
+    const Vec3f x = rgb_from_xyz({1, 0, 0}), y = rgb_from_xyz({0, 1, 0}),
+                z = rgb_from_xyz({0, 0, 1});
+    for (int i = 0; i < 3; ++i) rgb_from_xyz_[i] = {x[i], y[i], z[i]};
+    pixels_.resize(pixels);
+    if (layout.aovs) aovs_.resize(pixels);
+}
+
+std::int64_t Film::find(int x, int y) const {
+    const std::int64_t column = std::int64_t(x) - layout_.offset_x;
+    const std::int64_t row = std::int64_t(y) - layout_.offset_y;
+    const bool inside =
+        column >= 0 && column < layout_.width && row >= 0 && row < layout_.height;
+    return inside ? row * layout_.width + column : -1;
+}
+
+void Film::mark_bad(Pixel& pixel, std::uint32_t sample) {
+    ++pixel.bad;
+    pixel.first_bad = std::min(pixel.first_bad, sample);
+}
+
+void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
+    const std::int64_t i = find(x, y);
+    if (i < 0) return;
+    Pixel& pixel = pixels_[i];
+    if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) {
+        mark_bad(pixel, sample);
+        return;
+    }
+    const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
+    pixel.xyz[0].add(xyz.x);
+    pixel.xyz[1].add(xyz.y);
+    pixel.xyz[2].add(xyz.z);
+    pixel.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
+    pixel.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
+    pixel.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
+}
+
+void Film::count(int x, int y) {
+    const std::int64_t i = find(x, y);
+    if (i >= 0) ++pixels_[i].count;
+}
+
+void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
+    const std::int64_t i = find(x, y);
+    if (i < 0 || aovs_.empty()) return;
+    const std::array<float, 11> values = aov_values(aov);
+    const auto first = values.begin() + (aov.hit ? 0 : kHitSums);
+    if (!std::all_of(first, values.end(), fits_film)) {
+        mark_bad(pixels_[i], sample);
+        return;
+    }
+    AovPixel& pixel = aovs_[i];
+    for (int k = aov.hit ? 0 : kHitSums; k < 11; ++k) pixel.sums[k].add(values[k]);
+    ++pixel.passed;
+    if (!aov.hit) return;
+    ++pixel.hits;
+    if (sample < pixel.object_sample) {
+        pixel.object_sample = sample;
+        pixel.object_id = aov.object_id;
+    }
+}
+
+void Film::merge_splats(const SplatBuffer& splats) {
+    for (const SplatBuffer::Splat& s : splats.splats()) add(s.x, s.y, s.sample, s.xyz);
+}
+
+void Film::merge(const Film& other) {
+    if (!(layout_ == other.layout_)) {
+        const auto words = [](const FilmLayout& l) {
+            return std::to_string(l.width) + " x " + std::to_string(l.height) +
+                   " px at (" + std::to_string(l.offset_x) + ", " +
+                   std::to_string(l.offset_y) + ")" +
+                   (l.aovs ? " with aovs" : " without aovs");
+        };
+        throw input_error("film", "merge", words(layout_), words(other.layout_));
+    }
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        Pixel& a = pixels_[i];
+        const Pixel& b = other.pixels_[i];
+        for (int k = 0; k < 3; ++k) a.xyz[k].add(b.xyz[k]);
+        for (int k = 0; k < 3; ++k) a.rgb_squares[k].add(b.rgb_squares[k]);
+        a.count += b.count;
+        a.bad += b.bad;
+        a.first_bad = std::min(a.first_bad, b.first_bad);
+    }
+    for (std::size_t i = 0; i < aovs_.size(); ++i) {
+        AovPixel& a = aovs_[i];
+        const AovPixel& b = other.aovs_[i];
+        for (int k = 0; k < 11; ++k) a.sums[k].add(b.sums[k]);
+        a.passed += b.passed;
+        a.hits += b.hits;
+        if (b.object_sample < a.object_sample) {
+            a.object_sample = b.object_sample;
+            a.object_id = b.object_id;
+        }
+    }
+}
+
+std::vector<float> Film::mean_xyz() const {
+    std::vector<float> mean;
+    mean.reserve(3 * pixels_.size());
+    for (const Pixel& p : pixels_)
+        for (const ValueSum& sum : p.xyz)
+            mean.push_back(p.count ? float(sum.value() / p.count) : 0.f);
+    return mean;
+}
+
+std::vector<float> Film::variance_rgb() const {
+    std::vector<float> variance;
+    variance.reserve(3 * pixels_.size());
+    for (const Pixel& p : pixels_) {
+        const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()};
+        const double n = p.count;
+        for (int k = 0; k < 3; ++k) {
+            const double sum = dot(to_double(rgb_from_xyz_[k]), xyz);
+            const double scatter = p.rgb_squares[k].value() - sum * sum / n;
+            variance.push_back(n < 2 ? 0.f
+                                     : float(std::max(0.0, scatter / (n * (n - 1)))));
+        }
+    }
+    return variance;
+}
+
+std::vector<std::uint32_t> Film::sample_counts() const {
+    std::vector<std::uint32_t> counts;
+    for (const Pixel& p : pixels_) counts.push_back(p.count);
+    return counts;
+}
+
+const std::vector<Film::AovPixel>& Film::require_aovs() const {
+    if (!layout_.aovs) throw Error("film: this film was made without aovs");
+    return aovs_;
+}
+
+const std::vector<std::string>& Film::aov_names() {
+    static const std::vector<std::string> names{
+        "depth.Z", "P.X",      "P.Y",      "P.Z",      "N.X",  "N.Y",
+        "N.Z",     "albedo.R", "albedo.G", "albedo.B", "alpha"};
+    return names;
+}
+
+std::vector<float> Film::aov(const std::string& name) const {
+    const auto& names = aov_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+        std::string known;
+        for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+        throw input_error("film", "aov", "one of " + known, name);
+    }
+    const auto k = found - names.begin();
+    std::vector<float> mean;
+    for (const AovPixel& p : require_aovs()) {
+        const std::uint32_t n = k < kHitSums ? p.hits : p.passed;
+        mean.push_back(n ? float(p.sums[k].value() / n) : 0.f);
+    }
+    return mean;
+}
+
+std::vector<std::uint32_t> Film::object_ids() const {
+    std::vector<std::uint32_t> ids;
+    for (const AovPixel& p : require_aovs()) ids.push_back(p.object_id);
+    return ids;
+}
+
+std::vector<BadSample> Film::bad_samples() const {
+    std::vector<BadSample> bad;
+    for (std::size_t i = 0; i < pixels_.size() && bad.size() < 100; ++i)
+        if (pixels_[i].bad)
+            bad.push_back({layout_.offset_x + int(i % layout_.width),
+                           layout_.offset_y + int(i / layout_.width),
+                           pixels_[i].first_bad});
+    return bad;
+}
+
+std::uint64_t Film::bad_sample_count() const {
+    std::uint64_t count = 0;
+    for (const Pixel& p : pixels_) count += p.bad;
+    return count;
+}
+
+}  // namespace dg

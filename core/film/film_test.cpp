@@ -1,0 +1,261 @@
+// film_test.cpp -- exactness in any order, state round trip, variance, bad samples, AOVs.
+#include "film/film.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "math/error.h"
+#include "math/hash.h"
+#include "math/statistics.h"
+#include "spectrum/wavelengths.h"
+
+using namespace dg;
+
+namespace {
+
+constexpr int kWidth = 5, kHeight = 4, kPerPixel = 40;
+constexpr FilmLayout kLayout{kWidth, kHeight, 10, 20, true};
+
+/// Values over many orders of magnitude that are no sums of powers of two; some negative,
+/// some bad.
+Vec3f value(int i) {
+    if (i % 97 == 5) return {std::numeric_limits<float>::quiet_NaN(), 1, 1};
+    const auto one = [&](int k) {
+        const double size = std::exp(60 * hash_uniform(k, i) - 35);
+        return float(hash_uniform(k + 10, i) < 0.2 ? -size : size);
+    };
+    return {one(1), one(2), one(3)};
+}
+
+struct Draw {
+    int x, y;
+    std::uint32_t sample;
+    int id;
+};
+
+std::vector<Draw> all_draws() {
+    std::vector<Draw> draws;
+    for (int p = 0; p < kWidth * kHeight; ++p)
+        for (int s = 0; s < kPerPixel; ++s)
+            draws.push_back(
+                {10 + p % kWidth, 20 + p / kWidth, std::uint32_t(s), p * kPerPixel + s});
+    return draws;
+}
+
+void shuffle(std::vector<Draw>& draws, std::uint64_t seed) {
+    std::sort(draws.begin(), draws.end(), [&](const Draw& a, const Draw& b) {
+        return hash64(seed, a.id) < hash64(seed, b.id);
+    });
+}
+
+void draw(Film& film, const Draw& d) {
+    film.add(d.x, d.y, d.sample, value(d.id));
+    film.count(d.x, d.y);
+    if (d.id % 3 == 0) return;  // vignetted: brings no auxiliary values
+    const Vec3f v{float(d.id) * 0.1f, std::exp(float(d.id % 17)), -1.f / float(d.id + 1)};
+    film.add_aov(d.x, d.y, d.sample,
+                 {d.id % 4 != 0, v.y, v, normalize(v), v, std::uint32_t(d.id), 0.3f});
+}
+
+std::vector<std::vector<std::uint32_t>> whole_state(const Film& film) {
+    std::vector<std::vector<std::uint32_t>> all;
+    for (const std::string& c : film.state_channels()) all.push_back(film.state(c));
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("any order and any split with any order of merging give the same bits") {
+    std::vector<Draw> draws = all_draws();
+    Film whole(kLayout);
+    for (const Draw& d : draws) draw(whole, d);
+    const auto expected = whole_state(whole);
+    for (int trial = 0; trial < 20; ++trial) {
+        shuffle(draws, trial);
+        const int parts = 1 + trial % 7;
+        std::vector<Film> films(parts, Film(kLayout));
+        for (std::size_t i = 0; i < draws.size(); ++i)
+            draw(films[hash64(trial, i) % parts], draws[i]);
+        Film merged(kLayout);
+        for (int p = 0; p < parts; ++p) merged.merge(films[(p + trial) % parts]);
+        CHECK(whole_state(merged) == expected);
+        CHECK(merged.mean_xyz() == whole.mean_xyz());
+        CHECK(merged.variance_rgb() == whole.variance_rgb());
+        CHECK(merged.bad_sample_count() == whole.bad_sample_count());
+    }
+    // Float sums would not have passed: forward and backward they differ.
+    float forward = 0, backward = 0;
+    for (int i = 0; i < 1000; ++i) forward += float(hash_uniform(3, i));
+    for (int i = 999; i >= 0; --i) backward += float(hash_uniform(3, i));
+    CHECK(forward != backward);
+    Film changed(kLayout);
+    for (const Draw& d : draws) draw(changed, d);
+    changed.add(12, 21, 0, {0, 1e-12f, 0});
+    CHECK(whole_state(changed) != expected);
+}
+
+TEST_CASE("splats: any buffer, any order, the same bits as adding directly") {
+    std::vector<Draw> draws = all_draws();
+    Film direct(kLayout), splatted(kLayout);
+    for (const Draw& d : draws) direct.add(d.x, d.y, d.sample, value(d.id));
+    shuffle(draws, 5);
+    SplatBuffer buffers[3];
+    for (std::size_t i = 0; i < draws.size(); ++i)
+        buffers[i % 3].add(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+    buffers[0].add(0, 0, 0, {1, 1, 1});  // outside the region: ignored
+    for (const int b : {2, 0, 1}) splatted.merge_splats(buffers[b]);
+    CHECK(whole_state(direct) == whole_state(splatted));
+    CHECK(direct.bad_samples().size() == splatted.bad_samples().size());
+}
+
+TEST_CASE("the state goes through 32-bit words bit by bit") {
+    Film film(kLayout), copy(kLayout);
+    for (const Draw& d : all_draws()) draw(film, d);
+    for (const std::string& c : film.state_channels()) copy.set_state(c, film.state(c));
+    CHECK(whole_state(copy) == whole_state(film));
+    CHECK(copy.mean_xyz() == film.mean_xyz());
+    CHECK(copy.aov("P.Y") == film.aov("P.Y"));
+    CHECK(copy.object_ids() == film.object_ids());
+    CHECK(copy.bad_samples()[0].sample == film.bad_samples()[0].sample);
+    CHECK(film.state("samples") == film.sample_counts());
+    CHECK_THROWS_AS(film.state("sum.Q.0"), Error);
+    CHECK_THROWS_AS(film.state(""), Error);
+    CHECK_THROWS_AS(film.set_state("bad", {1, 2, 3}), Error);
+    const Film bare(FilmLayout{2, 2, 0, 0, false});
+    CHECK_THROWS_AS(bare.state("hits"), Error);
+    CHECK(bare.state_channels().size() * 4 < 130);
+}
+
+TEST_CASE("a fixed sum is exact where a double is not") {
+    ValueSum a, b;
+    a.add(1099511627775.0);
+    a.add(0x1p-63);
+    a.add(-1099511627775.0);
+    CHECK(a.value() == 0x1p-63);
+    for (int i = 0; i < 1000; ++i) {
+        b.add(0.1f);
+        b.add(-0.7e-9f);
+    }
+    CHECK(b.value() == 1000 * (double(0.1f) - double(0.7e-9f)));
+    SquareSum c;
+    c.add(kMaxFilmSquare);
+    c.add(0x1p-43);
+    c.add(0x1p-44);  // below a step: 0
+    c.add(-kMaxFilmSquare);
+    CHECK(c.value() == 0x1p-43);
+}
+
+TEST_CASE(
+    "mean and variance against two passes in double, and the spread of many films") {
+    const int n = 64, films = 400;
+    std::vector<double> means, variances;
+    for (int f = 0; f < films; ++f) {
+        Film film(FilmLayout{1, 1, 0, 0, false});
+        std::vector<double> green;
+        for (int i = 0; i < n; ++i) {
+            const Rgb rgb{1, float(2 * hash_uniform(f, i)), 0.5f};
+            film.add(0, 0, i, xyz_from_rgb(rgb));
+            film.count(0, 0);
+            green.push_back(rgb.y);
+        }
+        const SampleMoments m = moments(green);
+        const std::vector<float> v = film.variance_rgb();
+        REQUIRE(v[1] == doctest::Approx(m.variance / n).epsilon(1e-4));
+        REQUIRE(v[0] < 1e-9);
+        const std::vector<float> xyz = film.mean_xyz();
+        REQUIRE(rgb_from_xyz({xyz[0], xyz[1], xyz[2]}).y ==
+                doctest::Approx(m.mean).epsilon(1e-5));
+        means.push_back(m.mean);
+        variances.push_back(v[1]);
+    }
+    CHECK(moments(variances).mean ==
+          doctest::Approx(moments(means).variance).epsilon(0.15));
+    Film one(FilmLayout{1, 1, 0, 0, false});
+    CHECK(one.mean_xyz()[0] == 0);
+    one.add(0, 0, 0, {1, 1, 1});
+    one.count(0, 0);
+    CHECK(one.variance_rgb()[0] == 0);
+}
+
+TEST_CASE("variance with splats: a pixel that also receives random arrivals") {
+    const int n = 64, films = 600;
+    std::vector<double> means, variances;
+    for (int f = 0; f < films; ++f) {
+        Film film(FilmLayout{1, 1, 0, 0, false});
+        for (int i = 0; i < n; ++i) {
+            film.count(0, 0);
+            if (hash_uniform(f, i) < 0.3) film.add(0, 0, i, xyz_from_rgb({1, 1, 1}));
+            if (hash_uniform(f + 9999, i) < 0.2)
+                film.add(0, 0, i, xyz_from_rgb({2, 2, 2}));
+        }
+        const std::vector<float> xyz = film.mean_xyz();
+        means.push_back(xyz[1]);
+        variances.push_back(film.variance_rgb()[1]);
+    }
+    CHECK(moments(means).mean == doctest::Approx(0.7).epsilon(0.02));
+    CHECK(moments(variances).mean ==
+          doctest::Approx(moments(means).variance).epsilon(0.25));
+}
+
+TEST_CASE("NaN, infinity and monsters are dropped, counted and found again") {
+    const float inf = std::numeric_limits<float>::infinity();
+    Film film(FilmLayout{4, 3, 100, 200, true});
+    film.add(101, 201, 9, {1, 2, 3});
+    film.add(101, 201, 8, {1, inf, 3});
+    film.add(101, 201, 7, {1, 2, std::nanf("")});
+    film.add(103, 200, 4, {0x1p41f, 0, 0});
+    film.add(103, 200, 5, {-0x1p41f, 0, 0});
+    film.add_aov(100, 202, 2, {true, 1, {inf, 0, 0}, {0, 0, 1}, {}, 3, 1});
+    film.add(99, 201, 1, {inf, 0, 0});  // outside: not ours
+    CHECK(film.bad_sample_count() == 6 - 1);
+    const std::vector<BadSample> bad = film.bad_samples();
+    REQUIRE(bad.size() == 3);
+    CHECK((bad[0].x == 103 && bad[0].y == 200 && bad[0].sample == 4));
+    CHECK((bad[1].x == 101 && bad[1].y == 201 && bad[1].sample == 7));
+    CHECK((bad[2].x == 100 && bad[2].y == 202 && bad[2].sample == 2));
+    film.count(101, 201);
+    CHECK(film.mean_xyz()[3 * 5 + 1] == 2);
+    Film many(FilmLayout{20, 20, 0, 0, false});
+    for (int i = 0; i < 400; ++i) many.add(i % 20, i / 20, 3, {inf, 0, 0});
+    CHECK(many.bad_sample_count() == 400);
+    CHECK(many.bad_samples().size() == 100);
+}
+
+TEST_CASE("the largest values neither overflow nor disturb") {
+    Film film(FilmLayout{1, 1, 0, 0, false});
+    for (int i = 0; i < 1000; ++i) {
+        film.add(0, 0, i, {kMaxFilmValue, kMaxFilmValue, kMaxFilmValue});
+        film.count(0, 0);
+    }
+    CHECK(film.bad_sample_count() == 0);
+    CHECK(film.mean_xyz()[0] == kMaxFilmValue);
+    CHECK(film.variance_rgb()[0] >= 0);
+}
+
+TEST_CASE(
+    "auxiliary values: means over those that brought one, object of the lowest sample") {
+    Film film(FilmLayout{2, 1, 0, 0, true});
+    film.add_aov(0, 0, 5, {true, 2, {1, 2, 3}, {0, 0, 1}, {0.5f, 0, 0}, 7, 1});
+    film.add_aov(0, 0, 3, {true, 4, {3, 2, 1}, {0, 1, 0}, {0.1f, 0, 0}, 9, 1});
+    film.add_aov(0, 0, 1, {false, 99, {9, 9, 9}, {9, 9, 9}, {0, 0, 0}, 0, 0});
+    CHECK(film.aov("depth.Z") == std::vector<float>{3, 0});
+    CHECK(film.aov("P.X") == std::vector<float>{2, 0});
+    CHECK(film.aov("N.Y") == std::vector<float>{0.5f, 0});
+    CHECK(film.aov("albedo.R")[0] == doctest::Approx(0.2));
+    CHECK(film.aov("alpha")[0] == doctest::Approx(2.0 / 3));
+    CHECK(film.object_ids() == std::vector<std::uint32_t>{9, 0});
+    CHECK_THROWS_WITH_AS(film.aov("normal"), doctest::Contains("depth.Z"), Error);
+    const Film bare(FilmLayout{2, 2, 0, 0, false});
+    CHECK_THROWS_AS(bare.aov("alpha"), Error);
+}
+
+TEST_CASE("films of different layout do not merge") {
+    Film a(FilmLayout{2, 2, 0, 0, false});
+    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 1, 0, false})), Error);
+    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 0, 0, true})), Error);
+    CHECK_THROWS_AS(Film(FilmLayout{0, 5, 0, 0, false}), Error);
+    CHECK_THROWS_AS(Film(FilmLayout{100000, 100000, 0, 0, false}), Error);
+}

@@ -1,0 +1,55 @@
+// filter.h -- reconstruction filters, applied by importance sampling: a sample touches
+// one pixel.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "math/distribution.h"
+#include "math/vec.h"
+
+namespace dg {
+
+enum class FilterKind { box, gaussian, blackman_harris, mitchell };
+
+/// "box", "gaussian", "blackman_harris" or "mitchell"; anything else throws Error.
+FilterKind filter_kind(const std::string& name);
+/// Radius in px where nobody asks for another: 0.5, 1.5, 1.5, 2.
+float default_radius(FilterKind kind);
+
+struct FilterSample {
+    Vec2f offset;  // px, from the pixel's centre, within the radius
+    float weight;  // +-(integral of |f|) / (integral of f): 1 where f is nowhere negative
+};
+
+/// Separable filter on a square of +-radius px. The shape is tabulated: 256 steps per
+/// axis, each at the mean of the formula there. What sample() draws, evaluate() gives and
+/// the weight corrects is that table, so the three agree exactly.
+class Filter {
+  public:
+    explicit Filter(FilterKind kind = FilterKind::blackman_harris)
+        : Filter(kind, default_radius(kind)) {}
+    /// Throws Error unless 0 < radius <= 16 px.
+    Filter(FilterKind kind, float radius);
+
+    FilterSample sample(Vec2f u) const;
+    /// Of unit integral; 0 outside.
+    float evaluate(Vec2f offset) const { return axis(offset.x) * axis(offset.y); }
+
+    FilterKind kind() const { return kind_; }
+    float radius() const { return radius_; }
+    /// Integral of the formula as it stands, px^2.
+    double integral() const { return integral_; }
+    /// Integral of |evaluate|: 1, or more if there are negative lobes.
+    double absolute_integral() const { return absolute_ * absolute_; }
+
+  private:
+    float axis(float x) const;
+
+    FilterKind kind_;
+    float radius_;
+    double integral_ = 0, absolute_ = 1;
+    std::vector<float> table_;        // unit integral along one axis
+    DiscreteDistribution magnitude_;  // |table|
+};
+
+}  // namespace dg

@@ -1,0 +1,58 @@
+// fixed_sum.h -- sums that do not depend on the order of their terms: 128-bit fixed
+// point.
+#pragma once
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace dg {
+
+__extension__ typedef __int128 Int128;
+
+/// A sum in steps of 2^-kFractionBits. Each term is rounded toward 0 to whole steps by
+/// itself, then added as an integer: exact, associative and commutative. A float of
+/// magnitude 2^(24 - kFractionBits) or more is a whole number of steps already. Range of
+/// the sum: +-2^(127 - kFractionBits).
+template <int kFractionBits>
+class FixedSum {
+  public:
+    /// |v| < 2^(126 - kFractionBits), not NaN: the caller checks. A double in and no
+    /// loss, because the high part and the rest of it are exact; the rest keeps 63 bits.
+    void add(double v) {
+        const double scaled = v * kScale;
+        const double whole = std::trunc(scaled);
+        const auto high = std::int64_t(whole);
+        const auto low = std::int64_t((scaled - whole) * 0x1p63);
+        bits_ += (Int128(high) << 63) + low;
+    }
+    void add(const FixedSum& other) { bits_ += other.bits_; }
+
+    /// Nearest double.
+    double value() const { return std::ldexp(double(bits_), -kFractionBits); }
+    friend bool operator==(const FixedSum& a, const FixedSum& b) = default;
+
+  private:
+    static constexpr double kScale =
+        kFractionBits <= 63 ? 1.0 / double(1ull << (63 - kFractionBits)) : 0;
+    static_assert(kFractionBits > 0 && kFractionBits <= 63);
+
+    Int128 bits_ = 0;
+};
+
+/// Sums of values: steps of 1.1e-19, up to 1.8e19.
+using ValueSum = FixedSum<63>;
+/// Sums of squares: steps of 1.1e-13, up to 1.9e25.
+using SquareSum = FixedSum<43>;
+
+/// Largest value that a film takes: 2^24 samples of it still fit. NaN and infinity are
+/// beyond.
+inline constexpr float kMaxFilmValue = 0x1p40f;
+inline bool fits_film(float v) {
+    return std::abs(v) <= kMaxFilmValue;
+}
+/// Larger squares (values above 3e9) count as this: the variance of such fireflies is a
+/// lower bound.
+inline constexpr double kMaxFilmSquare = 0x1p63;
+
+}  // namespace dg
