@@ -1,0 +1,218 @@
+#include "camera/exact.h"
+
+#include <cmath>
+#include <functional>
+
+#include "math/error.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+namespace {
+
+constexpr double kMetre = 1e-3;  // per mm
+
+/// Part of the circle of radius q (units of the iris) that the iris lets through.
+double open_fraction(const Iris& iris, double q) {
+    if (iris.kind() == Iris::Kind::round) return q <= 1;
+    constexpr int kAzimuths = 720;
+    double sum = 0;
+    for (int i = 0; i < kAzimuths; ++i) {
+        const double phi = 2 * kPiD * (i + 0.5) / kAzimuths;
+        sum += iris.transmission({q * std::cos(phi), q * std::sin(phi)});
+    }
+    return sum / kAzimuths;
+}
+
+/// A ray from the film's centre under sin^2(theta) = s2: iris radius and transmittance.
+std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n, double film_z,
+                                   double s2) {
+    const LensRay ray{{0, 0, film_z}, {-std::sqrt(s2), 0, -std::sqrt(1 - s2)}};
+    return tracer.to_scene(ray, n, {true, nullptr, 0});
+}
+
+/// The stop's own clear diameter must not count: the iris stands in its place.
+Prescription without_stop_aperture(const Prescription& lens) {
+    Prescription open = lens;
+    open.surfaces[lens.stop_index()].semi_diameter = std::numeric_limits<double>::infinity();
+    return open;
+}
+
+}  // namespace
+
+// E = integral L cos dw = pi * integral L d(sin^2 theta): the lens is round, so one meridional ray per
+// angle and the iris's open fraction on its circle. Midpoints in sin^2 up to the widest ray that passes.
+double axial_irradiance(const Tracer& tracer, double film_z, const Iris& iris, double iris_radius,
+                        double wavelength_nm, bool perfect) {
+    const LensIndices n = tracer.at(wavelength_nm);
+    const double outer = iris.outer_radius() * iris_radius;
+    const auto inside = [&](double s2) {
+        const auto ray = axial_ray(tracer, n, film_z, s2);
+        return ray && std::abs(ray->iris.x) <= outer;
+    };
+    double low = 0, high = 0.999;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (inside(middle) ? low : high) = middle;
+    }
+    const int count = iris.kind() == Iris::Kind::round ? 64 : 1024;
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+        const auto ray = axial_ray(tracer, n, film_z, low * (i + 0.5) / count);
+        if (!ray) continue;
+        sum += (perfect ? 1 : ray->transmittance) * open_fraction(iris, std::abs(ray->iris.x) / iris_radius);
+    }
+    return kPiD * low * sum / count;
+}
+
+struct ExactLens::State {
+    ExactLensSettings settings;
+    Tracer tracer;
+    FirstOrder order;
+    double iris_radius, film_z;
+    Aim aim;
+    LensTables tables;
+    double h0 = 0, transmittance = 0;
+
+    State(const Prescription& lens, const ExactLensSettings& s)
+        : settings(s), tracer(without_stop_aperture(lens)), order(dg::first_order(lens)) {
+        validate(lens);
+        if (!(s.half_diagonal_mm > 0 && s.half_diagonal_mm < 1e4))
+            throw input_error(lens.name, "half diagonal of the film", "0 to 1e4 mm",
+                              std::to_string(s.half_diagonal_mm));
+        if (!std::isfinite(order.entrance_pupil_z))
+            throw Error(lens.name + ": the entrance pupil lies at infinity: this lens has no place for"
+                                    " the camera's origin");
+        if (settings.f_stop == 0) settings.f_stop = order.f_number;
+        iris_radius = dg::iris_radius(lens, order, settings.f_stop);
+        film_z = film_position(lens, order, s.focus_distance_m, s.focus_from);
+        if (!(film_z > tracer.vertices().back()))
+            throw Error(lens.name + ": the film would lie inside the lens (back focal length " +
+                        std::to_string(order.bfl) + " mm)");
+        // A little more than the frame: pixel filters reach beyond its corners.
+        aim = make_aim(tracer, {film_z, 1.02 * s.half_diagonal_mm, s.iris, iris_radius, s.only_slope_boxes});
+        tables = make_lens_tables(tracer, film_z, true, &settings.iris, iris_radius);
+        set_exposure();
+    }
+
+    /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly.
+    void set_exposure() {
+        double weights = 0;
+        for (double nm = 390; nm <= 770; nm += 20) {
+            const double w = cie_y(nm) * d65(nm);
+            h0 += w * axial_irradiance(tracer, film_z, settings.iris, iris_radius, nm);
+            if (const auto ray = axial_ray(tracer, tracer.at(nm), film_z, 0))
+                transmittance += w * ray->transmittance;
+            weights += w;
+        }
+        h0 /= weights, transmittance /= weights;
+        if (!(h0 > 0)) throw Error(tracer.prescription().name + ": no light reaches the film's centre");
+    }
+};
+
+ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
+    : state_(std::make_shared<State>(lens, settings)) {}
+
+namespace {
+
+/// Arrays of one batch: structure of arrays for the lanes.
+struct Buffers {
+    LensSamples samples;
+    SceneRays scene;
+    FilmRays film;
+    alignas(64) float weight[kLensBatch];
+};
+
+}  // namespace
+
+void ExactLens::generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+    DG_CHECK(samples.size(), ==, rays.size());
+    thread_local Buffers b;
+    const float inv_h0 = float(1 / state_->h0), pupil = float(state_->order.entrance_pupil_z);
+    for (std::size_t begin = 0; begin < samples.size(); begin += kLensBatch) {
+        const int count = int(std::min<std::size_t>(kLensBatch, samples.size() - begin));
+        for (int i = 0; i < count; ++i) {
+            const CameraSample& s = samples[begin + i];
+            b.samples.x[i] = -s.film_mm.x, b.samples.y[i] = -s.film_mm.y;  // the image is upside down
+            b.samples.u[i] = s.u_lens.x, b.samples.v[i] = s.u_lens.y;
+            b.samples.nm[i] = s.wavelength_nm;
+        }
+        const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
+        for (int i = count; i < padded; ++i)
+            b.samples.x[i] = b.samples.y[i] = b.samples.u[i] = b.samples.v[i] = 0,
+            b.samples.nm[i] = 550;
+        guided_rays(state_->tables, state_->aim.tables, b.samples, b.scene, b.weight, nullptr, padded);
+        for (int i = 0; i < count; ++i) {
+            CameraRay& out = rays[begin + i];
+            const float aim = b.weight[i] * inv_h0;
+            const float weight = aim * b.scene.pass[i];
+            const bool passed = weight > 0 && std::isfinite(weight);
+            out.weight = passed ? weight : 0;
+            out.aim_weight = passed ? aim : 0;
+            out.ray.origin = {b.scene.x[i] * float(kMetre), b.scene.y[i] * float(kMetre),
+                              (b.scene.z[i] - pupil) * float(kMetre)};
+            out.ray.direction = {b.scene.dx[i], b.scene.dy[i], b.scene.dz[i]};
+            out.ray.time = samples[begin + i].time_s;
+        }
+    }
+}
+
+void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+                          std::span<Reprojection> out) const {
+    DG_CHECK(rays.size(), ==, wavelength_nm.size());
+    DG_CHECK(rays.size(), ==, out.size());
+    thread_local Buffers b;
+    const float inv_h0 = float(1 / state_->h0), pupil = float(state_->order.entrance_pupil_z);
+    for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
+        const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
+        const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
+        for (int i = 0; i < padded; ++i) {
+            const std::size_t from = begin + std::min(i, count - 1);
+            const Ray& ray = rays[from].ray;
+            b.scene.x[i] = 1e3f * ray.origin.x, b.scene.y[i] = 1e3f * ray.origin.y;
+            b.scene.z[i] = 1e3f * ray.origin.z + pupil;
+            b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
+            b.scene.dz[i] = ray.direction.z;
+            b.film.nm[i] = wavelength_nm[from];
+        }
+        trace_to_film(state_->tables, b.scene, b.film, padded);
+        aim_weights(state_->tables, state_->aim.tables, b.film, b.scene, b.weight, padded);
+        for (int i = 0; i < count; ++i) {
+            const float aim = b.weight[i] * inv_h0;
+            const bool passed = b.scene.pass[i] > 0 && aim > 0 && std::isfinite(aim);
+            out[begin + i] = {{-b.film.x[i], -b.film.y[i]},
+                              passed ? b.scene.pass[i] : 0,
+                              passed ? aim : 0};
+        }
+    }
+}
+
+Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
+    // The mean direction over a coarse grid of lens samples, weighted as they expose the film.
+    constexpr int kSide = 12;
+    std::vector<CameraSample> samples;
+    for (int i = 0; i < kSide * kSide; ++i)
+        samples.push_back({{float(film_mm.x), float(film_mm.y)},
+                           {(i % kSide + 0.5f) / kSide, (i / kSide + 0.5f) / kSide},
+                           0,
+                           float(kDesignWavelength)});
+    std::vector<CameraRay> rays(samples.size());
+    generate(samples, rays);
+    Vec3d sum{};
+    for (const CameraRay& r : rays)
+        if (r.weight > 0) sum += double(r.weight) * to_double(r.ray.direction);
+    return length(sum) > 0 ? normalize(sum) : Vec3d{0, 0, -1};
+}
+
+double ExactLens::h0() const { return state_->h0; }
+double ExactLens::transmittance() const { return state_->transmittance; }
+double ExactLens::f_stop() const { return state_->settings.f_stop; }
+double ExactLens::iris_radius_mm() const { return state_->iris_radius; }
+double ExactLens::film_z_mm() const { return state_->film_z; }
+double ExactLens::film_distance_mm() const { return state_->film_z - state_->order.back_principal_z; }
+double ExactLens::half_diagonal_mm() const { return state_->settings.half_diagonal_mm; }
+const FirstOrder& ExactLens::first_order() const { return state_->order; }
+const Aim& ExactLens::aim() const { return state_->aim; }
+const Tracer& ExactLens::tracer() const { return state_->tracer; }
+const LensTables& ExactLens::tables() const { return state_->tables; }
+
+}  // namespace dg

@@ -1,0 +1,371 @@
+#include "optics/pupil.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+constexpr int kNodes = kRadialSegments + 1;
+constexpr int kMinDegree = 3, kMaxDegree = 6;
+constexpr std::array<double, 3> kBoundWavelengths{380, 550, 780};  // nm
+constexpr double kShapeMargin = 1.02;  // the fit reaches this far beyond the enlarged iris
+constexpr int kCoverageRays = 16384;
+
+/// Point n of a low-discrepancy sequence in four dimensions: multiples of powers of 1/g,
+/// g^5 = g + 1. Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences.
+struct Quad {
+    double u[4];
+};
+Quad quasi_random(int n) {
+    Quad q;
+    double step = 1;
+    for (double& u : q.u) {
+        step /= 1.1673039782614187;
+        u = 0.5 + step * (n + 1);
+        u -= std::floor(u);
+    }
+    return q;
+}
+
+/// First order on the film's side of the stop: iris = by_film f + by_slope m.
+struct RearHalf {
+    double by_film, by_slope;
+    double slope_for(double iris, double film) const { return (iris - by_film * film) / by_slope; }
+};
+
+class AimMaker {
+  public:
+    AimMaker(const Tracer& tracer, const AimRequest& request);
+    Aim make();
+
+  private:
+    struct Box {
+        double x0 = 1e30, x1 = -1e30, half = -1;
+        bool empty() const { return half < 0; }
+        void add(double x, double y) {
+            x0 = std::min(x0, x), x1 = std::max(x1, x), half = std::max(half, std::abs(y));
+        }
+        void add(const Box& b) {
+            x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1), half = std::max(half, b.half);
+        }
+        void grow(double x, double y) {
+            if (empty()) return;
+            x0 -= x, x1 += x, half += y;
+        }
+        double area() const { return empty() ? 0 : (x1 - x0) * 2 * half; }
+    };
+    struct Visible {
+        Box box;
+        bool jacobian_ok = true;
+    };
+
+    std::optional<Vec2d> trace_iris(double r, Vec2d m, double nm) const;
+    std::vector<SlopeSample> training(int count, int first) const;
+    Visible visible_at(double r, Box range, int nx, int ny) const;
+    Visible visible_iris(double r) const;
+    Box slope_box(double r) const;
+    Box slope_range(double r, double reach, double nm) const;
+    Box passing_slopes(double r, const Box& range, int nx, int ny) const;
+    void fit(int k);
+    void choose_regions();
+    void set_region(int segment, AimRegion region, const Box& box);
+    std::vector<bool> uncovered_segments() const;
+    bool covers(int segment, double r, Vec2d m, Vec2d iris, double l, double azimuth) const;
+    double unit(double iris_mm) const { return iris_mm / aim_.tables.iris_scale; }
+
+    const Tracer& tracer_;
+    const AimRequest& request_;
+    LensTables open_;      // without the iris: what the mounts let through
+    LensTables real_;
+    RearHalf rear_;
+    double outer_;         // mm, radius around the enlarged iris
+    std::array<bool, kRadialSegments> jacobian_ok_;
+    Aim aim_;
+};
+
+AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
+    : tracer_(tracer), request_(request) {
+    open_ = make_lens_tables(tracer, request.film_z, true, nullptr, 0);
+    open_.semi2[tracer.stop()] = 3e38f;
+    real_ = make_lens_tables(tracer, request.film_z, true, &request.iris, request.iris_radius);
+    outer_ = kEnlargement * request.iris_radius * request.iris.outer_radius();
+    AimTables& t = aim_.tables;
+    t.film_radius = float(request.film_radius);
+    t.iris_scale = float(kShapeMargin * outer_);
+    t.enlargement = float(kEnlargement);
+    const double scale = request.iris_radius / t.iris_scale;
+    t.shape_area = float(request.iris.sampling_area(kEnlargement) * scale * scale);
+    const double h = 1e-4, nm = kDesignWavelength;
+    const auto film = tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm));
+    const auto slope = tracer.to_iris({{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})},
+                                      tracer.at(nm));
+    if (!film || !slope || slope->x == 0)
+        throw Error(tracer.prescription().name + ": no ray leads from the film's centre to the iris");
+    rear_ = {film->x / h, slope->x / h};
+}
+
+std::optional<Vec2d> AimMaker::trace_iris(double r, Vec2d m, double nm) const {
+    return tracer_.to_iris({{r, 0, request_.film_z}, normalize(Vec3d{-m.x, -m.y, -1})},
+                           tracer_.at(nm));
+}
+
+/// Rays over the film and somewhat more than the iris, traced to the stop.
+std::vector<SlopeSample> AimMaker::training(int count, int first) const {
+    std::vector<SlopeSample> samples;
+    const AimTables& t = aim_.tables;
+    for (int n = first; int(samples.size()) < count && n < first + 8 * count; ++n) {
+        const Quad q = quasi_random(n);
+        const double r = std::sqrt(q.u[0]) * t.film_radius, nm = 380 + 400 * q.u[3];
+        const Vec2d target = 1.3 * outer_ * concentric_disc({q.u[1], q.u[2]});
+        const Vec2d m{rear_.slope_for(target.x, r), rear_.slope_for(target.y, 0)};
+        const auto iris = trace_iris(r, m, nm);
+        if (!iris) continue;
+        const Vec2d a{unit(iris->x), unit(iris->y)};
+        if (dot(a, a) <= 1) samples.push_back({r / t.film_radius, a, real_.scale(nm), m});
+    }
+    return samples;
+}
+
+void AimMaker::fit(int k) {
+    const int count = std::max(600, 5 * term_count(k));
+    aim_.slopes = fit_slopes(training(count, 0), k);
+    AimTables& t = aim_.tables;
+    t.degree = k;
+    t.coefficients.assign(aim_.slopes.coefficients.begin(), aim_.slopes.coefficients.end());
+    aim_.fit_error = 0;
+    for (const SlopeSample& s : training(500, 100000)) {
+        const Vec2d m = aim_.slopes.evaluate(s.r, s.a, s.l).m;
+        aim_.fit_error = std::max(aim_.fit_error, length(m - s.m));
+    }
+}
+
+/// Traces a grid over `range` (units of the iris scale, y >= 0 by symmetry) at one film radius.
+AimMaker::Visible AimMaker::visible_at(double r, Box range, int nx, int ny) const {
+    Visible v;
+    const AimTables& t = aim_.tables;
+    const double axis_sign = aim_.slopes.evaluate(0, {0, 0}, 0).jacobian;
+    const double dx = (range.x1 - range.x0) / nx, dy = range.half / ny, limit = unit(outer_);
+    auto in = std::make_unique<LensSamples>();
+    auto film = std::make_unique<FilmRays>();
+    auto out = std::make_unique<SceneRays>();
+    alignas(64) float jacobian[kLensBatch];
+    int count = 0;
+    const auto flush = [&] {
+        for (int i = count; i < kLensBatch; ++i) {  // the tail: copies
+            in->x[i] = in->x[0], in->y[i] = 0, in->u[i] = in->u[0], in->v[i] = in->v[0];
+            in->nm[i] = in->nm[0];
+        }
+        aim_slopes(open_, t, *in, *film, jacobian, kLensBatch);
+        trace_to_scene(open_, *film, *out, kLensBatch);
+        for (int i = 0; i < count; ++i) {
+            if (!(jacobian[i] * axis_sign > 0)) v.jacobian_ok = false;
+            if (out->pass[i] > 0) v.box.add(unit(in->u[i]), unit(in->v[i]));
+        }
+        count = 0;
+    };
+    for (const double nm : kBoundWavelengths)
+        for (int iy = 0; iy <= ny; ++iy)
+            for (int ix = 0; ix <= nx; ++ix) {
+                const double x = range.x0 + ix * dx, y = iy * dy;
+                if (x * x + y * y > limit * limit * 1.0001) continue;
+                in->x[count] = float(r), in->y[count] = 0, in->nm[count] = float(nm);
+                in->u[count] = float(x * t.iris_scale), in->v[count] = float(y * t.iris_scale);
+                if (++count == kLensBatch) flush();
+            }
+    if (count) flush();
+    v.box.grow(dx, dy);
+    return v;
+}
+
+/// The visible part of the iris: coarsely, then again inside what was found.
+AimMaker::Visible AimMaker::visible_iris(double r) const {
+    const double limit = unit(outer_);
+    const Box all{-limit, limit, limit};
+    Visible coarse = visible_at(r, all, 24, 12);
+    if (coarse.box.empty()) coarse.box = visible_at(r, all, 96, 48).box;
+    if (coarse.box.empty() || coarse.box.area() > 0.9 * all.area()) return coarse;
+    Box range = coarse.box;
+    range.x0 = std::max(range.x0, -limit), range.x1 = std::min(range.x1, limit);
+    range.half = std::min(range.half, limit);
+    Visible fine = visible_at(r, range, 40, 20);
+    if (fine.box.empty()) return coarse;
+    return fine;
+}
+
+AimMaker::Box AimMaker::passing_slopes(double r, const Box& range, int nx, int ny) const {
+    Box box;
+    auto film = std::make_unique<FilmRays>();
+    auto out = std::make_unique<SceneRays>();
+    const double dx = (range.x1 - range.x0) / nx, dy = range.half / ny;
+    int count = 0;
+    const auto flush = [&] {
+        for (int i = count; i < kLensBatch; ++i) {
+            film->x[i] = film->x[0], film->y[i] = 0, film->nm[i] = film->nm[0];
+            film->mx[i] = film->mx[0], film->my[i] = film->my[0];
+        }
+        trace_to_scene(open_, *film, *out, kLensBatch);
+        for (int i = 0; i < count; ++i) {
+            const double iris2 = double(out->iris_x[i]) * out->iris_x[i] +
+                                 double(out->iris_y[i]) * out->iris_y[i];
+            if (out->pass[i] > 0 && iris2 <= outer_ * outer_) box.add(film->mx[i], film->my[i]);
+        }
+        count = 0;
+    };
+    for (const double nm : kBoundWavelengths)
+        for (int iy = 0; iy <= ny; ++iy)
+            for (int ix = 0; ix <= nx; ++ix) {
+                film->x[count] = float(r), film->y[count] = 0, film->nm[count] = float(nm);
+                film->mx[count] = float(range.x0 + ix * dx), film->my[count] = float(iy * dy);
+                if (++count == kLensBatch) flush();
+            }
+    if (count) flush();
+    box.grow(dx, dy);
+    return box;
+}
+
+AimMaker::Box AimMaker::slope_range(double r, double reach, double) const {
+    const double middle = rear_.slope_for(0, r), half = std::abs(reach * outer_ / rear_.by_slope);
+    return {middle - half, middle + half, half};
+}
+
+/// Box around the slopes that pass at one film radius: the search widens until the box lies inside.
+AimMaker::Box AimMaker::slope_box(double r) const {
+    for (double reach = 1.5; reach < 100; reach *= 1.6) {
+        const Box range = slope_range(r, reach, 550);
+        Box box = passing_slopes(r, range, 48, 24);
+        if (box.empty()) box = passing_slopes(r, range, 160, 80);
+        const bool inside = !box.empty() && box.x0 > range.x0 && box.x1 < range.x1 &&
+                            box.half < range.half;
+        if (!inside) continue;
+        const Box fine = passing_slopes(r, box, 48, 24);
+        return fine.empty() ? box : fine;
+    }
+    return {};
+}
+
+void AimMaker::set_region(int segment, AimRegion region, const Box& box) {
+    AimTables& t = aim_.tables;
+    const bool drawn = region != AimRegion::shape && !box.empty();
+    t.region[segment] = float(int(region));
+    t.x0[segment] = drawn ? float(box.x0) : 0;
+    t.width[segment] = drawn ? float(box.x1 - box.x0) : 0;
+    t.half[segment] = drawn ? float(box.half) : 0;
+    if (region != AimRegion::shape) t.all_shape = false;
+}
+
+void AimMaker::choose_regions() {
+    AimTables& t = aim_.tables;
+    t.all_shape = true;
+    std::vector<Visible> at(kNodes);
+    for (int i = 0; i < kNodes; ++i) at[i] = visible_iris(t.film_radius * i / kRadialSegments);
+    for (int i = 0; i < kRadialSegments; ++i) {
+        Box box = at[i].box;
+        box.add(at[i + 1].box);
+        box.grow(0.005 * unit(outer_), 0.005 * unit(outer_));
+        jacobian_ok_[i] = at[i].jacobian_ok && at[i + 1].jacobian_ok;
+        const bool smaller = box.area() < 0.97 * t.shape_area;
+        set_region(i, smaller ? AimRegion::box : AimRegion::shape, box);
+    }
+}
+
+/// Whether the aim would draw this passing ray. `azimuth` turns the meridian against the iris shape.
+bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l, double azimuth) const {
+    const AimTables& t = aim_.tables;
+    const double rn = r / t.film_radius;
+    Vec2d a{unit(iris.x), unit(iris.y)};
+    for (int step = 0; step < 3; ++step) {  // Newton: the aim's own iris point
+        const SlopeValue v = aim_.slopes.evaluate(rn, a, l);
+        const Vec2d e = m - v.m;
+        a.x += (v.m22 * e.x - v.m12 * e.y) / v.jacobian;
+        a.y += (v.m11 * e.y - v.m21 * e.x) / v.jacobian;
+    }
+    if (length(aim_.slopes.evaluate(rn, a, l).m - m) > 1e-6) return false;
+    if (t.region[segment] > 0.5f)
+        return a.x >= t.x0[segment] && a.x <= t.x0[segment] + t.width[segment] &&
+               std::abs(a.y) <= t.half[segment];
+    const double c = std::cos(azimuth), s = std::sin(azimuth);
+    const Vec2d turned{c * a.x - s * a.y, s * a.x + c * a.y};
+    return request_.iris.in_sampling_region(turned * (t.iris_scale / request_.iris_radius),
+                                            kEnlargement);
+}
+
+/// Segments in which a fresh passing ray lies outside what is drawn, or the Jacobian changes sign.
+std::vector<bool> AimMaker::uncovered_segments() const {
+    std::vector<bool> bad(kRadialSegments);
+    const AimTables& t = aim_.tables;
+    for (int i = 0; i < kRadialSegments; ++i) bad[i] = !jacobian_ok_[i];
+    auto film = std::make_unique<FilmRays>();
+    auto out = std::make_unique<SceneRays>();
+    for (int n = 0; n < kCoverageRays; n += kLensBatch) {
+        std::array<double, kLensBatch> radius, azimuth;
+        for (int i = 0; i < kLensBatch; ++i) {
+            const Quad q = quasi_random(200000 + n + i);
+            radius[i] = t.film_radius * q.u[0];
+            azimuth[i] = 2 * kPiD * std::fmod(q.u[1] * 97, 1.0);
+            // Half of the rays crowd at the rim of the iris, where coverage is lost first.
+            Vec2d target = concentric_disc({q.u[1], q.u[2]});
+            if (i % 2) target = target * (1 / std::max(1e-9, length(target)));
+            target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q.u[2] : 1.2));
+            const Vec2d m{rear_.slope_for(target.x, radius[i]), rear_.slope_for(target.y, 0)};
+            const double c = std::cos(azimuth[i]), s = std::sin(azimuth[i]);
+            film->x[i] = float(c * radius[i]), film->y[i] = float(s * radius[i]);
+            film->mx[i] = float(c * m.x - s * m.y), film->my[i] = float(s * m.x + c * m.y);
+            film->nm[i] = float(380 + 400 * q.u[3]);
+        }
+        trace_to_scene(real_, *film, *out, kLensBatch);
+        for (int i = 0; i < kLensBatch; ++i) {
+            if (!(out->pass[i] > 0)) continue;
+            const double c = std::cos(azimuth[i]), s = std::sin(azimuth[i]);
+            const Vec2d m{c * film->mx[i] + s * film->my[i], c * film->my[i] - s * film->mx[i]};
+            const Vec2d iris{c * out->iris_x[i] + s * out->iris_y[i],
+                             c * out->iris_y[i] - s * out->iris_x[i]};
+            const int segment =
+                std::min(kRadialSegments - 1, int(radius[i] / t.film_radius * kRadialSegments));
+            if (!covers(segment, radius[i], m, iris, real_.scale(film->nm[i]), azimuth[i]))
+                bad[segment] = true;
+        }
+    }
+    return bad;
+}
+
+Aim AimMaker::make() {
+    std::vector<bool> bad(kRadialSegments, true);
+    if (!request_.only_slope_boxes) {
+        for (int k = kMinDegree; k <= kMaxDegree; ++k) {
+            fit(k);
+            choose_regions();
+            bad = uncovered_segments();
+            if (std::find(bad.begin(), bad.end(), true) == bad.end()) return aim_;
+        }
+    } else {
+        fit(kMinDegree);
+    }
+    std::array<std::optional<Box>, kNodes> node;
+    const auto box_at = [&](int i) {
+        if (!node[i]) node[i] = slope_box(aim_.tables.film_radius * i / kRadialSegments);
+        return *node[i];
+    };
+    for (int i = 0; i < kRadialSegments; ++i) {
+        if (!bad[i]) continue;
+        Box box = box_at(i);
+        box.add(box_at(i + 1));
+        box.grow(0.01 * (box.x1 - box.x0), 0.01 * box.half);
+        set_region(i, AimRegion::slopes, box);
+        ++aim_.fallback_segments;
+    }
+    return aim_;
+}
+
+}  // namespace
+
+Aim make_aim(const Tracer& tracer, const AimRequest& request) {
+    return AimMaker(tracer, request).make();
+}
+
+}  // namespace dg

@@ -1,0 +1,67 @@
+// trace.h -- exact tracing through every surface, in double: the reference. Both directions.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "optics/prescription.h"
+#include "optics/stop.h"
+
+namespace dg {
+
+/// Lens frame, mm; the direction is a unit vector.
+struct LensRay {
+    Vec3d origin, direction;
+};
+
+struct TracedRay {
+    LensRay ray;              // from the last surface that was met, refracted
+    Vec2d iris;               // mm, where the ray crossed the stop
+    double transmittance = 1; // product over the surfaces, and the iris's
+};
+
+/// What stops rays besides a miss or total reflection. The iris replaces the stop's clear diameter.
+struct Clip {
+    bool clear_apertures = true;
+    const Iris* iris = nullptr;
+    double iris_radius = 0;   // mm, of the circle of equal area
+};
+
+/// The indices of all media at one wavelength: index[i] before surface i.
+struct LensIndices {
+    double wavelength_nm;
+    std::vector<double> index;
+};
+
+class Tracer {
+  public:
+    explicit Tracer(const Prescription& lens);  // validates
+
+    LensIndices at(double wavelength_nm) const;
+    /// From the object side through the last surface; direction.z > -1 and the ray meets surface 0 first.
+    std::optional<TracedRay> to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;
+    /// From the film side through the first surface.
+    std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n, const Clip& clip) const;
+    /// From the film side to the stop: the iris point, mm. Clear apertures are ignored.
+    std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n) const;
+
+    /// Points where the ray met the surfaces, object side first, for drawings; empty if stopped.
+    std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;
+
+    const Prescription& prescription() const { return lens_; }
+    const std::vector<double>& vertices() const { return vertices_; }
+    int stop() const { return stop_; }
+
+  private:
+    bool cross(int surface, int sign, const LensIndices& n, const Clip& clip, TracedRay& ray) const;
+
+    Prescription lens_;
+    std::vector<double> vertices_;
+    int stop_;
+};
+
+/// Where a ray meets the plane z, mm.
+inline Vec3d at_plane(const LensRay& ray, double z) {
+    return ray.origin + ray.direction * ((z - ray.origin.z) / ray.direction.z);
+}
+
+}  // namespace dg

@@ -1,0 +1,218 @@
+// Sizeless vectors (SVE, RVV) cannot be members of structs; on Arm NEON serves.
+#define HWY_DISABLED_TARGETS \
+    (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "optics/trace_simd.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "optics/pupil-inl.h"
+#include "optics/trace_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dg {
+namespace HWY_NAMESPACE {
+
+constexpr int kMaxDegree = 6;
+
+/// Film rays into lanes: unit directions toward the scene.
+HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm, LaneRays& r) {
+    const V one = constant(1);
+    const V inv = hn::Div(one, hn::Sqrt(hn::MulAdd(mx, mx, hn::MulAdd(my, my, one))));
+    r.x = x, r.y = y, r.z = hn::Zero(D());
+    r.dx = hn::Neg(hn::Mul(mx, inv)), r.dy = hn::Neg(hn::Mul(my, inv)), r.dz = hn::Neg(inv);
+    set_wavelength(lens, nm, r);
+    r.iris_x = r.iris_y = hn::Zero(D());
+    r.alive = hn::Eq(one, one);
+}
+
+HWY_INLINE void store_scene_rays(const LaneRays& r, SceneRays& out, int i) {
+    const D d;
+    hn::Store(r.x, d, out.x + i), hn::Store(r.y, d, out.y + i), hn::Store(r.z, d, out.z + i);
+    hn::Store(r.dx, d, out.dx + i), hn::Store(r.dy, d, out.dy + i), hn::Store(r.dz, d, out.dz + i);
+    hn::Store(hn::IfThenElseZero(r.alive, r.transmittance), d, out.pass + i);
+    hn::Store(r.iris_x, d, out.iris_x + i), hn::Store(r.iris_y, d, out.iris_y + i);
+}
+
+void ToScene(const LensTables& lens, const FilmRays& in, SceneRays& out, int count) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    for (int i = 0; i < count; i += 2 * lanes) {
+        LaneRays r[2];
+        for (int h = 0; h < 2; ++h) {
+            const int at = i + h * lanes;
+            start_on_film(lens, hn::Load(d, in.x + at), hn::Load(d, in.y + at),
+                          hn::Load(d, in.mx + at), hn::Load(d, in.my + at),
+                          hn::Load(d, in.nm + at), r[h]);
+        }
+        lanes_to_scene(lens, r[0], r[1]);
+        for (int h = 0; h < 2; ++h) store_scene_rays(r[h], out, i + h * lanes);
+    }
+}
+
+void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    for (int i = 0; i < count; i += 2 * lanes) {
+        LaneRays r[2];
+        for (int h = 0; h < 2; ++h) {
+            const int at = i + h * lanes;
+            r[h].x = hn::Load(d, in.x + at), r[h].y = hn::Load(d, in.y + at);
+            r[h].z = hn::Load(d, in.z + at);
+            r[h].dx = hn::Neg(hn::Load(d, in.dx + at));
+            r[h].dy = hn::Neg(hn::Load(d, in.dy + at));
+            r[h].dz = hn::Neg(hn::Load(d, in.dz + at));
+            r[h].iris_x = r[h].iris_y = hn::Zero(d);
+            r[h].alive = hn::Eq(r[h].x, r[h].x);
+            set_wavelength(lens, hn::Load(d, out.nm + at), r[h]);
+        }
+        lanes_to_film(lens, r[0], r[1]);
+        for (int h = 0; h < 2; ++h) {
+            const int at = i + h * lanes;
+            const V inv = hn::Div(constant(1), r[h].dz);
+            const V mx = hn::Mul(r[h].dx, inv), my = hn::Mul(r[h].dy, inv);
+            const V go = hn::Sub(constant(lens.film_gap), r[h].z);
+            hn::Store(hn::MulAdd(mx, go, r[h].x), d, out.x + at);
+            hn::Store(hn::MulAdd(my, go, r[h].y), d, out.y + at);
+            hn::Store(mx, d, out.mx + at), hn::Store(my, d, out.my + at);
+            const M ok = hn::And(r[h].alive, hn::Gt(r[h].dz, hn::Zero(d)));
+            hn::Store(hn::IfThenElseZero(ok, r[h].transmittance), d, in.pass + at);
+            hn::Store(r[h].iris_x, d, in.iris_x + at), hn::Store(r[h].iris_y, d, in.iris_y + at);
+        }
+    }
+}
+
+template <int K>
+HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+                         SceneRays& out, float* weight, FilmRays* slopes, int count) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    for (int i = 0; i < count; i += 2 * lanes) {
+        LaneRays r[2];
+        for (int h = 0; h < 2; ++h) {
+            const int at = i + h * lanes;
+            const V x = hn::Load(d, in.x + at), y = hn::Load(d, in.y + at);
+            const V nm = hn::Load(d, in.nm + at);
+            LaneRays scale;
+            set_wavelength(lens, nm, scale);
+            const LaneAim m = draw_lanes<K>(lens, aim, x, y, hn::Load(d, in.u + at),
+                                            hn::Load(d, in.v + at), scale.l);
+            start_on_film(lens, x, y, m.mx, m.my, nm, r[h]);
+            hn::Store(m.weight, d, weight + at);
+            if (slopes) {
+                hn::Store(m.mx, d, slopes->mx + at), hn::Store(m.my, d, slopes->my + at);
+                hn::Store(x, d, slopes->x + at), hn::Store(y, d, slopes->y + at);
+                hn::Store(nm, d, slopes->nm + at);
+            }
+        }
+        lanes_to_scene(lens, r[0], r[1]);
+        for (int h = 0; h < 2; ++h) store_scene_rays(r[h], out, i + h * lanes);
+    }
+}
+
+template <int K>
+HWY_NOINLINE void weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
+                          const SceneRays& traced, float* weight, int count) {
+    const D d;
+    for (int i = 0; i < count; i += int(hn::Lanes(d))) {
+        LaneRays scale;
+        set_wavelength(lens, hn::Load(d, rays.nm + i), scale);
+        const V w = weight_lanes<K>(aim, hn::Load(d, rays.x + i), hn::Load(d, rays.y + i),
+                                    hn::Load(d, rays.mx + i), hn::Load(d, rays.my + i),
+                                    hn::Load(d, traced.iris_x + i), hn::Load(d, traced.iris_y + i),
+                                    scale.l);
+        const M ok = hn::Gt(hn::Load(d, traced.pass + i), hn::Zero(d));
+        hn::Store(hn::IfThenElseZero(ok, w), d, weight + i);
+    }
+}
+
+template <int K>
+HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+                            FilmRays& out, float* j, int count) {
+    const D d;
+    const V to_unit = constant(1 / aim.iris_scale);
+    for (int i = 0; i < count; i += int(hn::Lanes(d))) {
+        LaneRays scale;
+        const V nm = hn::Load(d, in.nm + i), x = hn::Load(d, in.x + i), y = hn::Load(d, in.y + i);
+        set_wavelength(lens, nm, scale);
+        const Meridian f = meridian_of(aim, x, y);
+        const LaneSlope s =
+            slope_lanes<K>(aim.coefficients.data(), f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
+                           hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
+        hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i), hn::Store(nm, d, out.nm + i);
+        hn::Store(hn::MulSub(s.mx, f.ex, hn::Mul(s.my, f.ey)), d, out.mx + i);
+        hn::Store(hn::MulAdd(s.mx, f.ey, hn::Mul(s.my, f.ex)), d, out.my + i);
+        hn::Store(jacobian(s), d, j + i);
+    }
+}
+
+// The degree is a template parameter so that the nested Horner loops unroll.
+#define DG_FOR_DEGREE(call)           \
+    switch (aim.degree) {             \
+        case 2: return call<2> ARGS;  \
+        case 3: return call<3> ARGS;  \
+        case 4: return call<4> ARGS;  \
+        case 5: return call<5> ARGS;  \
+        default: return call<6> ARGS; \
+    }
+
+void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in, SceneRays& out,
+            float* weight, FilmRays* slopes, int count) {
+#define ARGS (lens, aim, in, out, weight, slopes, count)
+    DG_FOR_DEGREE(guided)
+#undef ARGS
+}
+
+void Weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
+             const SceneRays& traced, float* weight, int count) {
+#define ARGS (lens, aim, rays, traced, weight, count)
+    DG_FOR_DEGREE(weights)
+#undef ARGS
+}
+
+void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
+            float* j, int count) {
+#define ARGS (lens, aim, in, out, j, count)
+    DG_FOR_DEGREE(slopes_at)
+#undef ARGS
+}
+#undef DG_FOR_DEGREE
+
+const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace dg
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dg {
+
+HWY_EXPORT(ToScene);
+HWY_EXPORT(ToFilm);
+HWY_EXPORT(Guided);
+HWY_EXPORT(Weights);
+HWY_EXPORT(Slopes);
+HWY_EXPORT(TargetName);
+
+void trace_to_scene(const LensTables& lens, const FilmRays& in, SceneRays& out, int count) {
+    HWY_DYNAMIC_DISPATCH(ToScene)(lens, in, out, count);
+}
+void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
+    HWY_DYNAMIC_DISPATCH(ToFilm)(lens, in, out, count);
+}
+void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in, SceneRays& out,
+                 float* aim_weight, FilmRays* slopes, int count) {
+    HWY_DYNAMIC_DISPATCH(Guided)(lens, aim, in, out, aim_weight, slopes, count);
+}
+void aim_weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
+                 const SceneRays& traced, float* aim_weight, int count) {
+    HWY_DYNAMIC_DISPATCH(Weights)(lens, aim, rays, traced, aim_weight, count);
+}
+void aim_slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
+                float* jacobian, int count) {
+    HWY_DYNAMIC_DISPATCH(Slopes)(lens, aim, in, out, jacobian, count);
+}
+const char* simd_target_name() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
+
+}  // namespace dg
+#endif  // HWY_ONCE
