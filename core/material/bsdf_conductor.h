@@ -37,8 +37,7 @@ struct ConductorBsdf {
             return BsdfSample{
                 .wi = wi, .weight = reflectance, .pdf = 1, .specular = true};
         }
-        const Vec3f wi =
-            normalize(reflect(wo, sample_visible_normal(side.ns, wo, alpha, u)));
+        const Vec3f wi = reflect(wo, sample_visible_normal(side.ns, wo, alpha, u));
         const Evaluation e = evaluate_with_pdf(wo, wi);
         if (!(e.pdf > 0)) return std::nullopt;
         return BsdfSample{.wi = wi, .weight = e.f_cos / e.pdf, .pdf = e.pdf};

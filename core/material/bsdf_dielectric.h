@@ -49,7 +49,7 @@ struct DielectricBsdf {
         const Vec3f h = smooth ? side.ns : sample_visible_normal(side.ns, wo, alpha, u);
         const float r = fresnel_dielectric(dot(wo, h), eta);
         const bool transmitted = u_lobe >= r;
-        const Vec3f wi = transmitted ? refract(wo, h, eta) : normalize(reflect(wo, h));
+        const Vec3f wi = transmitted ? refract(wo, h, eta) : reflect(wo, h);
         if (side.reflects(wi) == transmitted) return std::nullopt;
         BsdfSample s{.wi = wi, .specular = smooth, .transmitted = transmitted};
         if (transmitted) s.eta = eta;

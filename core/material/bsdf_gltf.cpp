@@ -137,7 +137,7 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         const float cos_h = dot(wo, h);
         const Split p = split(cos_h, n);
         s.transmitted = u_lobe >= p.reflect_probability;
-        s.wi = normalize(reflect(wo, h));
+        s.wi = reflect(wo, h);
         if (s.transmitted && clear == Clear::thin) {
             s.wi = s.wi - side.ns * (2 * dot(side.ns, s.wi));
         } else if (s.transmitted) {

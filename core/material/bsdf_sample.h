@@ -11,7 +11,7 @@ namespace dg {
 struct BsdfSample {
     Vec3f wi;
     Spectrum weight{0.f};  // f * |cos| / pdf
-    float pdf = 0;    // solid angle; for a specular direction the discrete probability
+    float pdf = 0;  // solid angle; for a specular direction the discrete probability
     bool specular = false;  // direction is a delta: no MIS, no light sampling
     bool transmitted = false;
     float eta =

@@ -10,16 +10,21 @@
 
 namespace dg {
 
-/// (cos, sin) of 2 pi u for u in [0,1]: quarter turns and Taylor's series on +-pi/4,
-/// error < 1e-7. The same bits whatever the C library.
+/// (cos, sin) of 2 pi u for u in [0,1], from Taylor's series of the half angle; error <
+/// 3e-7. No branch that chance would mispredict, and the same bits whatever the C
+/// library.
 inline Vec2f unit_circle(float u) {
-    const int quarter = static_cast<int>(4 * u + 0.5f);
-    const float r = (4 * u - static_cast<float>(quarter)) * (kPi / 2), r2 = r * r;
+    const float t = kPi * (u - 0.5f), t2 = t * t;
     const float s =
-        r * (1 + r2 * (-1 / 6.f + r2 * (1 / 120.f + r2 * (-1 / 5040.f + r2 / 362880))));
-    const float c = 1 + r2 * (-0.5f + r2 * (1 / 24.f + r2 * (-1 / 720.f + r2 / 40320)));
-    const float x = quarter & 1 ? s : c, y = quarter & 1 ? c : s;
-    return {(quarter + 1) & 2 ? -x : x, quarter & 2 ? -y : y};
+        t * (1 + t2 * (-1 / 6.f +
+                       t2 * (1 / 120.f + t2 * (-1 / 5040.f +
+                                               t2 * (1 / 362880.f - t2 / 39916800.f)))));
+    const float c =
+        1 + t2 * (-0.5f +
+                  t2 * (1 / 24.f + t2 * (-1 / 720.f +
+                                         t2 * (1 / 40320.f + t2 * (-1 / 3628800.f +
+                                                                   t2 / 479001600.f)))));
+    return {2 * s * s - 1, -2 * s * c};
 }
 
 /// Cosine-weighted direction about n; density cos / pi.

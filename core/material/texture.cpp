@@ -64,6 +64,8 @@ Tap tap(float coordinate, int size, Wrap wrap, TextureFilter filter) {
             t};
 }
 
+using Lanes = float __attribute__((vector_size(16)));  // r, g, b, a
+
 float value(float v, const float*) {
     return v;
 }
@@ -72,14 +74,15 @@ float value(std::uint8_t v, const float* decode) {
 }
 
 template <int kChannels, typename T>
-Texture::Texel fetch(const T* p, const float* colour) {
+Lanes fetch(const T* p, const float* colour) {
     const float* plain = kDecode.linear.data();
     const float r = value(p[0], colour);
-    if constexpr (kChannels == 1) return {r, r, r, 1};
-    if constexpr (kChannels == 2) return {r, r, r, value(p[1], plain)};
-    if constexpr (kChannels == 3) return {r, value(p[1], colour), value(p[2], colour), 1};
+    if constexpr (kChannels == 1) return Lanes{r, r, r, 1};
+    if constexpr (kChannels == 2) return Lanes{r, r, r, value(p[1], plain)};
+    if constexpr (kChannels == 3)
+        return Lanes{r, value(p[1], colour), value(p[2], colour), 1};
     if constexpr (kChannels == 4)
-        return {r, value(p[1], colour), value(p[2], colour), value(p[3], plain)};
+        return Lanes{r, value(p[1], colour), value(p[2], colour), value(p[3], plain)};
 }
 
 template <int kChannels, typename T>
@@ -89,13 +92,11 @@ Texture::Texel interpolate(const T* pixels, int width, Tap u, Tap v,
         return fetch<kChannels>(
             pixels + (static_cast<std::size_t>(y) * width + x) * kChannels, colour);
     };
-    const Texture::Texel a = at(u.low, v.low), b = at(u.high, v.low);
-    const Texture::Texel c = at(u.low, v.high), d = at(u.high, v.high);
-    const float wd = u.t * v.t, wc = v.t - wd, wb = u.t - wd, wa = 1 - u.t - wc;
-    return {wa * a.r + wb * b.r + wc * c.r + wd * d.r,
-            wa * a.g + wb * b.g + wc * c.g + wd * d.g,
-            wa * a.b + wb * b.b + wc * c.b + wd * d.b,
-            wa * a.a + wb * b.a + wc * c.a + wd * d.a};
+    const Lanes a = at(u.low, v.low), b = at(u.high, v.low);
+    const Lanes c = at(u.low, v.high), d = at(u.high, v.high);
+    const Lanes top = a + (b - a) * u.t, bottom = c + (d - c) * u.t;
+    const Lanes t = top + (bottom - top) * v.t;
+    return {t[0], t[1], t[2], t[3]};
 }
 
 template <typename T>

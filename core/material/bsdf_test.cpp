@@ -1,0 +1,248 @@
+// bsdf_test.cpp -- every kind of BSDF through the checks of bsdf_check.h.
+#include "material/bsdf.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "material/bsdf_check.h"
+
+namespace dg {
+namespace {
+
+using namespace check;
+
+struct Case {
+    std::string name;
+    Bsdf bsdf;
+    float ior = 1;           // of a refracting interface
+    bool lossless = false;   // albedo is exactly 1 from either side
+    bool two_sided = false;  // also looked at from behind
+};
+
+const Vec3f kNg = normalize(Vec3f{0.3f, -0.5f, 0.8f});
+const Spectrum kColor{0.2f, 0.5f, 0.8f, 1.f};
+
+void add_plain(std::vector<Case>& cases, Vec3f ns, bool straight) {
+    cases.push_back({"diffuse", DiffuseBsdf{ns, kNg, kColor}, 1, false, true});
+    cases.push_back({"white diffuse", DiffuseBsdf{ns, kNg, 1.f}, 1, straight, false});
+    for (float alpha : {0.f, 0.15f, 0.5f, 1.f})
+        cases.push_back({"conductor " + std::to_string(alpha),
+                         ConductorBsdf{ns, kNg, kColor, alpha}, 1, false, alpha == 0.5f});
+    cases.push_back({"mirror", ConductorBsdf{ns, kNg, 1.f, 0}, 1, straight, true});
+    cases.push_back(
+        {"glass", DielectricBsdf{ns, kNg, 1.f, 1.5f, 0}, 1.5f, straight, true});
+    cases.push_back({"window", DielectricBsdf{ns, kNg, 1.f, 1, 0.5f}, 1, straight, true});
+    cases.push_back(
+        {"tinted glass", DielectricBsdf{ns, kNg, kColor, 1.5f, 0}, 1.5f, false, true});
+    for (float alpha : {0.15f, 0.5f})
+        cases.push_back({"rough glass " + std::to_string(alpha),
+                         DielectricBsdf{ns, kNg, kColor, 1.5f, alpha}, 1.5f, false,
+                         true});
+    cases.push_back(
+        {"bubble", DielectricBsdf{ns, kNg, 1.f, 0.75f, 0.3f}, 0.75f, false, true});
+}
+
+GltfSurface surface(float metallic, float roughness, float transmission = 0,
+                    bool volume = false) {
+    return {.base = kColor,
+            .metallic = metallic,
+            .roughness = roughness,
+            .transmission = transmission,
+            .volume = volume,
+            .interior = {}};
+}
+
+void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
+    const auto add = [&](const std::string& name, const GltfSurface& s,
+                         bool lossless = false) {
+        const bool clear = s.transmission > 0;
+        // Index 0 is a special case of KHR_materials_ior and bends as good as nothing.
+        const float ior = !s.volume ? 1 : s.ior > 0 ? s.ior : 1 + kSmoothAlpha;
+        cases.push_back({name, GltfBsdf(s, ns, kNg), ior, lossless && straight, clear});
+    };
+    for (float roughness : {0.f, 0.4f, 1.f}) {
+        const std::string r = " " + std::to_string(roughness);
+        add("gltf plastic" + r, surface(0, roughness));
+        add("gltf metal" + r, surface(1, roughness));
+        add("gltf alloy" + r, surface(0.4f, roughness));
+        add("gltf thin" + r, surface(0, roughness, 1));
+        add("gltf part thin" + r, surface(0.2f, roughness, 0.6f));
+        add("gltf volume" + r, surface(0, roughness, 1, true));
+        add("gltf part volume" + r, surface(0.2f, roughness, 0.6f, true));
+        GltfSurface s = surface(0, roughness);
+        s.specular = 0.7f;
+        s.specular_color = {3, 1, 0.5f, 0};
+        add("gltf tinted specular" + r, s);
+        s.specular = 0;
+        s.base = 1.f;
+        add("gltf Lambert" + r, s, true);
+        s = surface(0, roughness, 0.5f, true);
+        s.ior = 0;
+        s.specular_color = {0.9f, 0.3f, 0.2f, 0.1f};
+        if (roughness == 0) add("gltf ior 0" + r, s);
+    }
+    GltfSurface clear = surface(0, 0, 1);
+    clear.base = 1.f;
+    add("gltf clear thin", clear, true);
+    clear.volume = true;
+    add("gltf clear volume", clear, true);
+    clear.metallic = 1;
+    add("gltf mirror", clear, true);
+}
+
+std::vector<Case> all_cases(bool straight) {
+    // A shading normal some 20 degrees off the geometric one.
+    const Vec3f ns = straight ? kNg : normalize(kNg + Vec3f{0.2f, 0.3f, 0.1f});
+    std::vector<Case> cases;
+    add_plain(cases, ns, straight);
+    add_gltf(cases, ns, straight);
+    return cases;
+}
+
+/// Directions at three heights, from both sides where that makes a difference.
+std::vector<Setting> settings(const Case& c, bool straight) {
+    std::vector<Setting> list;
+    const Frame frame = Frame::from_normal(kNg);
+    for (float z : {0.95f, 0.5f, 0.12f, -0.9f, -0.6f}) {
+        if (z < 0 && !c.two_sided) continue;
+        if (!straight && z != 0.5f && z != -0.6f) continue;
+        const float r = std::sqrt(1 - z * z);
+        list.push_back(
+            {frame, frame.to_world({r * 0.6f, -r * 0.8f, z}), z > 0 ? c.ior : 1 / c.ior});
+    }
+    return list;
+}
+
+template <typename Check>
+void for_all(bool straight, Check check) {
+    for (const Case& c : all_cases(straight)) {
+        CAPTURE(c.name);
+        for (const Setting& s : settings(c, straight)) {
+            CAPTURE(dot(s.wo, kNg));
+            std::visit([&](const auto& b) { check(c, b, s); }, c.bsdf);
+        }
+    }
+}
+
+/// Faults: a density 2 % too large, and a cosine that is forgotten in sample() or
+/// evaluate().
+template <typename B>
+struct WrongPdf : B {
+    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
+        Evaluation e = B::evaluate_with_pdf(wo, wi);
+        e.pdf *= 1.02f;
+        return e;
+    }
+    std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const {
+        auto s = B::sample(wo, u_lobe, u);
+        if (s) s->weight = s->weight / 1.02f;
+        return s;
+    }
+};
+template <typename B>
+struct NoCosine : B {
+    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
+        Evaluation e = B::evaluate_with_pdf(wo, wi);
+        e.f_cos = e.f_cos / std::max(1e-6f, std::abs(dot(this->ns, wi)));
+        return e;
+    }
+    Spectrum evaluate(Vec3f wo, Vec3f wi) const {
+        return evaluate_with_pdf(wo, wi).f_cos;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("furnace: sampling and quadrature agree and never exceed 1") {
+    for (bool straight : {true, false}) {
+        std::uint64_t seed = 1;
+        for_all(straight, [&](const Case& c, const auto& b, const Setting& s) {
+            const Albedo q = albedo_by_quadrature(b, s);
+            CHECK(furnace_deviation(b, s, q, ++seed) < 4.5);
+            for (int k = 0; k < kWavelengths; ++k) {
+                CHECK(q.value[k] < 1.003);
+                if (c.lossless) CHECK(q.value[k] == doctest::Approx(1).epsilon(3e-4));
+            }
+        });
+    }
+}
+
+TEST_CASE("lossless materials: every weight is 1, from either side") {
+    for_all(true, [&](const Case& c, const auto& b, const Setting& s) {
+        if (!c.lossless || c.name == "white diffuse") return;
+        const Albedo mc = albedo_by_sampling(b, s, 2000, 7);
+        for (int k = 0; k < kWavelengths; ++k) {
+            CHECK(mc.value[k] == doctest::Approx(1).epsilon(2e-5));
+            CHECK(mc.error[k] < 1e-5);
+        }
+    });
+}
+
+TEST_CASE("chi-square: sample() follows pdf()") {
+    for (bool straight : {true, false}) {
+        std::uint64_t seed = 1000;
+        for_all(straight, [&](const Case&, const auto& b, const Setting& s) {
+            ++seed;
+            if (b.is_specular()) return;
+            CHECK(chi_square_p(b, s, seed) > 1e-5);
+        });
+    }
+}
+
+TEST_CASE("a sample's weight is evaluate / pdf") {
+    for (bool straight : {true, false})
+        for_all(straight, [&](const Case&, const auto& b, const Setting& s) {
+            CHECK(weight_deviation(b, s, 5) < 2e-4);
+        });
+}
+
+TEST_CASE("reciprocity: f for reflection, f n^2 for refraction") {
+    for (const Case& c : all_cases(true)) {
+        CAPTURE(c.name);
+        std::visit([&](const auto& b) { CHECK(asymmetry(b, kNg, kNg, c.ior, 3) < 2e-4); },
+                   c.bsdf);
+    }
+}
+
+TEST_CASE("nothing passes an opaque surface, whatever the shading normal says") {
+    Random random{11};
+    const Vec3f ns = normalize(kNg + Vec3f{0.9f, 0.3f, 0.1f});
+    const Bsdf opaque[] = {DiffuseBsdf{ns, kNg, 1.f}, ConductorBsdf{ns, kNg, 1.f, 0.6f},
+                           GltfBsdf(surface(0.3f, 0.8f), ns, kNg)};
+    for (const Bsdf& b : opaque) {
+        for (int i = 0; i < 5000; ++i) {
+            const Vec3f wo = random.direction(), wi = random.direction();
+            if (dot(wo, kNg) * dot(wi, kNg) < 0)
+                CHECK(evaluate_with_pdf(b, wo, wi).f_cos.is_black());
+            const float u_lobe = random.next();
+            const auto s = sample(b, wo, u_lobe, random.next_2d());
+            if (s) CHECK(dot(wo, kNg) * dot(s->wi, kNg) > 0);
+        }
+    }
+}
+
+TEST_CASE("the checks find planted faults") {
+    const Setting s{Frame::from_normal(kNg), normalize(kNg + Vec3f{0.4f, 0.2f, 0}), 1};
+    const ConductorBsdf metal{kNg, kNg, kColor, 0.5f};
+    const DiffuseBsdf paint{kNg, kNg, kColor};
+    const GltfBsdf plastic(surface(0, 0.5f), kNg, kNg);
+    const auto all_found = [&](const auto& good) {
+        using B = std::decay_t<decltype(good)>;
+        const Albedo q = albedo_by_quadrature(good, s);
+        CHECK(furnace_deviation(good, s, q, 1) < 4.5);
+        CHECK(chi_square_p(good, s, 1) > 1e-5);
+        const WrongPdf<B> wrong{good};
+        CHECK(furnace_deviation(wrong, s, q, 1) > 4.5);
+        CHECK(chi_square_p(wrong, s, 1) < 1e-5);
+        const NoCosine<B> flat{good};
+        CHECK(furnace_deviation(flat, s, albedo_by_quadrature(flat, s), 1) > 4.5);
+        CHECK(weight_deviation(flat, s, 1) > 2e-4);
+        CHECK(asymmetry(flat, kNg, kNg, 1, 1) > 2e-4);
+    };
+    all_found(metal);
+    all_found(paint);
+    all_found(plastic);
+}
+
+}  // namespace dg
