@@ -88,7 +88,6 @@ class Loop:
         self.interval_s = interval_s
         self.reporter = reporter
         self.snapshot = snapshot
-        self.bad_before: tuple[int, list[tuple[int, int, int]]] = (0, [])
         self.started = time.monotonic()
         self.drawn_here = 0
 
@@ -110,7 +109,6 @@ class Loop:
                     f"ask for {min(a, begin)}:{max(b, end)} or remove the file"
                 )
         self.session.set_state(saved.state, saved.ranges)
-        self.bad_before = saved.bad_samples
         return True
 
     def run(self, signals: Signals) -> bool:
@@ -148,20 +146,11 @@ class Loop:
         begin, end = self.wanted
         return end - begin - sum(b - a for a, b in self.missing())
 
-    def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
-        """Those of this run and of the runs before it."""
-        count, places = self.session.bad_samples
-        return count + self.bad_before[0], sorted({*map(tuple, places), *self.bad_before[1]})[:100]
-
-    def drawn(self) -> pass_files.Pass:
-        """What is there so far, as a pass."""
-        return replace(pass_files.pass_of(self.session), bad_samples=self.bad_samples())
-
     def save(self) -> bool:
         """Writes the checkpoint; False, with a warning, if that fails: the render goes on."""
         frame = replace(self.session.frame(), aovs={})
         try:
-            pass_files.write_pass(self.checkpoint, frame, self.drawn())
+            pass_files.write_pass(self.checkpoint, frame, pass_files.pass_of(self.session))
         except DaguerreError as error:
             console.warn(f"checkpoint not saved: {error}")
             return False

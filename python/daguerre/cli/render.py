@@ -249,11 +249,15 @@ class Job:
 
     def _frame(self) -> Frame:
         """The picture so far, with the channels that were asked for."""
-        drawn = self.loop.drawn()
         frame = self.session.frame()
-        metadata = {**frame.metadata, **drawn.metadata, "samples": self.loop.done()}
-        metadata["bad_samples"] = drawn.bad_samples[0]
-        frame = replace(frame, metadata=metadata, bad_samples=drawn.bad_samples)
+        facts = {
+            "resolution": (self.session.width, self.session.height),
+            "crop": self.session.crop,
+            "samples": self.loop.done(),
+            "bad_samples": frame.bad_samples[0],
+            "aovs": self.plan.aovs,
+        }
+        frame = replace(frame, metadata={**frame.metadata, **facts})
         if self.plan.denoise:
             from daguerre.denoise import denoise
 
@@ -266,13 +270,12 @@ class Job:
         return replace(frame, aovs=keep)
 
     def _write(self, frame: Frame, paths: list[Path]) -> None:
-        from daguerre.io.passes import write_pass
+        from daguerre.io.passes import pass_of, write_pass
 
         for path in paths:
             if self.plan.is_pass and path.suffix.lower() == ".exr":
-                drawn = self.loop.drawn()
-                facts = {**frame.metadata, "aovs": self.plan.aovs}
-                write_pass(path, frame, replace(drawn, metadata=facts))
+                drawn = pass_of(self.session)
+                write_pass(path, frame, replace(drawn, metadata=frame.metadata))
             else:
                 frame.save(path, tone=self.tone)
 
@@ -298,11 +301,11 @@ class Job:
             "processor": f"{usage.ru_utime + usage.ru_stime:.2f} s",
             "camera samples": f"{drawn} ({quantity(drawn / elapsed)} per s)",
             "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
-            "bad samples": str(self.loop.bad_samples()[0]),
+            "bad samples": str(self.session.bad_samples[0]),
             "peak memory": f"{usage.ru_maxrss / 1024:.0f} MB",
         }
         for name, value in rows.items():
-            console.say(f"  {name:16} {value}")
+            console.say(f"daguerre: {name}: {value}")
 
 
 def _plan(

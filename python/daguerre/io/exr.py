@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from daguerre.errors import OutputError
 from numpy.typing import NDArray
+
+from daguerre.errors import OutputError
 
 from .atomic import atomic_path
 

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from daguerre.errors import InputError
 from numpy.typing import NDArray
+
+from daguerre.errors import InputError
 
 
 def read_grey(path: Path) -> NDArray[np.float32]:

@@ -17,9 +17,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
+
 from daguerre.errors import InputError, MismatchError
 from daguerre.frame import Frame
-from numpy.typing import NDArray
 
 from .exr import attributes, channels, jsonable, write_parts
 
@@ -46,7 +47,6 @@ class Pass:
         ranges: Samples drawn, [begin, end), merged and sorted.
         key: What must agree with another pass, by name.
         metadata: Facts of the frame.
-        bad_samples: Count, and the first of them as (x, y, sample).
         path: Where it was read, for messages.
     """
 
@@ -54,7 +54,6 @@ class Pass:
     ranges: list[Range]
     key: dict[str, str]
     metadata: dict[str, Any] = field(default_factory=dict)
-    bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, [])
     path: Path | None = None
 
 
@@ -65,7 +64,6 @@ def pass_of(session: Session) -> Pass:
         list(session.ranges),
         dict(session.key),
         {**session.metadata, "resolution": (session.width, session.height), "crop": session.crop},
-        session.bad_samples,
     )
 
 
@@ -75,7 +73,6 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
         "daguerre:key": json.dumps(drawn.key, sort_keys=True),
         "daguerre:ranges": json.dumps(drawn.ranges),
         "daguerre:metadata": json.dumps(drawn.metadata, sort_keys=True, default=jsonable),
-        "daguerre:bad_samples": json.dumps(drawn.bad_samples),
     }
     parts = [
         ("beauty", attributes(frame.metadata), channels(frame)),
@@ -137,8 +134,6 @@ def merge(
     total: Any = None
     first: Pass | None = None
     ranges: list[tuple[Range, Path | None]] = []
-    bad: list[tuple[int, int, int]] = []
-    count = 0
     for item in passes:
         # One at a time: a pass of a large picture takes gigabytes.
         one = item if isinstance(item, Pass) else read_pass(item)
@@ -152,17 +147,15 @@ def merge(
             total = film
         else:
             total.merge(film)
-        count += one.bad_samples[0]
-        bad += one.bad_samples[1]
     if first is None:
         raise InputError("merge: wanted at least one pass file, got none")
     merged = join_ranges([r for r, _ in ranges])
     drawn = sum(end - begin for begin, end in merged)
+    count = int(total.bad_sample_count)
     metadata = {**first.metadata, "samples": drawn, "bad_samples": count}
-    bad = sorted(bad)[:100]
     state = {name: total.state(name) for name in total.state_channels()}
-    frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state), bad_samples=(count, bad))
-    return frame, Pass(state, merged, first.key, metadata, (count, bad))
+    frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
+    return frame, Pass(state, merged, first.key, metadata)
 
 
 def film_of(one: Pass) -> Any:
@@ -188,7 +181,6 @@ def frame_of(
     metadata: dict[str, Any],
     *,
     aovs: bool,
-    bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, []),
 ) -> Frame:
     """The picture of a film: means, variance and counts as plain arrays."""
     from daguerre.render import AOV_NAMES
@@ -207,7 +199,7 @@ def frame_of(
         samples=film.sample_counts(),
         aovs=planes,
         metadata=metadata,
-        bad_samples=bad_samples,
+        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
     )
 
 
@@ -294,18 +286,16 @@ def _header(path: Path, spec: Any) -> Pass:
             for r in value
         )
 
-    bad = field_of("bad_samples", lambda v: isinstance(v, list) and len(v) == 2)
     return Pass(
         {},
         [(r[0], r[1]) for r in field_of("ranges", is_ranges)],
         field_of("key", lambda v: isinstance(v, dict) and bool(v)),
         field_of("metadata", lambda v: isinstance(v, dict)),
-        (int(bad[0]), [(int(x), int(y), int(s)) for x, y, s in bad[1]]),
     )
 
 
 def _has_aovs(state: State) -> bool:
-    return any(name.startswith("depth") for name in state)
+    return any(name.startswith("sum.depth") for name in state)
 
 
 def _short(value: str) -> str:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import zlib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from daguerre.errors import OutputError
 from numpy.typing import NDArray
+
+from daguerre.errors import OutputError
 
 from .atomic import atomic_path
 
@@ -63,4 +65,22 @@ def _write(path: Path, pixels: NDArray[np.uint8], metadata: dict[str, Any]) -> s
     if metadata.get("isoSpeed"):
         spec.attribute("Exif:PhotographicSensitivity", round(float(metadata["isoSpeed"])))
     done = output.open(str(path), spec) and output.write_image(pixels) and output.close()
-    return "" if done else str(output.geterror() or "unknown reason")
+    if not done:
+        return str(output.geterror() or "unknown reason")
+    # libpng's writer does not notice a full disk, so what is there is read back.
+    return "" if _intact(path.read_bytes()) else "the file is not complete; is the disk full?"
+
+
+def _intact(data: bytes) -> bool:
+    """Whether every chunk has its checksum and the last one is IEND (PNG specification, 5.3)."""
+    place = 8
+    while place + 12 <= len(data):
+        length = int.from_bytes(data[place : place + 4], "big")
+        end = place + 8 + length
+        checksum = int.from_bytes(data[end : end + 4], "big")
+        if end + 4 > len(data) or zlib.crc32(data[place + 4 : end]) != checksum:
+            return False
+        if data[place + 4 : place + 8] == b"IEND":
+            return end + 4 == len(data)
+        place = end + 4
+    return False

@@ -1,0 +1,141 @@
+"""A session without the core: sums that anyone can check, at a speed that the test chooses.
+
+``python -m tests.fake_session render ...`` is the command line on top of it, so that tests can send
+signals to a real process at a known moment. ``FAKE_SECONDS`` is how long a sample takes.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import types
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import daguerre
+from daguerre.camera import Camera
+from daguerre.frame import Frame
+from daguerre.io.passes import join_ranges
+from daguerre.scene import Scene
+
+
+def sample_value(index: int, height: int, width: int) -> np.ndarray:
+    """What sample ``index`` adds to every pixel; not symmetric in the indices."""
+    y, x = np.mgrid[:height, :width]
+    return ((index + 1) * 2654435761 + 97 * x + 7919 * y) % 65521
+
+
+class FakeSession:
+    """Keeps the contract of ``daguerre.render.Session``."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera,
+        *,
+        resolution: tuple[int, int] = (960, 540),
+        seed: int = 0,
+        filter: str = "blackman_harris",
+        aovs: bool = False,
+        crop: tuple[int, int, int, int] | None = None,
+        threads: int = 0,
+        max_depth: int = 16,
+    ) -> None:
+        if camera.f_stop is not None and camera.f_stop <= 0:
+            raise ValueError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
+        self.width, self.height = resolution
+        self.crop = crop or (0, 0, *resolution)
+        self.aovs = aovs
+        self.notes = ["autofocus: centre ray hit at 1.532 m"]
+        self.key = {
+            "scene": "a" * 64,
+            "camera": f"{camera.f_stop}",
+            "settings": f"{resolution} {seed} {filter} {crop} {max_depth}",
+            "build": "fake 1",
+        }
+        self.metadata: dict[str, Any] = {
+            "seed": seed,
+            "aperture": camera.f_stop,
+            "version": "0.1.0",
+        }
+        self.ranges: list[tuple[int, int]] = []
+        self.rays = self.samples = 0
+        x0, y0, x1, y1 = self.crop
+        self.shape = (y1 - y0, x1 - x0)
+        self.sums = np.zeros(self.shape, np.uint64)
+        bad = os.environ.get("FAKE_BAD")
+        self.bad_samples: tuple[int, list[tuple[int, int, int]]] = (
+            (1, [(2, 1, 5)]) if bad else (0, [])
+        )
+
+    def draw(self, begin: int, end: int, progress: Callable[[float], bool] | None = None) -> bool:
+        seconds = float(os.environ.get("FAKE_SECONDS", "0"))
+        if os.environ.get("FAKE_CRASH"):
+            raise RuntimeError("the moon fell down")
+        sums = self.sums.copy()
+        for i in range(begin, end):
+            until = time.monotonic() + seconds
+            while time.monotonic() < until:
+                time.sleep(min(seconds, 0.01))
+                if progress is not None and not progress((i - begin) / (end - begin)):
+                    return False
+            sums += sample_value(i, *self.shape).astype(np.uint64)
+        self.sums = sums
+        self.ranges = join_ranges([*self.ranges, (begin, end)])
+        self.rays += (end - begin) * sums.size * 3
+        return True
+
+    def frame(self) -> Frame:
+        count = max(1, sum(b - a for a, b in self.ranges))
+        grey = (self.sums / count / 65521).astype(np.float32)
+        aovs = {}
+        if self.aovs:
+            names = ["depth.Z", *(f"{g}.{c}" for g in "PN" for c in "XYZ")]
+            aovs = dict.fromkeys([*names, "albedo.R", "albedo.G", "albedo.B"], grey)
+            aovs["object_id"] = np.full(self.shape, 4_000_000_000, np.uint32)
+        return Frame(
+            rgb=np.stack([grey] * 3, axis=2),
+            xyz=np.stack([grey] * 3, axis=2),
+            alpha=np.ones(self.shape, np.float32),
+            variance=np.zeros((*self.shape, 3), np.float32),
+            samples=np.full(self.shape, count, np.uint32),
+            aovs=aovs,
+            metadata=dict(self.metadata),
+            bad_samples=self.bad_samples,
+        )
+
+    def state(self) -> dict[str, np.ndarray]:
+        return {
+            "sum.0": (self.sums & np.uint64(0xFFFFFFFF)).astype(np.uint32),
+            "sum.1": (self.sums >> np.uint64(32)).astype(np.uint32),
+        }
+
+    def set_state(self, state: dict[str, np.ndarray], ranges: list[tuple[int, int]]) -> None:
+        self.sums = state["sum.0"].astype(np.uint64) | state["sum.1"].astype(
+            np.uint64
+        ) << np.uint64(32)
+        self.ranges = list(ranges)
+
+
+def load(path: object, *, time: float = 0.0, allow_dirs: object = ()) -> Scene:
+    scene = Scene()
+    scene.add_camera("Camera", Camera())
+    return scene
+
+
+def install(patch: Callable[[object, str, object], None] = setattr) -> None:
+    """Puts the fakes where the command line looks for the real ones."""
+    module = types.ModuleType("daguerre.render")
+    module.Session = FakeSession  # type: ignore[attr-defined]
+    sys.modules["daguerre.render"] = module
+    patch(daguerre, "load", load)
+
+
+if __name__ == "__main__":
+    install()
+    from daguerre.cli import main
+
+    sys.exit(main())
