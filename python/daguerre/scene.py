@@ -81,6 +81,8 @@ class Scene:
     lights: list[tuple[Light, NDArray[np.float64]]] = field(default_factory=list)
     cameras: dict[str, Camera] = field(default_factory=dict)
     default_camera: str | None = None
+    #: other names by which ``camera`` finds one, such as that of the camera in its node
+    camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
     #: node name -> indices of its instances (its own and its descendants'), for ``focus_on``
     nodes: dict[str, list[int]] = field(default_factory=dict)
@@ -260,6 +262,8 @@ class Scene:
             if self.default_camera is None:
                 raise InputError(f"{self.path or 'scene'}: no camera in it; name a view yourself")
             name = self.default_camera
+        if name not in self.cameras:
+            name = self.camera_aliases.get(name, name)
         if name not in self.cameras:
             raise InputError(
                 f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"

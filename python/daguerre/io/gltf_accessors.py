@@ -1,0 +1,179 @@
+"""Accessors of glTF as numpy arrays: strided, normalised, quantised, sparse, or all zeros.
+
+Every count is held against the bytes behind it before anything is allocated.
+Source: glTF 2.0 specification, chapter 3.6.2; KHR_mesh_quantization.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .json_item import Item, short
+
+_COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+# An accessor without bytes is zeros: no file size bounds it, so this does (elements x components).
+_MAX_ZEROS = 1 << 26
+
+
+@dataclass(frozen=True)
+class _View:
+    data: memoryview
+    stride: int | None
+    item: Item
+
+
+class Accessors:
+    """All accessors of a file; arrays are read on demand and kept.
+
+    Args:
+        root: The JSON object of the file.
+        buffers: Bytes of its buffers.
+    """
+
+    def __init__(self, root: Item, buffers: list[memoryview]) -> None:
+        self._views = [_view(item, buffers) for item in root.list_of("bufferViews")]
+        self._items = root.list_of("accessors")
+        self._arrays: dict[int, NDArray[Any]] = {}
+
+    def index(self, use: Item) -> int:
+        """The accessor that ``use`` names; checked."""
+        return use.index(len(self._items), "accessors")
+
+    def view_bytes(self, use: Item) -> memoryview:
+        """The bytes of the bufferView that ``use`` names."""
+        return self._views[use.index(len(self._views), "bufferViews")].data
+
+    def kind(self, use: Item) -> tuple[str, int, bool]:
+        """Type, component type and whether normalised, of the accessor that ``use`` names."""
+        item = self._items[self.index(use)]
+        normalized = item.get("normalized")
+        return (
+            item.need("type").choice(_WIDTHS),
+            item.need("componentType").choice(_COMPONENTS),
+            normalized is not None and normalized.flag(),
+        )
+
+    def floats(self, use: Item, types: tuple[str, ...], what: str = "element") -> NDArray[Any]:
+        """Finite numbers, normalised integers mapped to [0, 1] or [-1, 1].
+
+        Args:
+            use: The JSON value that names the accessor.
+            types: Types that are allowed here, such as ``("VEC3",)``.
+            what: What an element is called in a complaint.
+
+        Returns:
+            float32, shape (count, components).
+        """
+        kind, component, normalized = self.kind(use)
+        if kind not in types:
+            use.fail(f"wrong accessor type: wanted {' or '.join(types)}, got {kind}")
+        array = self._raw(self.index(use))
+        if component == 5126:
+            bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+            if bad.size:
+                use.fail(
+                    f"{what} {bad[0]}: wanted finite numbers, got {array[bad[0]].tolist()} "
+                    f"({bad.size} such {what}s)"
+                )
+        values = np.array(array, np.float32)
+        if normalized and component != 5126:
+            values /= np.float32(np.iinfo(array.dtype).max)
+            np.maximum(values, -1, out=values)
+        return values
+
+    def integers(self, use: Item) -> NDArray[np.uint32]:
+        """Unsigned integers, shape (count,)."""
+        kind, component, _ = self.kind(use)
+        if kind != "SCALAR" or component not in (5121, 5123, 5125):
+            use.fail(
+                "wrong accessor type: wanted SCALAR of component type 5121, 5123 or 5125, "
+                f"got {kind} of {component}"
+            )
+        return np.array(self._raw(self.index(use))[:, 0], np.uint32)
+
+    def _raw(self, index: int) -> NDArray[Any]:
+        if index not in self._arrays:
+            self._arrays[index] = self._read(self._items[index])
+        return self._arrays[index]
+
+    def _read(self, item: Item) -> NDArray[Any]:
+        dtype = np.dtype(_COMPONENTS[item.need("componentType").choice(_COMPONENTS)])
+        width = _WIDTHS[item.need("type").choice(_WIDTHS)]
+        count = item.need("count").integer(1)
+        view = item.get("bufferView")
+        sparse = item.get("sparse")
+        if view is None:
+            if count * width > _MAX_ZEROS:
+                item.need("count").fail(
+                    f"too large without a bufferView: wanted at most {_MAX_ZEROS // width}, "
+                    f"got {short(count)}"
+                )
+            array: NDArray[Any] = np.zeros((count, width), dtype)
+        else:
+            array = self._strided(view, item, dtype, width, count)
+        if sparse is not None:
+            array = array.copy()
+            self._patch(array, sparse)
+        return array
+
+    def _strided(
+        self, view_use: Item, item: Item, dtype: np.dtype[Any], width: int, count: int
+    ) -> NDArray[Any]:
+        view = self._views[view_use.index(len(self._views), "bufferViews")]
+        offset_item = item.get("byteOffset")
+        offset = 0 if offset_item is None else offset_item.integer(0)
+        element = dtype.itemsize * width
+        stride = view.stride or element
+        if stride < element:
+            Item(stride, "byteStride", view.item).fail(
+                f"too small for {item.path}: wanted at least {element}, got {stride}"
+            )
+        end = offset + stride * (count - 1) + element
+        if end > len(view.data):
+            item.fail(
+                f"beyond its bufferView ({view.item.path}): wanted at most {len(view.data)} bytes, "
+                f"got {short(end)} (count {short(count)}, byteOffset {short(offset)}, "
+                f"stride {stride})"
+            )
+        return np.ndarray(
+            (count, width), dtype, view.data, offset=offset, strides=(stride, dtype.itemsize)
+        )
+
+    def _patch(self, array: NDArray[Any], sparse: Item) -> None:
+        """Replaces single elements; the list of their indices must rise (chapter 3.6.2.3)."""
+        count = sparse.need("count").integer(1, len(array))
+        places_item, values_item = sparse.need("indices"), sparse.need("values")
+        component = places_item.need("componentType").choice((5121, 5123, 5125))
+        places = self._strided(
+            places_item.need("bufferView"), places_item, np.dtype(_COMPONENTS[component]), 1, count
+        )[:, 0].astype(np.int64)
+        if (np.diff(places) <= 0).any():
+            places_item.fail("wanted indices that rise strictly, got some that do not")
+        if places[-1] >= len(array):
+            places_item.fail(f"index out of range: wanted 0 .. {len(array) - 1}, got {places[-1]}")
+        array[places] = self._strided(
+            values_item.need("bufferView"), values_item, array.dtype, array.shape[1], count
+        )
+
+
+def _view(item: Item, buffers: list[memoryview]) -> _View:
+    buffer = buffers[item.need("buffer").index(len(buffers), "buffers")]
+    offset_item = item.get("byteOffset")
+    offset = 0 if offset_item is None else offset_item.integer(0)
+    length = item.need("byteLength").integer(1)
+    if offset + length > len(buffer):
+        item.fail(
+            f"beyond its buffer ({len(buffer)} bytes): wanted byteOffset + byteLength at most "
+            f"{len(buffer)}, got {short(offset)} + {short(length)}"
+        )
+    stride = item.get("byteStride")
+    return _View(
+        buffer[offset : offset + length],
+        None if stride is None else stride.integer(1, 252),
+        item,
+    )

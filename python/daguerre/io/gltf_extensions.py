@@ -1,0 +1,63 @@
+"""Which extensions of glTF are understood, and what happens to the others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .json_item import Item, clean, short
+from .notes import Notes
+
+KNOWN = frozenset(
+    {
+        "EXT_camera_physical",
+        "KHR_lights_punctual",
+        "KHR_materials_emissive_strength",
+        "KHR_materials_ior",
+        "KHR_materials_specular",
+        "KHR_materials_transmission",
+        "KHR_materials_volume",
+        "KHR_mesh_quantization",
+        "KHR_texture_transform",
+    }
+)
+
+
+def check_extensions(root: Item, notes: Notes) -> None:
+    """Refuses what is required and unknown; reports by name and count what is optional.
+
+    Raises:
+        InputError: A required extension is unknown.
+    """
+    for item in root.list_of("extensionsRequired"):
+        if item.text() not in KNOWN:
+            item.fail(
+                f"unknown extension: wanted one of {', '.join(sorted(KNOWN))}, "
+                f"got {short(item.text())}"
+            )
+    listed = [item.text() for item in root.list_of("extensionsUsed")]
+    counts = _count_uses(root.value)
+    for name in dict.fromkeys([*listed, *counts]):
+        if name not in KNOWN:
+            # What is listed but appears nowhere still says what the file was made for.
+            notes.add(f"extension {short(clean(name))} is not understood", counts.get(name, 0))
+
+
+def _count_uses(document: Any) -> dict[str, int]:
+    """How often each extension appears; walks without recursion, in the order of the file."""
+    counts: dict[str, int] = {}
+    stack: list[Any] = [document]
+    while stack:
+        value = stack.pop()
+        if isinstance(value, dict):
+            extensions = value.get("extensions")
+            if isinstance(extensions, dict):
+                for name in extensions:
+                    counts[name] = counts.get(name, 0) + 1
+            stack.extend(
+                child
+                for key, child in reversed(value.items())
+                if key != "extras" and isinstance(child, (dict, list))
+            )
+        elif isinstance(value, list):
+            stack.extend(child for child in reversed(value) if isinstance(child, (dict, list)))
+    return counts

@@ -1,0 +1,234 @@
+"""Pictures into arrays: PNG and JPEG of textures from bytes, environments from files.
+
+OpenImageIO decodes; what it forgives or prints itself (a cut-off JPEG becomes grey, libpng writes
+to stderr) is refused here first. Its Python wheel cannot read from memory, so bytes pass through a
+temporary file.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import tempfile
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+
+from .json_item import short
+
+MAX_PIXELS = 16384 * 16384
+MAX_BYTES = 1 << 30
+_PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
+# Deflate cannot shrink data more than this (zlib's "Technical details").
+_DEFLATE_LIMIT = 1032
+
+
+def srgb_to_linear(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The sRGB transfer function undone (IEC 61966-2-1), any shape, 0 .. 1."""
+    low = values / np.float32(12.92)
+    high = ((np.maximum(values, 0) + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
+    return np.where(values <= np.float32(0.04045), low, high).astype(np.float32)
+
+
+def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[np.float32]:
+    """Decodes a PNG or JPEG; straight alpha, row 0 on top.
+
+    Args:
+        data: The bytes of the file.
+        where: File and JSON path, for complaints.
+
+    Returns:
+        Shape (H, W, 1..4); uint8, or float32 in 0 .. 1 from 16-bit pictures (rounding them to 8
+        bits would show as steps in normal maps).
+
+    Raises:
+        InputError: Neither PNG nor JPEG, truncated, corrupt or absurdly large.
+    """
+    data = bytes(data)
+    if data.startswith(_PNG_MAGIC):
+        _check_png(data, where)
+        suffix = ".png"
+    elif data.startswith(b"\xff\xd8\xff"):
+        # libjpeg fills what is missing with grey; without an end marker something is missing.
+        if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
+            raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
+        suffix = ".jpg"
+    else:
+        raise InputError(f"{where}: wanted a PNG or JPEG image, got {short(data[:8])}")
+    descriptor, name = tempfile.mkstemp(suffix=suffix, prefix="daguerre-")
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+        pixels, _, _ = _read(name, where)
+    finally:
+        Path(name).unlink(missing_ok=True)
+    if pixels.shape[2] > 4:
+        raise InputError(f"{where}: wanted 1 to 4 channels, got {pixels.shape[2]}")
+    if pixels.dtype == np.uint8:
+        return pixels
+    if pixels.dtype == np.uint16:
+        return pixels.astype(np.float32) / np.float32(65535)
+    return pixels.astype(np.float32)
+
+
+def read_environment(path: str | Path) -> NDArray[np.float32]:
+    """Reads an equirectangular picture; .hdr and .exr are linear, integer formats sRGB.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Linear RGB, float32, shape (H, W, 3), row 0 at the zenith.
+
+    Raises:
+        InputError: It cannot be read, has no colour, or holds NaN, Inf or negative light.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(f"{file}: wanted an image file, got no such file")
+    pixels, spec, kind = _read(str(file), str(file))
+    if np.issubdtype(pixels.dtype, np.integer):
+        scale = np.float32(np.iinfo(pixels.dtype).max)
+        rgb = srgb_to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
+    else:
+        rgb = _rgb(pixels, spec, file).astype(np.float32)
+    if kind == "openexr":
+        rgb = _uncrop(rgb, spec)
+    if kind == "hdr":
+        rgb /= np.float32(_radiance_exposure(file))
+    rgb = _upright(rgb, spec.get_int_attribute("Orientation", 1))
+    for name, bad in (("finite", ~np.isfinite(rgb)), ("non-negative", rgb < 0)):
+        count = int(bad.any(axis=2).sum())
+        if count:
+            y, x = np.argwhere(bad.any(axis=2))[0]
+            raise InputError(
+                f"{file}: pixel ({x}, {y}): wanted {name} light, got {rgb[y, x].tolist()} "
+                f"({count} such pixels)"
+            )
+    return np.ascontiguousarray(rgb)
+
+
+def _read(name: str, where: str) -> tuple[NDArray[Any], Any, str]:
+    """Pixels in their own type, the specification, and the name of the format; straight alpha."""
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    source = oiio.ImageInput.open(name, config)
+    if source is None:
+        raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
+    try:
+        spec = source.spec()
+        _check_size(spec.width, spec.height, spec.nchannels, spec.format.basesize(), where)
+        pixels = source.read_image(0, 0, 0, spec.nchannels, spec.format)
+        error, kind = source.geterror(), str(source.format_name())
+    finally:
+        source.close()
+    if pixels is None or (error and "extraneous bytes" not in error):
+        raise InputError(f"{where}: cannot be decoded: {_reason(error, name)}")
+    return np.asarray(pixels).reshape(spec.height, spec.width, spec.nchannels), spec, kind
+
+
+def _reason(error: str, name: str) -> str:
+    line = error.strip().splitlines()[0] if error.strip() else "no reason given"
+    return line.replace(f'("{name}")', "").replace(name, Path(name).name).strip()[:200]
+
+
+def _check_size(width: int, height: int, channels: int, bytes_each: int, where: str) -> None:
+    if min(width, height, channels) < 1:
+        raise InputError(f"{where}: image size: wanted at least 1x1, got {width}x{height}")
+    size = width * height * channels * bytes_each
+    if width * height > MAX_PIXELS or size > MAX_BYTES:
+        raise InputError(
+            f"{where}: image size: wanted at most {MAX_PIXELS} pixels and {MAX_BYTES >> 20} MiB, "
+            f"got {width}x{height} ({size >> 20} MiB)"
+        )
+
+
+def _check_png(data: bytes, where: str) -> None:
+    """Chunks complete and their checksums right (PNG specification, chapters 5 and 11)."""
+    offset, packed, header = len(_PNG_MAGIC), 0, b""
+    while True:
+        if offset + 12 > len(data):
+            raise InputError(f"{where}: truncated PNG: wanted an IEND chunk, got none")
+        length, kind = struct.unpack_from(">I4s", data, offset)
+        end = offset + 12 + length
+        if end > len(data):
+            raise InputError(
+                f"{where}: truncated PNG: wanted {end} bytes at least, got {len(data)}"
+            )
+        (stored,) = struct.unpack_from(">I", data, end - 4)
+        if kind[:1].isupper() and zlib.crc32(data[offset + 4 : end - 4]) != stored:
+            raise InputError(f"{where}: corrupt PNG: wrong checksum of chunk {short(kind)}")
+        if kind == b"IHDR":
+            header = data[offset + 8 : end - 4]
+        packed += length if kind == b"IDAT" else 0
+        if kind == b"IEND":
+            break
+        offset = end
+    if len(header) != 13:
+        raise InputError(f"{where}: corrupt PNG: wanted 13 bytes of IHDR, got {len(header)}")
+    width, height, depth, color = struct.unpack_from(">IIBB", header)
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}.get(color, 1)
+    _check_size(width, height, channels, max(depth // 8, 1), where)
+    unpacked = height * ((width * depth * channels + 7) // 8)
+    if unpacked > packed * _DEFLATE_LIMIT + 64:
+        raise InputError(
+            f"{where}: truncated PNG: {packed} bytes cannot hold {width}x{height} pixels"
+        )
+
+
+def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
+    """The colour channels: R, G, B wherever they stand, or one grey."""
+    names = [str(name).rsplit(".", 1)[-1].upper() for name in spec.channelnames]
+    if all(name in names for name in "RGB"):
+        return pixels[:, :, [names.index(name) for name in "RGB"]]
+    if names[:1] in (["Y"], ["I"], ["L"]) or len(names) == 1:
+        return np.repeat(pixels[:, :, :1], 3, axis=2)
+    raise InputError(f"{file}: channels: wanted R, G, B or one grey, got {', '.join(names[:8])}")
+
+
+def _uncrop(rgb: NDArray[np.float32], spec: Any) -> NDArray[np.float32]:
+    """EXR data window into its display window; outside it the light is 0."""
+    full = (spec.full_height, spec.full_width)
+    x, y = spec.x - spec.full_x, spec.y - spec.full_y
+    if (x, y) == (0, 0) and full == rgb.shape[:2]:
+        return rgb
+    _check_size(full[1], full[0], 3, 4, "EXR display window")
+    canvas = np.zeros((*full, 3), np.float32)
+    x0, y0 = max(x, 0), max(y, 0)
+    x1, y1 = min(x + rgb.shape[1], full[1]), min(y + rgb.shape[0], full[0])
+    if x1 > x0 and y1 > y0:
+        canvas[y0:y1, x0:x1] = rgb[y0 - y : y1 - y, x0 - x : x1 - x]
+    return canvas
+
+
+def _radiance_exposure(file: Path) -> float:
+    """Product of the EXPOSURE lines: Radiance's pixels are light times this (filefmts.pdf)."""
+    with file.open("rb") as stream:
+        lines = stream.read(8192).split(b"\n\n", 1)[0].splitlines()
+    exposure = 1.0
+    for line in lines:
+        if line.startswith(b"EXPOSURE="):
+            try:
+                exposure *= float(line[9:])
+            except ValueError:
+                exposure = -1.0
+    if not 0 < exposure < float("inf"):
+        raise InputError(f"{file}: EXPOSURE: wanted a positive number, got a broken line")
+    return exposure
+
+
+def _upright(rgb: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
+    """The Exif orientation 1 .. 8 undone."""
+    if orientation >= 5:
+        rgb = rgb.transpose(1, 0, 2)
+    if orientation in (2, 3, 6, 7):
+        rgb = rgb[:, ::-1]
+    if orientation in (3, 4, 7, 8):
+        rgb = rgb[::-1]
+    return rgb

@@ -1,0 +1,202 @@
+"""JSON values that know where they stand, so that every complaint names file and JSON path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+from typing import Any, NoReturn
+
+from daguerre.errors import InputError
+
+
+def short(value: object, limit: int = 60) -> str:
+    """``repr`` of something from a file, at most ``limit`` characters long."""
+    if isinstance(value, dict):
+        return "an object"
+    if isinstance(value, list) and len(value) > 16:
+        return f"a list of {len(value)}"
+    if isinstance(value, (str, bytes)) and len(value) > limit:
+        return repr(value[: limit - 20]) + f"... ({len(value)} long)"
+    text = repr(value)
+    return text if len(text) <= limit + 20 else text[:limit] + "..."
+
+
+def clean(name: str) -> str:
+    """A name that can be printed and written as UTF-8, free of control characters."""
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)[:200]
+
+
+class Item:
+    """A JSON value with its place; the getters check type and range and raise ``InputError``.
+
+    The path is put together only when something is wrong: a scene may have a million nodes.
+    """
+
+    __slots__ = ("key", "parent", "value")
+
+    def __init__(self, value: Any, key: str | int, parent: Item | None = None) -> None:
+        self.value = value
+        self.key = key
+        self.parent = parent
+
+    @property
+    def path(self) -> str:
+        """Such as ``meshes[2].primitives[0].attributes.POSITION``."""
+        keys: list[str] = []
+        item: Item = self
+        while item.parent is not None:
+            keys.append(f"[{item.key}]" if isinstance(item.key, int) else f".{item.key}")
+            item = item.parent
+        return "".join(reversed(keys)).lstrip(".")
+
+    @property
+    def file(self) -> str:
+        """The file that this value comes from."""
+        item: Item = self
+        while item.parent is not None:
+            item = item.parent
+        return str(item.key)
+
+    def fail(self, message: str) -> NoReturn:
+        """Raises ``InputError`` for this value."""
+        path = self.path
+        raise InputError(f"{self.file}: {path}: {message}" if path else f"{self.file}: {message}")
+
+    def _type(self, wanted: str) -> NoReturn:
+        self.fail(f"wrong type: wanted {wanted}, got {short(self.value)}")
+
+    def get(self, key: str) -> Item | None:
+        """The member of that name, or None; this must be an object."""
+        if not isinstance(self.value, dict):
+            self._type("an object")
+        return Item(self.value[key], key, self) if key in self.value else None
+
+    def need(self, key: str) -> Item:
+        """The member of that name; it must be there."""
+        member = self.get(key)
+        if member is None:
+            Item(None, key, self).fail("missing: wanted a value, got none")
+        return member
+
+    def members(self) -> list[Item]:
+        """All members of an object."""
+        if not isinstance(self.value, dict):
+            self._type("an object")
+        return [Item(value, key, self) for key, value in self.value.items()]
+
+    def __iter__(self) -> Iterator[Item]:
+        if not isinstance(self.value, list):
+            self._type("a list")
+        return (Item(value, i, self) for i, value in enumerate(self.value))
+
+    def list_of(self, key: str) -> list[Item]:
+        """The elements of a member that is a list; none if it is absent."""
+        member = self.get(key)
+        return [] if member is None else list(member)
+
+    def number(
+        self, low: float = -math.inf, high: float = math.inf, *, above: float | None = None
+    ) -> float:
+        """A finite number in [low, high] and, if given, greater than ``above``."""
+        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)):
+            self._type("a number")
+        try:
+            number = float(self.value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            self.fail(f"not finite: wanted a finite number, got {short(self.value)}")
+        if above is not None and number <= above:
+            self.fail(f"out of range: wanted a number above {above:g}, got {number:g}")
+        if not low <= number <= high:
+            bounds = f"{low:g} .. {high:g}" if math.isfinite(high) else f"at least {low:g}"
+            self.fail(f"out of range: wanted {bounds}, got {number:g}")
+        return number
+
+    def integer(self, low: int = 0, high: int | None = None) -> int:
+        """An integer in [low, high]; 3.0 counts as one, as JSON has but one kind of number."""
+        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)):
+            self._type("an integer")
+        if isinstance(self.value, float) and not self.value.is_integer():
+            self._type("an integer")
+        number = int(self.value)
+        if number < low or (high is not None and number > high):
+            bounds = f"at least {low}" if high is None else f"{low} .. {high}"
+            self.fail(f"out of range: wanted {bounds}, got {short(number)}")
+        return number
+
+    def index(self, count: int, of: str) -> int:
+        """An index into a list of the file with ``count`` elements."""
+        if count == 0 and isinstance(self.value, int) and not isinstance(self.value, bool):
+            self.fail(f"index out of range: wanted none, as there are no {of}, got {self.value}")
+        number = self.integer(-(2**63))
+        if not 0 <= number < count:
+            self.fail(f"index out of range: wanted 0 .. {count - 1} ({of}), got {short(number)}")
+        return number
+
+    def numbers(
+        self, count: int, low: float = -math.inf, high: float = math.inf
+    ) -> tuple[float, ...]:
+        """A list of exactly ``count`` finite numbers in [low, high]."""
+        if not isinstance(self.value, list):
+            self._type(f"a list of {count} numbers")
+        if len(self.value) != count:
+            self.fail(f"wrong length: wanted {count} numbers, got {len(self.value)}")
+        return tuple(element.number(low, high) for element in self)
+
+    def text(self) -> str:
+        """A string."""
+        if not isinstance(self.value, str):
+            self._type("a string")
+        return str(self.value)
+
+    def flag(self) -> bool:
+        """True or false."""
+        if not isinstance(self.value, bool):
+            self._type("true or false")
+        return bool(self.value)
+
+    def choice(self, options: Collection[Any]) -> Any:
+        """One of a few values."""
+        if isinstance(self.value, bool) or not isinstance(self.value, (str, int)):
+            self._type("one of " + ", ".join(map(repr, options)))
+        if self.value not in options:
+            wanted = ", ".join(map(repr, options))
+            self.fail(f"unknown value: wanted one of {wanted}, got {short(self.value)}")
+        return self.value
+
+    # Optional members with a default ------------------------------------------------------------
+
+    def number_of(
+        self,
+        key: str,
+        default: float,
+        low: float = -math.inf,
+        high: float = math.inf,
+        *,
+        above: float | None = None,
+    ) -> float:
+        """A member that is a number, or the default."""
+        member = self.get(key)
+        return default if member is None else member.number(low, high, above=above)
+
+    def numbers_of(
+        self,
+        key: str,
+        default: tuple[float, ...],
+        low: float = -math.inf,
+        high: float = math.inf,
+    ) -> tuple[float, ...]:
+        """A member that is a list as long as the default, or the default."""
+        member = self.get(key)
+        return default if member is None else member.numbers(len(default), low, high)
+
+    def name(self) -> str:
+        """The member ``name``, cleaned for printing; empty if absent."""
+        member = self.get("name")
+        return "" if member is None else clean(member.text())
+
+    def extension(self, name: str) -> Item | None:
+        """The object of an extension, or None."""
+        extensions = self.get("extensions")
+        return None if extensions is None else extensions.get(name)

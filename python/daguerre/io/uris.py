@@ -1,0 +1,92 @@
+"""URIs inside scene files: data URIs are unpacked, paths must stay in the scene's folder.
+
+A scene comes from strangers. Without this wall, a file could make the renderer read any other file
+of the user and carry it out inside a texture.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from urllib.parse import unquote, unquote_to_bytes, urlsplit
+
+from .json_item import Item, short
+
+
+class Folder:
+    """The folder of a scene and the folders allowed besides; both with links followed.
+
+    Args:
+        scene: Path of the scene file.
+        allow_dirs: Further folders whose files may be read.
+    """
+
+    def __init__(self, scene: Path, allow_dirs: Iterable[str | os.PathLike[str]] = ()) -> None:
+        if isinstance(allow_dirs, (str, os.PathLike)):
+            allow_dirs = (allow_dirs,)
+        self.base = Path(os.path.realpath(scene.parent))
+        self.allowed = [self.base, *(Path(os.path.realpath(d)) for d in allow_dirs)]
+
+    def resolve(self, uri: Item) -> Path:
+        """The existing ordinary file that a URI names.
+
+        Raises:
+            InputError: The URI leaves the allowed folders, or there is no such file.
+        """
+        path = self._path(uri)
+        if not any(path.is_relative_to(directory) for directory in self.allowed):
+            uri.fail(
+                f"leaves the scene's folder: wanted a file under {str(self.base)!r} "
+                f"(--allow-dir widens), got {short(uri.text())}"
+            )
+        # Only ordinary files: a pipe or a device would never end.
+        try:
+            found = path.is_file()
+        except OSError:  # a name too long for any file
+            found = False
+        if not found:
+            uri.fail(f"missing file: wanted {short(str(path), 200)}, got no such file")
+        return path
+
+    def _path(self, uri: Item) -> Path:
+        text = uri.text()
+        name = unquote(text)
+        scheme = re.match(r"([A-Za-z][A-Za-z0-9+.-]*):", text)
+        if scheme and scheme[1].lower() == "file":
+            parts = urlsplit(text)
+            if parts.netloc not in ("", "localhost"):
+                uri.fail(f"refused: wanted a local file, got {short(text)}")
+            name = unquote(parts.path)
+        elif scheme:
+            uri.fail(f"refused: wanted a relative path or a data URI, got {short(text)}")
+        # Some exporters write backslashes; read as separators they cannot hide a way up.
+        name = name.replace("\\", "/")
+        if not name or "\0" in name:
+            uri.fail(f"refused: wanted the name of a file, got {short(text)}")
+        try:
+            return Path(os.path.realpath(self.base / name))
+        except (OSError, ValueError) as error:
+            uri.fail(f"refused: wanted the name of a file, got {short(text)} ({error})")
+
+
+def is_data(uri: Item) -> bool:
+    """Whether the URI carries its bytes itself."""
+    return uri.text()[:5].lower() == "data:"
+
+
+def data_bytes(uri: Item) -> bytes:
+    """The bytes of a data URI (RFC 2397), base64 or percent-encoded."""
+    header, comma, body = uri.text().partition(",")
+    if not comma:
+        uri.fail(f"broken data URI: wanted 'data:...;base64,...', got {short(uri.text())}")
+    try:
+        raw = unquote_to_bytes(body) if "%" in body else body.encode("ascii")
+        if not header.lower().endswith(";base64"):
+            return unquote_to_bytes(body)
+        return base64.b64decode(raw, validate=True)
+    except (binascii.Error, ValueError) as error:
+        uri.fail(f"broken data URI: wanted base64, got {short(uri.text())} ({error})")
