@@ -64,8 +64,8 @@ class Film {
     /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height; 0 without
     /// samples.
     std::vector<float> mean_xyz() const;
-    /// Variance of the mean of linear Rec.709 R, G, B (see film.cpp); 0 for less than two
-    /// samples.
+    /// Variance of the mean of linear Rec.709 R, G, B (see film_read.cpp); 0 for less
+    /// than two samples.
     std::vector<float> variance_rgb() const;
     std::vector<std::uint32_t> sample_counts() const;
     /// Mean over the samples that brought one, 0 where none did. Names: aov_names(); else
@@ -91,6 +91,8 @@ class Film {
 
   private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
+    /// Depth, position, normal come from samples that hit; the rest from all that passed.
+    static constexpr int kHitAovs = 7;
     struct Pixel {
         ValueSum xyz[3];
         SquareSum rgb_squares[3];

@@ -1,0 +1,99 @@
+// film_read.cpp -- what is read from the exact sums: means, variance, auxiliary values,
+// bad samples.
+//
+// Variance of the mean of n samples s: (sum s^2 - (sum s)^2 / n) / (n (n - 1)), which
+// takes samples as independent; stratified ones scatter less, so it errs on the safe
+// side. A splat adds its value and its square but no count: the pixel then is a sum of
+// independent arrivals (compound Poisson), whose variance is the expected sum of squares,
+// so the same formula holds. Splats of one camera sample in one pixel would be
+// correlated: the caller adds them up first.
+#include <algorithm>
+
+#include "film/film.h"
+#include "math/error.h"
+
+namespace dg {
+
+std::vector<float> Film::mean_xyz() const {
+    std::vector<float> mean;
+    mean.reserve(3 * pixels_.size());
+    for (const Pixel& p : pixels_)
+        for (const ValueSum& sum : p.xyz)
+            mean.push_back(p.count ? float(sum.value() / p.count) : 0.f);
+    return mean;
+}
+
+std::vector<float> Film::variance_rgb() const {
+    std::vector<float> variance;
+    variance.reserve(3 * pixels_.size());
+    for (const Pixel& p : pixels_) {
+        const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()};
+        const double n = p.count;
+        for (int k = 0; k < 3; ++k) {
+            const double sum = dot(to_double(rgb_from_xyz_[k]), xyz);
+            const double scatter = p.rgb_squares[k].value() - sum * sum / n;
+            variance.push_back(n < 2 ? 0.f
+                                     : float(std::max(0.0, scatter / (n * (n - 1)))));
+        }
+    }
+    return variance;
+}
+
+std::vector<std::uint32_t> Film::sample_counts() const {
+    std::vector<std::uint32_t> counts;
+    for (const Pixel& p : pixels_) counts.push_back(p.count);
+    return counts;
+}
+
+const std::vector<Film::AovPixel>& Film::require_aovs() const {
+    if (!layout_.aovs) throw Error("film: this film was made without aovs");
+    return aovs_;
+}
+
+const std::vector<std::string>& Film::aov_names() {
+    static const std::vector<std::string> names{
+        "depth.Z", "P.X",      "P.Y",      "P.Z",      "N.X",  "N.Y",
+        "N.Z",     "albedo.R", "albedo.G", "albedo.B", "alpha"};
+    return names;
+}
+
+std::vector<float> Film::aov(const std::string& name) const {
+    const auto& names = aov_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+        std::string known;
+        for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+        throw input_error("film", "aov", "one of " + known, name);
+    }
+    const auto k = found - names.begin();
+    std::vector<float> mean;
+    for (const AovPixel& p : require_aovs()) {
+        const std::uint32_t n = k < kHitAovs ? p.hits : p.passed;
+        mean.push_back(n ? float(p.sums[k].value() / n) : 0.f);
+    }
+    return mean;
+}
+
+std::vector<std::uint32_t> Film::object_ids() const {
+    std::vector<std::uint32_t> ids;
+    for (const AovPixel& p : require_aovs()) ids.push_back(p.object_id);
+    return ids;
+}
+
+std::vector<BadSample> Film::bad_samples() const {
+    std::vector<BadSample> bad;
+    for (std::size_t i = 0; i < pixels_.size() && bad.size() < 100; ++i)
+        if (pixels_[i].bad)
+            bad.push_back({layout_.offset_x + int(i % layout_.width),
+                           layout_.offset_y + int(i / layout_.width),
+                           pixels_[i].first_bad});
+    return bad;
+}
+
+std::uint64_t Film::bad_sample_count() const {
+    std::uint64_t count = 0;
+    for (const Pixel& p : pixels_) count += p.bad;
+    return count;
+}
+
+}  // namespace dg
