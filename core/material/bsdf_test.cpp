@@ -62,7 +62,8 @@ void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
         cases.push_back({name, GltfBsdf(s, ns, kNg), ior, lossless && straight, clear});
     };
     for (float roughness : {0.f, 0.4f, 1.f}) {
-        const std::string r = " " + std::to_string(roughness);
+        std::string r = std::to_string(roughness);
+        r.insert(r.begin(), ' ');
         add("gltf plastic" + r, surface(0, roughness));
         add("gltf metal" + r, surface(1, roughness));
         add("gltf alloy" + r, surface(0.4f, roughness));

@@ -24,7 +24,7 @@ inline Vec2f unit_circle(float u) {
                   t2 * (1 / 24.f + t2 * (-1 / 720.f +
                                          t2 * (1 / 40320.f + t2 * (-1 / 3628800.f +
                                                                    t2 / 479001600.f)))));
-    return {2 * s * s - 1, -2 * s * c};
+    return {(s - c) * (s + c), -2 * s * c};
 }
 
 /// Cosine-weighted direction about n; density cos / pi.
