@@ -48,7 +48,8 @@ void bind_render(nb::module_& m) {
     nb::class_<Filter>(m, "Filter")
         .def("__init__",
              [](Filter* f, const std::string& kind, float radius) {
-                 new (f) Filter(Filter::from_name(kind, radius));
+                 const FilterKind k = filter_kind(kind);
+                 new (f) Filter(k, radius > 0 ? radius : default_radius(k));
              },
              "kind"_a, "radius"_a = 0.f, "kind: box, gaussian, blackman_harris, mitchell; radius in px, 0: its default.");
 

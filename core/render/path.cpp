@@ -24,7 +24,7 @@ struct Walk {
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
 float emission_weight(const Walk& walk, float light_pdf, PathSettings::Strategy strategy) {
-    if (walk.from_delta || strategy == PathSettings::Strategy::bsdf) return 1;
+    if (walk.from_delta || light_pdf <= 0 || strategy == PathSettings::Strategy::bsdf) return 1;
     if (strategy == PathSettings::Strategy::light) return 0;
     return power_heuristic(walk.bsdf_pdf, light_pdf);
 }
@@ -33,7 +33,7 @@ Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavele
                               PathSettings::Strategy strategy) {
     const LightSet& lights = scene.lights();
     if (!lights.has_environment()) return 0.f;
-    const float pdf = walk.from_delta ? 0 : lights.pdf_environment(walk.ray.direction);
+    const float pdf = walk.from_delta ? 0 : lights.pdf_environment(walk.ray.direction, walk.previous);
     return lights.environment_radiance(walk.ray.direction, wl) *
            emission_weight(walk, pdf, strategy);
 }
@@ -44,9 +44,10 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
     if (!emits(material)) return 0.f;
     const Rgb luminance = emitted(material, scene.textures(), hit);
     if (max_component(luminance) <= 0) return 0.f;
-    const float pdf = walk.from_delta ? 0
-                                      : scene.lights().pdf_triangle(hit.instance, hit.primitive, hit.t,
-                                                                    std::abs(dot(hit.ng, hit.wo)));
+    const float pdf =
+        walk.from_delta ? 0
+                        : scene.lights().pdf_triangle(hit.instance, hit.primitive, hit.t,
+                                                      std::abs(dot(hit.ng, hit.wo)), walk.previous);
     return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
 }
 
@@ -103,8 +104,7 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
             break;
         }
         SurfaceHit& hit = found->surface;
-        if (walk.medium.present)
-            walk.throughput *= pow(walk.medium.color, hit.t / walk.medium.distance);
+        if (walk.medium.present) walk.throughput *= walk.medium.transmittance(hit.t);
         if (found->sphere_light >= 0) {
             const auto sphere = std::uint32_t(found->sphere_light);
             const float pdf =
