@@ -1,6 +1,7 @@
 // emitter_check.h -- checks that the kinds of light share, and the brightness by which
 // they are chosen.
 #pragma once
+#include <sstream>
 #include <string>
 
 #include "math/error.h"
@@ -9,8 +10,9 @@
 namespace dg {
 
 inline std::string vector_text(Vec3f v) {
-    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
-           std::to_string(v.z) + ")";
+    std::ostringstream text;
+    text << "(" << v.x << ", " << v.y << ", " << v.z << ")";
+    return text.str();
 }
 
 inline bool is_finite(Vec3f v) {

@@ -9,6 +9,7 @@
 #include "geometry/intersector.h"
 #include "light/light.h"
 #include "material/material.h"
+#include "scene/instance_record.h"
 
 namespace dg {
 
@@ -18,42 +19,73 @@ struct Instance {
     Affine3f world_from_local;
 };
 
-/// What a scene is built from. Lights made of meshes are found by Scene::build from the materials.
+/// What a scene is built from. Lights made of meshes are found by Scene::build from the
+/// materials.
 struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Instance> instances;
-    std::vector<Light> lights;                 // punctual and sphere lights
+    std::vector<Light> lights;  // punctual and sphere lights
     std::optional<Environment> environment;
 };
 
 class Scene {
   public:
-    /// Validates (indices, NaN, singular transforms: Error names the part), finds emissive triangles,
-    /// builds the intersector and the light set.
+    /// Validates (indices, NaN, singular transforms: Error names the part), finds
+    /// emissive triangles, builds the intersector and the light set. A scene without
+    /// instances is allowed.
     static std::shared_ptr<const Scene> build(SceneDescription description);
+    ~Scene();
 
-    /// Nearest surface. Sphere lights come back with sphere_light >= 0 and only position and t set.
-    struct Hit { SurfaceHit surface; std::int64_t sphere_light = -1; };
+    /// Nearest surface. Sphere lights come back with sphere_light >= 0 and only position,
+    /// t and wo set. The tangent follows the texture only where the material has a normal
+    /// map, and uv is read only where the material has textures.
+    struct Hit {
+        SurfaceHit surface;
+        std::int64_t sphere_light = -1;
+    };
     std::optional<Hit> intersect(const Ray& ray) const;
+    /// Is anything between `from` (as spawn_ray moved it) and the point at `distance`
+    /// along the unit direction? What lies at the point itself does not count.
     bool occluded(Vec3f from, Vec3f to_direction, float distance, float time) const;
 
-    const Material& material(const SurfaceHit& hit) const;
-    const std::vector<Texture>& textures() const;
-    const LightSet& lights() const;
+    const Material& material(const SurfaceHit& hit) const {
+        return description_.materials[records_[hit.instance].material];
+    }
+    const std::vector<Texture>& textures() const { return description_.textures; }
+    const LightSet& lights() const { return lights_; }
     /// Light sampling with textured emission resolved (see LightSample::triangle_light).
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
                                             const Wavelengths& wavelengths) const;
 
-    struct Bounds { Vec3f min, max; };
-    Bounds bounds() const;
-    std::size_t triangle_count() const;       // instanced
-    const SceneDescription& description() const;
-    const char* intersector_name() const;
+    struct Bounds {
+        Vec3f min, max;
+    };
+    /// Of the instances; all 0 without any.
+    Bounds bounds() const { return bounds_; }
+    std::size_t triangle_count() const { return triangle_count_; }  // instanced
+    const SceneDescription& description() const { return description_; }
+    const char* intersector_name() const { return intersector_->name(); }
+
+  private:
+    explicit Scene(SceneDescription description);
+    void build_intersector();
+    void build_records();
+    void build_lights();
+    void measure();
+    bool passes(const Ray& ray, const RawHit& hit) const;
+
+    SceneDescription description_;
+    std::unique_ptr<Intersector> intersector_;
+    std::vector<InstanceRecord> records_;
+    LightSet lights_;
+    Bounds bounds_{};
+    std::size_t triangle_count_ = 0;
 };
 
-/// A ray that leaves `hit` along `wi`, its origin moved off the surface to the proper side.
+/// A ray that leaves `hit` along `wi`, its origin moved off the surface to the proper
+/// side.
 Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time);
 
 }  // namespace dg

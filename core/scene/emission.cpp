@@ -1,0 +1,105 @@
+// emission.cpp -- emissive meshes become triangle lights.
+#include "scene/emission.h"
+
+namespace dg {
+namespace {
+
+// Points per edge of the lattice that measures a textured triangle.
+constexpr int kLargestLattice = 32;
+// A textured triangle that the lattice could not resolve keeps this share of the largest
+// possible emission, so that no lit texel is out of reach of light sampling.
+constexpr float kUnseenShare = 1e-3f;
+
+/// Steps along an edge that make neighbouring lattice points at most one texel apart.
+int texel_steps(const InstanceRecord& r, const GltfMaterial& m,
+                const std::vector<Texture>& textures, std::uint32_t primitive) {
+    const TextureSlot& slot = m.emissive_texture;
+    const Texture& texture = textures[slot.index];
+    const Vec2f* uv = r.uv[slot.uv_set];
+    if (!uv) return 1;
+    float longest = 0;
+    const auto& t = r.triangles[primitive];
+    for (int i = 0; i < 3; ++i) {
+        const Vec2f d = slot.transform(uv[t[i]]) - slot.transform(uv[t[(i + 1) % 3]]);
+        longest = std::max(longest, std::max(std::abs(d.x) * texture.width,
+                                             std::abs(d.y) * texture.height));
+    }
+    return longest < 1e6f ? std::max(1, static_cast<int>(std::ceil(longest))) : 1'000'000;
+}
+
+struct Measured {
+    Rgb mean{0, 0, 0};  // of the brighter side
+    bool front = false, back = false;
+};
+
+Measured measure(const InstanceRecord& record, const Material& material,
+                 const std::vector<Texture>& textures, std::uint32_t primitive) {
+    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
+    const bool textured = gltf && gltf->emissive_texture.used();
+    const int wanted = textured ? texel_steps(record, *gltf, textures, primitive) : 2;
+    const int n = std::min(wanted, kLargestLattice);
+    Rgb sums[2]{};
+    int count = 0;
+    for (int i = 0; i <= n; ++i) {
+        for (int j = 0; j <= n - i; ++j, ++count) {
+            const Vec2f b{float(i) / float(n), float(j) / float(n)};
+            for (int side = 0; side < 2; ++side) {
+                sums[side] +=
+                    emission_at(record, material, textures, primitive, b, side == 0);
+            }
+        }
+    }
+    Measured m;
+    m.front = max_component(sums[0]) > 0;
+    m.back = max_component(sums[1]) > 0;
+    const bool resolved = wanted <= n;
+    if (!resolved) {
+        const Rgb least = (material.emission + gltf->emissive) * kUnseenShare;
+        for (Rgb& s : sums) {
+            s = {std::max(s.x, least.x * count), std::max(s.y, least.y * count),
+                 std::max(s.z, least.z * count)};
+        }
+        m.front = true;
+        m.back = m.back || gltf->double_sided || material.two_sided_emission;
+    }
+    const bool brighter_back = m.back && max_component(sums[1]) > max_component(sums[0]);
+    m.mean = sums[brighter_back ? 1 : 0] / float(count);
+    return m;
+}
+
+}  // namespace
+
+Rgb emission_at(const InstanceRecord& record, const Material& material,
+                const std::vector<Texture>& textures, std::uint32_t primitive,
+                Vec2f barycentric, bool front) {
+    SurfaceHit hit;
+    hit.front = front;
+    interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
+    const Rgb full = emitted(material, textures, hit);
+    if (max_component(full) <= 0) return {0, 0, 0};
+    return full * opacity(material, textures, hit.uv, hit.color[3]);
+}
+
+void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
+                               std::size_t triangle_count, const Material& material,
+                               const std::vector<Texture>& textures,
+                               std::vector<Light>& lights) {
+    if (!emits(material)) return;
+    for (std::uint32_t i = 0; i < triangle_count; ++i) {
+        const auto& t = record.triangles[i];
+        auto world = [&](int k) {
+            return to_float(
+                record.world_from_local.point(to_double(record.positions[t[k]])));
+        };
+        TriangleLight light{world(0), world(1), world(2), {},
+                            instance, i,        false,    record.mirrored};
+        if (!(length(cross(light.b - light.a, light.c - light.a)) > 0)) continue;
+        const Measured m = measure(record, material, textures, i);
+        if (!m.front && !m.back) continue;
+        light.mean_luminance = m.mean;
+        light.two_sided = m.back;
+        lights.push_back(light);
+    }
+}
+
+}  // namespace dg

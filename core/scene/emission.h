@@ -1,0 +1,20 @@
+// emission.h -- emissive meshes become triangle lights.
+#pragma once
+#include "light/light.h"
+#include "scene/instance_record.h"
+
+namespace dg {
+
+/// Emission (cd/m2) of a point of the triangle toward its front or back, as a ray that
+/// hits it would find it on average: with texture, vertex colour and opacity.
+Rgb emission_at(const InstanceRecord& record, const Material& material,
+                const std::vector<Texture>& textures, std::uint32_t primitive,
+                Vec2f barycentric, bool front);
+
+/// Appends a light for each triangle of the instance that has area and emits anywhere.
+void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
+                               std::size_t triangle_count, const Material& material,
+                               const std::vector<Texture>& textures,
+                               std::vector<Light>& lights);
+
+}  // namespace dg

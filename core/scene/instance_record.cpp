@@ -1,0 +1,179 @@
+// instance_record.cpp -- from triangle and barycentrics to position, normals, frame,
+// attributes.
+#include "scene/instance_record.h"
+
+namespace dg {
+namespace {
+
+// Positions are interpolated and transformed in double, so what is left of the error is
+// the rounding of the vertices (flattened) or of the ray (instanced) inside the ray
+// tracer: a few units in the last place of the largest coordinate at work. Found by the
+// test of closed meshes, which starts to fail below a quarter of this.
+constexpr float kUlps = 8 * 0x1p-24f;
+
+struct Corners {
+    std::uint32_t a, b, c;
+};
+
+Corners corners_of(const InstanceRecord& r, std::uint32_t primitive) {
+    const auto& t = r.triangles[primitive];
+    return {t[0], t[1], t[2]};
+}
+
+float largest(Vec3f v) {
+    return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+}
+
+/// Largest row sum of |entries|: how much a linear map can enlarge a coordinate.
+double row_norm(Vec3d x, Vec3d y, Vec3d z) {
+    double norm = 0;
+    for (int i = 0; i < 3; ++i) {
+        norm = std::max(norm, std::abs(x[i]) + std::abs(y[i]) + std::abs(z[i]));
+    }
+    return norm;
+}
+
+Affine3d to_double(const Affine3f& m) {
+    return {dg::to_double(m.x), dg::to_double(m.y), dg::to_double(m.z),
+            dg::to_double(m.origin)};
+}
+
+Vec3f unit_or(Vec3f v, Vec3f fallback) {
+    const float l2 = length_squared(v);
+    return l2 > 1e-30f ? v * (1 / std::sqrt(l2)) : fallback;  // false for NaN too
+}
+
+bool uses_textures(const GltfMaterial& m) {
+    return m.base_color_texture.used() || m.metallic_roughness_texture.used() ||
+           m.normal_texture.used() || m.emissive_texture.used() ||
+           m.specular_texture.used() || m.specular_color_texture.used() ||
+           m.transmission_texture.used();
+}
+
+/// Direction of +u over the triangle, with the side of -v for the handedness (glTF: v
+/// runs downward in the picture, green points upward). Empty where uv is degenerate.
+struct UvFrame {
+    Vec3f along_u, along_minus_v;
+    bool good;
+};
+UvFrame uv_frame(const InstanceRecord& r, Corners t) {
+    const Vec2f uv_b = r.tangent_uv[t.b] - r.tangent_uv[t.a];
+    const Vec2f uv_c = r.tangent_uv[t.c] - r.tangent_uv[t.a];
+    const float det = uv_b.x * uv_c.y - uv_b.y * uv_c.x;
+    if (!(std::abs(det) > 0)) return {{}, {}, false};
+    const Vec3f e1 = r.positions[t.b] - r.positions[t.a],
+                e2 = r.positions[t.c] - r.positions[t.a];
+    const float sign = std::copysign(1.f, det);  // lengths do not matter
+    const Vec3f du = (e1 * uv_c.y - e2 * uv_b.y) * sign;
+    const Vec3f dv = (e2 * uv_b.x - e1 * uv_c.x) * sign;
+    auto world = [&](Vec3f v) {
+        return to_float(r.world_from_local.vector(to_double(v)));
+    };
+    return {world(du), -world(dv), true};
+}
+
+void set_tangent(const InstanceRecord& r, Corners t, float w, float u, float v,
+                 SurfaceHit& hit) {
+    Vec3f tangent{};
+    hit.tangent_sign = 1;
+    if (r.tangents) {
+        const auto &a = r.tangents[t.a], &b = r.tangents[t.b], &c = r.tangents[t.c];
+        const Vec3d local{a[0] * w + b[0] * u + c[0] * v, a[1] * w + b[1] * u + c[1] * v,
+                          a[2] * w + b[2] * u + c[2] * v};
+        tangent = to_float(r.world_from_local.vector(local));
+        // Mirroring turns the cross product of normal and tangent around.
+        hit.tangent_sign = (a[3] < 0) != r.mirrored ? -1.f : 1.f;
+    } else if (r.tangent_uv) {
+        const UvFrame frame = uv_frame(r, t);
+        tangent = frame.along_u;
+        if (frame.good && dot(cross(hit.ns, frame.along_u), frame.along_minus_v) < 0) {
+            hit.tangent_sign = -1;
+        }
+    }
+    const Vec3f orthogonal =
+        unit_or(tangent, {}) - hit.ns * dot(unit_or(tangent, {}), hit.ns);
+    hit.tangent = length_squared(orthogonal) > 1e-8f ? normalize(orthogonal)
+                                                     : Frame::from_normal(hit.ns).x;
+}
+
+}  // namespace
+
+InstanceRecord make_record(const Mesh& mesh, const Material& material,
+                           std::uint32_t material_index, const Affine3f& world_from_local,
+                           bool flattened) {
+    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
+    const bool textured = gltf && uses_textures(*gltf);
+    InstanceRecord r{};
+    r.positions = mesh.positions.data();
+    r.triangles = mesh.triangles.data();
+    r.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+    for (int set = 0; set < 2; ++set) {
+        if (textured && !mesh.uv[set].empty()) r.uv[set] = mesh.uv[set].data();
+    }
+    r.needs_frame = gltf && gltf->normal_texture.used();
+    if (r.needs_frame) {
+        r.tangents = mesh.tangents.empty() ? nullptr : mesh.tangents.data();
+        r.tangent_uv = r.uv[gltf->normal_texture.uv_set];
+    }
+    r.colors = mesh.colors.empty() ? nullptr : mesh.colors.data();
+    r.material = material_index;
+
+    const Affine3d m = r.world_from_local = to_double(world_from_local);
+    r.mirrored = m.determinant() < 0;
+    const double side = r.mirrored ? -1 : 1;  // cofactors, as Affine::normal
+    r.normal_matrix = {
+        cross(m.y, m.z) * side, cross(m.z, m.x) * side, cross(m.x, m.y) * side, {}};
+
+    // A ray that is taken into the mesh's space suffers the rounding of that transform
+    // too.
+    const Affine3d inv = inverse(m);
+    const double there = row_norm(m.x, m.y, m.z), back = row_norm(inv.x, inv.y, inv.z);
+    const double growth = flattened ? 1 : 1 + there * back;
+    r.error_scale = static_cast<float>(kUlps * growth * there);
+    r.error_base = static_cast<float>(kUlps * growth * largest(world_from_local.origin));
+    return r;
+}
+
+void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, float u,
+                            float v, SurfaceHit& hit) {
+    const Corners t = corners_of(r, primitive);
+    const float w = 1 - u - v;
+    for (int set = 0; set < 2; ++set) {
+        if (const Vec2f* uv = r.uv[set])
+            hit.uv[set] = uv[t.a] * w + uv[t.b] * u + uv[t.c] * v;
+    }
+    if (!r.colors) return;
+    for (int i = 0; i < 4; ++i) {
+        hit.color[i] = r.colors[t.a][i] * w + r.colors[t.b][i] * u + r.colors[t.c][i] * v;
+    }
+}
+
+void surface_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v,
+                SurfaceHit& hit) {
+    const Corners t = corners_of(r, primitive);
+    const Vec3f fa = r.positions[t.a], fb = r.positions[t.b], fc = r.positions[t.c];
+    const Vec3d a = to_double(fa), e1 = to_double(fb) - a, e2 = to_double(fc) - a;
+    hit.position =
+        to_float(r.world_from_local.point(a + e1 * double(u) + e2 * double(v)));
+    hit.error =
+        r.error_scale * std::max(largest(fa), std::max(largest(fb), largest(fc))) +
+        r.error_base;
+    hit.ng = to_float(normalize(r.normal_matrix.vector(cross(e1, e2))));
+
+    const float w = 1 - u - v;
+    hit.ns = hit.ng;
+    if (r.normals) {
+        const Vec3f n = r.normals[t.a] * w + r.normals[t.b] * u + r.normals[t.c] * v;
+        hit.ns =
+            unit_or(to_float(r.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
+        if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;
+    }
+    if (r.uv[0] || r.uv[1] || r.colors) interpolate_attributes(r, primitive, u, v, hit);
+    if (r.needs_frame) {
+        set_tangent(r, t, w, u, v, hit);
+    } else {
+        hit.tangent = Frame::from_normal(hit.ns).x;
+    }
+}
+
+}  // namespace dg

@@ -1,0 +1,186 @@
+// scene.cpp -- building a scene, and asking it for surfaces, shadows and light.
+#include "scene/scene.h"
+
+#include <bit>
+
+#include "math/hash.h"
+#include "scene/emission.h"
+#include "scene/validate.h"
+
+namespace dg {
+namespace {
+
+/// False where every point of the mesh is opaque although the material allows otherwise,
+/// as many exporters write "blend" everywhere: rays through it need not ask.
+bool may_be_transparent(const Material& material, const Mesh& mesh,
+                        const std::vector<Texture>& textures) {
+    if (!has_cutout(material, textures)) return false;
+    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
+    if (!gltf || !mesh.colors.empty()) return true;
+    const TextureSlot& slot = gltf->base_color_texture;
+    if (slot.used() && textures[slot.index].channels % 2 == 0)
+        return true;  // 2, 4: has alpha
+    const Vec2f uv[2]{};
+    GltfMaterial plain = *gltf;
+    plain.base_color_texture = {};
+    return opacity({material.name, plain}, textures, uv, 1) < 1;
+}
+
+/// Uniform in [0,1), the same for the same ray and triangle whatever the order of
+/// traversal.
+float cutout_random(const Ray& ray, const RawHit& hit) {
+    auto pair = [](float a, float b) {
+        return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 |
+               std::bit_cast<std::uint32_t>(b);
+    };
+    const std::uint64_t h =
+        hash64(pair(ray.origin.x, ray.origin.y), pair(ray.origin.z, ray.direction.x),
+               pair(ray.direction.y, ray.direction.z),
+               std::uint64_t(hit.instance) << 32 | hit.primitive);
+    return static_cast<float>(h >> 40) * 0x1p-24f;
+}
+
+}  // namespace
+
+Scene::Scene(SceneDescription description) : description_(std::move(description)) {}
+Scene::~Scene() = default;
+
+std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
+    validate(description);
+    // Room for one more vertex lets the ray tracer read the positions in place.
+    for (Mesh& mesh : description.meshes)
+        mesh.positions.reserve(mesh.positions.size() + 1);
+    std::shared_ptr<Scene> scene(new Scene(std::move(description)));
+    scene->build_intersector();
+    scene->build_records();
+    scene->build_lights();
+    scene->measure();
+    return scene;
+}
+
+void Scene::build_intersector() {
+    std::vector<InstanceGeometry> geometry;
+    for (const Instance& i : description_.instances) {
+        const bool cutout =
+            may_be_transparent(description_.materials[i.material],
+                               description_.meshes[i.mesh], description_.textures);
+        geometry.push_back({i.mesh, i.world_from_local, cutout});
+    }
+    std::vector<Sphere> spheres;
+    for (const Light& light : description_.lights) {
+        if (const auto* s = std::get_if<SphereLight>(&light)) spheres.push_back(s->shape);
+    }
+    intersector_ = Intersector::build(
+        description_.meshes, geometry, spheres,
+        [this](const Ray& ray, const RawHit& hit) { return passes(ray, hit); });
+}
+
+void Scene::build_records() {
+    records_.reserve(description_.instances.size());
+    for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
+        const Instance& instance = description_.instances[i];
+        records_.push_back(make_record(
+            description_.meshes[instance.mesh], description_.materials[instance.material],
+            instance.material, instance.world_from_local, intersector_->is_flattened(i)));
+    }
+}
+
+void Scene::build_lights() {
+    std::vector<Light> lights = description_.lights;
+    for (std::uint32_t i = 0; i < records_.size(); ++i) {
+        append_emissive_triangles(
+            records_[i], i,
+            description_.meshes[description_.instances[i].mesh].triangles.size(),
+            description_.materials[records_[i].material], description_.textures, lights);
+    }
+    lights_ = LightSet(std::move(lights), description_.environment);
+}
+
+void Scene::measure() {
+    bool first = true;
+    for (const Instance& instance : description_.instances) {
+        const Mesh& mesh = description_.meshes[instance.mesh];
+        triangle_count_ += mesh.triangles.size();
+        for (Vec3f local : mesh.positions) {
+            const Vec3f p = instance.world_from_local.point(local);
+            if (first) bounds_ = {p, p};
+            first = false;
+            bounds_.min = {std::min(bounds_.min.x, p.x), std::min(bounds_.min.y, p.y),
+                           std::min(bounds_.min.z, p.z)};
+            bounds_.max = {std::max(bounds_.max.x, p.x), std::max(bounds_.max.y, p.y),
+                           std::max(bounds_.max.z, p.z)};
+        }
+    }
+}
+
+/// Alpha: the ray passes with probability 1 - opacity.
+bool Scene::passes(const Ray& ray, const RawHit& hit) const {
+    const InstanceRecord& record = records_[hit.instance];
+    SurfaceHit surface;
+    interpolate_attributes(record, hit.primitive, hit.u, hit.v, surface);
+    const float alpha = opacity(description_.materials[record.material],
+                                description_.textures, surface.uv, surface.color[3]);
+    if (alpha >= 1) return false;
+    return alpha <= 0 || cutout_random(ray, hit) >= alpha;
+}
+
+std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
+    const auto raw = intersector_->intersect(ray);
+    std::optional<Hit> result;
+    if (!raw) return result;
+    Hit& hit = result.emplace();
+    hit.surface.wo = -ray.direction;
+    hit.surface.t = raw->t;
+    hit.surface.primitive = raw->primitive;
+    hit.surface.instance = raw->instance;
+    if (raw->instance == RawHit::kSphere) {
+        hit.sphere_light = raw->primitive;
+        hit.surface.position = ray.origin + ray.direction * raw->t;
+        return result;
+    }
+    surface_at(records_[raw->instance], raw->primitive, raw->u, raw->v, hit.surface);
+    hit.surface.front = dot(hit.surface.ng, hit.surface.wo) > 0;
+    return result;
+}
+
+bool Scene::occluded(Vec3f from, Vec3f to_direction, float distance, float time) const {
+    Ray ray;
+    ray.origin = from;
+    ray.direction = to_direction;
+    ray.time = time;
+    if (distance < std::numeric_limits<float>::infinity()) {
+        // Stops short of the light by more than its position is uncertain.
+        const Vec3f end = from + to_direction * distance;
+        const float largest =
+            std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z), std::abs(from.x),
+                      std::abs(from.y), std::abs(from.z)});
+        ray.t_max = distance - (1e-4f * distance + 0x1p-19f * largest);
+        if (ray.t_max <= 0) return false;
+    }
+    return intersector_->occluded(ray);
+}
+
+std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
+                                               const Wavelengths& wavelengths) const {
+    auto sample = lights_.sample(u_select, u, position, wavelengths);
+    if (!sample || sample->triangle_light < 0) return sample;
+    const auto& light = std::get<TriangleLight>(lights_.lights()[sample->triangle_light]);
+    const InstanceRecord& record = records_[light.instance];
+    const Vec3f winding = cross(light.b - light.a, light.c - light.a);
+    const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
+    const Rgb rgb =
+        emission_at(record, description_.materials[record.material],
+                    description_.textures, light.primitive, sample->barycentric, front);
+    sample->radiance = wavelengths.emission(rgb);
+    return sample;
+}
+
+Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time) {
+    Ray ray;
+    ray.origin = hit.position + hit.ng * std::copysign(hit.error, dot(hit.ng, wi));
+    ray.direction = wi;
+    ray.time = time;
+    return ray;
+}
+
+}  // namespace dg

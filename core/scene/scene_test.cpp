@@ -1,0 +1,191 @@
+// scene_test.cpp -- building, hits in the world frame, shadows, bad input.
+#include "scene/scene.h"
+
+#include <doctest/doctest.h>
+
+#include "math/error.h"
+#include "scene/test_scenes.h"
+
+using namespace dg;
+
+namespace {
+
+std::string build_error(SceneDescription d) {
+    try {
+        Scene::build(std::move(d));
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+SceneDescription one_quad() {
+    return describe(quad_mesh(), GltfMaterial{});
+}
+
+}  // namespace
+
+TEST_CASE("an empty scene can be built and is never hit") {
+    const auto scene = Scene::build({});
+    CHECK_FALSE(scene->intersect(test_ray({0, 0, 0}, {0, 0, 1})).has_value());
+    CHECK_FALSE(scene->occluded({0, 0, 0}, {0, 0, 1}, 1, 0));
+    CHECK(scene->lights().empty());
+    CHECK(scene->triangle_count() == 0);
+    CHECK(scene->bounds().max == Vec3f{0, 0, 0});
+}
+
+TEST_CASE("bad input is named") {
+    SceneDescription d = one_quad();
+    d.instances[0].mesh = 4;
+    CHECK(build_error(d) == "instance 0 'it': mesh index: wanted less than 1, got 4");
+    d = one_quad();
+    d.instances[0].material = 1;
+    CHECK(build_error(d).find("instance 0 'it': material index") == 0);
+    d = one_quad();
+    d.instances[0].world_from_local.y = {0, std::nanf(""), 0};
+    CHECK(build_error(d).find("instance 0 'it': transform: wanted finite numbers") == 0);
+    d = one_quad();
+    d.instances[0].world_from_local.y = d.instances[0].world_from_local.x;
+    CHECK(build_error(d).find(
+              "instance 0 'it': transform: wanted an invertible matrix") == 0);
+    d = one_quad();
+    d.instances[0].world_from_local.z = {0, 0, 0};
+    CHECK(build_error(d).find("wanted an invertible matrix") != std::string::npos);
+    d = one_quad();
+    d.meshes[0].triangles[0][1] = 77;
+    CHECK(build_error(d).find("mesh 'quad'") == 0);
+    d = one_quad();
+    std::get<GltfMaterial>(d.materials[0].kind).base_color_texture.index = 0;
+    CHECK(build_error(d).find("material") == 0);
+}
+
+TEST_CASE("a hit: position, normal, distance, side, uv and colour") {
+    SceneDescription d = one_quad();
+    d.meshes[0].colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};
+    use_textures(d);
+    d.instances[0].world_from_local.origin = {0, 0, 5};
+    const auto scene = Scene::build(d);
+    const auto hit = scene->intersect(test_ray({0.5f, 0.25f, 7}, {0, 0, -1}));
+    REQUIRE(hit.has_value());
+    const SurfaceHit& s = hit->surface;
+    CHECK(hit->sphere_light == -1);
+    CHECK(length(s.position - Vec3f{0.5f, 0.25f, 5}) < 1e-6f);
+    CHECK(s.t == doctest::Approx(2));
+    CHECK(length(s.ng - Vec3f{0, 0, 1}) < 1e-6f);
+    CHECK(s.front);
+    CHECK(s.uv[0].x == doctest::Approx(0.75));  // u runs along +x, v downward
+    CHECK(s.uv[0].y == doctest::Approx(0.375));
+    CHECK(s.color[0] == doctest::Approx(0.75));
+    CHECK(s.color[1] == doctest::Approx(0.625));
+    CHECK_FALSE(scene->intersect(test_ray({0.5f, 0.25f, 3}, {0, 0, 1}))->surface.front);
+    CHECK(scene->triangle_count() == 2);
+    CHECK(scene->bounds().min == Vec3f{-1, -1, 5});
+    CHECK(scene->bounds().max == Vec3f{1, 1, 5});
+}
+
+TEST_CASE(
+    "tangent: along +u, bitangent up the picture; glTF tangents win; mirroring flips the "
+    "sign") {
+    SceneDescription d = one_quad();
+    use_textures(d);
+    auto hit = [&] {
+        return Scene::build(d)->intersect(test_ray({0.3f, 0.1f, 7}, {0, 0, -1}))->surface;
+    };
+    auto bitangent = [](const SurfaceHit& s) {
+        return cross(s.ns, s.tangent) * s.tangent_sign;
+    };
+    SurfaceHit s = hit();
+    CHECK(length(s.tangent - Vec3f{1, 0, 0}) < 1e-6f);
+    CHECK(length(bitangent(s) - Vec3f{0, 1, 0}) < 1e-6f);
+
+    // Mirrored along x and seen from its front: both follow the picture.
+    d.instances[0].world_from_local.x = {-1, 0, 0};
+    s = hit();
+    CHECK(s.front);
+    CHECK(length(s.tangent - Vec3f{-1, 0, 0}) < 1e-6f);
+    CHECK(length(bitangent(s) - Vec3f{0, 1, 0}) < 1e-6f);
+
+    d.meshes[0].tangents.assign(4, {0, 1, 0, 1});
+    s = hit();
+    CHECK(length(s.tangent - Vec3f{0, 1, 0}) < 1e-6f);
+    CHECK(length(bitangent(s) - Vec3f{1, 0, 0}) < 1e-6f);
+}
+
+TEST_CASE(
+    "normals point outward under rotation, shear and mirroring; interpolated ones too") {
+    const Affine3f transforms[] = {
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 2, 3}},
+        {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}},
+        {{2, 0.5f, 0}, {0, 1, 0.7f}, {0.3f, 0, 0.4f}, {5, 0, 0}},
+        {{0, 1, 0}, {1, 0, 0}, {0, 0.2f, 3}, {}},
+    };
+    for (const Affine3f& m : transforms) {
+        for (bool smooth : {false, true}) {
+            SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
+            if (smooth) d.meshes[0].normals = d.meshes[0].positions;  // of the unit ball
+            d.instances[0].world_from_local = m;
+            const auto scene = Scene::build(d);
+            for (int i = 0; i < 500; ++i) {
+                const Vec3f on_ball = test_direction(i);
+                const Vec3f p = m.point(on_ball);
+                const auto hit = scene->intersect(
+                    test_ray(m.point({0, 0, 0}), p - m.point({0, 0, 0})));
+                REQUIRE(hit.has_value());
+                const SurfaceHit& s = hit->surface;
+                CHECK_FALSE(s.front);
+                const Vec3f expected = normalize(m.normal(on_ball));
+                CHECK(dot(s.ng, expected) > 0.9f);
+                CHECK(dot(s.ns, expected) > (smooth ? 0.999f : 0.9f));
+                CHECK(length(s.ng) == doctest::Approx(1).epsilon(1e-5));
+                CHECK(length(s.ns) == doctest::Approx(1).epsilon(1e-5));
+                CHECK(std::abs(dot(s.tangent, s.ns)) < 1e-5f);
+            }
+        }
+    }
+}
+
+TEST_CASE("shadow rays end before what they aim at") {
+    SceneDescription d = one_quad();
+    d.lights.push_back(SphereLight{{{0, 0, 3}, 0.5f}, {1, 1, 1}});
+    const auto scene = Scene::build(d);
+    CHECK_FALSE(scene->occluded({0, 0, 2}, {0, 0, -1}, 2, 0));
+    CHECK(scene->occluded({0, 0, 2}, {0, 0, -1}, 2.01f, 0));
+    CHECK_FALSE(scene->occluded({0, 0, 2}, {0, 0, 1}, 0.5f, 0));
+    CHECK(
+        scene->occluded({0, 0, 2}, {0, 0, 1}, std::numeric_limits<float>::infinity(), 0));
+    const auto hit = scene->intersect(test_ray({0, 0, 5}, {0, 0, -1}));
+    REQUIRE(hit.has_value());
+    CHECK(hit->sphere_light == 0);
+    CHECK(hit->surface.position.z == doctest::Approx(3.5));
+}
+
+TEST_CASE("cutout: mask by texture, blend by chance that depends on the ray alone") {
+    SceneDescription d = one_quad();
+    Texture alpha{"alpha", 2, 1, 4,
+                  std::vector<std::uint8_t>{255, 255, 255, 0, 255, 255, 255, 255}};
+    alpha.filter = TextureFilter::nearest;
+    d.textures = {alpha};
+    auto& m = std::get<GltfMaterial>(d.materials[0].kind);
+    m.base_color_texture.index = 0;
+    CHECK(Scene::build(d)->occluded({-0.5f, 0, 1}, {0, 0, -1}, 2,
+                                    0));  // opaque: alpha unused
+    m.alpha_mode = GltfMaterial::AlphaMode::mask;
+    auto scene = Scene::build(d);
+    CHECK_FALSE(scene->occluded({-0.5f, 0, 1}, {0, 0, -1}, 2, 0));
+    CHECK_FALSE(scene->intersect(test_ray({-0.5f, 0, 1}, {0, 0, -1})).has_value());
+    CHECK(scene->occluded({0.5f, 0, 1}, {0, 0, -1}, 2, 0));
+
+    m.alpha_mode = GltfMaterial::AlphaMode::blend;
+    m.base_color_texture.index = -1;
+    m.base_alpha = 0.3f;
+    scene = Scene::build(d);
+    int hits = 0;
+    const int n = 20000;
+    for (int i = 0; i < n; ++i) {
+        const Vec3f from{float(hash_uniform(1, i)), float(hash_uniform(2, i)), 1};
+        const bool hit = scene->intersect(test_ray(from, {0, 0, -1})).has_value();
+        hits += hit;
+        CHECK(hit == scene->occluded(from, {0, 0, -1}, 2, 0));
+    }
+    CHECK(std::abs(hits - 0.3 * n) < 5 * std::sqrt(n * 0.21));
+}

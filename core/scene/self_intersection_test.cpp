@@ -1,0 +1,86 @@
+// self_intersection_test.cpp -- rays that leave a closed convex mesh: inward ones always
+// hit it again, outward ones never; from millimetres to ten kilometres.
+#include <doctest/doctest.h>
+
+#include "scene/scene.h"
+#include "scene/test_scenes.h"
+
+using namespace dg;
+
+namespace {
+
+struct Failures {
+    int inward = 0, outward = 0;
+};
+
+/// Rays from random points; `shrink` scales the error bound (1: as it is used).
+Failures count_failures(const Affine3f& transform, bool crowded, float shrink, int rays) {
+    SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
+    d.instances[0].world_from_local = transform;
+    if (crowded) add_crowd(d);
+    const auto scene = Scene::build(d);
+    Failures failures;
+    for (int i = 0; i < rays; ++i) {
+        const Vec3f outside = transform.point(test_direction(2 * i) * 2);
+        auto hit = scene->intersect(
+            test_ray(outside, transform.point(test_direction(2 * i) * 0.1f) - outside));
+        if (!hit || hit->surface.instance != 0) continue;
+        SurfaceHit s = hit->surface;
+        s.error *= shrink;
+        Vec3f wi = test_direction(2 * i + 1);
+        if (i % 4 == 0) wi = normalize(wi - s.ng * (0.999f * dot(wi, s.ng)));  // grazing
+        if (std::abs(dot(wi, s.ng)) < 1e-4f) continue;
+        const bool inward = dot(wi, s.ng) < 0;
+        const auto next = scene->intersect(spawn_ray(s, wi, 0));
+        const bool again = next && next->surface.instance == 0;
+        if (inward) {
+            failures.inward += !again || next->surface.front;
+        } else {
+            failures.outward += again;
+        }
+    }
+    return failures;
+}
+
+std::vector<Affine3f> placements() {
+    std::vector<Affine3f> all;
+    for (float scale : {1e-3f, 1.f, 1e3f}) {
+        for (float offset : {0.f, 1.f, 1e2f, 1e4f}) {
+            if (offset > 3e3f * scale)
+                continue;  // floats there are coarser than the triangles
+            const Vec3f o = Vec3f{0.7f, -0.5f, 0.6f} * offset;
+            all.push_back({{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, o});
+            all.push_back({{scale * 0.6f, scale * 0.8f, 0},
+                           {-scale * 0.8f, scale * 0.6f, 0},
+                           {0, 0, -2 * scale},
+                           o});
+        }
+    }
+    all.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1e4f, 0, 1e4f}});
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("no ray meets the surface that it leaves, at any scale and place") {
+    for (bool crowded : {false, true}) {
+        for (const Affine3f& m : placements()) {
+            const Failures f = count_failures(m, crowded, 1, 20000);
+            CAPTURE(m.origin.x);
+            CAPTURE(m.x.x);
+            CAPTURE(crowded);
+            CHECK(f.inward == 0);
+            CHECK(f.outward == 0);
+        }
+    }
+}
+
+TEST_CASE("the test sees an error bound that is too small") {
+    Failures sum;
+    for (const Affine3f& m : placements()) {
+        const Failures f = count_failures(m, false, 0, 2000);
+        sum.inward += f.inward;
+        sum.outward += f.outward;
+    }
+    CHECK(sum.inward + sum.outward > 100);
+}

@@ -1,0 +1,85 @@
+// test_scenes.h -- for tests only: small meshes and one-object scenes.
+#pragma once
+#include <map>
+
+#include "geometry/layout.h"
+#include "math/hash.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+inline Vec3f test_direction(int i) {
+    const double z = 2 * hash_uniform(21, i) - 1, phi = 2 * kPiD * hash_uniform(22, i);
+    const double r = std::sqrt(1 - z * z);
+    return {float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
+}
+
+inline Ray test_ray(Vec3f origin, Vec3f direction) {
+    Ray ray;
+    ray.origin = origin;
+    ray.direction = normalize(direction);
+    return ray;
+}
+
+/// [-1,1]^2 at z = 0, facing +z; u along +x, v along -y, as a picture hangs.
+inline Mesh quad_mesh() {
+    Mesh mesh;
+    mesh.name = "quad";
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.uv[0] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    return mesh;
+}
+
+/// The unit ball from an octahedron, halved `levels` times; wound outward.
+inline Mesh ball_mesh(int levels) {
+    Mesh mesh;
+    mesh.name = "ball";
+    mesh.positions = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                      {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+    mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                      {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    for (int level = 0; level < levels; ++level) {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+        auto middle = [&](std::uint32_t a, std::uint32_t b) {
+            const auto [it, fresh] =
+                middles.try_emplace(std::minmax(a, b), mesh.positions.size());
+            if (fresh)
+                mesh.positions.push_back(
+                    normalize(mesh.positions[a] + mesh.positions[b]));
+            return it->second;
+        };
+        std::vector<std::array<std::uint32_t, 3>> finer;
+        for (auto [a, b, c] : mesh.triangles) {
+            const std::uint32_t x = middle(a, b), y = middle(b, c), z = middle(c, a);
+            finer.insert(finer.end(), {{a, x, z}, {b, y, x}, {c, z, y}, {x, y, z}});
+        }
+        mesh.triangles = finer;
+    }
+    return mesh;
+}
+
+inline SceneDescription describe(Mesh mesh, GltfMaterial material) {
+    SceneDescription d;
+    d.meshes = {std::move(mesh)};
+    d.materials = {{"material", std::move(material)}};
+    d.instances = {{"it", 0, 0, {}}};
+    return d;
+}
+
+/// Copies far away, until the mesh is not flattened any more.
+inline void add_crowd(SceneDescription& d) {
+    Instance far_away = d.instances[0];
+    far_away.world_from_local = {};
+    far_away.world_from_local.origin = {1e7f, 1e7f, 1e7f};
+    d.instances.resize(kFlattenLimit / d.meshes[0].triangles.size() + 2, far_away);
+}
+
+/// A white texture in the slots that make uv and tangents needed.
+inline void use_textures(SceneDescription& d) {
+    d.textures.push_back({"white", 1, 1, 3, std::vector<std::uint8_t>{255, 255, 255}});
+    auto& m = std::get<GltfMaterial>(d.materials[0].kind);
+    m.normal_texture.index = m.base_color_texture.index = int(d.textures.size()) - 1;
+}
+
+}  // namespace dg
