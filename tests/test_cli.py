@@ -257,26 +257,16 @@ def test_interrupted_and_resumed_has_the_bits_of_a_whole_run(tmp_path: Path) -> 
 
 def test_the_printed_command_resumes(tmp_path: Path) -> None:
     name = "a b.exr"
-    process = spawn("render", "s.glb", "-o", name, "--spp", "400", *SMALL, seconds=0.02)
+    flags = ["--spp", "400", "--checkpoint", "50ms", *SMALL]
+    process = spawn("render", "s.glb", "-o", name, *flags, seconds=0.02)
     deadline = time.monotonic() + 20
-    while process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.4)
-        process.send_signal(signal.SIGTERM)
-        break
+    while not (tmp_path / "a b.checkpoint.exr").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGTERM)
     _, err = process.communicate(timeout=20)
     assert process.returncode == 75, err
     command = shlex.split(err.strip().splitlines()[-1])
-    assert command == [
-        "daguerre",
-        "render",
-        "s.glb",
-        "-o",
-        name,
-        "--spp",
-        "400",
-        *SMALL,
-        "--resume",
-    ]
+    assert command == ["daguerre", "render", "s.glb", "-o", name, *flags, "--resume"]
     again = spawn(*command[1:])
     _, err = again.communicate(timeout=20)
     assert again.returncode == 0, err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from importlib.metadata import version
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -53,8 +54,7 @@ def denoise(frame: Frame) -> Frame:
         )
     except (RuntimeError, OSError) as error:
         raise InputError(f"denoise: Open Image Denoise failed: {error}") from error
-    version = getattr(getattr(pyoidn, "version", None), "__version__", "")
-    metadata = {**frame.metadata, "denoised": f"pyoidn {version}".strip()}
+    metadata = {**frame.metadata, "denoised": f"pyoidn {version('pyoidn')}"}
     return replace(frame, rgb=np.asarray(clean, np.float32), metadata=metadata)
 
 

@@ -26,7 +26,7 @@ class Frame:
     Attributes:
         rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
         xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
-        alpha: Share of the samples that hit something, shape (H, W).
+        alpha: Share of the samples that hit something, shape (H, W); by default 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``.
@@ -36,7 +36,7 @@ class Frame:
 
     rgb: NDArray[np.float32]
     xyz: NDArray[np.float32] | None = None
-    alpha: NDArray[np.float32] | None = None
+    alpha: NDArray[np.float32] = field(default_factory=lambda: np.empty((0, 0), np.float32))
     variance: NDArray[np.float32] | None = None
     samples: NDArray[np.uint32] | None = None
     aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Frame:
     def __post_init__(self) -> None:
         if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:
             raise UsageError(f"frame: rgb: wanted shape (H, W, 3), got {self.rgb.shape}")
-        if self.alpha is None:
+        if self.alpha.size == 0:
             self.alpha = np.ones(self.rgb.shape[:2], np.float32)
 
     @property
@@ -69,7 +69,7 @@ class Frame:
         """
         if tone not in TONES:
             raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
-        linear = np.nan_to_num(self.rgb, nan=0.0, posinf=np.finfo(np.float32).max)
+        linear = np.nan_to_num(self.rgb, nan=0.0, posinf=3e38)
         if tone == "soft":
             linear = _shoulder(linear)
         return np.rint(_srgb(linear) * 255).astype(np.uint8)

@@ -103,7 +103,10 @@ def sensor_mm(flag: str, text: str) -> tuple[float, float]:
             f"{flag}: wanted a size in mm such as 36x24, or one of {', '.join(SENSORS)}; "
             f"got {text!r}{suggest(name, SENSORS)}"
         )
-    width, height = (length_mm(flag, part) for part in parts)
+    try:
+        width, height = (length_mm(flag, part) for part in parts)
+    except UsageError:
+        raise _bad(flag, "a size in mm such as 36x24", text) from None
     if not (0 < width < math.inf and 0 < height < math.inf):
         raise _bad(flag, "a size above 0 such as 36x24", text)
     return width, height

@@ -142,8 +142,9 @@ def _windows(frame: Frame) -> dict[str, Any]:
 
 
 def _plane(name: str, plane: NDArray[Any]) -> NDArray[np.float32] | NDArray[np.uint32]:
-    ids = name.endswith("_id")
-    return np.ascontiguousarray(plane, np.uint32 if ids else np.float32)
+    if name.endswith("_id"):
+        return np.ascontiguousarray(plane, np.uint32)
+    return np.ascontiguousarray(plane, np.float32)
 
 
 def _pair(value: Any) -> NDArray[np.float32]:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from daguerre.errors import InputError, MismatchError
 from daguerre.frame import Frame
 
-from .exr import attributes, channels, jsonable, write_parts
+from .exr import Channels, attributes, channels, jsonable, write_parts
 
 if TYPE_CHECKING:
     from daguerre.render import Session
@@ -74,7 +74,7 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
         "daguerre:ranges": json.dumps(drawn.ranges),
         "daguerre:metadata": json.dumps(drawn.metadata, sort_keys=True, default=jsonable),
     }
-    parts = [
+    parts: list[tuple[str, dict[str, Any], Channels]] = [
         ("beauty", attributes(frame.metadata), channels(frame)),
         (SUMS, header, drawn.state),
     ]
@@ -186,7 +186,7 @@ def frame_of(
     from daguerre.render import AOV_NAMES
 
     planes: dict[str, NDArray[Any]] = {}
-    alpha = None
+    alpha = np.ones(film.shape, np.float32)
     if aovs:
         planes = {name: film.aov(name) for name in AOV_NAMES}
         planes["object_id"] = film.object_ids()
