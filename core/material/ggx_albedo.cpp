@@ -76,7 +76,7 @@ GgxAlbedo::Row GgxAlbedo::smooth_row() {
 }
 
 GgxAlbedo::Row GgxAlbedo::row(float roughness) const {
-    const float x = std::clamp(roughness, 0.f, 1.f) * (kRoughnesses - 1);
+    const float x = (roughness > 0 ? std::min(roughness, 1.f) : 0.f) * (kRoughnesses - 1);
     const int i = std::min(static_cast<int>(x), kRoughnesses - 2);
     const float t = x - static_cast<float>(i);
     return {table_[i], table_[i + 1], t, lerp(t, mean_[i], mean_[i + 1])};

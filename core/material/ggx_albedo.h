@@ -34,7 +34,8 @@ class GgxAlbedo {
                 const float s = schlick(cos_angle);
                 return {1 - s, s, s, 1};
             }
-            const float x = std::sqrt(std::clamp(cos_angle, 0.f, 1.f)) * (kAngles - 1);
+            const float x =
+                std::sqrt(cos_angle > 0 ? std::min(cos_angle, 1.f) : 0.f) * (kAngles - 1);
             const int i = std::min(static_cast<int>(x), kAngles - 2);
             const float t = x - static_cast<float>(i);
             return lerp(blend, lerp(t, low[i], low[i + 1]),
