@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import OpenImageIO as oiio
 from numpy.typing import ArrayLike, NDArray
 
 COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
@@ -128,6 +129,17 @@ def png(pixels: NDArray[Any]) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         (chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(raw)), chunk(b"IEND", b""))
     )
+
+
+def jpeg(pixels: NDArray[np.uint8], folder: Path) -> bytes:
+    """A JPEG of (H, W, 3) pixels; ``folder`` is for a file on the way."""
+    height, width, channels = pixels.shape
+    path = folder / "made.jpg"
+    out = oiio.ImageOutput.create(str(path))
+    out.open(str(path), oiio.ImageSpec(width, height, channels, oiio.UINT8))
+    out.write_image(pixels)
+    out.close()
+    return path.read_bytes()
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:

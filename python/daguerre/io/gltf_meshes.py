@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from daguerre.scene import Scene
 
 from .gltf_accessors import Accessors
+from .gltf_nodes import MAX_SIZE
 from .json_item import Item, clean
 from .notes import Notes
 
@@ -90,6 +91,12 @@ class Meshes:
     ) -> int | None:
         self._note_unknown(attributes)
         positions = self._accessors.floats(attributes["POSITION"], ("VEC3",), "vertex")
+        far = np.flatnonzero(np.abs(positions).max(axis=1) >= MAX_SIZE)
+        if far.size:
+            attributes["POSITION"].fail(
+                f"vertex {far[0]}: wanted coordinates below {MAX_SIZE:g}, "
+                f"got {positions[far[0]].tolist()}"
+            )
         triangles = self._triangles(primitive, indices, mode, len(positions))
         if not len(triangles):
             self._notes.add("a mesh primitive without a triangle that has an area is left out")

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from .json_item import Item
 
 Matrix = NDArray[np.float64]
+#: Lengths beyond this (m) overflow when a renderer squares them in float.
+MAX_SIZE = 1e18
 _DEFAULTS = {
     "translation": (0.0, 0.0, 0.0),
     "rotation": (0.0, 0.0, 0.0, 1.0),
@@ -103,8 +105,11 @@ class Tree:
                 continue
             local = self.local(node, poses)
             world = local if above is None else above @ local
-            if not np.isfinite(world).all():
-                self.items[node].fail("wanted a finite world transform, got one that overflows")
+            size = float(np.abs(world).max())
+            if not size < MAX_SIZE:  # NaN is not smaller than anything
+                self.items[node].fail(
+                    f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
+                )
             stack.append((node, None, len(order)))
             order.append((node, world))
             ends.append(0)

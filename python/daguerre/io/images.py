@@ -23,7 +23,9 @@ from daguerre.errors import InputError
 from .json_item import short
 
 MAX_PIXELS = 16384 * 16384
+#: Decoded, of one texture and of one environment (16384 x 8192 in float is 1.5 GiB).
 MAX_BYTES = 1 << 30
+MAX_ENVIRONMENT_BYTES = 2 << 30
 _PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 # Deflate cannot shrink data more than this (zlib's "Technical details").
 _DEFLATE_LIMIT = 1032
@@ -92,7 +94,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     file = Path(path)
     if not file.is_file():
         raise InputError(f"{file}: wanted an image file, got no such file")
-    pixels, spec, kind = _read(str(file), str(file))
+    pixels, spec, kind = _read(str(file), str(file), MAX_ENVIRONMENT_BYTES)
     if np.issubdtype(pixels.dtype, np.integer):
         scale = np.float32(np.iinfo(pixels.dtype).max)
         rgb = srgb_to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
@@ -114,7 +116,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     return np.ascontiguousarray(rgb)
 
 
-def _read(name: str, where: str) -> tuple[NDArray[Any], Any, str]:
+def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], Any, str]:
     """Pixels in their own type, the specification, and the name of the format; straight alpha."""
     config = oiio.ImageSpec()
     config.attribute("oiio:UnassociatedAlpha", 1)
@@ -123,7 +125,7 @@ def _read(name: str, where: str) -> tuple[NDArray[Any], Any, str]:
         raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
     try:
         spec = source.spec()
-        _check_size(spec.width, spec.height, spec.nchannels, spec.format.basesize(), where)
+        _check_size(spec.width, spec.height, spec.nchannels, spec.format.basesize(), where, limit)
         pixels = source.read_image(0, 0, 0, spec.nchannels, spec.format)
         error, kind = source.geterror(), str(source.format_name())
     finally:
@@ -138,13 +140,15 @@ def _reason(error: str, name: str) -> str:
     return line.replace(f'("{name}")', "").replace(name, Path(name).name).strip()[:200]
 
 
-def _check_size(width: int, height: int, channels: int, bytes_each: int, where: str) -> None:
+def _check_size(
+    width: int, height: int, channels: int, bytes_each: int, where: str, limit: int = MAX_BYTES
+) -> None:
     if min(width, height, channels) < 1:
         raise InputError(f"{where}: image size: wanted at least 1x1, got {width}x{height}")
     size = width * height * channels * bytes_each
-    if width * height > MAX_PIXELS or size > MAX_BYTES:
+    if width * height > MAX_PIXELS or size > limit:
         raise InputError(
-            f"{where}: image size: wanted at most {MAX_PIXELS} pixels and {MAX_BYTES >> 20} MiB, "
+            f"{where}: image size: wanted at most {MAX_PIXELS} pixels and {limit >> 20} MiB, "
             f"got {width}x{height} ({size >> 20} MiB)"
         )
 
@@ -198,7 +202,7 @@ def _uncrop(rgb: NDArray[np.float32], spec: Any) -> NDArray[np.float32]:
     x, y = spec.x - spec.full_x, spec.y - spec.full_y
     if (x, y) == (0, 0) and full == rgb.shape[:2]:
         return rgb
-    _check_size(full[1], full[0], 3, 4, "EXR display window")
+    _check_size(full[1], full[0], 3, 4, "EXR display window", MAX_ENVIRONMENT_BYTES)
     canvas = np.zeros((*full, 3), np.float32)
     x0, y0 = max(x, 0), max(y, 0)
     x1, y1 = min(x + rgb.shape[1], full[1]), min(y + rgb.shape[0], full[0])
