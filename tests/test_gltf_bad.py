@@ -510,7 +510,7 @@ def test_random_damage_never_escapes(tmp_path):
     good = full().glb(tmp_path / "a.glb").read_bytes()
     rng = np.random.default_rng(7)
     outcomes = {True: 0, False: 0}
-    for _ in range(2000):
+    for _ in range(800):
         data = bytearray(good)
         for place in rng.integers(12, len(data), rng.integers(1, 5)):
             data[place] = rng.integers(256)
@@ -520,7 +520,7 @@ def test_random_damage_never_escapes(tmp_path):
             outcomes[True] += 1
         except InputError:
             outcomes[False] += 1
-    assert min(outcomes.values()) > 30
+    assert min(outcomes.values()) > 8
 
 
 def test_no_such_file_and_folder(tmp_path):
