@@ -331,8 +331,8 @@ def interrupted_checkpoint() -> None:
 @pytest.mark.parametrize(
     ("flags", "text"),
     [
-        (["--f-stop", "4"], "the camera differs"),
-        (["--seed", "3"], "resolution, crop, seed, filter, depth or AOVs differs"),
+        (["--f-stop", "4"], "different: the camera"),
+        (["--seed", "3"], "different: resolution, crop, seed, filter, depth, AOVs"),
         (["--spp", "2"], "holds samples 0:4, wanted only 0:2"),
     ],
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,39 +12,41 @@ from daguerre.errors import UsageError
 
 from .flags import option
 
+if TYPE_CHECKING:
+    from daguerre.lenses import Lens
+
+#: the wavelength of the helium d line, at which lenses are specified, nm
+DESIGN_NM = 587.56
+
 
 def lenses(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
-    """Lists the lenses of the library, a line each."""
+    """Lists the lenses of the library: name, focal length, f-stop wide open, source."""
     from json import dumps
 
     from daguerre import lenses as library
 
-    rows = []
-    for name in library.names():
-        order = first_order(library.load(name))
-        rows.append({"name": name, **order})
+    rows = [_summary(name, library.load(name)) for name in library.names()]
     if json:
-        print(dumps(rows, default=_plain))
+        print(dumps(rows, indent=2))
         return 0
     width = max((len(row["name"]) for row in rows), default=0)
     for row in rows:
-        facts = "  ".join(
-            part.format(row[key])
-            for key, part in (("efl", "{:8.2f} mm"), ("f_number", "f/{:.2f}"))
-            if isinstance(row.get(key), float)
-        )
-        print(f"{row['name']:{width}}  {facts}")
+        efl, stop = f"{row['efl_mm']:.1f} mm", f"f/{row['f_number']:.2g}"
+        print(f"{row['name']:{width}}  {efl:>9}  {stop:<6}  {row['title']}")
     return 0
 
 
 def lens(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
-    json: Annotated[bool, option("--json", help="As one JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="As one JSON object, lengths in mm.")] = False,
     plot: Annotated[
         Path | None, option("--plot", metavar="FILE.svg", help="Drawing with rays.")
     ] = None,
+    wavelength: Annotated[
+        float, option("--wavelength", metavar="NM", help="Wavelength, nm [587.56].")
+    ] = DESIGN_NM,
 ) -> int:
-    """Shows a lens: first-order properties at 587.56 nm (mm), and a drawing on request."""
+    """Shows a lens: its table, first-order properties (mm), and a drawing on request."""
     from json import dumps
 
     from daguerre import lenses as library
@@ -55,37 +57,48 @@ def lens(
             raise UsageError(f"--plot: wanted a name ending in .svg, got {str(plot)!r}")
         check_writable(plot)
     item = library.load(name)
-    order = first_order(item)
+    order = asdict(item.first_order(wavelength))
     if plot is not None:
         write_bytes(plot, item._repr_svg_().encode())
     if json:
-        print(dumps({"name": getattr(item, "name", name), **order}, default=_plain))
+        print(dumps(_facts(item, order), indent=2))
         return 0
-    print(getattr(item, "name", name))
+    print(item)
+    print(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")
     for key, value in order.items():
-        print(f"  {key:28} {_show(value)}")
+        if key != "wavelength_nm":
+            print(f"  {key.replace('_', ' '):22} {_show(value)}")
     return 0
 
 
-def first_order(item: Any) -> dict[str, Any]:
-    """First-order properties by name; lengths in mm."""
-    order = item.first_order()
-    if dataclasses.is_dataclass(order) and not isinstance(order, type):
-        return dataclasses.asdict(order)
-    return dict(order)
+def _summary(name: str, item: Lens) -> dict[str, Any]:
+    order = item.first_order(DESIGN_NM)
+    return {
+        "name": name,
+        "title": item.name,
+        "efl_mm": order.efl,
+        "f_number": order.f_number,
+        "source": item.patent,
+    }
+
+
+def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
+    surfaces = [asdict(replace(s, core_glass=None)) for s in item.surfaces]
+    for surface in surfaces:
+        del surface["core_glass"]
+    return {
+        "name": item.name,
+        "source": item.patent,
+        "note": item.note,
+        **order,
+        "first_order": order,
+        "nominal": asdict(item.nominal),
+        "image_z": item.image_z,
+        "surfaces": surfaces,
+    }
 
 
 def _show(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
     if isinstance(value, dict):
         return ", ".join(f"{key} {_show(inner)}" for key, inner in value.items())
-    if isinstance(value, list | tuple):
-        return ", ".join(_show(inner) for inner in value)
-    return str(value)
-
-
-def _plain(value: Any) -> Any:
-    from daguerre.io.exr import jsonable
-
-    return jsonable(value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -33,7 +33,7 @@ SUMS = "sums"
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
-    "settings": "resolution, crop, seed, filter, depth or AOVs",
+    "settings": "resolution, crop, seed, filter, depth, AOVs",
     "build": "the build of daguerre",
 }
 
@@ -205,14 +205,18 @@ def frame_of(
 
 def check_key(first: Pass, other: Pass) -> None:
     """Refuses a pass of another picture and names what differs."""
-    for name in sorted({*first.key, *other.key}):
-        a, b = first.key.get(name, "nothing"), other.key.get(name, "nothing")
-        if a != b:
-            what = WORDS.get(name, name)
-            raise MismatchError(
-                f"{other.path or 'this render'}: does not belong to {first.path or 'this render'}: "
-                f"{what} differs ({name} {_short(b)}, wanted {_short(a)})"
-            )
+    names = sorted({*first.key, *other.key})
+    differing = [name for name in names if first.key.get(name) != other.key.get(name)]
+    if differing:
+        words = [
+            f"{WORDS.get(name, name)} ({_short(other.key.get(name))}, "
+            f"wanted {_short(first.key.get(name))})"
+            for name in differing
+        ]
+        raise MismatchError(
+            f"{other.path or 'this render'}: does not belong to {first.path or 'this render'}; "
+            f"different: {'; '.join(words)}"
+        )
 
 
 def join_ranges(ranges: Iterable[Range]) -> list[Range]:
@@ -298,6 +302,8 @@ def _has_aovs(state: State) -> bool:
     return any(name.startswith("sum.depth") for name in state)
 
 
-def _short(value: str) -> str:
+def _short(value: str | None) -> str:
     """The start of a hash; short values as they are."""
-    return value if len(value) <= 24 else value[:12]
+    if value is None:
+        return "nothing"
+    return value if len(value) <= 40 else value[:12]
