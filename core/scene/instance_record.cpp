@@ -8,7 +8,7 @@ namespace {
 // Positions are interpolated and transformed in double, so what is left of the error is
 // the rounding of the vertices (flattened) or of the ray (instanced) inside the ray
 // tracer: a few units in the last place of the largest coordinate at work. Found by the
-// test of closed meshes, which starts to fail below a quarter of this.
+// test of closed meshes, which begins to fail at 0.3 of this.
 constexpr float kUlps = 8 * 0x1p-24f;
 
 struct Corners {
