@@ -256,6 +256,7 @@ class Job:
             "samples": self.loop.done(),
             "bad_samples": frame.bad_samples[0],
             "aovs": self.plan.aovs,
+            "scene_hash": self.session.key["scene"],
         }
         frame = replace(frame, metadata={**frame.metadata, **facts})
         if self.plan.denoise:
