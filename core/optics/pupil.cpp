@@ -15,6 +15,9 @@ constexpr int kNodes = kRadialSegments + 1;
 constexpr int kMinDegree = 3, kMaxDegree = 6;
 constexpr std::array<double, 3> kBoundWavelengths{380, 550, 780};  // nm
 constexpr double kShapeMargin = 1.02;  // the fit reaches this far beyond the enlarged iris
+// Training rays may leave the clear diameters a little, so that the fit is not cut off at the edge of what
+// passes; far outside, rays can reach the iris a second time (a fold), which no one-to-one map follows.
+constexpr double kWidened = 1.2;
 constexpr int kCoverageRays = 16384;
 
 /// Point n of a low-discrepancy sequence in four dimensions: multiples of powers of 1/g,
@@ -102,9 +105,9 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
     const double scale = request.iris_radius / t.iris_scale;
     t.shape_area = float(request.iris.sampling_area(kEnlargement) * scale * scale);
     const double h = 1e-4, nm = kDesignWavelength;
-    const auto film = tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm));
+    const auto film = tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm), 1);
     const auto slope = tracer.to_iris({{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})},
-                                      tracer.at(nm));
+                                      tracer.at(nm), 1);
     if (!film || !slope || slope->x == 0)
         throw Error(tracer.prescription().name + ": no ray leads from the film's centre to the iris");
     rear_ = {film->x / h, slope->x / h};
@@ -112,7 +115,7 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
 
 std::optional<Vec2d> AimMaker::trace_iris(double r, Vec2d m, double nm) const {
     return tracer_.to_iris({{r, 0, request_.film_z}, normalize(Vec3d{-m.x, -m.y, -1})},
-                           tracer_.at(nm));
+                           tracer_.at(nm), kWidened);
 }
 
 /// Rays over the film and somewhat more than the iris, traced to the stop.

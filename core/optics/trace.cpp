@@ -42,9 +42,8 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip, Trac
         }
     }
     const bool iris_here = i == stop_ && clip.iris;
-    if (clip.clear_apertures && !iris_here &&
-        !(r2 <= surface.semi_diameter * surface.semi_diameter))
-        return false;
+    const double edge = surface.semi_diameter * clip.widened;
+    if (clip.clear_apertures && !iris_here && !(r2 <= edge * edge)) return false;
     const double n1 = n.index[sign > 0 ? i : i + 1], n2 = n.index[sign > 0 ? i + 1 : i];
     const double mu = n1 / n2, cos2_squared = 1 - mu * mu * (1 - cos1_squared);
     if (!(cos2_squared >= 0)) return false;  // total reflection
@@ -71,11 +70,11 @@ std::optional<TracedRay> Tracer::to_scene(LensRay ray, const LensIndices& n, con
     return traced;
 }
 
-std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n) const {
-    const Clip open{false, nullptr, 0};
+std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n, double widened) const {
+    const Clip clip{true, nullptr, 0, widened};
     TracedRay traced{ray, {}, 1};
     for (int i = int(lens_.surfaces.size()) - 1; i >= stop_; --i)
-        if (!cross(i, -1, n, open, traced)) return std::nullopt;
+        if (!cross(i, -1, n, clip, traced)) return std::nullopt;
     return traced.iris;
 }
 

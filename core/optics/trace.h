@@ -24,6 +24,7 @@ struct Clip {
     bool clear_apertures = true;
     const Iris* iris = nullptr;
     double iris_radius = 0;   // mm, of the circle of equal area
+    double widened = 1;       // factor on the clear diameters
 };
 
 /// The indices of all media at one wavelength: index[i] before surface i.
@@ -41,8 +42,8 @@ class Tracer {
     std::optional<TracedRay> to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;
     /// From the film side through the first surface.
     std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n, const Clip& clip) const;
-    /// From the film side to the stop: the iris point, mm. Clear apertures are ignored.
-    std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n) const;
+    /// From the film side to the stop: the iris point, mm. Clear apertures are widened by the factor.
+    std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n, double widened) const;
 
     /// Points where the ray met the surfaces, object side first, for drawings; empty if stopped.
     std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;

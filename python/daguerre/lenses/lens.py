@@ -1,0 +1,251 @@
+"""One lens on the bench: table, first-order properties, exact rays, drawing. Lengths in mm."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre import _core
+from daguerre.errors import InputError
+
+DESIGN_WAVELENGTH_NM = 587.5618
+
+
+class _Fields:
+    """Fields by name too: ``order["efl"]`` is ``order.efl``."""
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in {f.name for f in dataclasses.fields(self)}:  # type: ignore[arg-type]
+            raise KeyError(key)
+        return getattr(self, key)
+
+
+@dataclass(frozen=True)
+class Nominal(_Fields):
+    """What the source claims of the lens; None: it does not say."""
+
+    efl_mm: float | None = None
+    f_number: float | None = None
+    full_field_deg: float | None = None
+    image_circle_mm: float | None = None
+    projection: str | None = None
+
+
+@dataclass(frozen=True)
+class Pupil(_Fields):
+    """An image of the stop: z in the lens frame and diameter wide open, mm."""
+
+    z: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class FirstOrder(_Fields):
+    """First-order properties at one wavelength.
+
+    Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the
+    film. ``bfl`` runs from the last vertex to the rear focal point, ``ffl`` from the first vertex
+    to the front focal point (negative as a rule). ``f_number`` is efl / entrance pupil diameter,
+    wide open.
+    """
+
+    wavelength_nm: float
+    efl: float
+    bfl: float
+    ffl: float
+    f_number: float
+    entrance_pupil: Pupil
+    exit_pupil: Pupil
+    front_focal_point: float
+    back_focal_point: float
+    front_principal_point: float
+    back_principal_point: float
+    front_nodal_point: float
+    back_nodal_point: float
+
+
+@dataclass(frozen=True)
+class LensSurface:
+    """One surface as the file gives it. Radius None: plane; semi-diameter None: unknown."""
+
+    kind: str
+    radius: float | None
+    thickness: float | None
+    semi_diameter: float | None
+    glass: str
+    stop: bool
+    core_glass: _core.Glass = field(repr=False, compare=False)
+
+    def replaced(self, **changes: Any) -> LensSurface:
+        """A copy with some fields changed."""
+        return dataclasses.replace(self, **changes)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Lens:
+    """A prescription that was read and checked.
+
+    Lens frame: mm, +z from object to film, z = 0 at the first vertex, R > 0 when the centre lies
+    toward +z.
+
+    Attributes:
+        name: The lens's own name.
+        source: File that it was read from.
+        patent: Patent or book that the numbers come from.
+        note: Remarks of the file.
+        nominal: What the source claims: focal length, f-number, field.
+        surfaces: From the object side to the film.
+        coating: Of surfaces between air and glass.
+        prescription: The core's version.
+        data: The file as parsed.
+    """
+
+    name: str
+    source: str
+    patent: str | None
+    note: str | None
+    nominal: Nominal
+    surfaces: tuple[LensSurface, ...]
+    coating: str
+    prescription: _core.Prescription
+    data: dict[str, Any]
+
+    def first_order(self, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> FirstOrder:
+        """Focal length, focal points, principal and nodal points, pupils.
+
+        Args:
+            wavelength_nm: Wavelength, nm.
+
+        Raises:
+            InputError: The lens is afocal.
+        """
+        _check_wavelength(np.asarray(wavelength_nm, np.float64))
+        try:
+            f = self.prescription.first_order(float(wavelength_nm))
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        return FirstOrder(
+            wavelength_nm=f.wavelength_nm,
+            efl=f.efl,
+            bfl=f.bfl,
+            ffl=f.ffl,
+            f_number=f.f_number,
+            entrance_pupil=Pupil(f.entrance_pupil_z, f.entrance_pupil_diameter),
+            exit_pupil=Pupil(f.exit_pupil_z, f.exit_pupil_diameter),
+            front_focal_point=f.front_focal_z,
+            back_focal_point=f.back_focal_z,
+            front_principal_point=f.front_principal_z,
+            back_principal_point=f.back_principal_z,
+            front_nodal_point=f.front_nodal_z,
+            back_nodal_point=f.back_nodal_z,
+        )
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Axial positions of each surface's vertex, mm, shape (surfaces,)."""
+        return np.asarray(self.prescription.vertices(), np.float64)
+
+    @property
+    def image_z(self) -> float:
+        """Position of the image plane, mm: after the table's last gap, else the paraxial focus."""
+        last = self.surfaces[-1].thickness
+        if last:
+            return float(self.vertices[-1] + last)
+        return self.first_order().back_focal_point
+
+    def trace(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        wavelength_nm: ArrayLike = DESIGN_WAVELENGTH_NM,
+        *,
+        clip: bool = False,
+        image_z: float | None = None,
+    ) -> NDArray[np.float64]:
+        """Traces rays exactly, in double, from the object side to the image plane.
+
+        Args:
+            origins: Points of the rays before the first surface, shape (N, 3) or (3,), mm.
+            directions: Directions toward the film, shape (N, 3) or (3,); need not be unit.
+            wavelength_nm: One wavelength, or shape (N,), nm.
+            clip: Stop rays outside the clear apertures and the stop, too.
+            image_z: Plane to end on, mm; the image plane of the table if None.
+
+        Returns:
+            Points on the image plane, float64, shape (N, 3), mm; NaN where a ray misses a surface,
+            is totally reflected, or (with ``clip``) is stopped.
+
+        Raises:
+            InputError: Shapes that do not fit, or values that are not finite.
+        """
+        o, d = _rays(origins, directions)
+        nm = np.asarray(wavelength_nm, np.float64)
+        if nm.ndim > 1 or (nm.ndim == 1 and nm.shape[0] not in (1, o.shape[0])):
+            raise InputError(
+                f"{self.name}: trace: wavelength_nm: wanted one number or shape ({o.shape[0]},), "
+                f"got shape {nm.shape}"
+            )
+        _check_wavelength(nm)
+        nm = np.ascontiguousarray(np.broadcast_to(nm, (o.shape[0],)))
+        z = self.image_z if image_z is None else float(image_z)
+        points, _ = self.prescription.trace(o, d, nm, z, clip)
+        return np.asarray(points)
+
+    def __repr__(self) -> str:
+        """The prescription as a table."""
+        return "\n".join([*_headline(self), *_table(self)])
+
+    def _repr_svg_(self) -> str:
+        from .drawing import draw
+
+        return draw(self)
+
+
+def _rays(
+    origins: ArrayLike, directions: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    o = np.atleast_2d(np.asarray(origins, np.float64))
+    d = np.atleast_2d(np.asarray(directions, np.float64))
+    for name, rows in (("origins", o), ("directions", d)):
+        if rows.ndim != 2 or rows.shape[1] != 3:
+            raise InputError(f"trace: {name}: wanted shape (N, 3), got {rows.shape}")
+        if not np.isfinite(rows).all():
+            raise InputError(f"trace: {name}: wanted finite numbers")
+    count = max(len(o), len(d))
+    if len(o) not in (1, count) or len(d) not in (1, count):
+        raise InputError(f"trace: wanted as many directions as origins, got {len(d)} and {len(o)}")
+    if (d == 0).all(axis=1).any():
+        raise InputError("trace: directions: wanted vectors of some length, got (0, 0, 0)")
+    o = np.ascontiguousarray(np.broadcast_to(o, (count, 3)))
+    d = np.ascontiguousarray(np.broadcast_to(d, (count, 3)))
+    return o, d
+
+
+def _check_wavelength(nm: NDArray[np.float64]) -> None:
+    if not ((nm >= 200) & (nm <= 2500)).all():
+        raise InputError(f"wavelength_nm: wanted 200 to 2500 nm, got {nm.min():g} .. {nm.max():g}")
+
+
+def _headline(lens: Lens) -> list[str]:
+    order = lens.first_order()
+    facts = f"{order.efl:.2f} mm  f/{order.f_number:.2f}"
+    return [f"{lens.name}  {facts}", f"source: {lens.patent or 'not named'}"]
+
+
+def _table(lens: Lens) -> list[str]:
+    rows = [f"{'':3} {'':5} {'radius':>10} {'thickness':>10} {'semi-diam.':>10}  glass"]
+    for i, s in enumerate(lens.surfaces):
+        cells = [
+            "plane" if s.radius is None else f"{s.radius:.3f}",
+            "" if s.thickness is None else f"{s.thickness:.3f}",
+            "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}",
+        ]
+        mark = "stop" if s.stop else ""
+        rows.append(
+            f"{i:3} {mark:5} {cells[0]:>10} {cells[1]:>10} {cells[2]:>10}  {s.glass}".rstrip()
+        )
+    return rows
