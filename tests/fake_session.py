@@ -18,7 +18,7 @@ import numpy as np
 import daguerre
 from daguerre.camera import Camera
 from daguerre.frame import Frame
-from daguerre.io.passes import join_ranges
+from daguerre.io.ranges import join_ranges
 from daguerre.scene import Scene
 
 

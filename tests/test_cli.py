@@ -452,3 +452,47 @@ def test_help_does_not_load_what_it_does_not_need() -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stderr.strip() == "[]"
+
+
+def test_denoising_without_the_extra_says_how_to_get_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("daguerre.denoise.find_spec", lambda name: None)
+    assert main(["render", "s.glb", "-o", "a.exr", "--denoise", *SMALL]) == 2
+    assert 'pip install "daguerre[denoise]"' in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_denoising_needs_the_picture_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stand-in for the library checks what it is given: its own rules, from its documentation."""
+    import types
+
+    def stand_in(color, albedo=None, normal=None, *, hdr=False):  # type: ignore[no-untyped-def]
+        assert hdr
+        for image in (color, albedo, normal):
+            assert image.dtype == np.float32
+            assert image.shape == (6, 8, 3)
+        assert color.min() >= 0
+        assert albedo.max() <= 1
+        return color * 0 + 0.5
+
+    monkeypatch.setitem(sys.modules, "pyoidn", types.SimpleNamespace(denoise=stand_in))  # type: ignore[arg-type]
+    monkeypatch.setattr("daguerre.denoise.find_spec", lambda name: True)
+    monkeypatch.setattr("daguerre.denoise.version", lambda name: "2.5.1")
+    assert main(["render", "s.glb", "-o", "a.exr", "--denoise", "--spp", "2", *SMALL]) == 0
+    planes = pixels(tmp_path / "a.exr")
+    assert (planes["R"] == 0.5).all()
+    assert "albedo.R" not in planes
+    with OpenEXR.File(str(tmp_path / "a.exr"), header_only=True) as file:
+        assert file.header()["daguerre:denoised"] == "pyoidn 2.5.1"
+
+
+def test_real_denoiser_lowers_the_error() -> None:
+    pytest.importorskip("pyoidn")
+    from daguerre.denoise import denoise
+    from daguerre.frame import Frame
+
+    clean = np.full((64, 64, 3), (0.2, 0.5, 3.0), np.float32)
+    noise = np.random.default_rng(1).exponential(1, (64, 64, 1)).astype(np.float32)
+    frame = denoise(Frame(clean * noise))
+    assert ((frame.rgb - clean) ** 2).mean() < 0.05 * ((clean * noise - clean) ** 2).mean()

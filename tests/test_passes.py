@@ -13,7 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError
-from daguerre.io import passes
+from daguerre.io import merging, passes, ranges
 from daguerre.render import Session
 
 from . import scenes
@@ -27,16 +27,16 @@ def session(**options: object) -> Session:
     return Session(scene, camera, **{"resolution": SIZE, "aovs": True, **options})  # type: ignore[arg-type]
 
 
-def drawn(*ranges: tuple[int, int], **options: object) -> passes.Pass:
+def drawn(*spans: tuple[int, int], **options: object) -> passes.Pass:
     one = session(**options)
-    for begin, end in ranges:
+    for begin, end in spans:
         one.draw(begin, end)
     return passes.pass_of(one)
 
 
-def write(path: Path, *ranges: tuple[int, int], **options: object) -> Path:
+def write(path: Path, *spans: tuple[int, int], **options: object) -> Path:
     one = session(**options)
-    for begin, end in ranges:
+    for begin, end in spans:
         one.draw(begin, end)
     passes.write_pass(path, one.frame(), passes.pass_of(one))
     return path
@@ -66,7 +66,7 @@ def test_merged_in_any_order_equals_the_whole(tmp_path: Path, whole: dg.Frame) -
     splits = [(0, 3), (3, 8), (8, 16)]
     files = [write(tmp_path / f"{a}.exr", (a, b)) for a, b in splits]
     for order in itertools.permutations(files):
-        frame, total = passes.merge(order)
+        frame, total = merging.merge(order)
         assert_same(frame, whole)
         assert total.ranges == [(0, 16)]
         assert frame.metadata["samples"] == 16
@@ -74,10 +74,10 @@ def test_merged_in_any_order_equals_the_whole(tmp_path: Path, whole: dg.Frame) -
 
 def test_merged_in_steps_equals_the_whole(tmp_path: Path, whole: dg.Frame) -> None:
     a, b, c = (write(tmp_path / f"{r[0]}.exr", r) for r in ((0, 4), (4, 8), (8, 16)))
-    frame, total = passes.merge([c, a])
-    assert passes.missing_ranges(total.ranges) == [(4, 8)]
+    frame, total = merging.merge([c, a])
+    assert ranges.missing_ranges(total.ranges) == [(4, 8)]
     passes.write_pass(tmp_path / "ac.exr", frame, total)
-    assert_same(passes.merge([tmp_path / "ac.exr", b])[0], whole)
+    assert_same(merging.merge([tmp_path / "ac.exr", b])[0], whole)
 
 
 def test_a_planted_fault_is_seen(whole: dg.Frame) -> None:
@@ -86,7 +86,7 @@ def test_a_planted_fault_is_seen(whole: dg.Frame) -> None:
     state = {name: words.copy() for name, words in one.state.items()}
     name = next(n for n in state if n.endswith("X.2") or n.endswith("X.1"))
     state[name][3, 5] += np.uint32(1 << 20)
-    frame, _ = passes.merge([replace(one, state=state)])
+    frame, _ = merging.merge([replace(one, state=state)])
     with pytest.raises(AssertionError):
         assert_same(frame, whole)
 
@@ -120,7 +120,7 @@ def test_a_pass_can_be_looked_at(tmp_path: Path) -> None:
 
 def test_overlap_is_refused() -> None:
     with pytest.raises(MismatchError, match="samples 4:8 are also in"):
-        passes.merge([drawn((0, 8)), drawn((4, 12))])
+        merging.merge([drawn((0, 8)), drawn((4, 12))])
 
 
 @pytest.mark.parametrize(
@@ -128,8 +128,8 @@ def test_overlap_is_refused() -> None:
     [{"seed": 1}, {"filter": "box"}, {"resolution": (24, 18)}, {"crop": (0, 0, 8, 8)}],
 )
 def test_passes_of_other_settings_are_refused(options: dict[str, object]) -> None:
-    with pytest.raises(MismatchError, match="different: .*resolution, crop, seed, filter"):
-        passes.merge([drawn((0, 4)), drawn((4, 8), **options)])
+    with pytest.raises(MismatchError, match=r"different: .*resolution, crop, seed, filter"):
+        merging.merge([drawn((0, 4)), drawn((4, 8), **options)])
 
 
 def test_passes_of_another_camera_or_scene_are_refused() -> None:
@@ -137,7 +137,7 @@ def test_passes_of_another_camera_or_scene_are_refused() -> None:
     other = Session(scene, dg.Camera(f_stop=2.0, focus_distance=3.0), resolution=SIZE, aovs=True)
     other.draw(4, 8)
     with pytest.raises(MismatchError, match="the scene"):
-        passes.merge([drawn((0, 4)), passes.pass_of(other)])
+        merging.merge([drawn((0, 4)), passes.pass_of(other)])
     stopped = Session(
         scenes.furnace(dg.Material(dg.Conductor((0.9, 0.5, 0.3), 0.3))),
         dg.Camera(f_stop=2.1, focus_distance=3.0),
@@ -146,7 +146,7 @@ def test_passes_of_another_camera_or_scene_are_refused() -> None:
     )
     stopped.draw(4, 8)
     with pytest.raises(MismatchError, match="different: the camera"):
-        passes.merge([drawn((0, 4)), passes.pass_of(stopped)])
+        merging.merge([drawn((0, 4)), passes.pass_of(stopped)])
 
 
 def test_a_picture_is_no_pass(tmp_path: Path) -> None:
@@ -184,9 +184,9 @@ def test_merge_command(tmp_path: Path, whole: dg.Frame, capsys: pytest.CaptureFi
 
 
 def test_ranges() -> None:
-    assert passes.join_ranges([(4, 8), (0, 4), (10, 12)]) == [(0, 8), (10, 12)]
-    assert passes.missing_ranges([(4, 8), (10, 12)]) == [(0, 4), (8, 10)]
-    assert passes.missing_ranges([(4, 8)], (2, 12)) == [(2, 4), (8, 12)]
-    assert passes.missing_ranges([(0, 12)], (2, 12)) == []
-    assert passes.missing_ranges([], (2, 3)) == [(2, 3)]
-    assert passes.show_ranges([(0, 1), (4, 8)]) == "0:1, 4:8"
+    assert ranges.join_ranges([(4, 8), (0, 4), (10, 12)]) == [(0, 8), (10, 12)]
+    assert ranges.missing_ranges([(4, 8), (10, 12)]) == [(0, 4), (8, 10)]
+    assert ranges.missing_ranges([(4, 8)], (2, 12)) == [(2, 4), (8, 12)]
+    assert ranges.missing_ranges([(0, 12)], (2, 12)) == []
+    assert ranges.missing_ranges([], (2, 3)) == [(2, 3)]
+    assert ranges.show_ranges([(0, 1), (4, 8)]) == "0:1, 4:8"

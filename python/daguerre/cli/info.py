@@ -11,7 +11,9 @@ import typer
 
 from . import console
 from . import quantities as q
-from .flags import CameraFlags, SceneFlags, option, with_flags
+from .camera_flags import CameraFlags
+from .flags import option, with_flags
+from .scene_flags import SceneFlags
 
 if TYPE_CHECKING:
     from daguerre.info import Facts

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from daguerre.errors import DaguerreError, MismatchError
 from daguerre.io import passes as pass_files
+from daguerre.io.ranges import missing_ranges
 
 from . import console
 from .progress import Silent, Status
@@ -139,7 +140,7 @@ class Loop:
 
     def missing(self) -> list[tuple[int, int]]:
         """Samples that are still to be drawn."""
-        return pass_files.missing_ranges(self.session.ranges, self.wanted)
+        return missing_ranges(self.session.ranges, self.wanted)
 
     def done(self) -> int:
         """Samples per pixel that are complete."""

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from daguerre.errors import MismatchError, UsageError
+from daguerre.io.ranges import Range, missing_ranges, show_ranges
 
 from . import console
 from .flags import option
@@ -31,8 +32,8 @@ def merge(
 ) -> int:
     """Adds passes to one picture, with the bits of a render in one go."""
     from daguerre.frame import TONES, check_format
-    from daguerre.io import atomic
-    from daguerre.io import passes as pass_files
+    from daguerre.io import atomic, merging
+    from daguerre.io.passes import write_pass
 
     console.quiet = quiet
     formats = [check_format(path) for path in output]
@@ -46,7 +47,7 @@ def merge(
         from daguerre.denoise import check_available
 
         check_available()
-    frame, total = pass_files.merge(passes)
+    frame, total = merging.merge(passes)
     _name_missing(total.ranges, strict=strict)
     if denoise:
         from daguerre.denoise import denoise as clean
@@ -58,7 +59,7 @@ def merge(
         frame = replace(frame, aovs=keep)
     for path in output:
         if keep_sums and path.suffix.lower() == ".exr":
-            pass_files.write_pass(path, frame, total)
+            write_pass(path, frame, total)
         else:
             frame.save(path, tone=tone)
     count, places = frame.bad_samples
@@ -66,17 +67,15 @@ def merge(
         x, y, sample = places[0] if places else ("?", "?", "?")
         console.warn(f"{count} bad samples; the first is sample {sample} of pixel ({x}, {y})")
     names = ", ".join(map(str, output))
-    console.note(f"wrote {names} (samples {pass_files.show_ranges(total.ranges)})")
+    console.note(f"wrote {names} (samples {show_ranges(total.ranges)})")
     return 0
 
 
-def _name_missing(ranges: list[tuple[int, int]], *, strict: bool) -> None:
-    from daguerre.io import passes as pass_files
-
-    gaps = pass_files.missing_ranges(ranges)
+def _name_missing(ranges: list[Range], *, strict: bool) -> None:
+    gaps = missing_ranges(ranges)
     if not gaps:
         return
-    text = f"samples {pass_files.show_ranges(gaps)} are missing between the passes"
+    text = f"samples {show_ranges(gaps)} are missing between the passes"
     if strict:
         raise MismatchError(f"merge: {text}")
     console.warn(text)

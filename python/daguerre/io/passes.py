@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame import Frame
 
 from .exr import Channels, attributes, channels, jsonable, write_parts
+from .ranges import Range
 
 if TYPE_CHECKING:
+    from daguerre.frame import Frame
     from daguerre.render import Session
 
-Range = tuple[int, int]
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
 WORDS = {
@@ -115,94 +115,6 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
         source.close()
 
 
-def merge(
-    passes: Iterable[str | os.PathLike[str] | Pass], *, aovs: bool = True
-) -> tuple[Frame, Pass]:
-    """Adds passes, in any order, exactly: the picture has the bits of a render in one go.
-
-    Args:
-        passes: Files or passes.
-        aovs: Keep the auxiliary channels, if the passes have them.
-
-    Returns:
-        The picture, and the sum as a pass.
-
-    Raises:
-        InputError: A file cannot be read.
-        MismatchError: Passes of different pictures, or samples drawn twice; the message names them.
-    """
-    total: Any = None
-    first: Pass | None = None
-    ranges: list[tuple[Range, Path | None]] = []
-    for item in passes:
-        # One at a time: a pass of a large picture takes gigabytes.
-        one = item if isinstance(item, Pass) else read_pass(item)
-        if first is None:
-            first = replace(one, state={})
-        check_key(first, one)
-        _check_overlap(ranges, one)
-        ranges += [(r, one.path) for r in one.ranges]
-        film = film_of(one)
-        if total is None:
-            total = film
-        else:
-            total.merge(film)
-    if first is None:
-        raise InputError("merge: wanted at least one pass file, got none")
-    merged = join_ranges([r for r, _ in ranges])
-    drawn = sum(end - begin for begin, end in merged)
-    count = int(total.bad_sample_count)
-    metadata = {**first.metadata, "samples": drawn, "bad_samples": count}
-    state = {name: total.state(name) for name in total.state_channels()}
-    frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
-    return frame, Pass(state, merged, first.key, metadata)
-
-
-def film_of(one: Pass) -> Any:
-    """The core's film with the sums of a pass."""
-    from daguerre._core import Film
-
-    if not one.state:
-        raise InputError(f"{one.path}: damaged pass file: it has no channels")
-    height, width = next(iter(one.state.values())).shape
-    x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
-    film = Film(width, height, int(x0), int(y0), aovs=_has_aovs(one.state))
-    wanted, got = set(film.state_channels()), set(one.state)
-    if wanted != got:
-        differing = ", ".join(sorted(wanted ^ got)[:4])
-        raise MismatchError(f"{one.path}: sums of another layout: channels differ: {differing}")
-    for name, words in one.state.items():
-        film.set_state(name, np.ascontiguousarray(words, np.uint32))
-    return film
-
-
-def frame_of(
-    film: Any,
-    metadata: dict[str, Any],
-    *,
-    aovs: bool,
-) -> Frame:
-    """The picture of a film: means, variance and counts as plain arrays."""
-    from daguerre.render import AOV_NAMES
-
-    planes: dict[str, NDArray[Any]] = {}
-    alpha = np.ones(film.shape, np.float32)
-    if aovs:
-        planes = {name: film.aov(name) for name in AOV_NAMES}
-        planes["object_id"] = film.object_ids()
-        alpha = film.aov("alpha")
-    return Frame(
-        rgb=film.mean_rgb(),
-        xyz=film.mean_xyz(),
-        alpha=alpha,
-        variance=film.variance_rgb(),
-        samples=film.sample_counts(),
-        aovs=planes,
-        metadata=metadata,
-        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
-    )
-
-
 def check_key(first: Pass, other: Pass) -> None:
     """Refuses a pass of another picture and names what differs."""
     names = sorted({*first.key, *other.key})
@@ -217,48 +129,6 @@ def check_key(first: Pass, other: Pass) -> None:
             f"{other.path or 'this render'}: does not belong to {first.path or 'this render'}; "
             f"different: {'; '.join(words)}"
         )
-
-
-def join_ranges(ranges: Iterable[Range]) -> list[Range]:
-    """Sorted ranges [begin, end), touching ones joined."""
-    joined: list[Range] = []
-    for begin, end in sorted(ranges):
-        if joined and begin <= joined[-1][1]:
-            joined[-1] = (joined[-1][0], max(end, joined[-1][1]))
-        elif end > begin:
-            joined.append((begin, end))
-    return joined
-
-
-def missing_ranges(ranges: Sequence[Range], wanted: Range | None = None) -> list[Range]:
-    """The gaps of ``ranges`` within ``wanted``, by default from 0 to the last sample drawn."""
-    begin, end = wanted or (0, max((e for _, e in ranges), default=0))
-    gaps: list[Range] = []
-    for a, b in join_ranges(ranges):
-        if a > begin:
-            gaps.append((begin, min(a, end)))
-        begin = max(begin, b)
-        if begin >= end:
-            break
-    if begin < end:
-        gaps.append((begin, end))
-    return [(a, b) for a, b in gaps if b > a]
-
-
-def show_ranges(ranges: Iterable[Range]) -> str:
-    """``0:32, 64:96``."""
-    return ", ".join(f"{a}:{b}" for a, b in ranges) or "none"
-
-
-def _check_overlap(seen: list[tuple[Range, Path | None]], one: Pass) -> None:
-    for begin, end in one.ranges:
-        for (a, b), path in seen:
-            low, high = max(a, begin), min(b, end)
-            if low < high:
-                raise MismatchError(
-                    f"{one.path}: samples {low}:{high} are also in {path}; "
-                    "each sample may be added once"
-                )
 
 
 def _find_sums(source: Any) -> int | None:
@@ -296,10 +166,6 @@ def _header(path: Path, spec: Any) -> Pass:
         field_of("key", lambda v: isinstance(v, dict) and bool(v)),
         field_of("metadata", lambda v: isinstance(v, dict)),
     )
-
-
-def _has_aovs(state: State) -> bool:
-    return any(name.startswith("sum.depth") for name in state)
 
 
 def _short(value: str | None) -> str:

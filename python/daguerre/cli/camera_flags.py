@@ -1,0 +1,207 @@
+"""Flags of the camera, in a photographer's units, for every command that looks through one.
+
+Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from . import quantities as q
+from .flags import Text, option
+
+_CAMERA = "Camera"
+
+
+@dataclass(frozen=True)
+class CameraFlags:
+    """The camera in a photographer's units; what is not given stays as the file says."""
+
+    camera: Annotated[
+        Text, option("-c", "--camera", metavar="NAME", help="Camera of the scene.", panel=_CAMERA)
+    ] = None
+    lens: Annotated[
+        Text,
+        option(
+            "--lens",
+            metavar="NAME|FILE|thin|pinhole",
+            help="Lens of the library or a lens file; see `daguerre lenses`.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    lens_model: Annotated[
+        Text,
+        option(
+            "--lens-model",
+            metavar="exact|thin|pinhole",
+            help="How the lens is computed [exact if --lens names one].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    focal_length: Annotated[
+        Text, option("--focal-length", metavar="MM", help="Focal length, mm.", panel=_CAMERA)
+    ] = None
+    f_stop: Annotated[
+        Text,
+        option(
+            "--f-stop",
+            "--fstop",
+            "--aperture",
+            metavar="N",
+            help="Focal length / entrance pupil diameter.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    aperture_diameter: Annotated[
+        Text,
+        option("--aperture-diameter", metavar="MM", help="Instead of --f-stop, mm.", panel=_CAMERA),
+    ] = None
+    focus: Annotated[
+        Text,
+        option(
+            "--focus",
+            metavar="M",
+            help="Distance of the sharp plane, m, or inf [the file's, else autofocus].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    focus_at: Annotated[
+        Text,
+        option("--focus-at", metavar="X,Y", help="Focus on what this pixel shows.", panel=_CAMERA),
+    ] = None
+    focus_on: Annotated[
+        Text, option("--focus-on", metavar="NODE", help="Focus on this node.", panel=_CAMERA)
+    ] = None
+    focus_from: Annotated[
+        Text,
+        option(
+            "--focus-from",
+            metavar="pupil|sensor",
+            help="Where the focus distance starts [pupil].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    focus_breathing: Annotated[
+        bool | None,
+        option(
+            "--focus-breathing/--no-focus-breathing",
+            help="Thin lens: the field narrows as it focuses closer.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    blades: Annotated[
+        int | None, option("--blades", metavar="N", help="Iris blades, 0 is round.", panel=_CAMERA)
+    ] = None
+    blade_rotation: Annotated[
+        Text, option("--blade-rotation", metavar="DEG", help="Degrees.", panel=_CAMERA)
+    ] = None
+    blade_curvature: Annotated[
+        float | None,
+        option("--blade-curvature", metavar="C", help="-1 to 1; 1 is round.", panel=_CAMERA),
+    ] = None
+    aperture_image: Annotated[
+        Path | None,
+        option("--aperture-image", metavar="FILE", help="Grey picture of the iris.", panel=_CAMERA),
+    ] = None
+    sensor: Annotated[
+        Text,
+        option(
+            "--sensor",
+            metavar="WxH|" + "|".join(q.SENSORS),
+            help="Sensor size, mm [36x24].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    fit: Annotated[
+        Text,
+        option(
+            "--fit",
+            metavar="horizontal|vertical|auto|fill",
+            help="Which side of the sensor the picture spans [horizontal].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    shift: Annotated[
+        Text, option("--shift", metavar="X,Y", help="Film shift right and up, mm.", panel=_CAMERA)
+    ] = None
+    shutter: Annotated[
+        Text, option("--shutter", metavar="S", help="Shutter time, s: 1/48, 20ms.", panel=_CAMERA)
+    ] = None
+    iso: Annotated[
+        float | None,
+        option("--iso", metavar="N", help="For metadata and development only.", panel=_CAMERA),
+    ] = None
+    ev: Annotated[
+        float | None,
+        option("--ev", metavar="EV", help="For metadata and development only.", panel=_CAMERA),
+    ] = None
+    natural_vignetting: Annotated[
+        bool | None,
+        option(
+            "--natural-vignetting/--no-natural-vignetting",
+            help="Thin lens, pinhole: darken by cos^4.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    near: Annotated[
+        Text, option("--near", metavar="M", help="Nothing nearer is seen, m.", panel=_CAMERA)
+    ] = None
+
+    def changes(self) -> dict[str, Any]:
+        """The parameters of ``Camera.with_`` that were given."""
+        parsers: dict[str, tuple[str, str, Callable[[str, str], Any]]] = {
+            "focal_length": ("focal_length", "--focal-length", q.length_mm),
+            "f_stop": ("f_stop", "--f-stop", q.f_number),
+            "aperture_diameter": ("aperture_diameter", "--aperture-diameter", q.length_mm),
+            "focus": ("focus_distance", "--focus", q.distance_m),
+            "focus_at": ("focus_at", "--focus-at", lambda f, t: q.numbers(f, t, 2, "480,270")),
+            "blade_rotation": ("blade_rotation", "--blade-rotation", q.angle_deg),
+            "sensor": ("sensor_size", "--sensor", q.sensor_mm),
+            "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
+            "shutter": ("shutter_time", "--shutter", q.time_s),
+            "near": ("near", "--near", q.distance_m),
+        }
+        plain = {
+            "lens": "lens",
+            "lens_model": "lens_model",
+            "focus_on": "focus_on",
+            "focus_from": "focus_from",
+            "focus_breathing": "focus_breathing",
+            "blades": "blades",
+            "blade_curvature": "blade_curvature",
+            "fit": "sensor_fit",
+            "iso": "iso",
+            "ev": "exposure_compensation",
+            "natural_vignetting": "natural_vignetting",
+        }
+        out: dict[str, Any] = {}
+        for name, (parameter, flag, parse) in parsers.items():
+            text = getattr(self, name)
+            if text is not None:
+                out[parameter] = parse(flag, text)
+        for name, parameter in plain.items():
+            if getattr(self, name) is not None:
+                out[parameter] = getattr(self, name)
+        if self.aperture_image is not None:
+            from daguerre.io.iris import read_grey
+
+            out["aperture_image"] = read_grey(self.aperture_image)
+        return _resolve_rivals(out)
+
+
+def _resolve_rivals(changes: dict[str, Any]) -> dict[str, Any]:
+    """One way to focus and one to open the iris may be given; each replaces the file's."""
+    from daguerre.errors import UsageError
+
+    for rivals in (
+        {"focus_distance": "--focus", "focus_at": "--focus-at", "focus_on": "--focus-on"},
+        {"f_stop": "--f-stop", "aperture_diameter": "--aperture-diameter"},
+    ):
+        given = [name for name in rivals if name in changes]
+        if len(given) > 1:
+            flags = " and ".join(rivals[name] for name in given)
+            raise UsageError(f"{flags}: wanted one of them, got {len(given)}")
+        if given:
+            changes |= {name: None for name in rivals if name not in given}
+    return changes

@@ -1,0 +1,170 @@
+"""One picture on its way to its files: draw, answer signals, save, say how it went."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daguerre.errors import InputError
+
+from . import console
+
+if TYPE_CHECKING:
+    from daguerre.frame import Frame
+    from daguerre.render import Session
+
+    from .loop import Loop
+    from .plan import Plan
+
+INTERRUPTED = 75
+
+
+class Job:
+    """One picture on its way to its files."""
+
+    def __init__(
+        self, session: Session, plan: Plan, tone: str, setup_s: float, stats: bool
+    ) -> None:
+
+        self.session, self.plan, self.tone = session, plan, tone
+        self.setup_s, self.stats = setup_s, stats
+        self.loop: Loop
+
+    def run(self, *, resume: bool, quiet: bool, as_json: bool) -> int:
+        """Draws and saves; returns the exit code."""
+        from . import progress
+        from .loop import Loop, Signals
+
+        plan = self.plan
+        reporter = progress.choose(quiet=quiet, as_json=as_json)
+        self.loop = Loop(
+            self.session, plan.wanted, plan.checkpoint, plan.interval_s, reporter, self._snapshot
+        )
+        with Signals() as signals, reporter, core_errors("render"):
+            if resume:
+                found = self.loop.resume()
+                done = self.loop.done()
+                console.note(
+                    f"resuming at {done} of {plan.wanted[1] - plan.wanted[0]} samples"
+                    if found
+                    else f"nothing to resume: no {plan.checkpoint}; starting anew"
+                )
+            if not self.loop.run(signals):
+                # A second Ctrl-C means now: the last checkpoint has to do.
+                self._interrupted(reporter, save=signals.stops < 2)
+                return INTERRUPTED
+            self._finish()
+            reporter.event("done", outputs=[str(p) for p in plan.outputs], samples=self.loop.done())
+        return 0
+
+    def _finish(self) -> None:
+        frame = self._frame()
+        try:
+            self._write(frame, self.plan.outputs)
+        except BaseException:
+            # Hours of work must not die with a full disk.
+            if not self.plan.checkpoint.exists() and self.loop.save():
+                console.say(f"daguerre: the samples are kept in {self.plan.checkpoint}")
+            raise
+        self.plan.checkpoint.unlink(missing_ok=True)
+        count, places = frame.bad_samples
+        if count:
+            x, y, sample = places[0] if places else ("?", "?", "?")
+            console.warn(
+                f"{count} samples were NaN or Inf and count as black; "
+                f"the first is sample {sample} of pixel ({x}, {y})"
+            )
+        elapsed = time.monotonic() - self.loop.started
+        names = ", ".join(str(path) for path in self.plan.outputs)
+        console.note(f"wrote {names} ({self.loop.done()} samples per pixel, {elapsed:.1f} s)")
+        if self.stats:
+            self._print_stats(elapsed)
+
+    def _interrupted(self, reporter: Any, *, save: bool) -> None:
+        done, checkpoint = self.loop.done(), self.plan.checkpoint
+        total = self.plan.wanted[1] - self.plan.wanted[0]
+        kept = "nothing was saved"
+        if save and self.session.ranges and self.loop.save():
+            kept = f"saved in {checkpoint}"
+        elif checkpoint.exists():
+            kept = f"the last checkpoint is {checkpoint}"
+        command = console.command_line("--resume")
+        console.say(f"daguerre: interrupted after {done} of {total} samples; {kept}; resume with:")
+        console.say(command)
+        reporter.event("interrupted", samples=done, resume=command)
+
+    def _frame(self) -> Frame:
+        """The picture so far, with the channels that were asked for."""
+        frame = self.session.frame()
+        facts = {
+            "resolution": (self.session.width, self.session.height),
+            "crop": self.session.crop,
+            "samples": self.loop.done(),
+            "bad_samples": frame.bad_samples[0],
+            "aovs": self.plan.aovs,
+            "scene_hash": self.session.key["scene"],
+        }
+        frame = replace(frame, metadata={**frame.metadata, **facts})
+        if self.plan.denoise:
+            from daguerre.denoise import denoise
+
+            frame = denoise(frame)
+        keep = {
+            name: plane
+            for name, plane in frame.aovs.items()
+            if name.split(".")[0] in self.plan.aovs
+        }
+        return replace(frame, aovs=keep)
+
+    def _write(self, frame: Frame, paths: list[Path]) -> None:
+        from daguerre.io.passes import pass_of, write_pass
+
+        for path in paths:
+            if self.plan.is_pass and path.suffix.lower() == ".exr":
+                drawn = pass_of(self.session)
+                write_pass(path, frame, replace(drawn, metadata=frame.metadata))
+            else:
+                frame.save(path, tone=self.tone)
+
+    def _snapshot(self) -> None:
+        paths = [p.with_suffix(f".snapshot{p.suffix}") for p in self.plan.outputs]
+        self._write(self._frame(), paths)
+        console.note(
+            f"snapshot: {', '.join(map(str, paths))} ({self.loop.done()} samples per pixel)"
+        )
+
+    def _print_stats(self, elapsed: float) -> None:
+        import resource
+
+        from .loop import frame_pixels
+        from .progress import quantity
+
+        usage = resource.getrusage(resource.RUSAGE_SELF)
+        drawn = self.loop.drawn_here * frame_pixels(self.session)
+        rays = int(self.session.rays)
+        rows = {
+            "set-up": f"{self.setup_s:.2f} s",
+            "drawing": f"{elapsed:.2f} s",
+            "processor": f"{usage.ru_utime + usage.ru_stime:.2f} s",
+            "camera samples": f"{drawn} ({quantity(drawn / elapsed)} per s)",
+            "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
+            "bad samples": str(self.session.bad_samples[0]),
+            "peak memory": f"{usage.ru_maxrss / 1024:.0f} MB",
+        }
+        for name, value in rows.items():
+            console.say(f"daguerre: {name}: {value}")
+
+
+@contextmanager
+def core_errors(where: str) -> Iterator[None]:
+    """The core raises plain ``ValueError`` for input that it cannot use."""
+    try:
+        yield
+    except ValueError as error:
+        if type(error) is not ValueError:
+            raise
+        raise InputError(f"{where}: {error}") from error

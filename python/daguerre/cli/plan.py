@@ -1,0 +1,136 @@
+"""What a command line asks for, checked before anything heavy is loaded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from daguerre.errors import UsageError, suggest
+
+from . import quantities as q
+
+DEFAULT_RESOLUTION = (960, 540)
+DEFAULT_SPP = 64
+#: what may be asked for with --aov -> group of channels
+AOVS = {
+    "depth": "depth",
+    "P": "P",
+    "position": "P",
+    "N": "N",
+    "normal": "N",
+    "albedo": "albedo",
+    "object_id": "object_id",
+    "id": "object_id",
+}
+#: groups that every EXR has, so asking for them changes nothing
+ALWAYS = ("variance", "samples")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One picture: its files, its size, its samples."""
+
+    outputs: list[Path]
+    resolution: tuple[int, int]
+    crop: tuple[int, int, int, int] | None
+    wanted: tuple[int, int]
+    is_pass: bool
+    aovs: list[str]
+    denoise: bool
+    interval_s: float
+
+    @property
+    def checkpoint(self) -> Path:
+        """Where the sums are kept until the picture is complete."""
+        return self.outputs[0].with_suffix(".checkpoint.exr")
+
+
+def make_plan(
+    output: list[Path],
+    res: str | None,
+    crop: str | None,
+    aov: list[str],
+    all_aovs: bool,
+    tone: str,
+    denoise: bool,
+    spp: int | None,
+    samples: str | None,
+    checkpoint: str,
+) -> Plan:
+    """Checks what the flags of a render ask for.
+
+    Raises:
+        UsageError: Some value is wrong or does not go with another; the message names the flag.
+    """
+    from daguerre.frame import TONES, check_format
+
+    formats = [check_format(path) for path in output]
+    if tone not in TONES:
+        raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}{suggest(tone, TONES)}")
+    resolution = q.resolution("--res", res, DEFAULT_RESOLUTION) if res else DEFAULT_RESOLUTION
+    if spp is not None and not 1 <= spp < 2**32:
+        raise UsageError(f"--spp: wanted a number from 1, got {spp}")
+    wanted = q.sample_range("--samples", samples) if samples else (0, spp or DEFAULT_SPP)
+    if samples and spp is not None and wanted[1] > spp:
+        raise UsageError(f"--samples {samples}: wanted at most --spp {spp}")
+    if samples and ".exr" not in formats:
+        raise UsageError("--samples: a pass keeps its sums in an .exr; got none with -o")
+    if samples and denoise:
+        raise UsageError(
+            "--samples and --denoise: denoise after merging, `daguerre merge --denoise`"
+        )
+    if denoise:
+        from daguerre.denoise import check_available
+
+        check_available()
+    return Plan(
+        output,
+        resolution,
+        _crop(crop, resolution),
+        wanted,
+        samples is not None,
+        _aov_groups(aov, all_aovs),
+        denoise,
+        q.time_s("--checkpoint", checkpoint),
+    )
+
+
+def _crop(text: str | None, resolution: tuple[int, int]) -> tuple[int, int, int, int] | None:
+    """Command line order x0, x1, y0, y1 to corners x0, y0, x1, y1; px, half open."""
+    if text is None:
+        return None
+    x0, x1, y0, y1 = q.integers("--crop", text, 4, "100,400,50,300")
+    if not (0 <= x0 < x1 <= resolution[0] and 0 <= y0 < y1 <= resolution[1]):
+        raise UsageError(
+            f"--crop: wanted x0 < x1 within 0..{resolution[0]} and y0 < y1 within "
+            f"0..{resolution[1]}; got {text!r}"
+        )
+    return x0, y0, x1, y1
+
+
+def _aov_groups(names: list[str], everything: bool) -> list[str]:
+    groups = set(AOVS.values()) if everything else set()
+    for name in (part.strip() for text in names for part in text.split(",")):
+        if name == "all":
+            groups |= set(AOVS.values())
+        elif name in AOVS:
+            groups.add(AOVS[name])
+        elif name not in ALWAYS:
+            known = [*AOVS, *ALWAYS, "all"]
+            raise UsageError(
+                f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
+            )
+    return sorted(groups)
+
+
+def check_outputs(plan: Plan) -> None:
+    """Before hours are spent: can the files be written at all?"""
+    from daguerre.io.atomic import check_writable
+
+    names = [path.resolve() for path in plan.outputs]
+    if len(set(names)) < len(names):
+        raise UsageError("-o: the same file is named twice")
+    if plan.checkpoint.resolve() in names:
+        raise UsageError(f"-o {plan.checkpoint}: this name is kept for the checkpoint")
+    for path in plan.outputs:
+        check_writable(path)

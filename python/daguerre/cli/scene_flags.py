@@ -1,0 +1,104 @@
+"""Flags of what the camera looks at: time, environment, folders.
+
+Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from . import quantities as q
+from .flags import Text, option
+
+_LIGHT = "Scene and light"
+
+
+@dataclass(frozen=True)
+class SceneFlags:
+    """What the camera looks at."""
+
+    time: Annotated[
+        Text, option("--time", metavar="S", help="Scene time, s [0].", panel=_LIGHT)
+    ] = None
+    env: Annotated[
+        Path | None,
+        option(
+            "--env", metavar="FILE", help="Panorama (.hdr, .exr) around the scene.", panel=_LIGHT
+        ),
+    ] = None
+    env_scale: Annotated[
+        float | None,
+        option(
+            "--env-scale", metavar="X", help="cd/m2 of a value of 1 in --env [1].", panel=_LIGHT
+        ),
+    ] = None
+    env_rotation: Annotated[
+        Text,
+        option("--env-rotation", metavar="DEG", help="About the vertical, degrees.", panel=_LIGHT),
+    ] = None
+    sky: Annotated[
+        Text, option("--sky", metavar="R,G,B", help="Even sky, cd/m2.", panel=_LIGHT)
+    ] = None
+    allow_dir: Annotated[
+        list[Path] | None,
+        option("--allow-dir", metavar="DIR", help="Folder that the scene may read.", panel=_LIGHT),
+    ] = None
+
+    def load(self, path: Path) -> Any:
+        """Reads the scene and lights it."""
+        import daguerre
+
+        time = q.time_s("--time", self.time) if self.time is not None else 0.0
+        environment = self._environment()
+        scene = daguerre.load(path, time=time, allow_dirs=tuple(self.allow_dir or ()))
+        if environment:
+            scene.set_environment(**environment)
+        elif self.env_scale is not None or self.env_rotation is not None:
+            self._change(scene)
+        return scene
+
+    def _scale(self) -> float:
+        import math
+
+        from daguerre.errors import UsageError
+
+        scale = 1.0 if self.env_scale is None else self.env_scale
+        if not (0 <= scale < math.inf):
+            raise UsageError(f"--env-scale: wanted a number of at least 0, got {scale}")
+        return scale
+
+    def _rotation(self) -> float:
+        return q.angle_deg("--env-rotation", self.env_rotation) if self.env_rotation else 0.0
+
+    def _environment(self) -> dict[str, Any]:
+        from daguerre.errors import UsageError
+
+        if self.env is not None and self.sky is not None:
+            raise UsageError("--env and --sky: wanted one of them, got both")
+        if self.sky is not None:
+            color = q.numbers("--sky", self.sky, 3, "1,1,1")
+            if min(color) < 0:
+                raise UsageError(f"--sky: wanted colours of at least 0, got {self.sky!r}")
+            return {"color": color, "scale": self._scale()}
+        if self.env is not None:
+            from daguerre.io.images import read_environment
+
+            image = read_environment(self.env)
+            return {"image": image, "scale": self._scale(), "rotation": self._rotation()}
+        return {}
+
+    def _change(self, scene: Any) -> None:
+        from dataclasses import replace
+
+        from daguerre.errors import UsageError
+
+        if scene.environment is None:
+            raise UsageError(
+                "--env-scale, --env-rotation: the scene has no environment; give --env"
+            )
+        changes: dict[str, float] = {}
+        if self.env_scale is not None:
+            changes["scale"] = self._scale()
+        if self.env_rotation is not None:
+            changes["rotation"] = self._rotation()
+        scene.environment = replace(scene.environment, **changes)

@@ -1,0 +1,121 @@
+"""Adding passes: the film's sums are integers, so any order and any split give the same bits."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError, MismatchError
+from daguerre.frame import Frame
+
+from .passes import Pass, State, check_key, read_pass
+from .ranges import Range, join_ranges
+
+
+def merge(
+    passes: Iterable[str | os.PathLike[str] | Pass], *, aovs: bool = True
+) -> tuple[Frame, Pass]:
+    """Adds passes, in any order, exactly: the picture has the bits of a render in one go.
+
+    Args:
+        passes: Files or passes.
+        aovs: Keep the auxiliary channels, if the passes have them.
+
+    Returns:
+        The picture, and the sum as a pass.
+
+    Raises:
+        InputError: A file cannot be read.
+        MismatchError: Passes of different pictures, or samples drawn twice; the message names them.
+    """
+    total: Any = None
+    first: Pass | None = None
+    ranges: list[tuple[Range, Path | None]] = []
+    for item in passes:
+        # One at a time: a pass of a large picture takes gigabytes.
+        one = item if isinstance(item, Pass) else read_pass(item)
+        if first is None:
+            first = replace(one, state={})
+        check_key(first, one)
+        _check_overlap(ranges, one)
+        ranges += [(r, one.path) for r in one.ranges]
+        film = film_of(one)
+        if total is None:
+            total = film
+        else:
+            total.merge(film)
+    if first is None:
+        raise InputError("merge: wanted at least one pass file, got none")
+    merged = join_ranges([r for r, _ in ranges])
+    drawn = sum(end - begin for begin, end in merged)
+    count = int(total.bad_sample_count)
+    metadata = {**first.metadata, "samples": drawn, "bad_samples": count}
+    state = {name: total.state(name) for name in total.state_channels()}
+    frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
+    return frame, Pass(state, merged, first.key, metadata)
+
+
+def film_of(one: Pass) -> Any:
+    """The core's film with the sums of a pass."""
+    from daguerre._core import Film
+
+    if not one.state:
+        raise InputError(f"{one.path}: damaged pass file: it has no channels")
+    height, width = next(iter(one.state.values())).shape
+    x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
+    film = Film(width, height, int(x0), int(y0), aovs=_has_aovs(one.state))
+    wanted, got = set(film.state_channels()), set(one.state)
+    if wanted != got:
+        differing = ", ".join(sorted(wanted ^ got)[:4])
+        raise MismatchError(f"{one.path}: sums of another layout: channels differ: {differing}")
+    for name, words in one.state.items():
+        film.set_state(name, np.ascontiguousarray(words, np.uint32))
+    return film
+
+
+def frame_of(
+    film: Any,
+    metadata: dict[str, Any],
+    *,
+    aovs: bool,
+) -> Frame:
+    """The picture of a film: means, variance and counts as plain arrays."""
+    from daguerre.render import AOV_NAMES
+
+    planes: dict[str, NDArray[Any]] = {}
+    alpha = np.ones(film.shape, np.float32)
+    if aovs:
+        planes = {name: film.aov(name) for name in AOV_NAMES}
+        planes["object_id"] = film.object_ids()
+        alpha = film.aov("alpha")
+    return Frame(
+        rgb=film.mean_rgb(),
+        xyz=film.mean_xyz(),
+        alpha=alpha,
+        variance=film.variance_rgb(),
+        samples=film.sample_counts(),
+        aovs=planes,
+        metadata=metadata,
+        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
+    )
+
+
+def _check_overlap(seen: list[tuple[Range, Path | None]], one: Pass) -> None:
+    for begin, end in one.ranges:
+        for (a, b), path in seen:
+            low, high = max(a, begin), min(b, end)
+            if low < high:
+                raise MismatchError(
+                    f"{one.path}: samples {low}:{high} are also in {path}; "
+                    "each sample may be added once"
+                )
+
+
+def _has_aovs(state: State) -> bool:
+    return any(name.startswith("sum.depth") for name in state)
