@@ -12,8 +12,6 @@ namespace dg::bind {
 
 namespace nb = nanobind;
 
-template <typename T, typename... Shape>
-using In = nb::ndarray<const T, nb::shape<Shape...>, nb::c_contig, nb::device::cpu>;
 using Rows2f = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Rows3f = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Rows4f = nb::ndarray<const float, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
@@ -25,7 +23,7 @@ template <typename T, typename Array>
 std::vector<T> to_vector(const Array& array) {
     std::vector<T> out(array.shape(0));
     static_assert(std::is_trivially_copyable_v<T>);
-    if (!out.empty()) std::memcpy(out.data(), array.data(), array.nbytes());
+    if (!out.empty()) std::memcpy(static_cast<void*>(out.data()), array.data(), array.nbytes());
     return out;
 }
 

@@ -235,7 +235,7 @@ void bind_scene(nb::module_& m) {
                  image.pixels.resize(std::size_t(image.width) * image.height);
                  if (pixels.shape(2) != 3)
                      throw input_error("environment", "channels", "3", std::to_string(pixels.shape(2)));
-                 std::memcpy(image.pixels.data(), pixels.data(), pixels.nbytes());
+                 std::memcpy(static_cast<void*>(image.pixels.data()), pixels.data(), pixels.nbytes());
                  b.description.environment =
                      Environment::image(std::move(image), scale, to_float(to_affine(matrix)));
              })

@@ -2,6 +2,8 @@
 #include "film/film.h"
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 
 #include "math/error.h"
 #include "spectrum/wavelengths.h"
@@ -17,6 +19,18 @@ std::array<float, 11> aov_values(const AovSample& s) {
     return {s.depth,    s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y,
             s.normal.z, s.albedo.x,   s.albedo.y,   s.albedo.z,   s.alpha};
 }
+
+/// Holds a pixel that several threads may write.
+class PixelLock {
+  public:
+    explicit PixelLock(std::uint32_t& word) : lock_(word) {
+        while (lock_.exchange(1, std::memory_order_acquire)) std::this_thread::yield();
+    }
+    ~PixelLock() { lock_.store(0, std::memory_order_release); }
+
+  private:
+    std::atomic_ref<std::uint32_t> lock_;
+};
 
 }  // namespace
 
@@ -48,8 +62,17 @@ void Film::mark_bad(Pixel& pixel, std::uint32_t sample) {
 
 void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
+    if (i >= 0) add_to(pixels_[i], sample, xyz);
+}
+
+void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
+    const std::int64_t i = find(x, y);
     if (i < 0) return;
-    Pixel& pixel = pixels_[i];
+    const PixelLock lock(pixels_[i].lock);
+    add_to(pixels_[i], sample, xyz);
+}
+
+void Film::add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) {
         mark_bad(pixel, sample);
         return;
@@ -74,6 +97,7 @@ void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
     const std::array<float, 11> values = aov_values(aov);
     const auto first = values.begin() + (aov.hit ? 0 : kHitAovs);
     if (!std::all_of(first, values.end(), fits_film)) {
+        const PixelLock lock(pixels_[i].lock);
         mark_bad(pixels_[i], sample);
         return;
     }
@@ -86,10 +110,6 @@ void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
         pixel.object_sample = sample;
         pixel.object_id = aov.object_id;
     }
-}
-
-void Film::merge_splats(const SplatBuffer& splats) {
-    for (const SplatBuffer::Splat& s : splats.splats()) add(s.x, s.y, s.sample, s.xyz);
 }
 
 void Film::merge(const Film& other) {

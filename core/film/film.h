@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "film/fixed_sum.h"
-#include "film/splat_buffer.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -47,15 +46,15 @@ class Film {
     /// NaN, Inf or beyond kMaxFilmValue: the sample is counted as bad, and 0 is added.
     /// What one camera sample brings to one pixel should come as one sum: its square is
     /// what the variance is made of. Not thread safe for the same pixel: tiles own their
-    /// pixels; what lands elsewhere goes through a SplatBuffer.
+    /// pixels; see add_shared.
     void add(int x, int y, std::uint32_t sample, Vec3f xyz);
     /// Values that are not finite: counted as bad, nothing added.
     void add_aov(int x, int y, std::uint32_t sample, const AovSample& aov);
     /// To be called once per camera sample and pixel: the divisor of the mean.
     void count(int x, int y);
-    /// Adds each splat as add() does; nobody else may write meanwhile. Any order of
-    /// splats and buffers gives the same bits.
-    void merge_splats(const SplatBuffer& splats);
+    /// The same from any thread at any time, as dispersion sends wavelengths to the pixels of other
+    /// tiles; a pixel that may be written like this must not be written by add() meanwhile.
+    void add_shared(int x, int y, std::uint32_t sample, Vec3f xyz);
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
     /// layouts differ.
@@ -96,7 +95,8 @@ class Film {
     struct Pixel {
         ValueSum xyz[3];
         SquareSum rgb_squares[3];
-        std::uint32_t count = 0, bad = 0, first_bad = kNone, reserved = 0;
+        std::uint32_t count = 0, bad = 0, first_bad = kNone;
+        std::uint32_t lock = 0;   // of add_shared; 0 at rest
     };
     struct AovPixel {
         ValueSum sums[11];  // in the order of aov_names()
@@ -105,6 +105,7 @@ class Film {
 
     /// Index of a full-frame pixel, or -1 outside the region.
     std::int64_t find(int x, int y) const;
+    void add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
     static void mark_bad(Pixel& pixel, std::uint32_t sample);
     /// Where a state channel lies: word of a Pixel or of an AovPixel.
     struct WordPlace {

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <thread>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -97,18 +99,21 @@ TEST_CASE("any order and any split with any order of merging give the same bits"
     CHECK(whole_state(changed) != expected);
 }
 
-TEST_CASE("splats: any buffer, any order, the same bits as adding directly") {
+TEST_CASE("shared adding: from several threads, in any order, the bits of adding alone") {
     std::vector<Draw> draws = all_draws();
-    Film direct(kLayout), splatted(kLayout);
+    Film direct(kLayout), shared(kLayout);
     for (const Draw& d : draws) direct.add(d.x, d.y, d.sample, value(d.id));
     shuffle(draws, 5);
-    SplatBuffer buffers[3];
-    for (std::size_t i = 0; i < draws.size(); ++i)
-        buffers[i % 3].add(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
-    buffers[0].add(0, 0, 0, {1, 1, 1});  // outside the region: ignored
-    for (const int b : {2, 0, 1}) splatted.merge_splats(buffers[b]);
-    CHECK(whole_state(direct) == whole_state(splatted));
-    CHECK(direct.bad_samples().size() == splatted.bad_samples().size());
+    const auto add_third = [&](std::size_t first) {
+        for (std::size_t i = first; i < draws.size(); i += 3)
+            shared.add_shared(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+        shared.add_shared(0, 0, 0, {1, 1, 1});  // outside the region: ignored
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < 3; ++k) threads.emplace_back(add_third, k);
+    for (std::thread& t : threads) t.join();
+    CHECK(whole_state(direct) == whole_state(shared));
+    CHECK(direct.bad_samples().size() == shared.bad_samples().size());
 }
 
 TEST_CASE("the state goes through 32-bit words bit by bit") {
@@ -180,7 +185,7 @@ TEST_CASE(
     CHECK(one.variance_rgb()[0] == 0);
 }
 
-TEST_CASE("variance with splats: a pixel that also receives random arrivals") {
+TEST_CASE("variance where wavelengths of other samples land: a pixel that also receives random arrivals") {
     const int n = 64, films = 600;
     std::vector<double> means, variances;
     for (int f = 0; f < films; ++f) {

@@ -137,8 +137,10 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
                 walk.from_delta = sample->specular;
                 if (sample->transmitted) {
                     walk.eta_squared *= sample->eta * sample->eta;
+                    // A thin sheet inside a volume bends nothing and bounds nothing.
                     const Interior interior = kind.interior();
-                    walk.medium = dot(sample->wi, hit.ng) < 0 ? interior : Interior{};
+                    if (interior.present || sample->eta != 1)
+                        walk.medium = dot(sample->wi, hit.ng) < 0 ? interior : Interior{};
                 }
                 walk.previous = hit.position;
                 walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);

@@ -35,7 +35,6 @@ struct Workspace {
     std::vector<CameraRay> secondary_rays;        // of the samples that passed, three each
     std::vector<float> secondary_nm;
     std::vector<Reprojection> reprojections;
-    SplatBuffer splats;
     RenderCounters counters;
 };
 
@@ -111,10 +110,10 @@ class Renderer {
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
         const Spectrum light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
                                         settings_.path, wanted, &work.counters.rays);
-        if (wanted) add_aov(sample, camera_ray.ray, aov);
+        if (wanted) add_aov(sample, aov);
         if (exact_) {
             const auto first = work.reprojections.begin() + passed * (kWavelengths - 1);
-            splat(work, sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
+            splat(sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index,
                       sample.wavelengths.to_xyz(light * (camera_ray.weight * sample.filter_weight)));
@@ -122,7 +121,7 @@ class Renderer {
     }
 
     /// Each wavelength at its own film point; those of one pixel are added as one value.
-    void splat(Workspace& work, const Sample& sample, const CameraRay& camera_ray,
+    void splat(const Sample& sample, const CameraRay& camera_ray,
                std::span<const Reprojection> others, Spectrum light) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
@@ -136,21 +135,16 @@ class Renderer {
                 here.set(j, light[j] * landings[j].weight);
                 landings[j].weight = 0;
             }
-            const Vec3f xyz = sample.wavelengths.to_xyz(here);
-            if (pixel.x == sample.pixel.x && pixel.y == sample.pixel.y)
-                film_.add(pixel.x, pixel.y, sample.index, xyz);
-            else
-                work.splats.add(pixel.x, pixel.y, sample.index, xyz);
+            film_.add_shared(pixel.x, pixel.y, sample.index, sample.wavelengths.to_xyz(here));
         }
     }
 
-    void add_aov(const Sample& sample, const Ray& camera_ray, AovSample& aov) const {
+    void add_aov(const Sample& sample, AovSample& aov) const {
         aov.alpha = aov.hit ? 1 : 0;
         if (aov.hit) {
             const Affine3d& camera = camera_.world_from_camera;
             aov.depth = float(-dot(to_double(aov.position) - camera.origin, camera.z));
         }
-        (void)camera_ray;
         film_.add_aov(sample.pixel.x, sample.pixel.y, sample.index, aov);
     }
 
@@ -189,7 +183,6 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     });
     RenderCounters counters;
     for (Workspace& work : workspaces) {
-        film.merge_splats(work.splats);
         counters.camera_rays += work.counters.camera_rays;
         counters.stopped_rays += work.counters.stopped_rays;
         counters.rays += work.counters.rays;

@@ -5,6 +5,8 @@ All lengths in mm unless the name says otherwise. Distances of focus are m.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -323,11 +325,97 @@ def _from_pupil(total_m: float, f: float) -> float:
 def _iris_facts(camera: Camera) -> dict[str, Any]:
     if camera.aperture_image is not None:
         image = np.ascontiguousarray(camera.aperture_image, np.float32)
-        import hashlib
-
         return {"aperture_image_sha256": hashlib.sha256(image.tobytes()).hexdigest()}
     return {
         "blades": camera.blades,
         "blade_rotation_deg": camera.blade_rotation,
         "blade_curvature": camera.blade_curvature,
     }
+
+
+def _set_up_prescription(
+    setup: CameraSetup,
+    camera: Camera,
+    lens: lenses.Lens,
+    model: str,
+    world: NDArray[np.float64],
+    focus: Focus,
+) -> None:
+    """A real lens: traced exactly, or replaced by the ideal lens of the same framing and blur."""
+    order = lens.first_order()
+    f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+    from_sensor = camera.focus_from == "sensor" and camera.focus_distance is not None
+    direction = ideal_direction(order.efl)
+    if camera.focus_at is not None and model == "exact":
+        far = _exact_lens(lens, camera, setup.frame_size, f_stop, math.inf, False)
+
+        def direction(x: float, y: float) -> NDArray[np.float64]:
+            return np.array(far.chief_direction(x, y))
+
+    distance = focus.distance(direction)
+    exact = _exact_lens(lens, camera, setup.frame_size, f_stop, distance, from_sensor)
+    if from_sensor:  # the film's place is known now, and with it the way to the pupil
+        distance -= (exact.film_z_mm - order.entrance_pupil.z) * 1e-3
+    film = framing_distance(order, exact.film_distance_mm, distance)
+    if model == "exact":
+        setup.core = _core.Camera.exact(world, exact)
+    elif model == "thin":
+        radius = order.efl / f_stop / 2
+        setup.core = _core.Camera.thin(
+            world, film, radius, distance, iris_of(camera), camera.natural_vignetting
+        )
+    else:
+        setup.core = _core.Camera.pinhole(world, film, camera.natural_vignetting)
+    setup.pinhole_focal_length = film
+    setup.facts |= {
+        "lens": lens.name,
+        "lens_sha256": _hash_lens(lens),
+        "coating": lens.coating,
+        "focal_length_mm": lens.nominal.efl_mm or order.efl,
+        "effective_focal_length_mm": order.efl,
+        "f_stop": f_stop,
+        "focus_distance_m": distance,
+        "entrance_pupil_offset_mm": exact.film_z_mm - order.entrance_pupil.z,
+        "h0": exact.h0,
+        "transmittance": exact.transmittance,
+        **_iris_facts(camera),
+    }
+
+
+def framing_distance(
+    order: lenses.FirstOrder, film_distance: float, focus_distance_m: float
+) -> float:
+    """Film distance (mm) of the pinhole, at the entrance pupil, with the framing of a real lens.
+
+    A chief ray of slope t crosses the plane of focus at height t s_pupil and the film at
+    t s_pupil s' / s, with s and s' measured from the principal points.
+    """
+    if math.isinf(focus_distance_m):
+        return order.efl
+    from_pupil = focus_distance_m * 1e3
+    from_principal = from_pupil + order.front_principal_point - order.entrance_pupil.z
+    return film_distance * from_pupil / from_principal
+
+
+def _exact_lens(
+    lens: lenses.Lens,
+    camera: Camera,
+    frame: tuple[float, float],
+    f_stop: float,
+    distance: float,
+    from_sensor: bool,
+) -> _core.ExactLens:
+    half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
+    # The reconstruction filter reaches over the frame's edge.
+    half_diagonal = 1.02 * math.hypot(*half)
+    try:
+        return _core.ExactLens(
+            lens.prescription, f_stop, iris_of(camera), distance, from_sensor, half_diagonal
+        )
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def _hash_lens(lens: lenses.Lens) -> str:
+    text = json.dumps(lens.data, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
