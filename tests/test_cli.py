@@ -274,6 +274,21 @@ def test_the_printed_command_resumes(tmp_path: Path) -> None:
     assert (tmp_path / name).exists()
 
 
+def test_nohup_survives_the_terminal(tmp_path: Path) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # inherited by the child
+    try:
+        flags = ["--spp", "40", "--checkpoint", "50ms", *SMALL]
+        process = spawn("render", "s.glb", "-o", "a.exr", *flags, seconds=0.02)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    deadline = time.monotonic() + 20
+    while not (tmp_path / "a.checkpoint.exr").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGHUP)
+    process.communicate(timeout=20)
+    assert process.returncode == 0
+
+
 def test_twice_stops_at_once_and_writes_nothing(tmp_path: Path) -> None:
     flags = ["--spp", "64", "--json-progress", *SMALL]
     process = spawn("render", "s.glb", "-o", "a.exr", *flags, seconds=1.5)

@@ -7,6 +7,7 @@ mismatch, 5 output or disk, 70 internal, 75 interrupted and resumable.
 from __future__ import annotations
 
 import os
+import re
 import sys
 import traceback
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from typing import Any
 
 import typer
 
-from daguerre.errors import DaguerreError
+from daguerre.errors import DaguerreError, suggest
 
 from . import console
 from .info import info
@@ -80,6 +81,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _usage(error: Any) -> str:
     """Typer's message, with a full stop less and a hint where help is."""
     text = str(error.format_message()).strip().rstrip(".")
+    unknown = re.match(r"No such command '(.*)'$", text)
+    if unknown:  # older releases of Typer suggest nothing
+        text += suggest(unknown[1], [str(c.name) for c in app.registered_commands])
     context = getattr(error, "ctx", None)
     where = context.command_path if context is not None else "daguerre"
     return f"{text[:1].lower()}{text[1:]} (see `{where} --help`)"

@@ -41,6 +41,8 @@ class Signals:
         # Handlers can be set in the main thread only; elsewhere the caller keeps its own.
         with suppress(ValueError):
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                if number == signal.SIGHUP and signal.getsignal(number) == signal.SIG_IGN:
+                    continue  # started with nohup: it shall outlive the terminal
                 self._before[number] = signal.signal(number, self._stop)
             self._before[signal.SIGUSR1] = signal.signal(signal.SIGUSR1, self._snapshot)
         return self
