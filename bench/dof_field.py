@@ -15,7 +15,7 @@ import numpy as np
 import scene as dof_field  # type: ignore[import-not-found]
 
 import daguerre as dg
-from daguerre.render import Session
+from daguerre.session import Session
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
 

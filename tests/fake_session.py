@@ -29,7 +29,7 @@ def sample_value(index: int, height: int, width: int) -> np.ndarray:
 
 
 class FakeSession:
-    """Keeps the contract of ``daguerre.render.Session``."""
+    """Keeps the contract of ``daguerre.session.Session``."""
 
     def __init__(
         self,
@@ -128,9 +128,9 @@ def load(path: object, *, time: float = 0.0, allow_dirs: object = ()) -> Scene:
 
 def install(patch: Callable[[object, str, object], None] = setattr) -> None:
     """Puts the fakes where the command line looks for the real ones."""
-    module = types.ModuleType("daguerre.render")
+    module = types.ModuleType("daguerre.session")
     module.Session = FakeSession  # type: ignore[attr-defined]
-    sys.modules["daguerre.render"] = module
+    sys.modules["daguerre.session"] = module
     patch(daguerre, "load", load)
 
 

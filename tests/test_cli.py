@@ -26,7 +26,7 @@ SMALL = ["--res", "8x6"]
 
 @pytest.fixture(autouse=True)
 def _fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(sys.modules, "daguerre.render", sys.modules.get("daguerre.render"))
+    monkeypatch.setitem(sys.modules, "daguerre.session", sys.modules.get("daguerre.session"))
     fake_session.install(lambda where, name, value: monkeypatch.setattr(where, name, value))
     monkeypatch.chdir(tmp_path)
 

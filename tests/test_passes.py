@@ -14,7 +14,7 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError
 from daguerre.io import merging, passes, ranges
-from daguerre.render import Session
+from daguerre.session import Session
 
 from . import scenes
 

@@ -17,7 +17,7 @@ from .scene import Scene
 if TYPE_CHECKING:
     from . import lenses
     from .frame import Frame
-    from .render import Session, iter_render, render
+    from .session import Session, iter_render, render
 
 __all__ = [
     "Camera",
@@ -47,7 +47,7 @@ __all__ = [
 ]
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
-_LAZY = {"Frame": "frame", "Session": "render", "iter_render": "render", "render": "render"}
+_LAZY = {"Frame": "frame", "Session": "session", "iter_render": "session", "render": "session"}
 
 
 def __getattr__(name: str) -> Any:
@@ -55,7 +55,7 @@ def __getattr__(name: str) -> Any:
         return import_module(".lenses", __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)
-        globals()[name] = value  # the function render wins over the module of that name
+        globals()[name] = value
         return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

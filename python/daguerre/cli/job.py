@@ -15,7 +15,7 @@ from . import console
 
 if TYPE_CHECKING:
     from daguerre.frame import Frame
-    from daguerre.render import Session
+    from daguerre.session import Session
 
     from .loop import Loop
     from .plan import Plan

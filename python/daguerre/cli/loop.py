@@ -20,7 +20,7 @@ from . import console
 from .progress import Silent, Status
 
 if TYPE_CHECKING:
-    from daguerre.render import Session
+    from daguerre.session import Session
 
 #: A pass lasts about this long, so that Ctrl-C and checkpoints need not wait.
 PASS_S = 3.0

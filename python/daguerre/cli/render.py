@@ -19,7 +19,7 @@ from .plan import Plan, check_outputs, make_plan
 from .scene_flags import SceneFlags
 
 if TYPE_CHECKING:
-    from daguerre.render import Session
+    from daguerre.session import Session
 
 _OUTPUT = "Output"
 _SAMPLING = "Sampling"
@@ -147,7 +147,7 @@ def _check_numbers(seed: int, threads: int, max_depth: int) -> None:
 
 def _session(scene: Any, camera: Any, plan: Plan, settings: dict[str, Any]) -> Session:
     from daguerre.info import camera_warnings
-    from daguerre.render import Session
+    from daguerre.session import Session
 
     for warning in camera_warnings(camera):
         console.warn(warning)

@@ -86,7 +86,7 @@ def frame_of(
     aovs: bool,
 ) -> Frame:
     """The picture of a film: means, variance and counts as plain arrays."""
-    from daguerre.render import AOV_NAMES
+    from daguerre.session import AOV_NAMES
 
     planes: dict[str, NDArray[Any]] = {}
     alpha = np.ones(film.shape, np.float32)

@@ -26,7 +26,7 @@ from .ranges import Range
 
 if TYPE_CHECKING:
     from daguerre.frame import Frame
-    from daguerre.render import Session
+    from daguerre.session import Session
 
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
