@@ -32,6 +32,7 @@ def main() -> None:
     things.add_glasses(stage)
     things.add_candles(stage)
     things.add_small_things(stage)
+    room.add_lantern(stage)
     room.add_moonlight(stage)
     stage.glb.add_turns("orrery", turns, 24.0)
     stage.glb.write(path)

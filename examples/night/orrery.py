@@ -37,7 +37,7 @@ def add_orrery(stage: Stage) -> dict[int, int]:
     ]
     profile = np.concatenate([shapes.smooth_profile(column), [(0, 0.097)]])
     stage.put("column", shapes.lathe(profile, 48), stage.brass, parent=root)
-    bulb = stage.matter("sun", stage.shine((1.0, 0.72, 0.40), 110), baseColorFactor=[0, 0, 0, 1])
+    bulb = stage.matter("sun", stage.shine((1.0, 0.72, 0.40), 180), baseColorFactor=[0, 0, 0, 1])
     stage.put("sun", shapes.ico_ball(0.0105, 3), bulb, parent=root, translation=[0, 0.1065, 0])
 
     def stone(name: str, picture: textures.Picture, roughness: float) -> int:

@@ -68,14 +68,14 @@ def add_room(stage: Stage) -> None:
     floor = stage.matter("floor", baseColorFactor=[0.10, 0.075, 0.06, 1], roughnessFactor=0.6)
     stage.put("floor", shapes.box((8, 0.05, 7)), floor, translation=[0, -0.80, -2.0])
     rng = np.random.default_rng(7)
-    for _ in range(46):
-        x, y = rng.uniform(left, right), -0.42 + 0.85 * rng.beta(1.2, 2.0)
+    for _ in range(34):
+        x, y = rng.uniform(left, right), -0.42 + 0.95 * rng.beta(1.3, 1.8)
         color = PALETTE[rng.choice(6, p=[0.34, 0.24, 0.16, 0.14, 0.07, 0.05])]
         stage.lamp(
             [x, y, z - 0.3],
             rng.uniform(0.022, 0.034),
             color,
-            float(rng.choice([6, 10, 16])),
+            float(rng.choice([3.5, 6, 11])),
             True,
         )
 
@@ -119,6 +119,11 @@ def add_camera(stage: Stage) -> None:
     focus = float(np.dot(np.subtract((0.0, 0.1065, 0.0105), eye), forward))
     camera = stage.glb.add_camera("Camera", 50.0, 2.0, round(focus, 4))
     stage.glb.add_node("Camera", camera=camera, translation=eye, rotation=look(eye, target))
+
+
+def add_lantern(stage: Stage) -> None:
+    """A paper lantern beside the photographer, out of the picture: what models the objects."""
+    stage.lamp([-0.50, 0.60, 0.50], 0.11, (1.0, 0.74, 0.46), 40)
 
 
 def add_moonlight(stage: Stage) -> None:
