@@ -34,6 +34,7 @@ class Signals:
     def __init__(self) -> None:
         self.stops = 0
         self.stopped_at = 0.0
+        self.answered = False
         self.snapshot = False
         self._before: dict[int, Any] = {}
 
@@ -181,6 +182,9 @@ class Loop:
         thread.start()
         while thread.is_alive():
             thread.join(0.1)
+            if signals.stops and not signals.answered:
+                signals.answered = True
+                console.note("stopping after this pass; Ctrl-C again stops at once")
             self._report(end - begin, fraction)
         if failure:
             raise failure[0]
