@@ -1,0 +1,74 @@
+#include "optics/glass.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "math/error.h"
+#include "optics/coating.h"
+
+using namespace dg;
+
+TEST_CASE("a glass of nd and Vd hits both and lies on the normal line") {
+    const Glass g{AbbeGlass{1.5168, 64.17}, "N-BK7"};
+    const double nd = refractive_index(g, 587.5618), nf = refractive_index(g, 486.1327);
+    const double nc = refractive_index(g, 656.2725), ng = refractive_index(g, 435.8343);
+    CHECK(nd == doctest::Approx(1.5168).epsilon(1e-14));
+    CHECK((nd - 1) / (nf - nc) == doctest::Approx(64.17).epsilon(1e-10));
+    CHECK((ng - nf) / (nf - nc) == doctest::Approx(0.6438 - 0.001682 * 64.17).epsilon(1e-9));
+}
+
+TEST_CASE("Sellmeier: N-BK7 of the Schott catalogue") {
+    const Glass g{SellmeierGlass{{1.03961212, 0.231792344, 1.01046945},
+                                 {0.00600069867, 0.0200179144, 103.560653}},
+                  "N-BK7"};
+    CHECK(refractive_index(g, 587.5618) == doctest::Approx(1.51680).epsilon(1e-6));
+    CHECK(refractive_index(g, 435.8343) == doctest::Approx(1.52668).epsilon(3e-6));
+    // What nd and Vd alone predict stays within the error quoted for the normal line.
+    const Glass abbe{AbbeGlass{1.5168, 64.17}, ""};
+    for (double nm = 400; nm <= 700; nm += 10)
+        CHECK(std::abs(refractive_index(g, nm) - refractive_index(abbe, nm)) < 1e-3);
+}
+
+TEST_CASE("a table is exact at its nodes and smooth between them") {
+    const Glass smooth{AbbeGlass{1.7, 40}, ""};
+    TableGlass table;
+    for (double nm = 380; nm <= 800; nm += 35)
+        table.nm.push_back(nm), table.n.push_back(refractive_index(smooth, nm));
+    const Glass g{table, ""};
+    for (std::size_t i = 0; i < table.nm.size(); ++i)
+        CHECK(refractive_index(g, table.nm[i]) == table.n[i]);
+    for (double nm = 381; nm < 799; nm += 7)
+        CHECK(refractive_index(g, nm) == doctest::Approx(refractive_index(smooth, nm)).epsilon(1e-8));
+}
+
+TEST_CASE("absurd glasses are refused by place") {
+    CHECK_THROWS_WITH_AS(check_glass({AbbeGlass{0.2, 50}, ""}, "lens: surface 3"),
+                         doctest::Contains("lens: surface 3"), Error);
+    CHECK_THROWS_AS(check_glass({AbbeGlass{1.5, 0}, ""}, "x"), Error);
+    CHECK_THROWS_AS(check_glass({TableGlass{{500, 400}, {1.5, 1.5}}, ""}, "x"), Error);
+    CHECK_THROWS_AS(check_glass({TableGlass{{}, {}}, ""}, "x"), Error);
+    CHECK_THROWS_AS(check_glass({ConstantIndex{std::nan("")}, ""}, "x"), Error);
+}
+
+TEST_CASE("coatings: published losses at normal incidence, both ways, never above 1") {
+    CHECK(1 - fresnel_transmittance(1, 1, 1.52, 1) == doctest::Approx(0.0426).epsilon(2e-3));
+    CHECK(1 - film_transmittance(1, 1, 1.52, 1, 550) == doctest::Approx(0.0126).epsilon(4e-3));
+    for (double sin1 = 0; sin1 < 0.99; sin1 += 0.1)
+        for (double nm = 380; nm <= 780; nm += 40) {
+            const double cos1 = std::sqrt(1 - sin1 * sin1), n = 1.7;
+            const double cos2 = std::sqrt(1 - sin1 * sin1 / (n * n));
+            const double in = film_transmittance(1, cos1, n, cos2, nm);
+            CHECK(in == doctest::Approx(film_transmittance(n, cos2, 1, cos1, nm)).epsilon(1e-12));
+            CHECK(in > 0);
+            CHECK(in <= 1);
+            const double bare = fresnel_transmittance(1, cos1, n, cos2);
+            CHECK(bare == doctest::Approx(fresnel_transmittance(n, cos2, 1, cos1)).epsilon(1e-12));
+        }
+    // A film of the glass's own index is no film.
+    CHECK(film_transmittance(1, 1, kFilmIndex, 1, 470) ==
+          doctest::Approx(fresnel_transmittance(1, 1, kFilmIndex, 1)).epsilon(1e-12));
+    CHECK(surface_transmittance(Coating::mgf2, 1.6, 1, 1.7, 1, 550) ==
+          fresnel_transmittance(1.6, 1, 1.7, 1));  // cemented: bare
+    CHECK_THROWS_AS(coating_from_name("gold"), Error);
+}

@@ -1,0 +1,171 @@
+#include "optics/trace_simd.h"
+
+#include <doctest/doctest.h>
+#include <hwy/targets.h>
+
+#include <memory>
+#include <random>
+
+#include "optics/paraxial.h"
+#include "optics/pupil.h"
+#include "optics/test_lenses.h"
+
+using namespace dg;
+
+namespace {
+
+/// Runs the body once for every instruction set that was built and that this machine has.
+template <typename Body>
+void for_each_target(Body body) {
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        INFO("target " << hwy::TargetName(target));
+        CHECK(std::string(simd_target_name()) == hwy::TargetName(target));
+        body();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+std::vector<Iris> irises() {
+    return {Iris(), Iris::polygon(5, 20, 0), Iris::polygon(7, 3, 0.7), Iris::polygon(6, 0, -0.5),
+            Iris::image(3, 3, {0, 1, 0, 1, 0.5f, 1, 0, 1, 0})};
+}
+
+struct Bench {
+    std::unique_ptr<FilmRays> film = std::make_unique<FilmRays>();
+    std::unique_ptr<SceneRays> scene = std::make_unique<SceneRays>();
+    std::unique_ptr<LensSamples> samples = std::make_unique<LensSamples>();
+};
+
+/// Whether scalar and lanes may disagree on passing: the ray grazes an edge (float sees 1e-5 mm).
+bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iris& iris, double r) {
+    const double step = 3e-5 * r;
+    const auto wide = t.to_scene(ray, n, {true, nullptr, 0, 1 + 3e-5});
+    const auto narrow = t.to_scene(ray, n, {true, nullptr, 0, 1 - 3e-5});
+    if (wide.has_value() != narrow.has_value()) return true;
+    if (!wide) return false;
+    const double here = iris.transmission(wide->iris * (1 / r));
+    for (const Vec2d d : {Vec2d{step, 0}, Vec2d{-step, 0}, Vec2d{0, step}, Vec2d{0, -step}})
+        if (iris.transmission((wide->iris + d) * (1 / r)) != here) return true;
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("lanes equal the scalar reference on every target, both directions") {
+    for_each_target([] {
+        std::mt19937 random(11);
+        std::uniform_real_distribution<double> u(-1, 1);
+        Bench b;
+        for (const Prescription& lens : test::all_lenses())
+            for (const Iris& iris : irises()) {
+                const Tracer t(lens);
+                const FirstOrder f = first_order(lens);
+                const double film_z = film_position(lens, f, 4), radius = 0.8 * f.stop_semi_diameter;
+                const LensTables tables = make_lens_tables(t, film_z, true, &iris, radius);
+                const double rear = lens.surfaces.back().semi_diameter;
+                for (int i = 0; i < kLensBatch; ++i) {
+                    b.film->x[i] = float(15 * u(random)), b.film->y[i] = float(12 * u(random));
+                    const double gap = film_z - lens.last_vertex();
+                    b.film->mx[i] = float(-(rear * u(random) - b.film->x[i]) / gap);
+                    b.film->my[i] = float(-(rear * u(random) - b.film->y[i]) / gap);
+                    b.film->nm[i] = float(580 + 200 * u(random));
+                }
+                const FilmRays start = *b.film;
+                trace_to_scene(tables, *b.film, *b.scene, kLensBatch);
+                const SceneRays out = *b.scene;
+                trace_to_film(tables, *b.scene, *b.film, kLensBatch);
+                int passed = 0;
+                for (int i = 0; i < kLensBatch; ++i) {
+                    const LensIndices n = t.at(start.nm[i]);
+                    const LensRay ray{{start.x[i], start.y[i], film_z},
+                                      normalize(Vec3d{-start.mx[i], -start.my[i], -1})};
+                    const auto exact = t.to_scene(ray, n, {true, &iris, radius});
+                    if ((out.pass[i] > 0) != exact.has_value()) {
+                        CHECK(grazes(t, ray, n, iris, radius));
+                        continue;
+                    }
+                    if (!exact) continue;
+                    ++passed;
+                    const Vec3d d{out.dx[i], out.dy[i], out.dz[i]}, o{out.x[i], out.y[i], out.z[i]};
+                    CHECK(length(d - exact->ray.direction) < 4e-6);
+                    CHECK(length(o - exact->ray.origin) < 2e-6 * f.efl + 2e-5);
+                    CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(2e-5));
+                    CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) < 1e-4);
+                    // And back to the same film point, unless an edge is grazed.
+                    if (b.scene->pass[i] > 0) {
+                        CHECK(std::abs(b.film->x[i] - start.x[i]) < 2e-5 * f.efl + 2e-4);
+                        CHECK(std::abs(b.film->mx[i] - start.mx[i]) < 2e-5);
+                    } else {
+                        CHECK(grazes(t, ray, n, iris, radius));
+                    }
+                }
+                CHECK(passed > 3);
+            }
+    });
+}
+
+TEST_CASE("drawn slopes, weights and Jacobians equal the double polynomial on every target") {
+    const Prescription lens = test::check_lens(true, 0.5);
+    const Tracer t(lens);
+    const FirstOrder f = first_order(lens);
+    for (const Iris& iris : irises()) {
+        const AimRequest request{film_position(lens, f, 2), 21.6, iris, iris_radius(lens, f, 4)};
+        const Aim aim = make_aim(t, request);
+        const LensTables tables =
+            make_lens_tables(t, request.film_z, true, &iris, request.iris_radius);
+        for_each_target([&] {
+            std::mt19937 random(3);
+            std::uniform_real_distribution<float> u(0, 1);
+            Bench b;
+            alignas(64) float weight[kLensBatch], again[kLensBatch];
+            for (int i = 0; i < kLensBatch; ++i) {
+                b.samples->x[i] = 36 * u(random) - 18, b.samples->y[i] = 24 * u(random) - 12;
+                b.samples->u[i] = u(random), b.samples->v[i] = u(random);
+                b.samples->nm[i] = 380 + 400 * u(random);
+            }
+            guided_rays(tables, aim.tables, *b.samples, *b.scene, weight, b.film.get(), kLensBatch);
+            aim_weights(tables, aim.tables, *b.film, *b.scene, again, kLensBatch);
+            int compared = 0;
+            for (int i = 0; i < kLensBatch; ++i) {
+                const double r = std::hypot(b.samples->x[i], b.samples->y[i]) / aim.tables.film_radius;
+                const int segment = std::min(63, int(r * kRadialSegments));
+                if (aim.tables.region[segment] > 0) continue;
+                ++compared;
+                const double c = b.samples->x[i] / (r * aim.tables.film_radius);
+                const double s = b.samples->y[i] / (r * aim.tables.film_radius);
+                const Vec2d a = (request.iris_radius / aim.tables.iris_scale) *
+                                iris.sample({b.samples->u[i], b.samples->v[i]}, kEnlargement);
+                const SlopeValue v = aim.slopes.evaluate(r, {c * a.x + s * a.y, c * a.y - s * a.x},
+                                                         tables.scale(b.samples->nm[i]));
+                CHECK(std::abs(b.film->mx[i] - (c * v.m.x - s * v.m.y)) < 3e-6);
+                CHECK(std::abs(b.film->my[i] - (s * v.m.x + c * v.m.y)) < 3e-6);
+                const double one_m2 = 1 + dot(v.m, v.m);
+                const double expected = aim.tables.shape_area * std::abs(v.jacobian) / (one_m2 * one_m2);
+                CHECK(weight[i] == doctest::Approx(expected).epsilon(2e-5));
+                // What reprojection finds from the traced ray alone.
+                if (b.scene->pass[i] > 0) CHECK(again[i] == doctest::Approx(weight[i]).epsilon(2e-4));
+            }
+            CHECK(compared > 100);
+        });
+    }
+}
+
+TEST_CASE("one vector of tail: a batch's rays do not depend on their lane") {
+    const Prescription lens = test::check_lens(true, 0.5);
+    const Tracer t(lens);
+    const LensTables tables = make_lens_tables(t, lens.last_vertex() + 36, true, nullptr, 0);
+    Bench b;
+    for (int i = 0; i < kLensBatch; ++i) {
+        b.film->x[i] = 3, b.film->y[i] = -2, b.film->mx[i] = 0.05f, b.film->my[i] = 0.02f;
+        b.film->nm[i] = 510;
+    }
+    trace_to_scene(tables, *b.film, *b.scene, kLensBatch);
+    for (int i = 1; i < kLensBatch; ++i) {
+        CHECK(b.scene->dx[i] == b.scene->dx[0]);
+        CHECK(b.scene->x[i] == b.scene->x[0]);
+        CHECK(b.scene->pass[i] == b.scene->pass[0]);
+    }
+}
