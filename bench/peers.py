@@ -43,7 +43,8 @@ def run(command: list[str], environment: dict[str, str]) -> dict[str, Any]:
 
 def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[str, Any]:
     """Two seeds of one renderer: cost, error, and cost to a fixed error."""
-    environment = dict(os.environ, PYTHONPATH=str(options.scene_dir))
+    paths = [str(options.scene_dir), os.environ.get("PYTHONPATH", "")]
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(p for p in paths if p))
     results, pictures = [], []
     with tempfile.TemporaryDirectory() as folder:
         for seed in (1, 2):

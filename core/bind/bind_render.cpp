@@ -81,6 +81,13 @@ void bind_render(nb::module_& m) {
         .def_rw("filter", &RenderSettings::filter)
         .def_prop_rw("max_depth", [](const RenderSettings& s) { return s.path.max_depth; },
                      [](RenderSettings& s, int v) { s.path.max_depth = v; })
+        .def_prop_rw("dispersion",
+                     [](const RenderSettings& s) { return int(s.dispersion); },
+                     [](RenderSettings& s, const std::string& name) {
+                         if (name == "reproject") s.dispersion = Dispersion::reproject;
+                         else if (name == "end_secondary") s.dispersion = Dispersion::end_secondary;
+                         else throw input_error("render", "dispersion", "reproject or end_secondary", name);
+                     })
         .def_prop_rw("strategy",
                      [](const RenderSettings& s) { return int(s.path.strategy); },
                      [](RenderSettings& s, const std::string& name) {

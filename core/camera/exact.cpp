@@ -11,21 +11,9 @@ namespace {
 
 constexpr double kMetre = 1e-3;  // per mm
 
-/// Part of the circle of radius q (units of the iris) that the iris lets through.
-double open_fraction(const Iris& iris, double q) {
-    if (iris.kind() == Iris::Kind::round) return q <= 1;
-    constexpr int kAzimuths = 720;
-    double sum = 0;
-    for (int i = 0; i < kAzimuths; ++i) {
-        const double phi = 2 * kPiD * (i + 0.5) / kAzimuths;
-        sum += iris.transmission({q * std::cos(phi), q * std::sin(phi)});
-    }
-    return sum / kAzimuths;
-}
-
 /// A ray from the film's centre under sin^2(theta) = s2: iris radius and transmittance.
-std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n, double film_z,
-                                   double s2) {
+std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n,
+                                   double film_z, double s2) {
     const LensRay ray{{0, 0, film_z}, {-std::sqrt(s2), 0, -std::sqrt(1 - s2)}};
     return tracer.to_scene(ray, n, {true, nullptr, 0});
 }
@@ -33,18 +21,20 @@ std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n, d
 /// The stop's own clear diameter must not count: the iris stands in its place.
 Prescription without_stop_aperture(const Prescription& lens) {
     Prescription open = lens;
-    open.surfaces[lens.stop_index()].semi_diameter = std::numeric_limits<double>::infinity();
+    open.surfaces[lens.stop_index()].semi_diameter =
+        std::numeric_limits<double>::infinity();
     return open;
 }
 
 }  // namespace
 
-// E = integral L cos dw = pi * integral L d(sin^2 theta): the lens is round, so one meridional ray per
-// angle and the iris's open fraction on its circle. Midpoints in sin^2 up to the widest ray that passes.
-double axial_irradiance(const Tracer& tracer, double film_z, const Iris& iris, double iris_radius,
-                        double wavelength_nm, bool perfect) {
+// E = integral L cos dw = pi * integral L d(sin^2 theta): the lens is round, so one
+// meridional ray per angle and the iris's open fraction on its circle. Midpoints in sin^2
+// up to the widest ray that passes.
+double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
+                        double iris_radius, double wavelength_nm, bool perfect) {
     const LensIndices n = tracer.at(wavelength_nm);
-    const double outer = iris.outer_radius() * iris_radius;
+    const double outer = opening.outer() * iris_radius;
     const auto inside = [&](double s2) {
         const auto ray = axial_ray(tracer, n, film_z, s2);
         return ray && std::abs(ray->iris.x) <= outer;
@@ -54,14 +44,15 @@ double axial_irradiance(const Tracer& tracer, double film_z, const Iris& iris, d
         const double middle = 0.5 * (low + high);
         (inside(middle) ? low : high) = middle;
     }
-    const int count = iris.kind() == Iris::Kind::round ? 64 : 1024;
+    constexpr int kSteps = 256;
     double sum = 0;
-    for (int i = 0; i < count; ++i) {
-        const auto ray = axial_ray(tracer, n, film_z, low * (i + 0.5) / count);
+    for (int i = 0; i < kSteps; ++i) {
+        const auto ray = axial_ray(tracer, n, film_z, low * (i + 0.5) / kSteps);
         if (!ray) continue;
-        sum += (perfect ? 1 : ray->transmittance) * open_fraction(iris, std::abs(ray->iris.x) / iris_radius);
+        const double open = opening.at(std::abs(ray->iris.x) / iris_radius);
+        sum += (perfect ? 1 : ray->transmittance) * open;
     }
-    return kPiD * low * sum / count;
+    return kPiD * low * sum / kSteps;
 }
 
 struct ExactLens::State {
@@ -80,32 +71,39 @@ struct ExactLens::State {
             throw input_error(lens.name, "half diagonal of the film", "0 to 1e4 mm",
                               std::to_string(s.half_diagonal_mm));
         if (!std::isfinite(order.entrance_pupil_z))
-            throw Error(lens.name + ": the entrance pupil lies at infinity: this lens has no place for"
-                                    " the camera's origin");
+            throw Error(
+                lens.name +
+                ": the entrance pupil lies at infinity: this lens has no place for"
+                " the camera's origin");
         if (settings.f_stop == 0) settings.f_stop = order.f_number;
         iris_radius = dg::iris_radius(lens, order, settings.f_stop);
         film_z = film_position(lens, order, s.focus_distance_m, s.focus_from);
         if (!(film_z > tracer.vertices().back()))
-            throw Error(lens.name + ": the film would lie inside the lens (back focal length " +
+            throw Error(lens.name +
+                        ": the film would lie inside the lens (back focal length " +
                         std::to_string(order.bfl) + " mm)");
         // A little more than the frame: pixel filters reach beyond its corners.
-        aim = make_aim(tracer, {film_z, 1.02 * s.half_diagonal_mm, s.iris, iris_radius, s.only_slope_boxes});
+        aim = make_aim(tracer, {film_z, 1.02 * s.half_diagonal_mm, s.iris, iris_radius,
+                                s.only_slope_boxes});
         tables = make_lens_tables(tracer, film_z, true, &settings.iris, iris_radius);
         set_exposure();
     }
 
     /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly.
     void set_exposure() {
+        const RadialOpening opening(settings.iris);
         double weights = 0;
         for (double nm = 390; nm <= 770; nm += 20) {
             const double w = cie_y(nm) * d65(nm);
-            h0 += w * axial_irradiance(tracer, film_z, settings.iris, iris_radius, nm);
+            h0 += w * axial_irradiance(tracer, film_z, opening, iris_radius, nm);
             if (const auto ray = axial_ray(tracer, tracer.at(nm), film_z, 0))
                 transmittance += w * ray->transmittance;
             weights += w;
         }
         h0 /= weights, transmittance /= weights;
-        if (!(h0 > 0)) throw Error(tracer.prescription().name + ": no light reaches the film's centre");
+        if (!(h0 > 0))
+            throw Error(tracer.prescription().name +
+                        ": no light reaches the film's centre");
     }
 };
 
@@ -124,15 +122,18 @@ struct Buffers {
 
 }  // namespace
 
-void ExactLens::generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+void ExactLens::generate(std::span<const CameraSample> samples,
+                         std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / state_->h0), pupil = float(state_->order.entrance_pupil_z);
+    const float inv_h0 = float(1 / state_->h0),
+                pupil = float(state_->order.entrance_pupil_z);
     for (std::size_t begin = 0; begin < samples.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, samples.size() - begin));
         for (int i = 0; i < count; ++i) {
             const CameraSample& s = samples[begin + i];
-            b.samples.x[i] = -s.film_mm.x, b.samples.y[i] = -s.film_mm.y;  // the image is upside down
+            b.samples.x[i] = -s.film_mm.x,
+            b.samples.y[i] = -s.film_mm.y;  // the image is upside down
             b.samples.u[i] = s.u_lens.x, b.samples.v[i] = s.u_lens.y;
             b.samples.nm[i] = s.wavelength_nm;
         }
@@ -140,7 +141,8 @@ void ExactLens::generate(std::span<const CameraSample> samples, std::span<Camera
         for (int i = count; i < padded; ++i)
             b.samples.x[i] = b.samples.y[i] = b.samples.u[i] = b.samples.v[i] = 0,
             b.samples.nm[i] = 550;
-        guided_rays(state_->tables, state_->aim.tables, b.samples, b.scene, b.weight, nullptr, padded);
+        guided_rays(state_->tables, state_->aim.tables, b.samples, b.scene, b.weight,
+                    nullptr, padded);
         for (int i = 0; i < count; ++i) {
             CameraRay& out = rays[begin + i];
             const float aim = b.weight[i] * inv_h0;
@@ -156,12 +158,14 @@ void ExactLens::generate(std::span<const CameraSample> samples, std::span<Camera
     }
 }
 
-void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+void ExactLens::reproject(std::span<const CameraRay> rays,
+                          std::span<const float> wavelength_nm,
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / state_->h0), pupil = float(state_->order.entrance_pupil_z);
+    const float inv_h0 = float(1 / state_->h0),
+                pupil = float(state_->order.entrance_pupil_z);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
         const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
@@ -175,7 +179,8 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
             b.film.nm[i] = wavelength_nm[from];
         }
         trace_to_film(state_->tables, b.scene, b.film, padded);
-        aim_weights(state_->tables, state_->aim.tables, b.film, b.scene, b.weight, padded);
+        aim_weights(state_->tables, state_->aim.tables, b.film, b.scene, b.weight,
+                    padded);
         for (int i = 0; i < count; ++i) {
             const float aim = b.weight[i] * inv_h0;
             const bool passed = b.scene.pass[i] > 0 && aim > 0 && std::isfinite(aim);
@@ -187,7 +192,8 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
 }
 
 Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
-    // The mean direction over a coarse grid of lens samples, weighted as they expose the film.
+    // The mean direction over a coarse grid of lens samples, weighted as they expose the
+    // film.
     constexpr int kSide = 12;
     std::vector<CameraSample> samples;
     for (int i = 0; i < kSide * kSide; ++i)
@@ -203,16 +209,38 @@ Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
     return length(sum) > 0 ? normalize(sum) : Vec3d{0, 0, -1};
 }
 
-double ExactLens::h0() const { return state_->h0; }
-double ExactLens::transmittance() const { return state_->transmittance; }
-double ExactLens::f_stop() const { return state_->settings.f_stop; }
-double ExactLens::iris_radius_mm() const { return state_->iris_radius; }
-double ExactLens::film_z_mm() const { return state_->film_z; }
-double ExactLens::film_distance_mm() const { return state_->film_z - state_->order.back_principal_z; }
-double ExactLens::half_diagonal_mm() const { return state_->settings.half_diagonal_mm; }
-const FirstOrder& ExactLens::first_order() const { return state_->order; }
-const Aim& ExactLens::aim() const { return state_->aim; }
-const Tracer& ExactLens::tracer() const { return state_->tracer; }
-const LensTables& ExactLens::tables() const { return state_->tables; }
+double ExactLens::h0() const {
+    return state_->h0;
+}
+double ExactLens::transmittance() const {
+    return state_->transmittance;
+}
+double ExactLens::f_stop() const {
+    return state_->settings.f_stop;
+}
+double ExactLens::iris_radius_mm() const {
+    return state_->iris_radius;
+}
+double ExactLens::film_z_mm() const {
+    return state_->film_z;
+}
+double ExactLens::film_distance_mm() const {
+    return state_->film_z - state_->order.back_principal_z;
+}
+double ExactLens::half_diagonal_mm() const {
+    return state_->settings.half_diagonal_mm;
+}
+const FirstOrder& ExactLens::first_order() const {
+    return state_->order;
+}
+const Aim& ExactLens::aim() const {
+    return state_->aim;
+}
+const Tracer& ExactLens::tracer() const {
+    return state_->tracer;
+}
+const LensTables& ExactLens::tables() const {
+    return state_->tables;
+}
 
 }  // namespace dg

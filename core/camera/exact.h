@@ -1,4 +1,5 @@
-// exact.h -- the exact lens: every surface of a prescription is traced. Here mm become metres.
+// exact.h -- the exact lens: every surface of a prescription is traced. Here mm become
+// metres.
 #pragma once
 #include <limits>
 #include <memory>
@@ -11,19 +12,20 @@
 namespace dg {
 
 struct ExactLensSettings {
-    double f_stop = 0;                 // 0: as wide as the lens opens
+    double f_stop = 0;  // 0: as wide as the lens opens
     Iris iris;
     double focus_distance_m = std::numeric_limits<double>::infinity();
     FocusFrom focus_from = FocusFrom::pupil;
-    double half_diagonal_mm = 21.64;   // of the film that must be covered, shift included
-    bool only_slope_boxes = false;     // exit-pupil boxes instead of the guided aim (comparison)
+    double half_diagonal_mm = 21.64;  // of the film that must be covered, shift included
+    bool only_slope_boxes =
+        false;  // exit-pupil boxes instead of the guided aim (comparison)
 };
 
 /// Where another wavelength of the same scene ray meets the film.
 struct Reprojection {
-    Vec2f film_mm;                     // upright picture
+    Vec2f film_mm;  // upright picture
     float transmittance = 0;
-    float aim_weight = 0;              // as CameraRay::aim_weight at that wavelength; 0: stopped
+    float aim_weight = 0;  // as CameraRay::aim_weight at that wavelength; 0: stopped
 };
 
 /// A prescription at one focus and f-stop, ready to draw rays. Cheap to copy.
@@ -39,8 +41,9 @@ class ExactLens {
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    std::span<Reprojection> out) const;
 
-    /// Unit view direction (camera frame) of a film point, mm upright: through the middle of what the
-    /// iris and the mounts let pass there at the design wavelength. Straight ahead if nothing passes.
+    /// Unit view direction (camera frame) of a film point, mm upright: through the middle
+    /// of what the iris and the mounts let pass there at the design wavelength. Straight
+    /// ahead if nothing passes.
     Vec3d chief_direction(Vec2d film_mm) const;
 
     /// Luminance exposure on the axis per scene luminance: what weights are divided by.
@@ -49,10 +52,10 @@ class ExactLens {
     double transmittance() const;
     double f_stop() const;
     double iris_radius_mm() const;
-    double film_z_mm() const;                 // in the lens frame
-    double film_distance_mm() const;          // from the rear principal point
+    double film_z_mm() const;         // in the lens frame
+    double film_distance_mm() const;  // from the rear principal point
     double half_diagonal_mm() const;
-    const FirstOrder& first_order() const;    // design wavelength
+    const FirstOrder& first_order() const;  // design wavelength
     const Aim& aim() const;
     const Tracer& tracer() const;
     const LensTables& tables() const;
@@ -64,7 +67,7 @@ class ExactLens {
 
 /// E / L on the axis at one wavelength, by quadrature in double; with T = 1 if `perfect`.
 /// For a perfect lens this is pi sin^2(theta') (science.md 2).
-double axial_irradiance(const Tracer& tracer, double film_z, const Iris& iris, double iris_radius,
-                        double wavelength_nm, bool perfect = false);
+double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
+                        double iris_radius, double wavelength_nm, bool perfect = false);
 
 }  // namespace dg

@@ -34,6 +34,7 @@ class Environment {
     };
     Sample sample(Vec2f u) const;
     float pdf(Vec3f direction) const;
+    bool is_constant() const { return !picture_; }
     float mean_luminance() const { return mean_luminance_; }  // over the sphere
 
   private:

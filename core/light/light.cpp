@@ -53,7 +53,9 @@ void LightSet::build_groups() {
     }
     tree_ = LightTree(bounds);
 
-    if (environment_ && environment_->mean_luminance() > 0) {
+    // An even sky is left to the BSDF: following its lobe is already sampling in proportion to the light,
+    // and every shadow ray goes to a light that needs one.
+    if (environment_ && !environment_->is_constant() && environment_->mean_luminance() > 0) {
         infinite_lights_.push_back(kEnvironment);
         weights.push_back(kPiD *
                           environment_->mean_luminance());  // E = pi L under an even sky

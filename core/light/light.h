@@ -91,6 +91,7 @@ class LightSet {
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
                        float cos_light, Vec3f position) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position) const;
+    /// 0 everywhere for a constant environment: light sampling leaves it to the BSDF.
     float pdf_environment(Vec3f direction, Vec3f position) const;
     /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
     Spectrum sphere_radiance(std::uint32_t sphere, const Wavelengths& wavelengths) const;

@@ -1,4 +1,5 @@
-// glass.h -- refractive index against wavelength. Wavelengths in nm, as everywhere in optics.
+// glass.h -- refractive index against wavelength. Wavelengths in nm, as everywhere in
+// optics.
 #pragma once
 #include <array>
 #include <string>

@@ -15,7 +15,8 @@ TEST_CASE("a glass of nd and Vd hits both and lies on the normal line") {
     const double nc = refractive_index(g, 656.2725), ng = refractive_index(g, 435.8343);
     CHECK(nd == doctest::Approx(1.5168).epsilon(1e-14));
     CHECK((nd - 1) / (nf - nc) == doctest::Approx(64.17).epsilon(1e-10));
-    CHECK((ng - nf) / (nf - nc) == doctest::Approx(0.6438 - 0.001682 * 64.17).epsilon(1e-9));
+    CHECK((ng - nf) / (nf - nc) ==
+          doctest::Approx(0.6438 - 0.001682 * 64.17).epsilon(1e-9));
 }
 
 TEST_CASE("Sellmeier: N-BK7 of the Schott catalogue") {
@@ -39,7 +40,8 @@ TEST_CASE("a table is exact at its nodes and smooth between them") {
     for (std::size_t i = 0; i < table.nm.size(); ++i)
         CHECK(refractive_index(g, table.nm[i]) == table.n[i]);
     for (double nm = 381; nm < 799; nm += 7)
-        CHECK(refractive_index(g, nm) == doctest::Approx(refractive_index(smooth, nm)).epsilon(1e-8));
+        CHECK(refractive_index(g, nm) ==
+              doctest::Approx(refractive_index(smooth, nm)).epsilon(1e-8));
 }
 
 TEST_CASE("absurd glasses are refused by place") {
@@ -52,18 +54,24 @@ TEST_CASE("absurd glasses are refused by place") {
 }
 
 TEST_CASE("coatings: published losses at normal incidence, both ways, never above 1") {
-    CHECK(1 - fresnel_transmittance(1, 1, 1.52, 1) == doctest::Approx(0.0426).epsilon(2e-3));
-    CHECK(1 - film_transmittance(1, 1, 1.52, 1, 550) == doctest::Approx(0.0126).epsilon(4e-3));
+    CHECK(1 - fresnel_transmittance(1, 1, 1.52, 1) ==
+          doctest::Approx(0.0426).epsilon(2e-3));
+    CHECK(1 - film_transmittance(1, 1, 1.52, 1, 550) ==
+          doctest::Approx(0.0126).epsilon(4e-3));
     for (double sin1 = 0; sin1 < 0.99; sin1 += 0.1)
         for (double nm = 380; nm <= 780; nm += 40) {
             const double cos1 = std::sqrt(1 - sin1 * sin1), n = 1.7;
             const double cos2 = std::sqrt(1 - sin1 * sin1 / (n * n));
             const double in = film_transmittance(1, cos1, n, cos2, nm);
-            CHECK(in == doctest::Approx(film_transmittance(n, cos2, 1, cos1, nm)).epsilon(1e-12));
+            CHECK(
+                in ==
+                doctest::Approx(film_transmittance(n, cos2, 1, cos1, nm)).epsilon(1e-12));
             CHECK(in > 0);
             CHECK(in <= 1);
             const double bare = fresnel_transmittance(1, cos1, n, cos2);
-            CHECK(bare == doctest::Approx(fresnel_transmittance(n, cos2, 1, cos1)).epsilon(1e-12));
+            CHECK(
+                bare ==
+                doctest::Approx(fresnel_transmittance(n, cos2, 1, cos1)).epsilon(1e-12));
         }
     // A film of the glass's own index is no film.
     CHECK(film_transmittance(1, 1, kFilmIndex, 1, 470) ==

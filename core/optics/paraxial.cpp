@@ -17,10 +17,13 @@ struct Matrix {
     }
 };
 
-/// From just before surface `first` to surface `last`, with or without the refraction there.
-Matrix system(const Prescription& lens, double nm, int first, int last, bool refract_last) {
+/// From just before surface `first` to surface `last`, with or without the refraction
+/// there.
+Matrix system(const Prescription& lens, double nm, int first, int last,
+              bool refract_last) {
     Matrix m;
-    double n = refractive_index(first ? lens.surfaces[first - 1].glass : lens.object_medium, nm);
+    double n =
+        refractive_index(first ? lens.surfaces[first - 1].glass : lens.object_medium, nm);
     for (int i = first; i <= last; ++i) {
         const double after = refractive_index(lens.surfaces[i].glass, nm);
         if (i < last || refract_last)
@@ -60,7 +63,8 @@ FirstOrder first_order(const Prescription& lens, double nm) {
     f.back_principal_z = f.back_focal_z - n1 / power;
     f.front_nodal_z = f.ffl + n1 / power;
     f.back_nodal_z = f.back_focal_z - n0 / power;
-    // Pupils: images of the stop's centre through the halves before and after its aperture.
+    // Pupils: images of the stop's centre through the halves before and after its
+    // aperture.
     const Matrix front = system(lens, nm, 0, stop, false);
     const Matrix rear = system(lens, nm, stop, last, true);
     f.entrance_pupil_z = n0 * front.b / front.a;
@@ -71,17 +75,21 @@ FirstOrder first_order(const Prescription& lens, double nm) {
     if (!std::isfinite(f.stop_semi_diameter) && lens.nominal_f_number > 0)
         f.stop_semi_diameter =
             std::abs(0.5 * f.efl / lens.nominal_f_number / f.entrance_magnification);
-    f.entrance_pupil_diameter = 2 * f.stop_semi_diameter * std::abs(f.entrance_magnification);
+    f.entrance_pupil_diameter =
+        2 * f.stop_semi_diameter * std::abs(f.entrance_magnification);
     f.exit_pupil_diameter = 2 * f.stop_semi_diameter * std::abs(f.exit_magnification);
     f.f_number = std::abs(f.efl) / f.entrance_pupil_diameter;
     return f;
 }
 
-double widest_f_stop(const Prescription&, const FirstOrder& f) { return f.f_number; }
+double widest_f_stop(const Prescription&, const FirstOrder& f) {
+    return f.f_number;
+}
 
 double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop) {
     if (!(f_stop > 0) || !std::isfinite(f_stop))
-        throw input_error(lens.name, "f-stop", "a positive number", std::to_string(f_stop));
+        throw input_error(lens.name, "f-stop", "a positive number",
+                          std::to_string(f_stop));
     const double widest = widest_f_stop(lens, f);
     if (!(f_stop >= 0.99 * widest)) {
         std::ostringstream wanted, got;
@@ -96,12 +104,14 @@ double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop)
 double film_position(const Prescription& lens, const FirstOrder& f, double distance_m,
                      FocusFrom from) {
     if (!(f.efl > 0))
-        throw input_error(lens.name, "focal length", "a converging lens", std::to_string(f.efl) + " mm");
+        throw input_error(lens.name, "focal length", "a converging lens",
+                          std::to_string(f.efl) + " mm");
     if (std::isnan(distance_m) || distance_m <= 0)
         throw input_error(lens.name, "focus distance", "a positive number of metres",
                           std::to_string(distance_m));
     if (std::isinf(distance_m)) return f.back_focal_z;
-    // x: from the object to the front focus. x = f is 1:1, the closest that a moved lens is meant for.
+    // x: from the object to the front focus. x = f is 1:1, the closest that a moved lens
+    // is meant for.
     const double focal2 = f.efl * (f.front_principal_z - f.front_focal_z);
     const double x_min = std::sqrt(focal2);
     const double mm = 1e3 * distance_m;
@@ -116,9 +126,10 @@ double film_position(const Prescription& lens, const FirstOrder& f, double dista
         x = t >= 2 * x_min ? 0.5 * (t + std::sqrt(t * t - 4 * focal2)) : 0;
     }
     if (!(x >= x_min * (1 - 1e-9)))
-        throw input_error(lens.name, "focus distance",
-                          metres(std::max(0.0, nearest) * 1e-3) + " or more (the nearest possible)",
-                          metres(distance_m));
+        throw input_error(
+            lens.name, "focus distance",
+            metres(std::max(0.0, nearest) * 1e-3) + " or more (the nearest possible)",
+            metres(distance_m));
     return f.back_focal_z + focal2 / x;
 }
 

@@ -10,13 +10,16 @@ using namespace dg;
 
 namespace {
 
-/// Where the ray from the axis at z_object under a small angle crosses the axis behind the lens.
+/// Where the ray from the axis at z_object under a small angle crosses the axis behind
+/// the lens.
 double image_of(const Prescription& lens, double z_object) {
     const Tracer tracer(lens);
-    const auto ray = tracer.to_film({{0, 0, z_object}, normalize(Vec3d{1e-3 / -z_object, 0, 1})},
-                                    tracer.at(kDesignWavelength), {});
+    const auto ray =
+        tracer.to_film({{0, 0, z_object}, normalize(Vec3d{1e-3 / -z_object, 0, 1})},
+                       tracer.at(kDesignWavelength), {});
     REQUIRE(ray);
-    return ray->ray.origin.z - ray->ray.origin.x * ray->ray.direction.z / ray->ray.direction.x;
+    return ray->ray.origin.z -
+           ray->ray.origin.x * ray->ray.direction.z / ray->ray.direction.x;
 }
 
 }  // namespace
@@ -29,7 +32,8 @@ TEST_CASE("the check lens has its published focal lengths") {
     CHECK(patent.efl == doctest::Approx(100.015).epsilon(5e-6));
     CHECK(patent.bfl == doctest::Approx(71.445).epsilon(7e-6));
     // Scaled lenses scale.
-    CHECK(first_order(test::check_lens(true, 0.5)).efl == doctest::Approx(0.5 * patent.efl));
+    CHECK(first_order(test::check_lens(true, 0.5)).efl ==
+          doctest::Approx(0.5 * patent.efl));
 }
 
 TEST_CASE("cardinal points and pupils against exact rays close to the axis") {
@@ -47,17 +51,20 @@ TEST_CASE("cardinal points and pupils against exact rays close to the axis") {
         const auto back = tracer.to_scene({{h, 0, f.back_focal_z}, {0, 0, -1}}, n, {});
         REQUIRE(back);
         const double out = back->ray.direction.x / back->ray.direction.z;
-        CHECK(back->ray.origin.z - back->ray.origin.x / out == doctest::Approx(f.front_focal_z).epsilon(1e-7));
-        // A ray aimed at the entrance pupil's centre crosses the middle of the stop, and leaves as if
-        // from the exit pupil's.
+        CHECK(back->ray.origin.z - back->ray.origin.x / out ==
+              doctest::Approx(f.front_focal_z).epsilon(1e-7));
+        // A ray aimed at the entrance pupil's centre crosses the middle of the stop, and
+        // leaves as if from the exit pupil's.
         const auto chief = tracer.to_film(
-            {{-1e-4 * (f.entrance_pupil_z + 10), 0, -10}, normalize(Vec3d{1e-4, 0, 1})}, n, {});
+            {{-1e-4 * (f.entrance_pupil_z + 10), 0, -10}, normalize(Vec3d{1e-4, 0, 1})},
+            n, {});
         REQUIRE(chief);
         CHECK(std::abs(chief->iris.x) < 1e-9 + 1e-6 * 1e-4 * f.efl);
         const double chief_slope = chief->ray.direction.x / chief->ray.direction.z;
         CHECK(chief->ray.origin.z - chief->ray.origin.x / chief_slope ==
               doctest::Approx(f.exit_pupil_z).epsilon(1e-5));
-        CHECK(std::abs(parallel->iris.x / h * f.entrance_magnification) == doctest::Approx(1).epsilon(1e-7));
+        CHECK(std::abs(parallel->iris.x / h * f.entrance_magnification) ==
+              doctest::Approx(1).epsilon(1e-7));
     }
 }
 
@@ -66,11 +73,14 @@ TEST_CASE("focus is the exact conjugate, from the pupil and from the sensor") {
         const FirstOrder f = first_order(lens);
         for (const double m : {2.0, 5.0, 40.0}) {
             const double film = film_position(lens, f, m);
-            CHECK(film == doctest::Approx(image_of(lens, f.entrance_pupil_z - 1e3 * m)).epsilon(1e-8));
+            CHECK(film == doctest::Approx(image_of(lens, f.entrance_pupil_z - 1e3 * m))
+                              .epsilon(1e-8));
             const double from_sensor = film_position(lens, f, m, FocusFrom::sensor);
-            CHECK(from_sensor == doctest::Approx(image_of(lens, from_sensor - 1e3 * m)).epsilon(1e-8));
+            CHECK(from_sensor ==
+                  doctest::Approx(image_of(lens, from_sensor - 1e3 * m)).epsilon(1e-8));
         }
-        CHECK(film_position(lens, f, std::numeric_limits<double>::infinity()) == f.back_focal_z);
+        CHECK(film_position(lens, f, std::numeric_limits<double>::infinity()) ==
+              f.back_focal_z);
     }
 }
 
@@ -95,7 +105,8 @@ TEST_CASE("too close is an error that names the nearest distance, which then wor
     CHECK_THROWS_AS(film_position(lens, f, std::nan("")), Error);
 }
 
-TEST_CASE("the iris of an f-stop; wider than the lens is an error that names the widest") {
+TEST_CASE(
+    "the iris of an f-stop; wider than the lens is an error that names the widest") {
     const Prescription lens = test::check_lens(true, 0.5);
     const FirstOrder f = first_order(lens);
     CHECK(f.f_number == doctest::Approx(2.0134).epsilon(1e-4));
@@ -111,13 +122,18 @@ TEST_CASE("prescriptions that cannot be are refused with surface and value") {
         change(lens);
         CHECK_THROWS_WITH_AS(validate(lens), doctest::Contains(says), Error);
     };
-    refused([](Prescription& l) { l.surfaces[3].kind = "aspheric"; }, "surface 3: kind of surface");
-    refused([](Prescription& l) { l.surfaces[2].curvature = std::nan(""); }, "surface 2: curvature");
-    refused([](Prescription& l) { l.surfaces[2].thickness = -1; }, "surface 2: thickness");
-    refused([](Prescription& l) { l.surfaces[4].semi_diameter = 30; }, "surface 4: semi-diameter");
+    refused([](Prescription& l) { l.surfaces[3].kind = "aspheric"; },
+            "surface 3: kind of surface");
+    refused([](Prescription& l) { l.surfaces[2].curvature = std::nan(""); },
+            "surface 2: curvature");
+    refused([](Prescription& l) { l.surfaces[2].thickness = -1; },
+            "surface 2: thickness");
+    refused([](Prescription& l) { l.surfaces[4].semi_diameter = 30; },
+            "surface 4: semi-diameter");
     refused([](Prescription& l) { l.surfaces[5].stop = false; }, "stops");
     refused([](Prescription& l) { l.surfaces[1].stop = true; }, "stops");
     refused([](Prescription& l) { l.surfaces.clear(); }, "at least one surface");
-    Prescription plane = test::lens_from_rows("plate", {{0, 5, 1.5, 60, 10}, {0, 5, 1, 0, 10}, {0, 0, 1, 0, 5, true}});
+    Prescription plane = test::lens_from_rows(
+        "plate", {{0, 5, 1.5, 60, 10}, {0, 5, 1, 0, 10}, {0, 0, 1, 0, 5, true}});
     CHECK_THROWS_WITH_AS(first_order(plane), doctest::Contains("afocal"), Error);
 }

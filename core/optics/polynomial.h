@@ -1,10 +1,11 @@
-// polynomial.h -- the complete basis with the lens's symmetry. With f the film point and a the iris
-// point, every axially symmetric map has the form m = f A(u, s, w, l) + a B(u, s, w, l), where
-// u = |f|^2, s = f.a, w = |a|^2 and l stands for the wavelength (science.md 4.4; Hullin et al. 2012).
+// polynomial.h -- the complete basis with the lens's symmetry. With f the film point and
+// a the iris point, every axially symmetric map has the form m = f A(u, s, w, l) + a B(u,
+// s, w, l), where u = |f|^2, s = f.a, w = |a|^2 and l stands for the wavelength
+// (science.md 4.4; Hullin et al. 2012).
 //
-// f and a are given in units that make them at most 1, in the meridional frame: f = (r, 0). The basis is
-// all monomials U^p s^i W^j l^q, U = 2u-1, W = 2w-1, with p + i + j + 2q <= k: dispersion is a small
-// correction, so that a power of l costs two.
+// f and a are given in units that make them at most 1, in the meridional frame: f = (r,
+// 0). The basis is all monomials U^p s^i W^j l^q, U = 2u-1, W = 2w-1, with p + i + j + 2q
+// <= k: dispersion is a small correction, so that a power of l costs two.
 #pragma once
 #include <vector>
 
@@ -12,8 +13,8 @@
 
 namespace dg {
 
-/// Calls visit(i, j, p, q) in the order in which the coefficients are stored: highest powers first,
-/// the order of Horner's rule (s outside, then W, then U, then l).
+/// Calls visit(i, j, p, q) in the order in which the coefficients are stored: highest
+/// powers first, the order of Horner's rule (s outside, then W, then U, then l).
 template <typename Visit>
 void for_each_term(int k, Visit visit) {
     for (int i = k; i >= 0; --i)
@@ -25,8 +26,8 @@ void for_each_term(int k, Visit visit) {
 int term_count(int k);
 
 struct SlopeValue {
-    Vec2d m;             // (tangential, sagittal)
-    double jacobian;     // det dm/da, signed
+    Vec2d m;                    // (tangential, sagittal)
+    double jacobian;            // det dm/da, signed
     double m11, m12, m21, m22;  // dm/da
 };
 
@@ -39,10 +40,10 @@ struct SlopePolynomial {
 };
 
 struct SlopeSample {
-    double r;            // film radius
-    Vec2d a;             // iris point
-    double l;            // wavelength variable
-    Vec2d m;             // film slope
+    double r;  // film radius
+    Vec2d a;   // iris point
+    double l;  // wavelength variable
+    Vec2d m;   // film slope
 };
 
 /// Least squares fit to traced rays by Householder QR.

@@ -14,9 +14,10 @@ std::string number(double value) {
     return s.str();
 }
 
-void check_range(const std::string& where, const char* what, double value, double low, double high,
-                 const char* wanted) {
-    if (!(value >= low && value <= high)) throw input_error(where, what, wanted, number(value));
+void check_range(const std::string& where, const char* what, double value, double low,
+                 double high, const char* wanted) {
+    if (!(value >= low && value <= high))
+        throw input_error(where, what, wanted, number(value));
 }
 
 void check_surface(const Prescription& lens, int i) {
@@ -30,8 +31,10 @@ void check_surface(const Prescription& lens, int i) {
     const bool last = i + 1 == int(lens.surfaces.size());
     check_range(where, "thickness", s.thickness, last ? -1e5 : 0, 1e5, "0 to 1e5 mm");
     if (!(s.semi_diameter > 0))
-        throw input_error(where, "semi-diameter", "more than 0 mm", number(s.semi_diameter));
-    if (std::isfinite(s.semi_diameter) && s.semi_diameter * std::abs(s.curvature) > 1 + 1e-9)
+        throw input_error(where, "semi-diameter", "more than 0 mm",
+                          number(s.semi_diameter));
+    if (std::isfinite(s.semi_diameter) &&
+        s.semi_diameter * std::abs(s.curvature) > 1 + 1e-9)
         throw input_error(where, "semi-diameter", "at most the radius of curvature",
                           number(s.semi_diameter) + " mm");
     check_glass(s.glass, where);
@@ -40,7 +43,8 @@ void check_surface(const Prescription& lens, int i) {
 }  // namespace
 
 std::string surface_name(const Prescription& lens, int surface) {
-    return (lens.name.empty() ? "lens" : lens.name) + ": surface " + std::to_string(surface);
+    return (lens.name.empty() ? "lens" : lens.name) + ": surface " +
+           std::to_string(surface);
 }
 
 int Prescription::stop_index() const {
@@ -59,20 +63,25 @@ std::vector<double> Prescription::vertices() const {
     return z;
 }
 
-double Prescription::last_vertex() const { return vertices().back(); }
+double Prescription::last_vertex() const {
+    return vertices().back();
+}
 
 void validate(const Prescription& lens) {
     const std::string name = lens.name.empty() ? "lens" : lens.name;
-    if (lens.surfaces.empty()) throw Error(name + ": wanted at least one surface, got none");
+    if (lens.surfaces.empty())
+        throw Error(name + ": wanted at least one surface, got none");
     if (lens.surfaces.size() > 1000)
-        throw input_error(name, "surfaces", "at most 1000", std::to_string(lens.surfaces.size()));
+        throw input_error(name, "surfaces", "at most 1000",
+                          std::to_string(lens.surfaces.size()));
     check_glass(lens.object_medium, name + ": object medium");
     int stops = 0;
     for (int i = 0; i < int(lens.surfaces.size()); ++i) {
         check_surface(lens, i);
         stops += lens.surfaces[i].stop;
     }
-    if (stops != 1) throw input_error(name, "stops", "exactly one", std::to_string(stops));
+    if (stops != 1)
+        throw input_error(name, "stops", "exactly one", std::to_string(stops));
 }
 
 }  // namespace dg

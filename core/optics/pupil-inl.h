@@ -1,5 +1,5 @@
-// pupil-inl.h -- drawing iris points and evaluating the aim in SIMD lanes. Included once per
-// instruction set.
+// pupil-inl.h -- drawing iris points and evaluating the aim in SIMD lanes. Included once
+// per instruction set.
 #if defined(DG_OPTICS_PUPIL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_PUPIL_INL_H_
 #undef DG_OPTICS_PUPIL_INL_H_
@@ -13,10 +13,12 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// stop.h's concentric_disc in lanes; the angle stays within pi/4, where short Taylor sums suffice.
+/// stop.h's concentric_disc in lanes; the angle stays within pi/4, where short Taylor
+/// sums suffice.
 HWY_INLINE void disc_lanes(V u, V v, V& x, V& y) {
     const D d;
-    const V a = hn::MulAdd(u, constant(2), constant(-1)), b = hn::MulAdd(v, constant(2), constant(-1));
+    const V a = hn::MulAdd(u, constant(2), constant(-1)),
+            b = hn::MulAdd(v, constant(2), constant(-1));
     const M steep = hn::Gt(hn::Abs(b), hn::Abs(a));
     const V r = hn::IfThenElse(steep, b, a), other = hn::IfThenElse(steep, a, b);
     const V safe = hn::IfThenElse(hn::Eq(r, hn::Zero(d)), constant(1), r);
@@ -44,7 +46,8 @@ HWY_INLINE VI split(V& u, std::size_t size) {
 }
 
 /// Iris::sample in lanes, mm.
-HWY_INLINE void shape_lanes(const IrisTables& iris, float enlargement, V u, V v, V& x, V& y) {
+HWY_INLINE void shape_lanes(const IrisTables& iris, float enlargement, V u, V v, V& x,
+                            V& y) {
     const D d;
     V scale = constant(enlargement);
     if (iris.kind == Iris::Kind::round) {
@@ -52,14 +55,18 @@ HWY_INLINE void shape_lanes(const IrisTables& iris, float enlargement, V u, V v,
         scale = hn::Mul(scale, constant(iris.radius));
     } else if (iris.kind == Iris::Kind::image) {
         const VI i = split(u, iris.support_x.size());
-        x = hn::MulAdd(u, constant(iris.pixel), hn::GatherIndex(d, iris.support_x.data(), i));
-        y = hn::MulAdd(v, constant(iris.pixel), hn::GatherIndex(d, iris.support_y.data(), i));
+        x = hn::MulAdd(u, constant(iris.pixel),
+                       hn::GatherIndex(d, iris.support_x.data(), i));
+        y = hn::MulAdd(v, constant(iris.pixel),
+                       hn::GatherIndex(d, iris.support_y.data(), i));
     } else {
         const VI i = split(u, iris.fan_x.size() - 1);
         const V t = u, rest = hn::Sub(constant(1), t);
         const float *fx = iris.fan_x.data(), *fy = iris.fan_y.data();
-        x = hn::MulAdd(t, hn::GatherIndex(d, fx + 1, i), hn::Mul(rest, hn::GatherIndex(d, fx, i)));
-        y = hn::MulAdd(t, hn::GatherIndex(d, fy + 1, i), hn::Mul(rest, hn::GatherIndex(d, fy, i)));
+        x = hn::MulAdd(t, hn::GatherIndex(d, fx + 1, i),
+                       hn::Mul(rest, hn::GatherIndex(d, fx, i)));
+        y = hn::MulAdd(t, hn::GatherIndex(d, fy + 1, i),
+                       hn::Mul(rest, hn::GatherIndex(d, fy, i)));
         scale = hn::Mul(scale, hn::Sqrt(v));
     }
     x = hn::Mul(x, scale);
@@ -75,7 +82,8 @@ template <int K>
 HWY_INLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
     const D d;
     const V s = hn::Mul(r, ax), u = hn::MulAdd(hn::Mul(r, r), constant(2), constant(-1));
-    const V w = hn::MulAdd(hn::MulAdd(ax, ax, hn::Mul(ay, ay)), constant(2), constant(-1));
+    const V w =
+        hn::MulAdd(hn::MulAdd(ax, ax, hn::Mul(ay, ay)), constant(2), constant(-1));
     V a = hn::Zero(d), b = a, as = a, bs = a, aw = a, bw = a;
     for (int i = K; i >= 0; --i) {
         V wa = hn::Zero(d), wb = wa, was = wa, wbs = wa;
@@ -120,10 +128,11 @@ HWY_INLINE V jacobian(const LaneSlope& s) {
     return hn::MulSub(s.m11, s.m22, hn::Mul(s.m12, s.m21));
 }
 
-/// The film point in the meridional frame: radius / film_radius, and the direction of the x axis.
+/// The film point in the meridional frame: radius / film_radius, and the direction of the
+/// x axis.
 struct Meridian {
     V r, ex, ey;
-    M covered;          // within the film radius that the aim was made for
+    M covered;  // within the film radius that the aim was made for
 };
 
 HWY_INLINE Meridian meridian_of(const AimTables& aim, V x, V y) {
@@ -146,8 +155,8 @@ HWY_INLINE VI segment_of(V r) {
 
 /// A drawn ray in the film's meridional frame.
 struct LaneAim {
-    V mx, my;           // slopes, lens frame
-    V weight;           // A' J / (1+m^2)^2
+    V mx, my;  // slopes, lens frame
+    V weight;  // A' J / (1+m^2)^2
 };
 
 HWY_INLINE V slope_weight(V area_jacobian, V mx, V my) {
@@ -156,7 +165,8 @@ HWY_INLINE V slope_weight(V area_jacobian, V mx, V my) {
 }
 
 template <int K>
-HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x, V y, V u, V v, V l) {
+HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x, V y, V u,
+                              V v, V l) {
     const D d;
     const Meridian f = meridian_of(aim, x, y);
     V sx, sy;
@@ -168,7 +178,8 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
     if (!aim.all_shape) {
         const VI i = segment_of(f.r);
         region = hn::GatherIndex(d, aim.region, i);
-        const V width = hn::GatherIndex(d, aim.width, i), half = hn::GatherIndex(d, aim.half, i);
+        const V width = hn::GatherIndex(d, aim.width, i),
+                half = hn::GatherIndex(d, aim.half, i);
         const M boxed = hn::Gt(region, constant(0.5f));
         const V bx = hn::MulAdd(u, width, hn::GatherIndex(d, aim.x0, i));
         const V by = hn::Mul(half, hn::MulAdd(v, constant(2), constant(-1)));
@@ -191,13 +202,13 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
     return o;
 }
 
-/// The weight that draw_lanes would have given to the slope (mx, my) with the iris point (qx, qy) mm:
-/// two Newton steps from the true iris point to the aim's own.
+/// The weight that draw_lanes would have given to the slope (mx, my) with the iris point
+/// (qx, qy) mm: two Newton steps from the true iris point to the aim's own.
 template <int K>
 HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy, V l) {
     const D d;
     const Meridian f = meridian_of(aim, x, y);
-    const V tx = hn::MulAdd(mx, f.ex, hn::Mul(my, f.ey));   // meridional slopes
+    const V tx = hn::MulAdd(mx, f.ex, hn::Mul(my, f.ey));  // meridional slopes
     const V ty = hn::MulSub(my, f.ex, hn::Mul(mx, f.ey));
     const V to_unit = constant(1 / aim.iris_scale);
     V ax = hn::Mul(to_unit, hn::MulAdd(qx, f.ex, hn::Mul(qy, f.ey)));
@@ -207,7 +218,8 @@ HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy
         const LaneSlope s = slope_lanes<K>(aim.coefficients.data(), f.r, ax, ay, l);
         j = jacobian(s);
         if (step == 2) break;
-        const V ex = hn::Sub(tx, s.mx), ey = hn::Sub(ty, s.my), inv = hn::Div(constant(1), j);
+        const V ex = hn::Sub(tx, s.mx), ey = hn::Sub(ty, s.my),
+                inv = hn::Div(constant(1), j);
         ax = hn::MulAdd(inv, hn::MulSub(s.m22, ex, hn::Mul(s.m12, ey)), ax);
         ay = hn::MulAdd(inv, hn::MulSub(s.m11, ey, hn::Mul(s.m21, ex)), ay);
     }
@@ -216,7 +228,8 @@ HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy
     if (!aim.all_shape) {
         const VI i = segment_of(f.r);
         const V region = hn::GatherIndex(d, aim.region, i);
-        const V width = hn::GatherIndex(d, aim.width, i), half = hn::GatherIndex(d, aim.half, i);
+        const V width = hn::GatherIndex(d, aim.width, i),
+                half = hn::GatherIndex(d, aim.half, i);
         const V box = hn::Mul(hn::Add(half, half), width);
         area = hn::IfThenElse(hn::Gt(region, constant(0.5f)), box, area);
         j = hn::IfThenElse(hn::Gt(region, constant(1.5f)), constant(1), j);

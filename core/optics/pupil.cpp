@@ -14,14 +14,17 @@ namespace {
 constexpr int kNodes = kRadialSegments + 1;
 constexpr int kMinDegree = 3, kMaxDegree = 6;
 constexpr std::array<double, 3> kBoundWavelengths{380, 550, 780};  // nm
-constexpr double kShapeMargin = 1.02;  // the fit reaches this far beyond the enlarged iris
-// Training rays may leave the clear diameters a little, so that the fit is not cut off at the edge of what
-// passes; far outside, rays can reach the iris a second time (a fold), which no one-to-one map follows.
+constexpr double kShapeMargin =
+    1.02;  // the fit reaches this far beyond the enlarged iris
+// Training rays may leave the clear diameters a little, so that the fit is not cut off at
+// the edge of what passes; far outside, rays can reach the iris a second time (a fold),
+// which no one-to-one map follows.
 constexpr double kWidened = 1.2;
 constexpr int kCoverageRays = 16384;
 
 /// Point n of a low-discrepancy sequence in four dimensions: multiples of powers of 1/g,
-/// g^5 = g + 1. Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences.
+/// g^5 = g + 1. Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom
+/// Sequences.
 struct Quad {
     double u[4];
 };
@@ -39,7 +42,9 @@ Quad quasi_random(int n) {
 /// First order on the film's side of the stop: iris = by_film f + by_slope m.
 struct RearHalf {
     double by_film, by_slope;
-    double slope_for(double iris, double film) const { return (iris - by_film * film) / by_slope; }
+    double slope_for(double iris, double film) const {
+        return (iris - by_film * film) / by_slope;
+    }
 };
 
 class AimMaker {
@@ -52,10 +57,12 @@ class AimMaker {
         double x0 = 1e30, x1 = -1e30, half = -1;
         bool empty() const { return half < 0; }
         void add(double x, double y) {
-            x0 = std::min(x0, x), x1 = std::max(x1, x), half = std::max(half, std::abs(y));
+            x0 = std::min(x0, x), x1 = std::max(x1, x),
+            half = std::max(half, std::abs(y));
         }
         void add(const Box& b) {
-            x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1), half = std::max(half, b.half);
+            x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1),
+            half = std::max(half, b.half);
         }
         void grow(double x, double y) {
             if (empty()) return;
@@ -79,15 +86,16 @@ class AimMaker {
     void choose_regions();
     void set_region(int segment, AimRegion region, const Box& box);
     std::vector<bool> uncovered_segments() const;
-    bool covers(int segment, double r, Vec2d m, Vec2d iris, double l, double azimuth) const;
+    bool covers(int segment, double r, Vec2d m, Vec2d iris, double l,
+                double azimuth) const;
     double unit(double iris_mm) const { return iris_mm / aim_.tables.iris_scale; }
 
     const Tracer& tracer_;
     const AimRequest& request_;
-    LensTables open_;      // without the iris: what the mounts let through
+    LensTables open_;  // without the iris: what the mounts let through
     LensTables real_;
     RearHalf rear_;
-    double outer_;         // mm, radius around the enlarged iris
+    double outer_;  // mm, radius around the enlarged iris
     std::array<bool, kRadialSegments> jacobian_ok_;
     Aim aim_;
 };
@@ -96,7 +104,8 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
     : tracer_(tracer), request_(request) {
     open_ = make_lens_tables(tracer, request.film_z, true, nullptr, 0);
     open_.semi2[tracer.stop()] = 3e38f;
-    real_ = make_lens_tables(tracer, request.film_z, true, &request.iris, request.iris_radius);
+    real_ = make_lens_tables(tracer, request.film_z, true, &request.iris,
+                             request.iris_radius);
     outer_ = kEnlargement * request.iris_radius * request.iris.outer_radius();
     AimTables& t = aim_.tables;
     t.film_radius = float(request.film_radius);
@@ -105,11 +114,13 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
     const double scale = request.iris_radius / t.iris_scale;
     t.shape_area = float(request.iris.sampling_area(kEnlargement) * scale * scale);
     const double h = 1e-4, nm = kDesignWavelength;
-    const auto film = tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm), 1);
-    const auto slope = tracer.to_iris({{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})},
-                                      tracer.at(nm), 1);
+    const auto film =
+        tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm), 1);
+    const auto slope = tracer.to_iris(
+        {{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})}, tracer.at(nm), 1);
     if (!film || !slope || slope->x == 0)
-        throw Error(tracer.prescription().name + ": no ray leads from the film's centre to the iris");
+        throw Error(tracer.prescription().name +
+                    ": no ray leads from the film's centre to the iris");
     rear_ = {film->x / h, slope->x / h};
 }
 
@@ -140,7 +151,8 @@ void AimMaker::fit(int k) {
     aim_.slopes = fit_slopes(training(count, 0), k);
     AimTables& t = aim_.tables;
     t.degree = k;
-    t.coefficients.assign(aim_.slopes.coefficients.begin(), aim_.slopes.coefficients.end());
+    t.coefficients.assign(aim_.slopes.coefficients.begin(),
+                          aim_.slopes.coefficients.end());
     aim_.fit_error = 0;
     for (const SlopeSample& s : training(500, 100000)) {
         const Vec2d m = aim_.slopes.evaluate(s.r, s.a, s.l).m;
@@ -148,12 +160,14 @@ void AimMaker::fit(int k) {
     }
 }
 
-/// Traces a grid over `range` (units of the iris scale, y >= 0 by symmetry) at one film radius.
+/// Traces a grid over `range` (units of the iris scale, y >= 0 by symmetry) at one film
+/// radius.
 AimMaker::Visible AimMaker::visible_at(double r, Box range, int nx, int ny) const {
     Visible v;
     const AimTables& t = aim_.tables;
     const double axis_sign = aim_.slopes.evaluate(0, {0, 0}, 0).jacobian;
-    const double dx = (range.x1 - range.x0) / nx, dy = range.half / ny, limit = unit(outer_);
+    const double dx = (range.x1 - range.x0) / nx, dy = range.half / ny,
+                 limit = unit(outer_);
     auto in = std::make_unique<LensSamples>();
     auto film = std::make_unique<FilmRays>();
     auto out = std::make_unique<SceneRays>();
@@ -178,7 +192,8 @@ AimMaker::Visible AimMaker::visible_at(double r, Box range, int nx, int ny) cons
                 const double x = range.x0 + ix * dx, y = iy * dy;
                 if (x * x + y * y > limit * limit * 1.0001) continue;
                 in->x[count] = float(r), in->y[count] = 0, in->nm[count] = float(nm);
-                in->u[count] = float(x * t.iris_scale), in->v[count] = float(y * t.iris_scale);
+                in->u[count] = float(x * t.iris_scale),
+                in->v[count] = float(y * t.iris_scale);
                 if (++count == kLensBatch) flush();
             }
     if (count) flush();
@@ -216,15 +231,18 @@ AimMaker::Box AimMaker::passing_slopes(double r, const Box& range, int nx, int n
         for (int i = 0; i < count; ++i) {
             const double iris2 = double(out->iris_x[i]) * out->iris_x[i] +
                                  double(out->iris_y[i]) * out->iris_y[i];
-            if (out->pass[i] > 0 && iris2 <= outer_ * outer_) box.add(film->mx[i], film->my[i]);
+            if (out->pass[i] > 0 && iris2 <= outer_ * outer_)
+                box.add(film->mx[i], film->my[i]);
         }
         count = 0;
     };
     for (const double nm : kBoundWavelengths)
         for (int iy = 0; iy <= ny; ++iy)
             for (int ix = 0; ix <= nx; ++ix) {
-                film->x[count] = float(r), film->y[count] = 0, film->nm[count] = float(nm);
-                film->mx[count] = float(range.x0 + ix * dx), film->my[count] = float(iy * dy);
+                film->x[count] = float(r), film->y[count] = 0,
+                film->nm[count] = float(nm);
+                film->mx[count] = float(range.x0 + ix * dx),
+                film->my[count] = float(iy * dy);
                 if (++count == kLensBatch) flush();
             }
     if (count) flush();
@@ -233,11 +251,13 @@ AimMaker::Box AimMaker::passing_slopes(double r, const Box& range, int nx, int n
 }
 
 AimMaker::Box AimMaker::slope_range(double r, double reach, double) const {
-    const double middle = rear_.slope_for(0, r), half = std::abs(reach * outer_ / rear_.by_slope);
+    const double middle = rear_.slope_for(0, r),
+                 half = std::abs(reach * outer_ / rear_.by_slope);
     return {middle - half, middle + half, half};
 }
 
-/// Box around the slopes that pass at one film radius: the search widens until the box lies inside.
+/// Box around the slopes that pass at one film radius: the search widens until the box
+/// lies inside.
 AimMaker::Box AimMaker::slope_box(double r) const {
     for (double reach = 1.5; reach < 100; reach *= 1.6) {
         const Box range = slope_range(r, reach, 550);
@@ -266,7 +286,8 @@ void AimMaker::choose_regions() {
     AimTables& t = aim_.tables;
     t.all_shape = true;
     std::vector<Visible> at(kNodes);
-    for (int i = 0; i < kNodes; ++i) at[i] = visible_iris(t.film_radius * i / kRadialSegments);
+    for (int i = 0; i < kNodes; ++i)
+        at[i] = visible_iris(t.film_radius * i / kRadialSegments);
     for (int i = 0; i < kRadialSegments; ++i) {
         Box box = at[i].box;
         box.add(at[i + 1].box);
@@ -277,8 +298,10 @@ void AimMaker::choose_regions() {
     }
 }
 
-/// Whether the aim would draw this passing ray. `azimuth` turns the meridian against the iris shape.
-bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l, double azimuth) const {
+/// Whether the aim would draw this passing ray. `azimuth` turns the meridian against the
+/// iris shape.
+bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
+                      double azimuth) const {
     const AimTables& t = aim_.tables;
     const double rn = r / t.film_radius;
     Vec2d a{unit(iris.x), unit(iris.y)};
@@ -294,11 +317,12 @@ bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l, doub
                std::abs(a.y) <= t.half[segment];
     const double c = std::cos(azimuth), s = std::sin(azimuth);
     const Vec2d turned{c * a.x - s * a.y, s * a.x + c * a.y};
-    return request_.iris.in_sampling_region(turned * (t.iris_scale / request_.iris_radius),
-                                            kEnlargement);
+    return request_.iris.in_sampling_region(
+        turned * (t.iris_scale / request_.iris_radius), kEnlargement);
 }
 
-/// Segments in which a fresh passing ray lies outside what is drawn, or the Jacobian changes sign.
+/// Segments in which a fresh passing ray lies outside what is drawn, or the Jacobian
+/// changes sign.
 std::vector<bool> AimMaker::uncovered_segments() const {
     std::vector<bool> bad(kRadialSegments);
     const AimTables& t = aim_.tables;
@@ -311,26 +335,31 @@ std::vector<bool> AimMaker::uncovered_segments() const {
             const Quad q = quasi_random(200000 + n + i);
             radius[i] = t.film_radius * q.u[0];
             azimuth[i] = 2 * kPiD * std::fmod(q.u[1] * 97, 1.0);
-            // Half of the rays crowd at the rim of the iris, where coverage is lost first.
+            // Half of the rays crowd at the rim of the iris, where coverage is lost
+            // first.
             Vec2d target = concentric_disc({q.u[1], q.u[2]});
             if (i % 2) target = target * (1 / std::max(1e-9, length(target)));
             target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q.u[2] : 1.2));
-            const Vec2d m{rear_.slope_for(target.x, radius[i]), rear_.slope_for(target.y, 0)};
+            const Vec2d m{rear_.slope_for(target.x, radius[i]),
+                          rear_.slope_for(target.y, 0)};
             const double c = std::cos(azimuth[i]), s = std::sin(azimuth[i]);
             film->x[i] = float(c * radius[i]), film->y[i] = float(s * radius[i]);
-            film->mx[i] = float(c * m.x - s * m.y), film->my[i] = float(s * m.x + c * m.y);
+            film->mx[i] = float(c * m.x - s * m.y),
+            film->my[i] = float(s * m.x + c * m.y);
             film->nm[i] = float(380 + 400 * q.u[3]);
         }
         trace_to_scene(real_, *film, *out, kLensBatch);
         for (int i = 0; i < kLensBatch; ++i) {
             if (!(out->pass[i] > 0)) continue;
             const double c = std::cos(azimuth[i]), s = std::sin(azimuth[i]);
-            const Vec2d m{c * film->mx[i] + s * film->my[i], c * film->my[i] - s * film->mx[i]};
+            const Vec2d m{c * film->mx[i] + s * film->my[i],
+                          c * film->my[i] - s * film->mx[i]};
             const Vec2d iris{c * out->iris_x[i] + s * out->iris_y[i],
                              c * out->iris_y[i] - s * out->iris_x[i]};
-            const int segment =
-                std::min(kRadialSegments - 1, int(radius[i] / t.film_radius * kRadialSegments));
-            if (!covers(segment, radius[i], m, iris, real_.scale(film->nm[i]), azimuth[i]))
+            const int segment = std::min(
+                kRadialSegments - 1, int(radius[i] / t.film_radius * kRadialSegments));
+            if (!covers(segment, radius[i], m, iris, real_.scale(film->nm[i]),
+                        azimuth[i]))
                 bad[segment] = true;
         }
     }

@@ -9,18 +9,20 @@ namespace {
 constexpr double kShortest = 380, kLongest = 780;  // nm
 
 /// Coefficients (powers of l) of the polynomial through n at Chebyshev points of [-1, 1].
-std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale& scale, int degree) {
+std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale& scale,
+                                      int degree) {
     const int count = degree + 1;
     std::vector<double> node(count), divided(count);
     for (int i = 0; i < count; ++i) {
         node[i] = std::cos(kPiD * (i + 0.5) / count);
-        divided[i] = refractive_index(glass, 1e3 / std::sqrt((node[i] - scale.offset) / scale.scale));
+        divided[i] = refractive_index(
+            glass, 1e3 / std::sqrt((node[i] - scale.offset) / scale.scale));
     }
     for (int order = 1; order < count; ++order)  // Newton's divided differences
         for (int i = count - 1; i >= order; --i)
             divided[i] = (divided[i] - divided[i - 1]) / (node[i] - node[i - order]);
     std::vector<double> power(count, 0.0);
-    for (int i = count - 1; i >= 0; --i) {       // Horner, expanded into powers
+    for (int i = count - 1; i >= 0; --i) {  // Horner, expanded into powers
         for (int j = count - 1; j > 0; --j) power[j] = power[j - 1] - node[i] * power[j];
         power[0] = divided[i] - node[i] * power[0];
     }
@@ -51,13 +53,15 @@ void fill_iris(IrisTables& t, const Iris& iris, double radius) {
     t.kind = iris.kind();
     t.radius = float(radius);
     const Iris::Blades& b = iris.blades();
-    for (const Vec2d e : b.edge) t.edge_x.push_back(float(e.x)), t.edge_y.push_back(float(e.y));
+    for (const Vec2d e : b.edge)
+        t.edge_x.push_back(float(e.x)), t.edge_y.push_back(float(e.y));
     t.apothem = mm(b.apothem), t.center = mm(b.center), t.bend = b.bend;
     t.arc_radius2 = mm(b.arc_radius) * mm(b.arc_radius);
     for (const Vec2d p : b.fan) t.fan_x.push_back(mm(p.x)), t.fan_y.push_back(mm(p.y));
     const Iris::Image& m = iris.picture();
     t.width = m.width, t.height = m.height, t.pixel = mm(m.pixel), t.values = m.values;
-    for (const Vec2d p : m.support) t.support_x.push_back(mm(p.x)), t.support_y.push_back(mm(p.y));
+    for (const Vec2d p : m.support)
+        t.support_x.push_back(mm(p.x)), t.support_y.push_back(mm(p.y));
 }
 
 }  // namespace
@@ -86,11 +90,13 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
         const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
         t.curvature.push_back(float(s.curvature));
         t.gap.push_back(float(s.thickness));
-        const bool bounded = clear_apertures && std::isfinite(s.semi_diameter) && !(iris && i == t.stop);
+        const bool bounded =
+            clear_apertures && std::isfinite(s.semi_diameter) && !(iris && i == t.stop);
         t.semi2.push_back(bounded ? float(s.semi_diameter * s.semi_diameter) : FLT_MAX);
         add_index(s.glass);
         const bool same = refractive_index(before, 550) == refractive_index(s.glass, 550);
-        const bool coated = lens.coating == Coating::mgf2 && (is_air(before) || is_air(s.glass));
+        const bool coated =
+            lens.coating == Coating::mgf2 && (is_air(before) || is_air(s.glass));
         t.light.push_back(same || lens.coating == Coating::perfect ? SurfaceLight::none
                           : coated                                 ? SurfaceLight::film
                                                                    : SurfaceLight::bare);

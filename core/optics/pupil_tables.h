@@ -1,4 +1,5 @@
-// pupil_tables.h -- flat float tables that the SIMD kernels read: the lens, its iris and its aim.
+// pupil_tables.h -- flat float tables that the SIMD kernels read: the lens, its iris and
+// its aim.
 #pragma once
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace dg {
 
 struct IrisTables {
     Iris::Kind kind = Iris::Kind::round;
-    float radius = 0;                        // mm, of the circle of equal area; 0: no iris (all passes)
+    float radius = 0;  // mm, of the circle of equal area; 0: no iris (all passes)
     // Blades, mm.
     std::vector<float> edge_x, edge_y;
     float apothem = 0, center = 0, arc_radius2 = 0;
@@ -21,9 +22,10 @@ struct IrisTables {
     std::vector<float> values, support_x, support_y;
 };
 
-/// 1/lambda^2 mapped to [-1, 1] over the visible range: the variable of every fit in the wavelength.
+/// 1/lambda^2 mapped to [-1, 1] over the visible range: the variable of every fit in the
+/// wavelength.
 struct WavelengthScale {
-    float offset, scale;                     // l = offset + scale / um^2
+    float offset, scale;  // l = offset + scale / um^2
     static WavelengthScale visible();
     double operator()(double nm) const { return offset + scale * (1e6 / (nm * nm)); }
 };
@@ -33,12 +35,12 @@ enum class SurfaceLight : int { none, bare, film };
 
 struct LensTables {
     int surfaces = 0, stop = 0;
-    float film_gap = 0;                      // last vertex to film, mm
+    float film_gap = 0;  // last vertex to film, mm
     std::vector<float> curvature, semi2, gap;
     std::vector<SurfaceLight> light;
     int index_degree = 0;
-    std::vector<float> index;                // [medium][power of l]
-    bool apertures = true;                   // test clear apertures
+    std::vector<float> index;  // [medium][power of l]
+    bool apertures = true;     // test clear apertures
     IrisTables iris;
     WavelengthScale scale = WavelengthScale::visible();
 };
@@ -48,17 +50,19 @@ inline constexpr int kRadialSegments = 64;
 /// How the region of iris points (or slopes) is drawn at a film radius.
 enum class AimRegion : int { shape, box, slopes };
 
-/// The film slope m(f, a, l) of pupil.h: polynomials in U = 2u-1, s, W = 2w-1, l, and where to draw a.
+/// The film slope m(f, a, l) of pupil.h: polynomials in U = 2u-1, s, W = 2w-1, l, and
+/// where to draw a.
 struct AimTables {
-    int degree = 3;                          // k
-    std::vector<float> coefficients;         // A and B in turn, in the order of for_each_term()
-    float film_radius = 1, iris_scale = 1;   // mm: f = film_radius * f^, a = iris_scale * a^
+    int degree = 3;                   // k
+    std::vector<float> coefficients;  // A and B in turn, in the order of for_each_term()
+    float film_radius = 1,
+          iris_scale = 1;  // mm: f = film_radius * f^, a = iris_scale * a^
     float enlargement = 1.01f;
-    float shape_area = 0;                    // of the enlarged iris / iris_scale^2
+    float shape_area = 0;  // of the enlarged iris / iris_scale^2
     bool all_shape = true;
     // Boxes in the meridional frame: x0 <= x <= x0 + width, |y| <= half (a^, or slopes).
     float x0[kRadialSegments], width[kRadialSegments], half[kRadialSegments];
-    float region[kRadialSegments];           // AimRegion as a number
+    float region[kRadialSegments];  // AimRegion as a number
 };
 
 LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,

@@ -12,7 +12,8 @@ namespace {
 Aim aim_at(const Prescription& lens, double f_stop, double focus_m, bool boxes = false) {
     const Tracer t(lens);
     const FirstOrder f = first_order(lens);
-    return make_aim(t, {film_position(lens, f, focus_m), 22, Iris(), iris_radius(lens, f, f_stop), boxes});
+    return make_aim(t, {film_position(lens, f, focus_m), 22, Iris(),
+                        iris_radius(lens, f, f_stop), boxes});
 }
 
 }  // namespace
@@ -22,7 +23,9 @@ TEST_CASE("the polynomial's derivative is its slope's") {
     const double h = 1e-6;
     for (const double r : {0.0, 0.3, 0.9})
         for (const Vec2d a : {Vec2d{0.1, 0.2}, Vec2d{-0.6, 0.3}, Vec2d{0.0, -0.8}}) {
-            const auto m = [&](double x, double y) { return aim.slopes.evaluate(r, {x, y}, 0.3).m; };
+            const auto m = [&](double x, double y) {
+                return aim.slopes.evaluate(r, {x, y}, 0.3).m;
+            };
             const Vec2d dx = (m(a.x + h, a.y) - m(a.x - h, a.y)) * (0.5 / h);
             const Vec2d dy = (m(a.x, a.y + h) - m(a.x, a.y - h)) * (0.5 / h);
             CHECK(aim.slopes.evaluate(r, a, 0.3).jacobian ==
@@ -30,9 +33,10 @@ TEST_CASE("the polynomial's derivative is its slope's") {
         }
 }
 
-TEST_CASE("terms: the count of the complete basis, and a polynomial is recovered exactly") {
-    CHECK(term_count(2) == 11);   // 10 of degree 2 in (s, W, U), and l
-    CHECK(term_count(3) == 24);   // 20, and 4 with l
+TEST_CASE(
+    "terms: the count of the complete basis, and a polynomial is recovered exactly") {
+    CHECK(term_count(2) == 11);  // 10 of degree 2 in (s, W, U), and l
+    CHECK(term_count(3) == 24);  // 20, and 4 with l
     const Aim aim = aim_at(test::tessar(), 4, 5);
     std::vector<SlopeSample> samples;
     for (int i = 0; i < 400; ++i) {
@@ -44,7 +48,8 @@ TEST_CASE("terms: the count of the complete basis, and a polynomial is recovered
     }
     const SlopePolynomial again = fit_slopes(samples, aim.slopes.k);
     for (std::size_t i = 0; i < again.coefficients.size(); ++i)
-        CHECK(again.coefficients[i] == doctest::Approx(aim.slopes.coefficients[i]).epsilon(1e-7));
+        CHECK(again.coefficients[i] ==
+              doctest::Approx(aim.slopes.coefficients[i]).epsilon(1e-7));
 }
 
 TEST_CASE("common lenses are covered without falling back") {

@@ -9,18 +9,25 @@ namespace {
 
 constexpr int kArcPieces = 16;
 
-double cross(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
-Vec2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
+double cross(Vec2d a, Vec2d b) {
+    return a.x * b.y - a.y * b.x;
+}
+Vec2d unit(double angle) {
+    return {std::cos(angle), std::sin(angle)};
+}
 
-/// The point at parameter t in [0,1] along blade 0's edge, rotated so that its middle is on +x.
+/// The point at parameter t in [0,1] along blade 0's edge, rotated so that its middle is
+/// on +x.
 Vec2d edge_point(const Iris::Blades& b, double half_chord, double t) {
     if (b.bend == 0) return {b.apothem, half_chord * (2 * t - 1)};
     const double half = std::asin(std::min(1.0, half_chord / b.arc_radius));
     const double angle = half * (2 * t - 1);
-    return {b.center + b.bend * b.arc_radius * std::cos(angle), b.arc_radius * std::sin(angle)};
+    return {b.center + b.bend * b.arc_radius * std::cos(angle),
+            b.arc_radius * std::sin(angle)};
 }
 
-/// Parameter of the next corner so that the triangle (origin, from, next) has the area; 2 if none.
+/// Parameter of the next corner so that the triangle (origin, from, next) has the area; 2
+/// if none.
 double next_corner(const Iris::Blades& b, double half_chord, double from, double area) {
     const Vec2d p = edge_point(b, half_chord, from);
     if (0.5 * cross(p, edge_point(b, half_chord, 1)) < area) return 2;
@@ -33,7 +40,8 @@ double next_corner(const Iris::Blades& b, double half_chord, double from, double
 }
 
 /// Parameters that cut the edge into pieces whose triangles have equal areas.
-std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord, int pieces) {
+std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord,
+                                       int pieces) {
     double low = 0, high = 4;
     std::vector<double> corners;
     for (int i = 0; i < 60; ++i) {
@@ -41,8 +49,8 @@ std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord,
         corners.assign(1, 0.0);
         while (int(corners.size()) < pieces && corners.back() <= 1)
             corners.push_back(next_corner(b, half_chord, corners.back(), area));
-        const bool too_big = corners.back() > 1 ||
-                             next_corner(b, half_chord, corners.back(), area) > 1;
+        const bool too_big =
+            corners.back() > 1 || next_corner(b, half_chord, corners.back(), area) > 1;
         (too_big ? high : low) = area;
         if (corners.back() > 1) continue;
     }
@@ -53,14 +61,17 @@ std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord,
 }
 
 /// How much the fan must grow so that its chords cover an outward arc.
-double cover_factor(const Iris::Blades& b, double half_chord, const std::vector<double>& corners) {
+double cover_factor(const Iris::Blades& b, double half_chord,
+                    const std::vector<double>& corners) {
     double factor = 1;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const double end = i + 1 < corners.size() ? corners[i + 1] : 1;
-        const Vec2d p = edge_point(b, half_chord, corners[i]), q = edge_point(b, half_chord, end);
+        const Vec2d p = edge_point(b, half_chord, corners[i]),
+                    q = edge_point(b, half_chord, end);
         const Vec2d normal{q.y - p.y, p.x - q.x};
         for (int j = 1; j < 32; ++j) {
-            const Vec2d arc = edge_point(b, half_chord, corners[i] + (end - corners[i]) * j / 32);
+            const Vec2d arc =
+                edge_point(b, half_chord, corners[i] + (end - corners[i]) * j / 32);
             factor = std::max(factor, dot(normal, arc) / dot(normal, p));
         }
     }
@@ -80,9 +91,11 @@ Iris Iris::polygon(int blades, double rotation_deg, double curvature) {
     if (blades < 3 || blades > 64)
         throw input_error("iris", "blades", "3 to 64", std::to_string(blades));
     if (!(curvature >= -1 && curvature <= 1))
-        throw input_error("iris", "blade curvature", "-1 to 1", std::to_string(curvature));
+        throw input_error("iris", "blade curvature", "-1 to 1",
+                          std::to_string(curvature));
     if (!std::isfinite(rotation_deg))
-        throw input_error("iris", "blade rotation", "finite degrees", std::to_string(rotation_deg));
+        throw input_error("iris", "blade rotation", "finite degrees",
+                          std::to_string(rotation_deg));
     Iris iris;
     iris.kind_ = Kind::blades;
     Blades& b = iris.blades_;
@@ -98,7 +111,8 @@ Iris Iris::polygon(int blades, double rotation_deg, double curvature) {
     const double corner = std::sqrt(kPiD / area), half_chord = corner * std::sin(half);
     b.apothem = corner * std::cos(half);
     b.arc_radius = arc * corner;
-    const double depth = std::sqrt(std::max(0.0, b.arc_radius * b.arc_radius - half_chord * half_chord));
+    const double depth =
+        std::sqrt(std::max(0.0, b.arc_radius * b.arc_radius - half_chord * half_chord));
     b.center = b.apothem - b.bend * depth;
     const auto corners = equal_area_corners(b, half_chord, b.bend ? kArcPieces : 1);
     const double grow = cover_factor(b, half_chord, corners);
@@ -122,7 +136,8 @@ Iris Iris::image(int width, int height, std::vector<float> values) {
                               std::to_string(values.size()) + " values");
     double sum = 0;
     for (const float v : values) {
-        if (!(v >= 0 && v <= 1)) throw input_error("iris image", "value", "0 to 1", std::to_string(v));
+        if (!(v >= 0 && v <= 1))
+            throw input_error("iris image", "value", "0 to 1", std::to_string(v));
         sum += v;
     }
     if (!(sum > 0)) throw Error("iris image: wanted an opening, got only black pixels");
@@ -132,24 +147,28 @@ Iris Iris::image(int width, int height, std::vector<float> values) {
     m.width = width, m.height = height;
     m.pixel = std::sqrt(kPiD / sum);
     m.values = std::move(values);
-    // Sampled pixels: the open ones and a border of 1.5 % of the half diagonal, for the enlarged iris.
+    // Sampled pixels: the open ones and a border of 1.5 % of the half diagonal, for the
+    // enlarged iris.
     const int border = 1 + int(0.015 * 0.5 * std::hypot(width, height));
     std::vector<char> rows(m.values.size());
     m.in_support.assign(m.values.size(), 0);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (m.values[y * width + x] > 0)
-                for (int i = std::max(0, x - border); i <= std::min(width - 1, x + border); ++i)
+                for (int i = std::max(0, x - border);
+                     i <= std::min(width - 1, x + border); ++i)
                     rows[y * width + i] = 1;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (rows[y * width + x])
-                for (int i = std::max(0, y - border); i <= std::min(height - 1, y + border); ++i)
+                for (int i = std::max(0, y - border);
+                     i <= std::min(height - 1, y + border); ++i)
                     m.in_support[i * width + x] = 1;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (m.in_support[y * width + x])
-                m.support.push_back({(x - 0.5 * width) * m.pixel, (0.5 * height - y - 1) * m.pixel});
+                m.support.push_back(
+                    {(x - 0.5 * width) * m.pixel, (0.5 * height - y - 1) * m.pixel});
     return iris;
 }
 
@@ -175,7 +194,8 @@ Vec2d Iris::sample(Vec2d u, double enlargement) const {
     if (kind_ == Kind::image) {
         const double scaled = u.x * image_.support.size();
         const std::size_t i = std::min(image_.support.size() - 1, std::size_t(scaled));
-        return enlargement * (image_.support[i] + image_.pixel * Vec2d{scaled - double(i), u.y});
+        return enlargement *
+               (image_.support[i] + image_.pixel * Vec2d{scaled - double(i), u.y});
     }
     const int triangles = int(blades_.fan.size()) - 1;
     const double scaled = u.x * triangles;
@@ -187,7 +207,8 @@ Vec2d Iris::sample(Vec2d u, double enlargement) const {
 double Iris::sampling_area(double enlargement) const {
     const double scale = enlargement * enlargement;
     if (kind_ == Kind::round) return scale * kPiD;
-    if (kind_ == Kind::image) return scale * image_.support.size() * image_.pixel * image_.pixel;
+    if (kind_ == Kind::image)
+        return scale * image_.support.size() * image_.pixel * image_.pixel;
     double area = 0;
     for (std::size_t i = 0; i + 1 < blades_.fan.size(); ++i)
         area += 0.5 * cross(blades_.fan[i], blades_.fan[i + 1]);
@@ -215,8 +236,29 @@ double Iris::outer_radius() const {
     for (const Vec2d p : blades_.fan) r = std::max(r, length(p));
     for (const Vec2d p : image_.support)
         for (int corner = 0; corner < 4; ++corner)
-            r = std::max(r, length(p + image_.pixel * Vec2d{double(corner & 1), double(corner >> 1)}));
+            r = std::max(r, length(p + image_.pixel * Vec2d{double(corner & 1),
+                                                            double(corner >> 1)}));
     return r;
+}
+
+RadialOpening::RadialOpening(const Iris& iris) : outer_(iris.outer_radius()) {
+    if (iris.kind() == Iris::Kind::round) return;
+    constexpr int kRadii = 1024, kAzimuths = 720;
+    for (int i = 0; i <= kRadii; ++i) {
+        const double q = outer_ * i / kRadii;
+        double sum = 0;
+        for (int j = 0; j < kAzimuths; ++j)
+            sum += iris.transmission(q * unit(2 * kPiD * (j + 0.5) / kAzimuths));
+        table_.push_back(sum / kAzimuths);
+    }
+}
+
+double RadialOpening::at(double q) const {
+    if (table_.empty()) return q <= 1;
+    const double x = q / outer_ * double(table_.size() - 1);
+    const std::size_t i = std::size_t(x);
+    if (!(x >= 0) || i + 1 >= table_.size()) return q <= outer_ ? table_.back() : 0;
+    return table_[i] + (x - double(i)) * (table_[i + 1] - table_[i]);
 }
 
 }  // namespace dg

@@ -15,7 +15,8 @@ std::vector<float> heart(int size) {
     std::vector<float> v(std::size_t(size) * size);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
-            const double a = 2.6 * ((x + 0.5) / size - 0.5), b = -2.6 * ((y + 0.5) / size - 0.5);
+            const double a = 2.6 * ((x + 0.5) / size - 0.5),
+                         b = -2.6 * ((y + 0.5) / size - 0.5);
             const double q = a * a + b * b - 1;
             v[y * size + x] = q * q * q - a * a * b * b * b <= 0 ? 1.f : 0.f;
         }
@@ -23,13 +24,18 @@ std::vector<float> heart(int size) {
 }
 
 std::vector<Iris> shapes() {
-    return {Iris(), Iris::polygon(3, 0, 0), Iris::polygon(5, 17, 0), Iris::polygon(6, 0, 0.5),
-            Iris::polygon(7, 40, 1), Iris::polygon(9, 10, -0.6), Iris::polygon(4, 0, -1),
+    return {Iris(),
+            Iris::polygon(3, 0, 0),
+            Iris::polygon(5, 17, 0),
+            Iris::polygon(6, 0, 0.5),
+            Iris::polygon(7, 40, 1),
+            Iris::polygon(9, 10, -0.6),
+            Iris::polygon(4, 0, -1),
             Iris::image(64, 64, heart(64))};
 }
 
-/// p-value that samples of u fall evenly over the shape's sampling region; `skew` plants a fault:
-/// that part of the samples is drawn with u.x squeezed to its lower half.
+/// p-value that samples of u fall evenly over the shape's sampling region; `skew` plants
+/// a fault: that part of the samples is drawn with u.x squeezed to its lower half.
 double evenness(const Iris& iris, double enlargement, double skew) {
     constexpr int kCells = 14, kSamples = 500000, kFine = 50;
     const double r = 1.0001 * enlargement * iris.outer_radius(), cell = 2 * r / kCells;
@@ -55,7 +61,8 @@ double evenness(const Iris& iris, double enlargement, double skew) {
         seen[y * kCells + x] += 1;
     }
     for (double& e : expected) e *= kSamples / total;
-    // Cells that the boundary cuts know their area to the fine grid only: both go into one cell.
+    // Cells that the boundary cuts know their area to the fine grid only: both go into
+    // one cell.
     double rest_seen = 0, rest_expected = 0;
     for (int c = 0; c < kCells * kCells; ++c) {
         const double full = double(kSamples) * kFine * kFine / total;
@@ -79,7 +86,8 @@ TEST_CASE("every shape has the area of the unit circle") {
         double sum = 0;
         for (int y = 0; y < kGrid; ++y)
             for (int x = 0; x < kGrid; ++x)
-                sum += iris.transmission({r * (2 * (x + 0.5) / kGrid - 1), r * (2 * (y + 0.5) / kGrid - 1)});
+                sum += iris.transmission(
+                    {r * (2 * (x + 0.5) / kGrid - 1), r * (2 * (y + 0.5) / kGrid - 1)});
         CHECK(sum * 4 * r * r / (kGrid * kGrid) == doctest::Approx(kPiD).epsilon(2e-3));
     }
 }
@@ -88,7 +96,8 @@ TEST_CASE("iris points fall evenly; a 2 % fault is caught") {
     const auto all = shapes();
     const double level = sidak_level(1e-3, 2.0 * all.size());
     for (const Iris& iris : all)
-        for (const double enlargement : {1.0, 1.01}) CHECK(evenness(iris, enlargement, 0) > level);
+        for (const double enlargement : {1.0, 1.01})
+            CHECK(evenness(iris, enlargement, 0) > level);
     CHECK(evenness(Iris(), 1, 0.02) < level);
     CHECK(evenness(Iris::polygon(7, 0, 0.5), 1, 0.02) < level);
 }
@@ -106,7 +115,8 @@ TEST_CASE("the sampling region covers the shape, also 1 % off") {
         }
 }
 
-TEST_CASE("curvature 1 is the circle; a regular polygon has its corners where rotation says") {
+TEST_CASE(
+    "curvature 1 is the circle; a regular polygon has its corners where rotation says") {
     const Iris round = Iris::polygon(6, 0, 1);
     for (double phi = 0; phi < 6.28; phi += 0.01) {
         CHECK(round.transmission({0.999 * std::cos(phi), 0.999 * std::sin(phi)}) == 1);

@@ -1,4 +1,5 @@
-// trace-inl.h -- one surface after the other, in SIMD lanes. Included once per instruction set.
+// trace-inl.h -- one surface after the other, in SIMD lanes. Included once per
+// instruction set.
 #if defined(DG_OPTICS_TRACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_TRACE_INL_H_
 #undef DG_OPTICS_TRACE_INL_H_
@@ -23,14 +24,16 @@ using VI = hn::Vec<DI>;
 /// Rays on their way; z is measured from the vertex of the surface at hand.
 struct LaneRays {
     V x, y, z, dx, dy, dz;
-    V l, inv_um;      // wavelength variable, 1/lambda
-    V n;              // index of the medium that they are in
+    V l, inv_um;  // wavelength variable, 1/lambda
+    V n;          // index of the medium that they are in
     V transmittance;
     V iris_x, iris_y;
     M alive;
 };
 
-HWY_INLINE V constant(float value) { return hn::Set(D(), value); }
+HWY_INLINE V constant(float value) {
+    return hn::Set(D(), value);
+}
 
 HWY_INLINE V index_of(const LensTables& lens, int medium, V l) {
     const float* c = lens.index.data() + medium * (lens.index_degree + 1);
@@ -50,18 +53,22 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     const D d;
     if (iris.kind == Iris::Kind::round) {
         const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
-        return hn::IfThenElseZero(hn::Le(r2, constant(iris.radius * iris.radius)), constant(1));
+        return hn::IfThenElseZero(hn::Le(r2, constant(iris.radius * iris.radius)),
+                                  constant(1));
     }
     if (iris.kind == Iris::Kind::image) {
         const V inv = constant(1 / iris.pixel);
         const V px = hn::Floor(hn::MulAdd(x, inv, constant(0.5f * iris.width)));
         const V py = hn::Floor(hn::NegMulAdd(y, inv, constant(0.5f * iris.height)));
-        const M in_x = hn::And(hn::Ge(px, hn::Zero(d)), hn::Lt(px, constant(float(iris.width))));
-        const M in_y = hn::And(hn::Ge(py, hn::Zero(d)), hn::Lt(py, constant(float(iris.height))));
+        const M in_x =
+            hn::And(hn::Ge(px, hn::Zero(d)), hn::Lt(px, constant(float(iris.width))));
+        const M in_y =
+            hn::And(hn::Ge(py, hn::Zero(d)), hn::Lt(py, constant(float(iris.height))));
         const M inside = hn::And(in_x, in_y);
-        const V at = hn::IfThenElseZero(inside, hn::MulAdd(py, constant(float(iris.width)), px));
-        return hn::IfThenElseZero(inside,
-                                  hn::GatherIndex(d, iris.values.data(), hn::ConvertTo(DI(), at)));
+        const V at =
+            hn::IfThenElseZero(inside, hn::MulAdd(py, constant(float(iris.width)), px));
+        return hn::IfThenElseZero(
+            inside, hn::GatherIndex(d, iris.values.data(), hn::ConvertTo(DI(), at)));
     }
     M inside = hn::Eq(x, x);
     for (std::size_t i = 0; i < iris.edge_x.size(); ++i) {
@@ -79,7 +86,8 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     return hn::IfThenElseZero(inside, constant(1));
 }
 
-/// coating.h's airy_transmittance as numerator and denominator (numerator without its factor 8).
+/// coating.h's airy_transmittance as numerator and denominator (numerator without its
+/// factor 8).
 HWY_INLINE void airy(V p, V q, V r, V cos_2b, V& numerator, V& denominator) {
     const V p2 = hn::Mul(p, p), q2 = hn::Mul(q, q), r2 = hn::Mul(r, r);
     const V m = hn::Mul(q2, hn::Mul(p, r));
@@ -89,14 +97,16 @@ HWY_INLINE void airy(V p, V q, V r, V cos_2b, V& numerator, V& denominator) {
     numerator = m;
 }
 
-/// coating.h's film_transmittance. cos(2b) = -cos(2b - pi), by Taylor: |2b - pi| < 1.7, error < 2e-6.
+/// coating.h's film_transmittance. cos(2b) = -cos(2b - pi), by Taylor: |2b - pi| < 1.7,
+/// error < 2e-6.
 HWY_INLINE V film_lanes(V n1, V cos1, V cos1_squared, V n2, V cos2, V inv_um) {
     const V one = constant(1), nf = constant(float(kFilmIndex));
     const V sin_f = hn::Mul(n1, constant(float(1 / kFilmIndex)));
-    const V cos_f = hn::Sqrt(
-        hn::NegMulAdd(hn::Mul(sin_f, sin_f), hn::Sub(one, cos1_squared), one));
-    const V phase = hn::MulAdd(hn::Mul(inv_um, constant(float(kPiD * kFilmWavelength * 1e-3))), cos_f,
-                               constant(float(-kPiD)));
+    const V cos_f =
+        hn::Sqrt(hn::NegMulAdd(hn::Mul(sin_f, sin_f), hn::Sub(one, cos1_squared), one));
+    const V phase =
+        hn::MulAdd(hn::Mul(inv_um, constant(float(kPiD * kFilmWavelength * 1e-3))), cos_f,
+                   constant(float(-kPiD)));
     const V w = hn::Mul(phase, phase);
     V cosine = hn::MulAdd(w, constant(-1.f / 3628800), constant(1.f / 40320));
     cosine = hn::MulAdd(cosine, w, constant(-1.f / 720));
@@ -154,7 +164,8 @@ HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& r) {
     const V n2 = index_of(lens, kSign > 0 ? i + 1 : i, r.l);
     if (lens.light[i] != SurfaceLight::none || lens.curvature[i] != 0) {
         const V mu = hn::Div(r.n, n2);
-        const V cos2_squared = hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, cos1_squared), one);
+        const V cos2_squared =
+            hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, cos1_squared), one);
         const V cos2 = hn::Sqrt(cos2_squared);
         ok = hn::And(ok, hn::Ge(cos2_squared, zero));
         if (lens.light[i] == SurfaceLight::film)
@@ -173,8 +184,8 @@ HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& r) {
     r.alive = hn::And(r.alive, ok);
 }
 
-/// Two vectors of rays at once, so that one's long chains of dependent operations hide behind the
-/// other's. The rays start on the film, z = 0 there.
+/// Two vectors of rays at once, so that one's long chains of dependent operations hide
+/// behind the other's. The rays start on the film, z = 0 there.
 HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b) {
     const int last = lens.surfaces - 1;
     a.n = index_of(lens, lens.surfaces, a.l);
@@ -192,7 +203,8 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
     }
 }
 
-/// Rays that travel toward the film; z from the first vertex. At the end z is from the last vertex.
+/// Rays that travel toward the film; z from the first vertex. At the end z is from the
+/// last vertex.
 HWY_INLINE void lanes_to_film(const LensTables& lens, LaneRays& a, LaneRays& b) {
     a.n = index_of(lens, 0, a.l);
     b.n = index_of(lens, 0, b.l);

@@ -12,14 +12,17 @@ Tracer::Tracer(const Prescription& lens) : lens_(lens) {
 
 LensIndices Tracer::at(double wavelength_nm) const {
     LensIndices n{wavelength_nm, {refractive_index(lens_.object_medium, wavelength_nm)}};
-    for (const Surface& s : lens_.surfaces) n.index.push_back(refractive_index(s.glass, wavelength_nm));
+    for (const Surface& s : lens_.surfaces)
+        n.index.push_back(refractive_index(s.glass, wavelength_nm));
     return n;
 }
 
-// Intersection and refraction in curvature form (planes and spheres alike), from the point M of the ray
-// nearest to the vertex; `sign` is +1 toward the film. Source: Feder 1951, Optical Calculations with
-// Automatic Computing Machinery, JOSA 41(9), eqs. 1-9; also valid for rays at and beyond 90 degrees.
-bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip, TracedRay& traced) const {
+// Intersection and refraction in curvature form (planes and spheres alike), from the
+// point M of the ray nearest to the vertex; `sign` is +1 toward the film. Source: Feder
+// 1951, Optical Calculations with Automatic Computing Machinery, JOSA 41(9), eqs. 1-9;
+// also valid for rays at and beyond 90 degrees.
+bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
+                   TracedRay& traced) const {
     const Surface& surface = lens_.surfaces[i];
     const double c = surface.curvature;
     Vec3d p = traced.ray.origin, d = traced.ray.direction;
@@ -32,11 +35,12 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip, Trac
     const double cos1 = std::sqrt(cos1_squared);
     p = m + d * (q / (d.z + sign * cos1));
     const double r2 = p.x * p.x + p.y * p.y, toward_axis = 1 - c * p.z;
-    if (!(toward_axis > 0)) return false;    // the far half of the sphere
+    if (!(toward_axis > 0)) return false;  // the far half of the sphere
     if (i == stop_) {
         traced.iris = {p.x, p.y};
         if (clip.iris) {
-            const double open = clip.iris->transmission(traced.iris * (1 / clip.iris_radius));
+            const double open =
+                clip.iris->transmission(traced.iris * (1 / clip.iris_radius));
             if (!(open > 0)) return false;
             traced.transmittance *= open;
         }
@@ -56,21 +60,24 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip, Trac
     return true;
 }
 
-std::optional<TracedRay> Tracer::to_film(LensRay ray, const LensIndices& n, const Clip& clip) const {
+std::optional<TracedRay> Tracer::to_film(LensRay ray, const LensIndices& n,
+                                         const Clip& clip) const {
     TracedRay traced{ray, {}, 1};
     for (int i = 0; i < int(lens_.surfaces.size()); ++i)
         if (!cross(i, 1, n, clip, traced)) return std::nullopt;
     return traced;
 }
 
-std::optional<TracedRay> Tracer::to_scene(LensRay ray, const LensIndices& n, const Clip& clip) const {
+std::optional<TracedRay> Tracer::to_scene(LensRay ray, const LensIndices& n,
+                                          const Clip& clip) const {
     TracedRay traced{ray, {}, 1};
     for (int i = int(lens_.surfaces.size()) - 1; i >= 0; --i)
         if (!cross(i, -1, n, clip, traced)) return std::nullopt;
     return traced;
 }
 
-std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n, double widened) const {
+std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n,
+                                     double widened) const {
     const Clip clip{true, nullptr, 0, widened};
     TracedRay traced{ray, {}, 1};
     for (int i = int(lens_.surfaces.size()) - 1; i >= stop_; --i)
@@ -78,7 +85,8 @@ std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n, double w
     return traced.iris;
 }
 
-std::vector<Vec3d> Tracer::path_to_film(LensRay ray, const LensIndices& n, const Clip& clip) const {
+std::vector<Vec3d> Tracer::path_to_film(LensRay ray, const LensIndices& n,
+                                        const Clip& clip) const {
     TracedRay traced{ray, {}, 1};
     std::vector<Vec3d> points;
     for (int i = 0; i < int(lens_.surfaces.size()); ++i) {

@@ -1,4 +1,5 @@
-// trace.h -- exact tracing through every surface, in double: the reference. Both directions.
+// trace.h -- exact tracing through every surface, in double: the reference. Both
+// directions.
 #pragma once
 #include <optional>
 #include <vector>
@@ -14,17 +15,18 @@ struct LensRay {
 };
 
 struct TracedRay {
-    LensRay ray;              // from the last surface that was met, refracted
-    Vec2d iris;               // mm, where the ray crossed the stop
-    double transmittance = 1; // product over the surfaces, and the iris's
+    LensRay ray;               // from the last surface that was met, refracted
+    Vec2d iris;                // mm, where the ray crossed the stop
+    double transmittance = 1;  // product over the surfaces, and the iris's
 };
 
-/// What stops rays besides a miss or total reflection. The iris replaces the stop's clear diameter.
+/// What stops rays besides a miss or total reflection. The iris replaces the stop's clear
+/// diameter.
 struct Clip {
     bool clear_apertures = true;
     const Iris* iris = nullptr;
-    double iris_radius = 0;   // mm, of the circle of equal area
-    double widened = 1;       // factor on the clear diameters
+    double iris_radius = 0;  // mm, of the circle of equal area
+    double widened = 1;      // factor on the clear diameters
 };
 
 /// The indices of all media at one wavelength: index[i] before surface i.
@@ -38,22 +40,29 @@ class Tracer {
     explicit Tracer(const Prescription& lens);  // validates
 
     LensIndices at(double wavelength_nm) const;
-    /// From the object side through the last surface; direction.z > -1 and the ray meets surface 0 first.
-    std::optional<TracedRay> to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;
+    /// From the object side through the last surface; direction.z > -1 and the ray meets
+    /// surface 0 first.
+    std::optional<TracedRay> to_film(LensRay ray, const LensIndices& n,
+                                     const Clip& clip) const;
     /// From the film side through the first surface.
-    std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n, const Clip& clip) const;
-    /// From the film side to the stop: the iris point, mm. Clear apertures are widened by the factor.
+    std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n,
+                                      const Clip& clip) const;
+    /// From the film side to the stop: the iris point, mm. Clear apertures are widened by
+    /// the factor.
     std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n, double widened) const;
 
-    /// Points where the ray met the surfaces, object side first, for drawings; empty if stopped.
-    std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n, const Clip& clip) const;
+    /// Points where the ray met the surfaces, object side first, for drawings; empty if
+    /// stopped.
+    std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n,
+                                    const Clip& clip) const;
 
     const Prescription& prescription() const { return lens_; }
     const std::vector<double>& vertices() const { return vertices_; }
     int stop() const { return stop_; }
 
   private:
-    bool cross(int surface, int sign, const LensIndices& n, const Clip& clip, TracedRay& ray) const;
+    bool cross(int surface, int sign, const LensIndices& n, const Clip& clip,
+               TracedRay& ray) const;
 
     Prescription lens_;
     std::vector<double> vertices_;

@@ -1,12 +1,11 @@
 // Sizeless vectors (SVE, RVV) cannot be members of structs; on Arm NEON serves.
-#define HWY_DISABLED_TARGETS \
-    (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/trace_simd.cpp"
+#include "optics/trace_simd.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "optics/pupil-inl.h"
-#include "optics/trace_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace dg {
@@ -15,11 +14,13 @@ namespace HWY_NAMESPACE {
 constexpr int kMaxDegree = 6;
 
 /// Film rays into lanes: unit directions toward the scene.
-HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm, LaneRays& r) {
+HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm,
+                              LaneRays& r) {
     const V one = constant(1);
     const V inv = hn::Div(one, hn::Sqrt(hn::MulAdd(mx, mx, hn::MulAdd(my, my, one))));
     r.x = x, r.y = y, r.z = hn::Zero(D());
-    r.dx = hn::Neg(hn::Mul(mx, inv)), r.dy = hn::Neg(hn::Mul(my, inv)), r.dz = hn::Neg(inv);
+    r.dx = hn::Neg(hn::Mul(mx, inv)), r.dy = hn::Neg(hn::Mul(my, inv)),
+    r.dz = hn::Neg(inv);
     set_wavelength(lens, nm, r);
     r.iris_x = r.iris_y = hn::Zero(D());
     r.alive = hn::Eq(one, one);
@@ -27,8 +28,10 @@ HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm
 
 HWY_INLINE void store_scene_rays(const LaneRays& r, SceneRays& out, int i) {
     const D d;
-    hn::Store(r.x, d, out.x + i), hn::Store(r.y, d, out.y + i), hn::Store(r.z, d, out.z + i);
-    hn::Store(r.dx, d, out.dx + i), hn::Store(r.dy, d, out.dy + i), hn::Store(r.dz, d, out.dz + i);
+    hn::Store(r.x, d, out.x + i), hn::Store(r.y, d, out.y + i),
+        hn::Store(r.z, d, out.z + i);
+    hn::Store(r.dx, d, out.dx + i), hn::Store(r.dy, d, out.dy + i),
+        hn::Store(r.dz, d, out.dz + i);
     hn::Store(hn::IfThenElseZero(r.alive, r.transmittance), d, out.pass + i);
     hn::Store(r.iris_x, d, out.iris_x + i), hn::Store(r.iris_y, d, out.iris_y + i);
 }
@@ -76,14 +79,16 @@ void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
             hn::Store(mx, d, out.mx + at), hn::Store(my, d, out.my + at);
             const M ok = hn::And(r[h].alive, hn::Gt(r[h].dz, hn::Zero(d)));
             hn::Store(hn::IfThenElseZero(ok, r[h].transmittance), d, in.pass + at);
-            hn::Store(r[h].iris_x, d, in.iris_x + at), hn::Store(r[h].iris_y, d, in.iris_y + at);
+            hn::Store(r[h].iris_x, d, in.iris_x + at),
+                hn::Store(r[h].iris_y, d, in.iris_y + at);
         }
     }
 }
 
 template <int K>
-HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
-                         SceneRays& out, float* weight, FilmRays* slopes, int count) {
+HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim,
+                         const LensSamples& in, SceneRays& out, float* weight,
+                         FilmRays* slopes, int count) {
     const D d;
     const int lanes = int(hn::Lanes(d));
     for (int i = 0; i < count; i += 2 * lanes) {
@@ -110,35 +115,38 @@ HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim, const Len
 }
 
 template <int K>
-HWY_NOINLINE void weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
-                          const SceneRays& traced, float* weight, int count) {
+HWY_NOINLINE void weights(const LensTables& lens, const AimTables& aim,
+                          const FilmRays& rays, const SceneRays& traced, float* weight,
+                          int count) {
     const D d;
     for (int i = 0; i < count; i += int(hn::Lanes(d))) {
         LaneRays scale;
         set_wavelength(lens, hn::Load(d, rays.nm + i), scale);
         const V w = weight_lanes<K>(aim, hn::Load(d, rays.x + i), hn::Load(d, rays.y + i),
                                     hn::Load(d, rays.mx + i), hn::Load(d, rays.my + i),
-                                    hn::Load(d, traced.iris_x + i), hn::Load(d, traced.iris_y + i),
-                                    scale.l);
+                                    hn::Load(d, traced.iris_x + i),
+                                    hn::Load(d, traced.iris_y + i), scale.l);
         const M ok = hn::Gt(hn::Load(d, traced.pass + i), hn::Zero(d));
         hn::Store(hn::IfThenElseZero(ok, w), d, weight + i);
     }
 }
 
 template <int K>
-HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim, const LensSamples& in,
-                            FilmRays& out, float* j, int count) {
+HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim,
+                            const LensSamples& in, FilmRays& out, float* j, int count) {
     const D d;
     const V to_unit = constant(1 / aim.iris_scale);
     for (int i = 0; i < count; i += int(hn::Lanes(d))) {
         LaneRays scale;
-        const V nm = hn::Load(d, in.nm + i), x = hn::Load(d, in.x + i), y = hn::Load(d, in.y + i);
+        const V nm = hn::Load(d, in.nm + i), x = hn::Load(d, in.x + i),
+                y = hn::Load(d, in.y + i);
         set_wavelength(lens, nm, scale);
         const Meridian f = meridian_of(aim, x, y);
-        const LaneSlope s =
-            slope_lanes<K>(aim.coefficients.data(), f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
-                           hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
-        hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i), hn::Store(nm, d, out.nm + i);
+        const LaneSlope s = slope_lanes<K>(
+            aim.coefficients.data(), f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
+            hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
+        hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i),
+            hn::Store(nm, d, out.nm + i);
         hn::Store(hn::MulSub(s.mx, f.ex, hn::Mul(s.my, f.ey)), d, out.mx + i);
         hn::Store(hn::MulAdd(s.mx, f.ey, hn::Mul(s.my, f.ex)), d, out.my + i);
         hn::Store(jacobian(s), d, j + i);
@@ -146,17 +154,22 @@ HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim, const 
 }
 
 // The degree is a template parameter so that the nested Horner loops unroll.
-#define DG_FOR_DEGREE(call)           \
-    switch (aim.degree) {             \
-        case 2: return call<2> ARGS;  \
-        case 3: return call<3> ARGS;  \
-        case 4: return call<4> ARGS;  \
-        case 5: return call<5> ARGS;  \
-        default: return call<6> ARGS; \
+#define DG_FOR_DEGREE(call)      \
+    switch (aim.degree) {        \
+        case 2:                  \
+            return call<2> ARGS; \
+        case 3:                  \
+            return call<3> ARGS; \
+        case 4:                  \
+            return call<4> ARGS; \
+        case 5:                  \
+            return call<5> ARGS; \
+        default:                 \
+            return call<6> ARGS; \
     }
 
-void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in, SceneRays& out,
-            float* weight, FilmRays* slopes, int count) {
+void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+            SceneRays& out, float* weight, FilmRays* slopes, int count) {
 #define ARGS (lens, aim, in, out, weight, slopes, count)
     DG_FOR_DEGREE(guided)
 #undef ARGS
@@ -169,15 +182,17 @@ void Weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
 #undef ARGS
 }
 
-void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
-            float* j, int count) {
+void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+            FilmRays& out, float* j, int count) {
 #define ARGS (lens, aim, in, out, j, count)
     DG_FOR_DEGREE(slopes_at)
 #undef ARGS
 }
 #undef DG_FOR_DEGREE
 
-const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
+const char* TargetName() {
+    return hwy::TargetName(HWY_TARGET);
+}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
@@ -194,25 +209,28 @@ HWY_EXPORT(Weights);
 HWY_EXPORT(Slopes);
 HWY_EXPORT(TargetName);
 
-void trace_to_scene(const LensTables& lens, const FilmRays& in, SceneRays& out, int count) {
+void trace_to_scene(const LensTables& lens, const FilmRays& in, SceneRays& out,
+                    int count) {
     HWY_DYNAMIC_DISPATCH(ToScene)(lens, in, out, count);
 }
 void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
     HWY_DYNAMIC_DISPATCH(ToFilm)(lens, in, out, count);
 }
-void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in, SceneRays& out,
-                 float* aim_weight, FilmRays* slopes, int count) {
+void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+                 SceneRays& out, float* aim_weight, FilmRays* slopes, int count) {
     HWY_DYNAMIC_DISPATCH(Guided)(lens, aim, in, out, aim_weight, slopes, count);
 }
 void aim_weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
                  const SceneRays& traced, float* aim_weight, int count) {
     HWY_DYNAMIC_DISPATCH(Weights)(lens, aim, rays, traced, aim_weight, count);
 }
-void aim_slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
-                float* jacobian, int count) {
+void aim_slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+                FilmRays& out, float* jacobian, int count) {
     HWY_DYNAMIC_DISPATCH(Slopes)(lens, aim, in, out, jacobian, count);
 }
-const char* simd_target_name() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }
+const char* simd_target_name() {
+    return HWY_DYNAMIC_DISPATCH(TargetName)();
+}
 
 }  // namespace dg
 #endif  // HWY_ONCE

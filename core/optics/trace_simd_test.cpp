@@ -29,8 +29,8 @@ void for_each_target(Body body) {
 }
 
 std::vector<Iris> irises() {
-    return {Iris(), Iris::polygon(5, 20, 0), Iris::polygon(7, 3, 0.7), Iris::polygon(6, 0, -0.5),
-            Iris::image(3, 3, {0, 1, 0, 1, 0.5f, 1, 0, 1, 0})};
+    return {Iris(), Iris::polygon(5, 20, 0), Iris::polygon(7, 3, 0.7),
+            Iris::polygon(6, 0, -0.5), Iris::image(3, 3, {0, 1, 0, 1, 0.5f, 1, 0, 1, 0})};
 }
 
 struct Bench {
@@ -39,15 +39,18 @@ struct Bench {
     std::unique_ptr<LensSamples> samples = std::make_unique<LensSamples>();
 };
 
-/// Whether scalar and lanes may disagree on passing: the ray grazes an edge (float sees 1e-5 mm).
-bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iris& iris, double r) {
+/// Whether scalar and lanes may disagree on passing: the ray grazes an edge (float sees
+/// 1e-5 mm).
+bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iris& iris,
+            double r) {
     const double step = 3e-5 * r;
     const auto wide = t.to_scene(ray, n, {true, nullptr, 0, 1 + 3e-5});
     const auto narrow = t.to_scene(ray, n, {true, nullptr, 0, 1 - 3e-5});
     if (wide.has_value() != narrow.has_value()) return true;
     if (!wide) return false;
     const double here = iris.transmission(wide->iris * (1 / r));
-    for (const Vec2d d : {Vec2d{step, 0}, Vec2d{-step, 0}, Vec2d{0, step}, Vec2d{0, -step}})
+    for (const Vec2d d :
+         {Vec2d{step, 0}, Vec2d{-step, 0}, Vec2d{0, step}, Vec2d{0, -step}})
         if (iris.transmission((wide->iris + d) * (1 / r)) != here) return true;
     return false;
 }
@@ -63,11 +66,14 @@ TEST_CASE("lanes equal the scalar reference on every target, both directions") {
             for (const Iris& iris : irises()) {
                 const Tracer t(lens);
                 const FirstOrder f = first_order(lens);
-                const double film_z = film_position(lens, f, 4), radius = 0.8 * f.stop_semi_diameter;
-                const LensTables tables = make_lens_tables(t, film_z, true, &iris, radius);
+                const double film_z = film_position(lens, f, 4),
+                             radius = 0.8 * f.stop_semi_diameter;
+                const LensTables tables =
+                    make_lens_tables(t, film_z, true, &iris, radius);
                 const double rear = lens.surfaces.back().semi_diameter;
                 for (int i = 0; i < kLensBatch; ++i) {
-                    b.film->x[i] = float(15 * u(random)), b.film->y[i] = float(12 * u(random));
+                    b.film->x[i] = float(15 * u(random)),
+                    b.film->y[i] = float(12 * u(random));
                     const double gap = film_z - lens.last_vertex();
                     b.film->mx[i] = float(-(rear * u(random) - b.film->x[i]) / gap);
                     b.film->my[i] = float(-(rear * u(random) - b.film->y[i]) / gap);
@@ -89,11 +95,14 @@ TEST_CASE("lanes equal the scalar reference on every target, both directions") {
                     }
                     if (!exact) continue;
                     ++passed;
-                    const Vec3d d{out.dx[i], out.dy[i], out.dz[i]}, o{out.x[i], out.y[i], out.z[i]};
+                    const Vec3d d{out.dx[i], out.dy[i], out.dz[i]},
+                        o{out.x[i], out.y[i], out.z[i]};
                     CHECK(length(d - exact->ray.direction) < 4e-6);
                     CHECK(length(o - exact->ray.origin) < 2e-6 * f.efl + 2e-5);
-                    CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(2e-5));
-                    CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) < 1e-4);
+                    CHECK(out.pass[i] ==
+                          doctest::Approx(exact->transmittance).epsilon(2e-5));
+                    CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) <
+                          1e-4);
                     // And back to the same film point, unless an edge is grazed.
                     if (b.scene->pass[i] > 0) {
                         CHECK(std::abs(b.film->x[i] - start.x[i]) < 2e-5 * f.efl + 2e-4);
@@ -107,12 +116,14 @@ TEST_CASE("lanes equal the scalar reference on every target, both directions") {
     });
 }
 
-TEST_CASE("drawn slopes, weights and Jacobians equal the double polynomial on every target") {
+TEST_CASE(
+    "drawn slopes, weights and Jacobians equal the double polynomial on every target") {
     const Prescription lens = test::check_lens(true, 0.5);
     const Tracer t(lens);
     const FirstOrder f = first_order(lens);
     for (const Iris& iris : irises()) {
-        const AimRequest request{film_position(lens, f, 2), 21.6, iris, iris_radius(lens, f, 4)};
+        const AimRequest request{film_position(lens, f, 2), 21.6, iris,
+                                 iris_radius(lens, f, 4)};
         const Aim aim = make_aim(t, request);
         const LensTables tables =
             make_lens_tables(t, request.film_z, true, &iris, request.iris_radius);
@@ -122,31 +133,38 @@ TEST_CASE("drawn slopes, weights and Jacobians equal the double polynomial on ev
             Bench b;
             alignas(64) float weight[kLensBatch], again[kLensBatch];
             for (int i = 0; i < kLensBatch; ++i) {
-                b.samples->x[i] = 36 * u(random) - 18, b.samples->y[i] = 24 * u(random) - 12;
+                b.samples->x[i] = 36 * u(random) - 18,
+                b.samples->y[i] = 24 * u(random) - 12;
                 b.samples->u[i] = u(random), b.samples->v[i] = u(random);
                 b.samples->nm[i] = 380 + 400 * u(random);
             }
-            guided_rays(tables, aim.tables, *b.samples, *b.scene, weight, b.film.get(), kLensBatch);
+            guided_rays(tables, aim.tables, *b.samples, *b.scene, weight, b.film.get(),
+                        kLensBatch);
             aim_weights(tables, aim.tables, *b.film, *b.scene, again, kLensBatch);
             int compared = 0;
             for (int i = 0; i < kLensBatch; ++i) {
-                const double r = std::hypot(b.samples->x[i], b.samples->y[i]) / aim.tables.film_radius;
+                const double r =
+                    std::hypot(b.samples->x[i], b.samples->y[i]) / aim.tables.film_radius;
                 const int segment = std::min(63, int(r * kRadialSegments));
                 if (aim.tables.region[segment] > 0) continue;
                 ++compared;
                 const double c = b.samples->x[i] / (r * aim.tables.film_radius);
                 const double s = b.samples->y[i] / (r * aim.tables.film_radius);
-                const Vec2d a = (request.iris_radius / aim.tables.iris_scale) *
-                                iris.sample({b.samples->u[i], b.samples->v[i]}, kEnlargement);
-                const SlopeValue v = aim.slopes.evaluate(r, {c * a.x + s * a.y, c * a.y - s * a.x},
-                                                         tables.scale(b.samples->nm[i]));
+                const Vec2d a =
+                    (request.iris_radius / aim.tables.iris_scale) *
+                    iris.sample({b.samples->u[i], b.samples->v[i]}, kEnlargement);
+                const SlopeValue v =
+                    aim.slopes.evaluate(r, {c * a.x + s * a.y, c * a.y - s * a.x},
+                                        tables.scale(b.samples->nm[i]));
                 CHECK(std::abs(b.film->mx[i] - (c * v.m.x - s * v.m.y)) < 3e-6);
                 CHECK(std::abs(b.film->my[i] - (s * v.m.x + c * v.m.y)) < 3e-6);
                 const double one_m2 = 1 + dot(v.m, v.m);
-                const double expected = aim.tables.shape_area * std::abs(v.jacobian) / (one_m2 * one_m2);
+                const double expected =
+                    aim.tables.shape_area * std::abs(v.jacobian) / (one_m2 * one_m2);
                 CHECK(weight[i] == doctest::Approx(expected).epsilon(2e-5));
                 // What reprojection finds from the traced ray alone.
-                if (b.scene->pass[i] > 0) CHECK(again[i] == doctest::Approx(weight[i]).epsilon(2e-4));
+                if (b.scene->pass[i] > 0)
+                    CHECK(again[i] == doctest::Approx(weight[i]).epsilon(2e-4));
             }
             CHECK(compared > 100);
         });
@@ -156,7 +174,8 @@ TEST_CASE("drawn slopes, weights and Jacobians equal the double polynomial on ev
 TEST_CASE("one vector of tail: a batch's rays do not depend on their lane") {
     const Prescription lens = test::check_lens(true, 0.5);
     const Tracer t(lens);
-    const LensTables tables = make_lens_tables(t, lens.last_vertex() + 36, true, nullptr, 0);
+    const LensTables tables =
+        make_lens_tables(t, lens.last_vertex() + 36, true, nullptr, 0);
     Bench b;
     for (int i = 0; i < kLensBatch; ++i) {
         b.film->x[i] = 3, b.film->y[i] = -2, b.film->mx[i] = 0.05f, b.film->my[i] = 0.02f;

@@ -15,7 +15,8 @@ namespace {
 using Phase = std::array<double, 4>;  // x, y, n dx, n dy on a plane
 
 /// From the plane z0 before the lens to the plane z1 behind it.
-std::optional<Phase> transfer(const Tracer& t, const LensIndices& n, Phase p, double z0, double z1) {
+std::optional<Phase> transfer(const Tracer& t, const LensIndices& n, Phase p, double z0,
+                              double z1) {
     const double l = p[2] / n.index.front(), m = p[3] / n.index.front();
     const LensRay ray{{p[0], p[1], z0}, {l, m, std::sqrt(1 - l * l - m * m)}};
     const auto out = t.to_film(ray, n, {false, nullptr, 0});
@@ -24,9 +25,10 @@ std::optional<Phase> transfer(const Tracer& t, const LensIndices& n, Phase p, do
     return Phase{at.x, at.y, n.index.back() * d.x, n.index.back() * d.y};
 }
 
-/// Largest |J^T Omega J - Omega| by central differences; `fault` scales the outgoing momenta.
-double symplectic_error(const Tracer& t, const LensIndices& n, Phase p, double z0, double z1,
-                        double fault = 1) {
+/// Largest |J^T Omega J - Omega| by central differences; `fault` scales the outgoing
+/// momenta.
+double symplectic_error(const Tracer& t, const LensIndices& n, Phase p, double z0,
+                        double z1, double fault = 1) {
     double jacobian[4][4];
     for (int k = 0; k < 4; ++k) {
         const double h = k < 2 ? 1e-3 : 1e-5;
@@ -34,14 +36,16 @@ double symplectic_error(const Tracer& t, const LensIndices& n, Phase p, double z
         a[k] -= h, b[k] += h;
         const auto fa = transfer(t, n, a, z0, z1), fb = transfer(t, n, b, z0, z1);
         if (!fa || !fb) return 0;
-        for (int i = 0; i < 4; ++i) jacobian[i][k] = (i < 2 ? 1 : fault) * ((*fb)[i] - (*fa)[i]) / (2 * h);
+        for (int i = 0; i < 4; ++i)
+            jacobian[i][k] = (i < 2 ? 1 : fault) * ((*fb)[i] - (*fa)[i]) / (2 * h);
     }
     double worst = 0;
     for (int a = 0; a < 4; ++a)
         for (int b = 0; b < 4; ++b) {
             double sum = 0;
             for (int i = 0; i < 2; ++i)
-                sum += jacobian[i][a] * jacobian[i + 2][b] - jacobian[i + 2][a] * jacobian[i][b];
+                sum += jacobian[i][a] * jacobian[i + 2][b] -
+                       jacobian[i + 2][a] * jacobian[i][b];
             const double omega = b == a + 2 ? 1 : a == b + 2 ? -1 : 0;
             worst = std::max(worst, std::abs(sum - omega));
         }
@@ -67,12 +71,14 @@ TEST_CASE("film -> scene -> film comes back within 1e-9 mm") {
             ++passed;
             // Start in front of the lens, where rays can.
             LensRay reverse{out->ray.origin, -out->ray.direction};
-            if (reverse.direction.z > 0.2) reverse.origin = reverse.origin - 30 * reverse.direction;
+            if (reverse.direction.z > 0.2)
+                reverse.origin = reverse.origin - 30 * reverse.direction;
             const auto back = t.to_film(reverse, n, {});
             REQUIRE(back);
             const Vec3d there = at_plane(back->ray, film);
             CHECK(length(there - from) < 1e-9);
-            CHECK(back->transmittance == doctest::Approx(out->transmittance).epsilon(1e-12));
+            CHECK(back->transmittance ==
+                  doctest::Approx(out->transmittance).epsilon(1e-12));
             CHECK(length(back->iris - out->iris) < 1e-9);
         }
         CHECK(passed > 50);
@@ -88,7 +94,8 @@ TEST_CASE("the transfer is symplectic: etendue is kept") {
         const LensIndices n = t.at(500);
         for (int i = 0; i < 200; ++i) {
             const double aperture = 0.3 * f.efl / 4;
-            const Phase p{aperture * u(random), aperture * u(random), 0.1 * u(random), 0.1 * u(random)};
+            const Phase p{aperture * u(random), aperture * u(random), 0.1 * u(random),
+                          0.1 * u(random)};
             CHECK(symplectic_error(t, n, p, -1, f.back_focal_z) < 1e-6);
         }
         // Planted: momenta 2 % too large, as a wrong refraction would leave them.
@@ -96,19 +103,21 @@ TEST_CASE("the transfer is symplectic: etendue is kept") {
     }
 }
 
-TEST_CASE("a plane plate shifts by d (1 - cos i / (n cos r)); aplanatic points image exactly") {
-    const Prescription plate =
-        test::lens_from_rows("plate", {{0, 6, 1.5, 0, 50}, {0, 4, 1, 0, 50}, {0, 0, 1, 0, 50, true}});
+TEST_CASE(
+    "a plane plate shifts by d (1 - cos i / (n cos r)); aplanatic points image exactly") {
+    const Prescription plate = test::lens_from_rows(
+        "plate", {{0, 6, 1.5, 0, 50}, {0, 4, 1, 0, 50}, {0, 0, 1, 0, 50, true}});
     const Tracer t(plate);
     const double s = std::sin(0.5), c = std::cos(0.5), cr = std::sqrt(1 - s * s / 2.25);
     const auto out = t.to_film({{0, 0, 0}, {s, 0, c}}, t.at(550), {});
     REQUIRE(out);
     const double x = at_plane(out->ray, 20).x;
     CHECK(x == doctest::Approx(20 * s / c - 6 * (s / c - s / 1.5 / cr)).epsilon(1e-13));
-    // From glass through a sphere of radius r into air: a point r/n beyond the centre images without
-    // aberration to n r beyond it (Born and Wolf, 4.2.3).
+    // From glass through a sphere of radius r into air: a point r/n beyond the centre
+    // images without aberration to n r beyond it (Born and Wolf, 4.2.3).
     const double r = 20, n = 1.6, centre = -r;
-    Prescription ball = test::lens_from_rows("ball", {{-r, 5, 1, 0, 19.99}, {0, 0, 1, 0, 200, true}});
+    Prescription ball =
+        test::lens_from_rows("ball", {{-r, 5, 1, 0, 19.99}, {0, 0, 1, 0, 200, true}});
     ball.object_medium.formula = ConstantIndex{n};
     const Tracer sphere(ball);
     int traced = 0;
@@ -136,13 +145,15 @@ TEST_CASE("clear apertures and the iris stop rays; total reflection does") {
     const double at_stop = passed->iris.x;
     CHECK(t.to_film({{10, 0, -10}, {0, 0, 1}}, n, {true, &iris, at_stop * 1.0001}));
     CHECK_FALSE(t.to_film({{10, 0, -10}, {0, 0, 1}}, n, {true, &iris, at_stop * 0.9999}));
-    const Prescription plate = test::lens_from_rows(
-        "plate", {{0, 5, 1, 0, 50}, {0, 5, 1, 0, 50, true}});
+    const Prescription plate =
+        test::lens_from_rows("plate", {{0, 5, 1, 0, 50}, {0, 5, 1, 0, 50, true}});
     Prescription glass = plate;
     glass.object_medium.formula = ConstantIndex{1.5};
     const Tracer inside(glass);
-    CHECK_FALSE(inside.to_film({{0, 0, -1}, {std::sin(0.8), 0, std::cos(0.8)}}, inside.at(550), {}));
-    CHECK(inside.to_film({{0, 0, -1}, {std::sin(0.7), 0, std::cos(0.7)}}, inside.at(550), {}));
+    CHECK_FALSE(inside.to_film({{0, 0, -1}, {std::sin(0.8), 0, std::cos(0.8)}},
+                               inside.at(550), {}));
+    CHECK(inside.to_film({{0, 0, -1}, {std::sin(0.7), 0, std::cos(0.7)}}, inside.at(550),
+                         {}));
 }
 
 TEST_CASE("random prescriptions and rays give points or nothing, never NaN") {
@@ -157,8 +168,10 @@ TEST_CASE("random prescriptions and rays give points or nothing, never NaN") {
             Surface s;
             s.curvature = u(random) < -0.6 ? 0 : 0.3 * u(random) * u(random);
             s.thickness = 10 * std::abs(u(random));
-            s.semi_diameter = s.curvature == 0 ? 20 : std::min(20.0, 1 / std::abs(s.curvature));
-            if (i % 2 == 0) s.glass.formula = AbbeGlass{1.75 + 0.25 * u(random), 45 + 20 * u(random)};
+            s.semi_diameter =
+                s.curvature == 0 ? 20 : std::min(20.0, 1 / std::abs(s.curvature));
+            if (i % 2 == 0)
+                s.glass.formula = AbbeGlass{1.75 + 0.25 * u(random), 45 + 20 * u(random)};
             lens.surfaces.push_back(s);
         }
         lens.surfaces[std::size_t((u(random) + 1) * 0.499 * count)].stop = true;
@@ -166,11 +179,14 @@ TEST_CASE("random prescriptions and rays give points or nothing, never NaN") {
         const LensIndices n = t.at(580 + 200 * u(random));
         for (int i = 0; i < 20; ++i) {
             const Vec3d o{15 * u(random), 15 * u(random), -20 * (u(random) + 1)};
-            const Vec3d d = normalize(Vec3d{u(random), u(random), 0.01 + std::abs(u(random))});
-            for (const auto& ray : {t.to_film({o, d}, n, {}), t.to_scene({{o.x, o.y, 200}, -d}, n, {})}) {
+            const Vec3d d =
+                normalize(Vec3d{u(random), u(random), 0.01 + std::abs(u(random))});
+            for (const auto& ray :
+                 {t.to_film({o, d}, n, {}), t.to_scene({{o.x, o.y, 200}, -d}, n, {})}) {
                 if (!ray) continue;
                 ++traced;
-                CHECK(std::isfinite(ray->ray.origin.x + ray->ray.origin.y + ray->ray.origin.z));
+                CHECK(std::isfinite(ray->ray.origin.x + ray->ray.origin.y +
+                                    ray->ray.origin.z));
                 CHECK(length(ray->ray.direction) == doctest::Approx(1).epsilon(1e-9));
                 CHECK(ray->transmittance > 0);
                 CHECK(ray->transmittance <= 1);

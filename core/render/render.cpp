@@ -42,7 +42,11 @@ class Renderer {
   public:
     Renderer(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings)
         : scene_(scene), camera_(camera), film_(film), settings_(settings),
-          exact_(std::get_if<ExactLens>(&camera.lens)),
+          exact_(settings.dispersion == Dispersion::reproject
+                     ? std::get_if<ExactLens>(&camera.lens)
+                     : nullptr),
+          end_secondary_(settings.dispersion == Dispersion::end_secondary &&
+                         std::holds_alternative<ExactLens>(camera.lens)),
           density_(settings.filter, film.layout()) {}
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
@@ -106,6 +110,7 @@ class Renderer {
         Sample& sample = work.samples[i];
         const CameraRay& camera_ray = work.rays[i];
         const Ray ray = to_world(camera_, camera_ray.ray);
+        if (end_secondary_) sample.wavelengths.end_secondary();
         AovSample aov;
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
         const Spectrum light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
@@ -152,7 +157,8 @@ class Renderer {
     const Camera& camera_;
     Film& film_;
     const RenderSettings& settings_;
-    const ExactLens* exact_;
+    const ExactLens* exact_;   // the lens whose wavelengths are reprojected, else null
+    bool end_secondary_;
     FilmDensity density_;
 };
 

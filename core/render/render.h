@@ -12,6 +12,12 @@
 
 namespace dg {
 
+/// What becomes of the other wavelengths of a path once glass has bent the hero's ray.
+enum class Dispersion {
+    reproject,       // each at its own film point (dispersion.h)
+    end_secondary,   // dropped; the hero alone, at four times its weight: the plain reference
+};
+
 struct RenderSettings {
     Sensor sensor;
     std::uint32_t sample_begin = 0, sample_end = 1;
@@ -20,6 +26,7 @@ struct RenderSettings {
     double shutter_open_s = 0, shutter_close_s = 0;
     PathSettings path;
     Filter filter;
+    Dispersion dispersion = Dispersion::reproject;
 };
 
 struct RenderCounters {

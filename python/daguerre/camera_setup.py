@@ -168,10 +168,15 @@ def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def iris_of(camera: Camera) -> _core.Iris:
     """The shape of the iris: round, blades, or a picture."""
-    if camera.aperture_image is not None:
-        return _core.Iris.image(np.ascontiguousarray(camera.aperture_image, np.float32))
-    if camera.blades:
-        return _core.Iris.polygon(camera.blades, camera.blade_rotation, camera.blade_curvature)
+    try:
+        if camera.aperture_image is not None:
+            return _core.Iris.image(np.ascontiguousarray(camera.aperture_image, np.float32))
+        if camera.blades:
+            return _core.Iris.polygon(
+                camera.blades, camera.blade_rotation, camera.blade_curvature
+            )
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"camera: {error}") from None
     return _core.Iris()
 
 

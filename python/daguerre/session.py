@@ -55,6 +55,8 @@ class Session:
         threads: 0: all cores.
         max_depth: Largest number of surfaces at which a path scatters.
         strategy: mis, or light or bsdf alone (to check one against the other).
+        dispersion: What an exact lens does with a path's other wavelengths: reproject, or
+            end_secondary (the plain reference; noisier).
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -74,6 +76,7 @@ class Session:
         threads: int = 0,
         max_depth: int = 16,
         strategy: str = "mis",
+        dispersion: str = "reproject",
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -100,7 +103,11 @@ class Session:
         self._settings.threads = threads
         self._settings.filter = _core.Filter(kind, radius)
         self._settings.max_depth = max_depth
-        self._settings.strategy = strategy
+        try:
+            self._settings.strategy = strategy
+            self._settings.dispersion = dispersion
+        except ValueError as error:
+            raise UsageError(str(error)) from None
         self._film = self._new_film()
         self.ranges: list[tuple[int, int]] = []
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
@@ -113,6 +120,7 @@ class Session:
             "max_depth": max_depth,
             "aovs": aovs,
             "strategy": strategy,
+            "dispersion": dispersion,
         }
 
     def _new_film(self) -> _core.Film:
