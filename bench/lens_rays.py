@@ -4,7 +4,7 @@
 
 Film points are uniform over 36 x 24 mm, wavelengths over 380-780 nm, lens samples random; weights
 are included, and the function that draws the rays is the renderer's own, called from one thread. A
-valid ray is one that passes glass, mounts and iris. ``valid_rays_per_second`` is the slowest stop's.
+valid ray passes glass, mounts and iris. ``valid_rays_per_second`` is that of the slowest stop.
 """
 
 from __future__ import annotations
