@@ -230,9 +230,17 @@ TEST_CASE("the sum of many lights and a sky is the sum of each") {
     lights.push_back(DirectionalLight{{0, -1, 0}, {0.1f, 0.1f, 0.1f}});
     lights.push_back(PointLight{{0, 1, 0}, {0, 0, 0}});  // dark ones are never chosen
     expected += 0.1;
-    const LightSet set(lights, Environment::constant({0.2f, 0.2f, 0.2f}));
+    const EnvironmentImage even{4, 2, std::vector<Rgb>(8, Rgb{0.2f, 0.2f, 0.2f})};
+    const LightSet set(lights, Environment::image(even, 1, {}));
     CHECK(illuminance(set, {0, 0, 0}, {0, 1, 0}, 400000) ==
           doctest::Approx(expected).epsilon(0.01));
+}
+
+TEST_CASE("an even sky is left to the BSDF") {
+    const LightSet sky({}, Environment::constant({1, 1, 1}));
+    CHECK(sky.empty());
+    CHECK(sky.pdf_environment({0, 1, 0}, {0, 0, 0}) == 0);
+    CHECK(sky.environment_radiance({0, 1, 0}, rgb_lanes())[0] == doctest::Approx(1));
 }
 
 TEST_CASE("no light, bad light") {

@@ -78,8 +78,9 @@ struct LaneSlope {
     V mx, my, m11, m12, m21, m22;
 };
 
+/// Not inlined: one unrolled copy per degree serves all callers and keeps compilation short.
 template <int K>
-HWY_INLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
+HWY_NOINLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
     const D d;
     const V s = hn::Mul(r, ax), u = hn::MulAdd(hn::Mul(r, r), constant(2), constant(-1));
     const V w =

@@ -11,8 +11,6 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-constexpr int kMaxDegree = 6;
-
 /// Film rays into lanes: unit directions toward the scene.
 HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm,
                               LaneRays& r) {
