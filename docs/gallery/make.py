@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 NIGHT = "out/night_table.glb"
 GAUSS = "--lens double-gauss-50mm-f2"
-COMMON = "--res 900x600 --tone soft"
+COMMON = "--res 750x500 --tone soft"
 
 
 @dataclass(frozen=True)
@@ -42,52 +42,52 @@ PICTURES = [
         "night_table",
         "The scene of the demo through a double Gauss at f/2.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --spp 512",
+        f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
     ),
-    Picture("pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 256"),
+    Picture("pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 128"),
     Picture(
         "focus_far",
         "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 5.6 --spp 384",
+        "--lens thin --f-stop 2 --focus 5.6 --spp 128",
     ),
     Picture(
         "focus_medium",
         "The same, focal plane at medium distance: the garland, 2.4 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 2.4 --spp 384",
+        "--lens thin --f-stop 2 --focus 2.4 --spp 128",
     ),
     Picture(
         "focus_close",
         "The same, focal plane close by: dice and bearings, 0.64 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 0.64 --spp 384",
+        "--lens thin --f-stop 2 --focus 0.64 --spp 128",
     ),
     Picture(
         "aperture_small",
         "The double Gauss at f/16: a small aperture, great depth.",
         NIGHT,
-        f"{GAUSS} --f-stop 16 --spp 256",
+        f"{GAUSS} --f-stop 16 --spp 128",
     ),
     Picture(
         "aperture_large",
         "The double Gauss at f/2: a large aperture, a shallow plane.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 384",
+        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 128",
     ),
     Picture(
         "bokeh",
         "Bokeh close up: lamps far behind the focus draw the pupil of the glass. In the middle it "
         "is round; toward the edge of the field the rims of the lens cut it to a cat's eye.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.5 --res 2250x1500 --crop 0,900,60,660 --spp 384",
+        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1875x1250 --crop 0,750,50,550 --spp 128",
     ),
     Picture(
         "bokeh_blades",
         "The same close-up through six straight blades at f/2.8.",
         NIGHT,
         f"{GAUSS} --f-stop 2.8 --focus 0.5 --blades 6 --blade-curvature 0 "
-        "--res 2250x1500 --crop 0,900,60,660 --spp 384",
+        "--res 1875x1250 --crop 0,750,50,550 --spp 128",
     ),
     Picture(
         "chess",
