@@ -78,7 +78,8 @@ struct LaneSlope {
     V mx, my, m11, m12, m21, m22;
 };
 
-/// Not inlined: one unrolled copy per degree serves all callers and keeps compilation short.
+/// Not inlined: one unrolled copy per degree serves all callers and keeps compilation
+/// short.
 template <int K>
 HWY_NOINLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
     const D d;
@@ -125,6 +126,20 @@ HWY_NOINLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
     return o;
 }
 
+HWY_INLINE LaneSlope slope_at(const AimTables& aim, V r, V ax, V ay, V l) {
+    const float* c = aim.coefficients.data();
+    switch (aim.degree) {
+        case 3:
+            return slope_lanes<3>(c, r, ax, ay, l);
+        case 4:
+            return slope_lanes<4>(c, r, ax, ay, l);
+        case 5:
+            return slope_lanes<5>(c, r, ax, ay, l);
+        default:
+            return slope_lanes<6>(c, r, ax, ay, l);
+    }
+}
+
 HWY_INLINE V jacobian(const LaneSlope& s) {
     return hn::MulSub(s.m11, s.m22, hn::Mul(s.m12, s.m21));
 }
@@ -165,7 +180,6 @@ HWY_INLINE V slope_weight(V area_jacobian, V mx, V my) {
     return hn::Div(area_jacobian, hn::Mul(one_m2, one_m2));
 }
 
-template <int K>
 HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x, V y, V u,
                               V v, V l) {
     const D d;
@@ -188,7 +202,7 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
         ay = hn::IfThenElse(boxed, by, ay);
         area = hn::IfThenElse(boxed, hn::Mul(hn::Add(half, half), width), area);
     }
-    const LaneSlope s = slope_lanes<K>(aim.coefficients.data(), f.r, ax, ay, l);
+    const LaneSlope s = slope_at(aim, f.r, ax, ay, l);
     V mx = s.mx, my = s.my, j = hn::Abs(jacobian(s));
     if (!aim.all_shape) {
         const M direct = hn::Gt(region, constant(1.5f));
@@ -205,7 +219,6 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
 
 /// The weight that draw_lanes would have given to the slope (mx, my) with the iris point
 /// (qx, qy) mm: two Newton steps from the true iris point to the aim's own.
-template <int K>
 HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy, V l) {
     const D d;
     const Meridian f = meridian_of(aim, x, y);
@@ -216,7 +229,7 @@ HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy
     V ay = hn::Mul(to_unit, hn::MulSub(qy, f.ex, hn::Mul(qx, f.ey)));
     V j = constant(1);
     for (int step = 0; step < 3; ++step) {
-        const LaneSlope s = slope_lanes<K>(aim.coefficients.data(), f.r, ax, ay, l);
+        const LaneSlope s = slope_at(aim, f.r, ax, ay, l);
         j = jacobian(s);
         if (step == 2) break;
         const V ex = hn::Sub(tx, s.mx), ey = hn::Sub(ty, s.my),

@@ -83,10 +83,8 @@ void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
     }
 }
 
-template <int K>
-HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim,
-                         const LensSamples& in, SceneRays& out, float* weight,
-                         FilmRays* slopes, int count) {
+void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+            SceneRays& out, float* weight, FilmRays* slopes, int count) {
     const D d;
     const int lanes = int(hn::Lanes(d));
     for (int i = 0; i < count; i += 2 * lanes) {
@@ -97,8 +95,8 @@ HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim,
             const V nm = hn::Load(d, in.nm + at);
             LaneRays scale;
             set_wavelength(lens, nm, scale);
-            const LaneAim m = draw_lanes<K>(lens, aim, x, y, hn::Load(d, in.u + at),
-                                            hn::Load(d, in.v + at), scale.l);
+            const LaneAim m = draw_lanes(lens, aim, x, y, hn::Load(d, in.u + at),
+                                         hn::Load(d, in.v + at), scale.l);
             start_on_film(lens, x, y, m.mx, m.my, nm, r[h]);
             hn::Store(m.weight, d, weight + at);
             if (slopes) {
@@ -112,26 +110,23 @@ HWY_NOINLINE void guided(const LensTables& lens, const AimTables& aim,
     }
 }
 
-template <int K>
-HWY_NOINLINE void weights(const LensTables& lens, const AimTables& aim,
-                          const FilmRays& rays, const SceneRays& traced, float* weight,
-                          int count) {
+void Weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
+             const SceneRays& traced, float* weight, int count) {
     const D d;
     for (int i = 0; i < count; i += int(hn::Lanes(d))) {
         LaneRays scale;
         set_wavelength(lens, hn::Load(d, rays.nm + i), scale);
-        const V w = weight_lanes<K>(aim, hn::Load(d, rays.x + i), hn::Load(d, rays.y + i),
-                                    hn::Load(d, rays.mx + i), hn::Load(d, rays.my + i),
-                                    hn::Load(d, traced.iris_x + i),
-                                    hn::Load(d, traced.iris_y + i), scale.l);
+        const V w = weight_lanes(aim, hn::Load(d, rays.x + i), hn::Load(d, rays.y + i),
+                                 hn::Load(d, rays.mx + i), hn::Load(d, rays.my + i),
+                                 hn::Load(d, traced.iris_x + i),
+                                 hn::Load(d, traced.iris_y + i), scale.l);
         const M ok = hn::Gt(hn::Load(d, traced.pass + i), hn::Zero(d));
         hn::Store(hn::IfThenElseZero(ok, w), d, weight + i);
     }
 }
 
-template <int K>
-HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim,
-                            const LensSamples& in, FilmRays& out, float* j, int count) {
+void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
+            FilmRays& out, float* j, int count) {
     const D d;
     const V to_unit = constant(1 / aim.iris_scale);
     for (int i = 0; i < count; i += int(hn::Lanes(d))) {
@@ -140,9 +135,8 @@ HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim,
                 y = hn::Load(d, in.y + i);
         set_wavelength(lens, nm, scale);
         const Meridian f = meridian_of(aim, x, y);
-        const LaneSlope s = slope_lanes<K>(
-            aim.coefficients.data(), f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
-            hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
+        const LaneSlope s = slope_at(aim, f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
+                                     hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
         hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i),
             hn::Store(nm, d, out.nm + i);
         hn::Store(hn::MulSub(s.mx, f.ex, hn::Mul(s.my, f.ey)), d, out.mx + i);
@@ -150,43 +144,6 @@ HWY_NOINLINE void slopes_at(const LensTables& lens, const AimTables& aim,
         hn::Store(jacobian(s), d, j + i);
     }
 }
-
-// The degree is a template parameter so that the nested Horner loops unroll.
-#define DG_FOR_DEGREE(call)      \
-    switch (aim.degree) {        \
-        case 2:                  \
-            return call<2> ARGS; \
-        case 3:                  \
-            return call<3> ARGS; \
-        case 4:                  \
-            return call<4> ARGS; \
-        case 5:                  \
-            return call<5> ARGS; \
-        default:                 \
-            return call<6> ARGS; \
-    }
-
-void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
-            SceneRays& out, float* weight, FilmRays* slopes, int count) {
-#define ARGS (lens, aim, in, out, weight, slopes, count)
-    DG_FOR_DEGREE(guided)
-#undef ARGS
-}
-
-void Weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
-             const SceneRays& traced, float* weight, int count) {
-#define ARGS (lens, aim, rays, traced, weight, count)
-    DG_FOR_DEGREE(weights)
-#undef ARGS
-}
-
-void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
-            FilmRays& out, float* j, int count) {
-#define ARGS (lens, aim, in, out, j, count)
-    DG_FOR_DEGREE(slopes_at)
-#undef ARGS
-}
-#undef DG_FOR_DEGREE
 
 const char* TargetName() {
     return hwy::TargetName(HWY_TARGET);
