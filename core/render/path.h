@@ -9,7 +9,7 @@ namespace dg {
 
 struct PathSettings {
     int max_depth = 16;      // surface vertices
-    int roulette_depth = 4;  // vertices before Russian roulette
+    int roulette_depth = 2;  // vertices before Russian roulette of weak paths
     enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
 };
 
