@@ -32,9 +32,11 @@ def relative_mse(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.mean((a - b) ** 2 / 2 / (mean**2 + 0.01)))
 
 
-def run(command: list[str], environment: dict[str, str]) -> dict[str, Any]:
-    """Runs one renderer; its last line ``RESULT {...}`` is the answer."""
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+def run(command: list[str], environment: dict[str, str], folder: str) -> dict[str, Any]:
+    """Runs one renderer in a folder that it may litter; its last line ``RESULT {...}`` is the answer."""
+    done = subprocess.run(
+        command, capture_output=True, text=True, env=environment, cwd=folder, check=False
+    )
     for line in reversed(done.stdout.splitlines()):
         if line.startswith("RESULT "):
             return dict(json.loads(line[7:]))
@@ -43,15 +45,15 @@ def run(command: list[str], environment: dict[str, str]) -> dict[str, Any]:
 
 def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[str, Any]:
     """Two seeds of one renderer: cost, error, and cost to a fixed error."""
-    paths = [str(options.scene_dir), os.environ.get("PYTHONPATH", "")]
-    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(p for p in paths if p))
+    paths = [str(options.scene_dir.resolve()), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(str(Path(p).resolve()) for p in paths if p))
     results, pictures = [], []
     with tempfile.TemporaryDirectory() as folder:
         for seed in (1, 2):
             out = str(Path(folder) / f"{name}{seed}")
             arguments = ["--mode", options.mode, "--spp", str(options.spp), "--seed", str(seed)]
             arguments += ["--threads", str(options.threads), "--out", out]
-            results.append(run([*command, *arguments], environment))
+            results.append(run([*command, *arguments], environment, folder))
             pictures.append(np.load(out + ".npy").astype(np.float64))
     cpu = float(np.mean([r["cpu_s"] for r in results]))
     error = relative_mse(*pictures)
@@ -100,7 +102,7 @@ def main() -> None:
             out[key] = out["daguerre"][key]
     if options.only != "daguerre":
         if can_import(options.mitsuba_python, "mitsuba"):
-            peer = [options.mitsuba_python, str(options.scene_dir / "r_mitsuba.py")]
+            peer = [options.mitsuba_python, str(options.scene_dir.resolve() / "r_mitsuba.py")]
             out["mitsuba"] = measure("mitsuba", peer, options)
         else:
             out["mitsuba"] = None

@@ -10,7 +10,7 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
 Ray to_world(const Camera& camera, const Ray& ray) {
     Ray world = ray;
     world.origin = to_float(camera.world_from_camera.point(to_double(ray.origin)));
-    world.direction = normalize(to_float(camera.world_from_camera.vector(to_double(ray.direction))));
+    world.direction = to_float(camera.world_from_camera.vector(to_double(ray.direction)));
     return world;
 }
 

@@ -14,11 +14,4 @@ struct Pinhole {
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 };
 
-/// Direction (unit, camera frame) through the centre of an ideal lens, and the cosine of its angle.
-struct IdealDirection {
-    Vec3f direction;
-    float cosine;
-};
-IdealDirection ideal_direction(Vec2f film_mm, float film_distance_mm);
-
 }  // namespace dg

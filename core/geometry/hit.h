@@ -11,7 +11,8 @@ struct SurfaceHit {
     Vec3f ng;        // unit geometric normal, as the winding gives it (front side)
     Vec3f ns;        // unit shading normal, same hemisphere as ng
     Vec3f
-        tangent;  // unit, along +u of uv set 0 (glTF tangent if given), orthogonal to ns
+        tangent;  // unit, along +u (glTF tangent if given), orthogonal to ns;
+                            // set only where the material has a normal map
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA

@@ -169,11 +169,7 @@ void surface_at(const InstanceRecord& r, std::uint32_t primitive, float u, float
         if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;
     }
     if (r.uv[0] || r.uv[1] || r.colors) interpolate_attributes(r, primitive, u, v, hit);
-    if (r.needs_frame) {
-        set_tangent(r, t, w, u, v, hit);
-    } else {
-        hit.tangent = Frame::from_normal(hit.ns).x;
-    }
+    if (r.needs_frame) set_tangent(r, t, w, u, v, hit);
 }
 
 }  // namespace dg
