@@ -10,9 +10,8 @@ struct SurfaceHit {
     Vec3f position;  // m
     Vec3f ng;        // unit geometric normal, as the winding gives it (front side)
     Vec3f ns;        // unit shading normal, same hemisphere as ng
-    Vec3f
-        tangent;  // unit, along +u (glTF tangent if given), orthogonal to ns;
-                            // set only where the material has a normal map
+    /// Unit, along +u (glTF tangent if given), orthogonal to ns; set only for normal maps.
+    Vec3f tangent;
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA

@@ -12,6 +12,7 @@ struct ConductorBsdf {
     Spectrum reflectance;
     float alpha = 0;
 
+    static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
     bool is_specular() const { return alpha < kSmoothAlpha; }
 
     Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {

@@ -20,6 +20,7 @@ struct DielectricBsdf {
 
     /// An interface without a change of index has no facet normals to scatter about: a
     /// window.
+    static constexpr bool kOneLobe = false;
     bool is_specular() const { return alpha < kSmoothAlpha || std::abs(ior - 1) < 1e-3f; }
 
     Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {

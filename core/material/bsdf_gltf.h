@@ -69,6 +69,7 @@ struct GltfBsdf {
         return evaluate_with_pdf(wo, wi).f_cos;
     }
     float pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).pdf; }
+    static constexpr bool kOneLobe = false;
     bool is_specular() const { return smooth && diffuse_albedo == 0; }
     Interior interior() const { return inside; }
 

@@ -29,6 +29,9 @@ class PathSampler {
 
     CameraRandom camera() const;
 
+    /// Leaves out the next n draws: nobody needs them, and what follows keeps its dimension.
+    void skip(int n) { dimension_ += n; }
+
     /// In [0,1).
     float next_1d() {
         const Pad pad = next_pad();

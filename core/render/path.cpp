@@ -53,12 +53,43 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
     return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
 }
 
+/// The numbers of one vertex.
+struct VertexRandom {
+    float select = 0;      // which light
+    Vec2f light;           // where on it
+    float lobe = 0;        // which lobe of the BSDF
+    Vec2f direction;
+};
+
+/// Every vertex takes the same four dimensions, so that stratification stays; those that this BSDF has
+/// no use for are left out.
+template <typename BsdfKind>
+VertexRandom draw_vertex(const BsdfKind& bsdf, bool lit, PathSampler& sampler) {
+    VertexRandom u;
+    const bool specular = bsdf.is_specular();
+    if (lit && !specular) {
+        u.select = sampler.next_1d();
+        u.light = sampler.next_2d();
+    } else {
+        sampler.skip(2);
+    }
+    if constexpr (BsdfKind::kOneLobe)
+        sampler.skip(1);
+    else
+        u.lobe = sampler.next_1d();
+    if (specular)
+        sampler.skip(1);
+    else
+        u.direction = sampler.next_2d();
+    return u;
+}
+
 /// Next-event estimation at one vertex.
 template <typename BsdfKind>
-Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf, float u_select,
-                      Vec2f u, float time, const Wavelengths& wl, PathSettings::Strategy strategy,
+Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
+                      const VertexRandom& u, float time, const Wavelengths& wl, PathSettings::Strategy strategy,
                       std::uint64_t& rays) {
-    const auto light = scene.sample_light(u_select, u, hit.position, wl);
+    const auto light = scene.sample_light(u.select, u.light, hit.position, wl);
     if (!light || light->pdf <= 0) return 0.f;
     if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
     const auto [f_cos, pdf] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
@@ -124,18 +155,14 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
 
         const Bsdf bsdf = shade(scene.material(hit), scene.textures(), hit, wavelengths);
         if (aov && vertex == 0) record_first_hit(scene, hit, *aov);
-        // Every vertex draws the same numbers, whatever it does with them: stratification stays.
-        const float u_select = sampler.next_1d();
-        const Vec2f u_light = sampler.next_2d();
-        const float u_lobe = sampler.next_1d();
-        const Vec2f u_direction = sampler.next_2d();
         const bool alive = std::visit(
             [&](const auto& kind) {
+                const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);
                 if (!kind.is_specular())
                     result += walk.throughput *
-                              direct_light(scene, hit, kind, u_select, u_light, walk.ray.time,
-                                           wavelengths, settings.strategy, rays);
-                const auto sample = kind.sample(hit.wo, u_lobe, u_direction);
+                              direct_light(scene, hit, kind, u, walk.ray.time, wavelengths,
+                                           settings.strategy, rays);
+                const auto sample = kind.sample(hit.wo, u.lobe, u.direction);
                 if (!sample || sample->weight.is_black()) return false;
                 walk.throughput *= sample->weight;
                 walk.bsdf_pdf = sample->pdf;
