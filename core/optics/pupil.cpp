@@ -77,12 +77,13 @@ class AimMaker {
 
     std::optional<Vec2d> trace_iris(double r, Vec2d m, double nm) const;
     std::vector<SlopeSample> training(int count, int first) const;
+    double lit_radius() const;
     Visible visible_at(double r, Box range, int nx, int ny) const;
     Visible visible_iris(double r) const;
     Box slope_box(double r) const;
     Box slope_range(double r, double reach, double nm) const;
     Box passing_slopes(double r, const Box& range, int nx, int ny) const;
-    void fit(int k);
+    bool fit(int k);
     void choose_regions();
     void set_region(int segment, AimRegion region, const Box& box);
     std::vector<bool> uncovered_segments() const;
@@ -146,11 +147,40 @@ std::vector<SlopeSample> AimMaker::training(int count, int first) const {
     return samples;
 }
 
-void AimMaker::fit(int k) {
+/// The farthest film point (mm) from which a ray reaches the iris, among many.
+double AimMaker::lit_radius() const {
+    double lit = 0;
+    for (int n = 0; n < kCoverageRays; ++n) {
+        const Quad q = quasi_random(n);
+        const double r = q.u[0] * request_.film_radius;
+        const Vec2d target = 1.3 * outer_ * concentric_disc({q.u[1], q.u[2]});
+        const Vec2d m{rear_.slope_for(target.x, r), rear_.slope_for(target.y, 0)};
+        if (r > lit && trace_iris(r, m, 380 + 400 * q.u[3])) lit = r;
+    }
+    return lit;
+}
+
+/// False, with nothing fitted, if too few rays reach the iris.
+bool AimMaker::fit(int k) {
     const int count = std::max(600, 5 * term_count(k));
-    aim_.slopes = fit_slopes(training(count, 0), k);
     AimTables& t = aim_.tables;
+    std::vector<SlopeSample> samples = training(count, 0);
+    if (int(samples.size()) < count / 2) {
+        // A film far wider than the image circle: what lies in the dark needs no aim, and
+        // film points beyond the tables' radius get no ray.
+        const double lit = 1.1 * lit_radius();
+        if (lit > 0 && lit < t.film_radius) {
+            t.film_radius = float(lit);
+            samples = training(count, 0);
+        }
+    }
     t.degree = k;
+    if (int(samples.size()) < 2 * term_count(k)) {
+        aim_.slopes = {k, std::vector<double>(2 * term_count(k))};
+        t.coefficients.assign(aim_.slopes.coefficients.size(), 0.f);
+        return false;
+    }
+    aim_.slopes = fit_slopes(samples, k);
     t.coefficients.assign(aim_.slopes.coefficients.begin(),
                           aim_.slopes.coefficients.end());
     aim_.fit_error = 0;
@@ -158,6 +188,7 @@ void AimMaker::fit(int k) {
         const Vec2d m = aim_.slopes.evaluate(s.r, s.a, s.l).m;
         aim_.fit_error = std::max(aim_.fit_error, length(m - s.m));
     }
+    return true;
 }
 
 /// Traces a grid over `range` (units of the iris scale, y >= 0 by symmetry) at one film
@@ -370,7 +401,7 @@ Aim AimMaker::make() {
     std::vector<bool> bad(kRadialSegments, true);
     if (!request_.only_slope_boxes) {
         for (int k = kMinDegree; k <= kMaxDegree; ++k) {
-            fit(k);
+            if (!fit(k)) break;
             choose_regions();
             bad = uncovered_segments();
             if (std::find(bad.begin(), bad.end(), true) == bad.end()) return aim_;

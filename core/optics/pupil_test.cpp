@@ -73,3 +73,19 @@ TEST_CASE("the same request gives the same coefficients") {
     CHECK(a.slopes.coefficients == b.slopes.coefficients);
     CHECK(std::equal(a.tables.x0, a.tables.x0 + kRadialSegments, b.tables.x0));
 }
+
+TEST_CASE("a film far wider than the image circle is lit in its middle only") {
+    const Prescription lens = test::tessar();
+    const Tracer t(lens);
+    const FirstOrder f = first_order(lens);
+    const AimRequest request{film_position(lens, f, 3), 3000, Iris(),
+                             iris_radius(lens, f, 4), false};
+    const Aim wide = make_aim(t, request), usual = aim_at(lens, 4, 3);
+    CHECK(wide.tables.film_radius > 22);
+    CHECK(wide.tables.film_radius < 1000);
+    CHECK(usual.tables.film_radius == doctest::Approx(22));
+    int drawn = 0;
+    for (int i = 0; i < kRadialSegments; ++i)
+        drawn += wide.tables.region[i] < 0.5f || wide.tables.width[i] > 0;
+    CHECK(drawn > 0);
+}
