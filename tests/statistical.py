@@ -1,12 +1,14 @@
 """Tests of equality for noisy pictures: Welch's t per pixel, per 8x8 block and on the mean.
 
-Each picture brings its own variance of the mean; the family-wise error rate is held by Sidak's correction
-(1 - (1 - p)^n). Source: Welch 1947, Biometrika 34; the procedure follows Mitsuba 3's render tests.
+Each picture brings its own variance of the mean; the family-wise error rate is held by
+Sidak's correction (1 - (1 - p)^n). Source: Welch 1947, Biometrika 34; the procedure follows
+Mitsuba 3's render tests.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,16 +30,38 @@ def batch_means(
     )
 
 
-def welch_p(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Two-sided p-values along axis 0; values that agree exactly have p = 1."""
-    va, vb = a.var(axis=0, ddof=1) / len(a), b.var(axis=0, ddof=1) / len(b)
-    difference = a.mean(axis=0) - b.mean(axis=0)
-    scale = np.maximum(np.abs(a).mean(axis=0), 1e-12)
-    spread = np.maximum(va + vb, (1e-6 * scale) ** 2)
+@dataclass(frozen=True)
+class Reference:
+    """A picture (H, W, C) as mean and variance of the mean, from so many independent batches.
+
+    ``samples`` per pixel tell how much one sample varies; 0: unknown.
+    """
+
+    mean: NDArray[np.float64]
+    variance: NDArray[np.float64]
+    batches: int
+    samples: int = 0
+
+
+Values = NDArray[np.float64] | Reference
+
+
+def _moments(values: Values) -> Reference:
+    if isinstance(values, Reference):
+        return values
+    return Reference(values.mean(axis=0), values.var(axis=0, ddof=1) / len(values), len(values))
+
+
+def welch_p(a: Values, b: Values) -> NDArray[np.float64]:
+    """Two-sided p-values along axis 0 of batches; values that agree exactly have p = 1."""
+    a, b = _moments(a), _moments(b)
+    scale = np.maximum(np.abs(a.mean), 1e-12)
+    spread = np.maximum(a.variance + b.variance, (1e-6 * scale) ** 2)
     dof = spread**2 / np.maximum(
-        va**2 / (len(a) - 1) + vb**2 / (len(b) - 1), 1e-300
+        a.variance**2 / (a.batches - 1) + b.variance**2 / (b.batches - 1), 1e-300
     )
     dof = np.clip(dof, 1, 1e6)
+    difference = a.mean - b.mean
     return np.vectorize(student_t_p)(difference / np.sqrt(spread), dof)
 
 
@@ -79,20 +103,58 @@ def _beta_fraction(a: float, b: float, x: float) -> float:
     return h
 
 
-def _blocks(pictures: NDArray[np.float64]) -> NDArray[np.float64]:
-    n, height, width, channels = pictures.shape
-    h, w = height // BLOCK * BLOCK, width // BLOCK * BLOCK
-    cut = pictures[:, :h, :w].reshape(n, h // BLOCK, BLOCK, w // BLOCK, BLOCK, channels)
-    return cut.mean(axis=(2, 4))
+def _tiles(picture: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The whole 8x8 blocks of (..., H, W, C) as (..., h, w, 64, C)."""
+    *rest, height, width, channels = picture.shape
+    h, w = height // BLOCK, width // BLOCK
+    cut = picture[..., : h * BLOCK, : w * BLOCK, :]
+    cut = cut.reshape(*rest, h, BLOCK, w, BLOCK, channels)
+    return np.moveaxis(cut, -4, -3).reshape(*rest, h, w, BLOCK * BLOCK, channels)
 
 
-def differences(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[str]:
-    """What is wrong if the two batches (n, H, W, 3) have different means; empty: nothing."""
+def _blocks(values: Values) -> Values:
+    """Means over 8x8 blocks; a reference's pixels have independent errors."""
+    if isinstance(values, Reference):
+        mean, variance = _tiles(values.mean), _tiles(values.variance)
+        return Reference(mean.mean(axis=-2), variance.sum(axis=-2) / BLOCK**4, values.batches)
+    return np.asarray(_tiles(values).mean(axis=-2))
+
+
+def _mean(values: Values) -> Values:
+    """The mean over the picture."""
+    if isinstance(values, Reference):
+        height, width, _ = values.mean.shape
+        variance = values.variance.sum(axis=(0, 1)) / (height * width) ** 2
+        return Reference(values.mean.mean(axis=(0, 1)), variance, values.batches)
+    return np.asarray(values.mean(axis=(1, 2)))
+
+
+def _expected_spread(a: NDArray[np.float64], b: Values, samples: int) -> Values:
+    """A pixel that met a rare bright path by chance never, or once, knows too little of its spread.
+
+    The reference, of many times more samples, knows it: the pixel's variance is at least what so
+    many of the reference's samples have. Blocks and the mean are left as they are.
+    """
+    if not (isinstance(b, Reference) and b.samples and samples):
+        return a
+    own = _moments(a)
+    floor = b.variance * (b.samples / samples)
+    return Reference(own.mean, np.maximum(own.variance, floor), own.batches)
+
+
+def differences(a: NDArray[np.float64], b: Values, samples: int = 0) -> list[str]:
+    """What is wrong if the pictures have different means; empty: nothing.
+
+    Args:
+        a: Independent batches, (n, H, W, 3).
+        b: The same, or a reference; its one channel stands for three.
+        samples: Per pixel in all batches of ``a`` together, to hold against a reference's.
+    """
     out = []
     for name, x, y in (
-        ("pixel", a, b),
+        ("pixel", _expected_spread(a, b, samples), b),
         ("block", _blocks(a), _blocks(b)),
-        ("mean", a.mean(axis=(1, 2)), b.mean(axis=(1, 2))),
+        ("mean", _mean(a), _mean(b)),
     ):
         p = welch_p(x, y)
         if not p.size:
@@ -102,6 +164,7 @@ def differences(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[str]:
         # 99.75 % of the pixels must pass; no block and no channel of the mean may fail.
         if failed.mean() > (0.0025 if name == "pixel" else 0):
             out.append(
-                f"{name}: {failed.sum()} of {p.size} differ, smallest p {p.min():.2e} (limit {limit:.2e})"
+                f"{name}: {failed.sum()} of {p.size} differ, smallest p {p.min():.2e} "
+                f"(limit {limit:.2e})"
             )
     return out

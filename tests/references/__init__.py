@@ -1,0 +1,1 @@
+"""Pictures of an independent renderer, and the scenes that they show."""
