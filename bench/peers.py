@@ -2,7 +2,8 @@
 
     python bench/peers.py --json [--mode thin] [--spp 64] [--only daguerre] [--scene-dir DIR]
 
-Two seeds give the error without a reference: relMSE = mean((A - B)^2 / 2 / (((A + B) / 2)^2 + 0.01)).
+Two seeds give the error without a reference:
+relMSE = mean((A - B)^2 / 2 / (((A + B) / 2)^2 + 0.01)).
 CPU seconds to relMSE 0.01 are CPU seconds x relMSE / 0.01, as the error falls with 1 / samples.
 Each renderer runs in a process of its own; Mitsuba needs an interpreter that can import it
 (--mitsuba-python, default: this one).
@@ -33,7 +34,7 @@ def relative_mse(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def run(command: list[str], environment: dict[str, str], folder: str) -> dict[str, Any]:
-    """Runs one renderer in a folder that it may litter; its last line ``RESULT {...}`` is the answer."""
+    """Runs one renderer in a folder that it may litter; its ``RESULT {...}`` is the answer."""
     done = subprocess.run(
         command, capture_output=True, text=True, env=environment, cwd=folder, check=False
     )
@@ -46,7 +47,9 @@ def run(command: list[str], environment: dict[str, str], folder: str) -> dict[st
 def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[str, Any]:
     """Two seeds of one renderer: cost, error, and cost to a fixed error."""
     paths = [str(options.scene_dir.resolve()), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
-    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(str(Path(p).resolve()) for p in paths if p))
+    environment = dict(
+        os.environ, PYTHONPATH=os.pathsep.join(str(Path(p).resolve()) for p in paths if p)
+    )
     results, pictures = [], []
     with tempfile.TemporaryDirectory() as folder:
         for seed in (1, 2):
@@ -98,7 +101,12 @@ def main() -> None:
     if options.only != "mitsuba":
         own = [sys.executable, str(HERE / "dof_field.py")]
         out["daguerre"] = measure("daguerre", own, options)
-        for key in ("cpu_s_to_relmse_0.01", "samples_per_cpu_second", "setup_seconds", "peak_memory_mb"):
+        for key in (
+            "cpu_s_to_relmse_0.01",
+            "samples_per_cpu_second",
+            "setup_seconds",
+            "peak_memory_mb",
+        ):
             out[key] = out["daguerre"][key]
     if options.only != "daguerre":
         if can_import(options.mitsuba_python, "mitsuba"):

@@ -28,7 +28,7 @@ def sphere(segments: int = 32, radius: float = 1.0) -> tuple[np.ndarray, np.ndar
 def quad(size: float, z: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """A square in the plane z, facing +z."""
     corners = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float) * size
-    return corners + (0, 0, z), np.array([(0, 1, 2), (0, 2, 3)])
+    return corners + np.array((0, 0, z)), np.array([(0, 1, 2), (0, 2, 3)])
 
 
 def furnace(material: dg.Material | None = None) -> dg.Scene:

@@ -84,12 +84,18 @@ def test_the_picture_is_upright_and_not_mirrored() -> None:
     scene = dg.Scene()
     points, faces = scenes.quad(0.2)
     mesh = scene.add_mesh(points, faces)
-    for position, color in (((-0.5, 0.4, -3), (5, 0, 0)), ((0.5, 0.4, -3), (0, 5, 0)), ((-0.5, -0.4, -3), (0, 0, 5))):
+    for position, color in (
+        ((-0.5, 0.4, -3), (5, 0, 0)),
+        ((0.5, 0.4, -3), (0, 5, 0)),
+        ((-0.5, -0.4, -3), (0, 0, 5)),
+    ):
         transform = np.eye(4)
         transform[:3, 3] = position
         scene.add_instance(mesh, dg.Material(dg.Diffuse((0, 0, 0)), emission=color), transform)
     for lens in ("pinhole", "thin", "double-gauss-50mm-f2"):
-        camera = dg.Camera(lens=lens, focal_length=None if "double" in lens else 50.0, focus_distance=3.0)
+        camera = dg.Camera(
+            lens=lens, focal_length=None if "double" in lens else 50.0, focus_distance=3.0
+        )
         rgb = dg.render(scene, camera, resolution=(48, 32), spp=16).rgb
         top, bottom = rgb[:16].mean(axis=(0,)), rgb[16:].mean(axis=(0,))
         assert top[:24, 0].sum() > 10 * top[24:, 0].sum(), lens
@@ -110,10 +116,17 @@ def _lamp(distance: float, radius: float) -> dg.Scene:
 def test_circle_of_confusion_follows_the_formula(breathing: bool) -> None:
     f, n, focus, s = 50.0, 2.0, 1.0, 2.0
     camera = dg.Camera(
-        lens="thin", focal_length=f, f_stop=n, focus_distance=focus, sensor_size=(12, 8), focus_breathing=breathing
+        lens="thin",
+        focal_length=f,
+        f_stop=n,
+        focus_distance=focus,
+        sensor_size=(12, 8),
+        focus_breathing=breathing,
     )
     radius = 0.004
-    rgb = dg.render(_lamp(s, radius), camera, resolution=(240, 160), spp=256, filter="box").rgb[..., 1]
+    rgb = dg.render(_lamp(s, radius), camera, resolution=(240, 160), spp=256, filter="box").rgb[
+        ..., 1
+    ]
     # Second moment of a uniform disc of diameter c is c^2 / 16 along each axis.
     y, x = np.mgrid[:160, :240] + 0.5
     weight = rgb / rgb.sum()
@@ -174,7 +187,15 @@ def test_threads_do_not_change_a_bit() -> None:
         for lens in ("thin", "double-gauss-50mm-f2"):
             camera = dg.Camera(lens=lens, focus_distance=4)
             frames = [
-                dg.render(scene, camera, resolution=(40, 30), spp=4, threads=t, filter=filter_name, aovs=True)
+                dg.render(
+                    scene,
+                    camera,
+                    resolution=(40, 30),
+                    spp=4,
+                    threads=t,
+                    filter=filter_name,
+                    aovs=True,
+                )
                 for t in (1, 2, 3, 8)
             ]
             for other in frames[1:]:
@@ -223,20 +244,23 @@ def test_stopping_a_pass_leaves_no_trace() -> None:
 
 def test_aovs_of_a_ball() -> None:
     scene = scenes.furnace(dg.Material(dg.Diffuse((0.2, 0.4, 0.6))))
-    frame = dg.render(scene, dg.Camera(lens="pinhole"), resolution=(33, 33), spp=16, aovs=True, filter="box")
+    frame = dg.render(
+        scene, dg.Camera(lens="pinhole"), resolution=(33, 33), spp=16, aovs=True, filter="box"
+    )
     aovs = frame.aovs
     assert aovs["depth.Z"][16, 16] == pytest.approx(2, abs=0.02)
     assert [aovs[f"N.{a}"][16, 16] for a in "XYZ"] == pytest.approx([0, 0, 1], abs=0.03)
     assert aovs["P.Z"][16, 16] == pytest.approx(-2, abs=0.02)
     assert [aovs[f"albedo.{a}"][16, 16] for a in "RGB"] == pytest.approx([0.2, 0.4, 0.6], abs=1e-3)
-    assert aovs["object_id"][16, 16] == 1 and aovs["object_id"][0, 0] == 0
-    assert frame.alpha[16, 16] == 1 and frame.alpha[0, 0] == 0
+    assert (aovs["object_id"][16, 16], aovs["object_id"][0, 0]) == (1, 0)
+    assert (frame.alpha[16, 16], frame.alpha[0, 0]) == (1, 0)
 
 
 def test_reported_variance_matches_the_spread_of_renders() -> None:
     scene, camera = scenes.lamp_room(), dg.Camera(lens="pinhole")
     frames = [
-        dg.render(scene, camera, resolution=(16, 12), spp=16, seed=s, filter="box") for s in range(60)
+        dg.render(scene, camera, resolution=(16, 12), spp=16, seed=s, filter="box")
+        for s in range(60)
     ]
     spread = np.var([f.rgb for f in frames], axis=0, ddof=1).mean()
     claimed = np.mean([f.variance for f in frames])
@@ -253,7 +277,9 @@ def test_point_light_on_a_floor_obeys_photometry() -> None:
     scene.add_light(dg.PointLight((100, 100, 100)), at)
     eye = np.eye(4)
     eye[2, 3] = 1.0
-    frame = dg.render(scene, dg.Camera(transform=eye, lens="pinhole", focal_length=400), resolution=(8, 8), spp=64)
+    frame = dg.render(
+        scene, dg.Camera(transform=eye, lens="pinhole", focal_length=400), resolution=(8, 8), spp=64
+    )
     # E = I / d^2 lux, L = reflectance E / pi.
     assert frame.rgb.mean(axis=(0, 1)) == pytest.approx([0.5 * 25 / math.pi] * 3, rel=0.01)
 
