@@ -1,6 +1,6 @@
 """Daguerre's side of ``bench/peers.py``: the dof-field scene, built from arrays.
 
-Takes the arguments of the peers' scripts, writes OUT.npy (H, W, 3 float32), prints ``RESULT {json}``.
+Takes the arguments of the peers' scripts, writes OUT.npy (H, W, 3) and prints ``RESULT {json}``.
 The module ``scene`` of the peers' folder must be importable.
 """
 
