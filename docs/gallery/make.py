@@ -44,56 +44,56 @@ PICTURES = [
         NIGHT,
         f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
     ),
-    Picture("pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 128"),
+    Picture("pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 96 --denoise"),
     Picture(
         "focus_far",
         "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 5.6 --spp 128",
+        "--lens thin --f-stop 2 --focus 5.6 --spp 96 --denoise",
     ),
     Picture(
         "focus_medium",
         "The same, focal plane at medium distance: the garland, 2.4 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 2.4 --spp 128",
+        "--lens thin --f-stop 2 --focus 2.4 --spp 96 --denoise",
     ),
     Picture(
         "focus_close",
         "The same, focal plane close by: dice and bearings, 0.64 m.",
         NIGHT,
-        "--lens thin --f-stop 2 --focus 0.64 --spp 128",
+        "--lens thin --f-stop 2 --focus 0.64 --spp 96 --denoise",
     ),
     Picture(
         "aperture_small",
         "The double Gauss at f/16: a small aperture, great depth.",
         NIGHT,
-        f"{GAUSS} --f-stop 16 --spp 128",
+        f"{GAUSS} --f-stop 16 --spp 96 --denoise",
     ),
     Picture(
         "aperture_large",
         "The double Gauss at f/2: a large aperture, a shallow plane.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 128",
+        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 96 --denoise",
     ),
     Picture(
         "bokeh",
         "Bokeh close up: lamps far behind the focus draw the pupil of the glass. In the middle it "
         "is round; toward the edge of the field the rims of the lens cut it to a cat's eye.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1875x1250 --crop 0,750,50,550 --spp 128",
+        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1875x1250 --crop 0,750,50,550 --spp 96 --denoise",
     ),
     Picture(
         "bokeh_blades",
         "The same close-up through six straight blades at f/2.8.",
         NIGHT,
         f"{GAUSS} --f-stop 2.8 --focus 0.5 --blades 6 --blade-curvature 0 "
-        "--res 1875x1250 --crop 0,750,50,550 --spp 128",
+        "--res 1875x1250 --crop 0,750,50,550 --spp 96 --denoise",
     ),
     Picture(
         "chess",
         "Open chess set through the double Gauss at f/2, lit by a night panorama of a square.",
         "DATA/scenes/open_chess_set_512.glb",
-        f"{GAUSS} --f-stop 2 --env DATA/hdri/st_peters_square_night_1k.hdr --spp 256",
+        f"{GAUSS} --f-stop 2 --env DATA/hdri/st_peters_square_night_1k.hdr --spp 96 --denoise",
         needs_data=True,
     ),
 ]
@@ -103,6 +103,7 @@ The night table is made by [examples/night_table.py](../../examples/night_table.
 is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
 The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
 holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
+`--denoise` needs the extra of that name: `pip install ".[denoise]"`.
 """
 
 
