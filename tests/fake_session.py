@@ -103,7 +103,11 @@ class FakeSession:
             variance=np.zeros((*self.shape, 3), np.float32),
             samples=np.full(self.shape, count, np.uint32),
             aovs=aovs,
-            metadata=dict(self.metadata),
+            metadata={
+                **self.metadata,
+                "scene_hash": self.key["scene"],
+                "bad_samples": self.bad_samples[0],
+            },
             bad_samples=self.bad_samples,
         )
 

@@ -107,7 +107,7 @@ def test_autofocus_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'Target' is 1.25 m" in capsys.readouterr().err
     with OpenEXR.File("a.exr", header_only=True) as file:
         assert file.header()["focus"] == pytest.approx(1.25)
-    assert main([*run, "--focus-on", "Taget"]) == 2
+    assert main([*run, "--focus-on", "Taget"]) == 3
     assert "did you mean 'Target'" in capsys.readouterr().err
 
 
@@ -169,6 +169,10 @@ def test_lenses(capsys: pytest.CaptureFixture[str]) -> None:
     assert facts["efl"] == pytest.approx(50, abs=0.1)
     assert facts["entrance_pupil"]["diameter"] > 0
     assert Path("x.svg").read_text().lstrip().startswith("<svg")
+    for name, magic in (("x.png", b"\x89PNG"), ("x.pdf", b"%PDF")):
+        assert main(["lens", "fisheye-16mm-f2.8", "--plot", name]) == 0
+        assert Path(name).read_bytes().startswith(magic)
+    capsys.readouterr()
     assert main(["lens", "double-gauss-50mm-f2", "--plot", "x.gif"]) == 2
     assert main(["lens", "duble-gauss-50mm-f2"]) == 3
     assert "double-gauss-50mm-f2" in capsys.readouterr().err

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from .errors import InputError
+import daguerre._core as _core
+
+from .checks import short
+from .errors import DaguerreError, InputError, UsageError
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
 from .scene import Environment, Scene
@@ -22,7 +24,19 @@ def build(scene: Scene) -> _core.Scene:
     Raises:
         InputError: Some part cannot be rendered; the message names it.
     """
-    builder = _core.SceneBuilder()
+    if not isinstance(scene, Scene):
+        raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
+    try:
+        builder = _core.SceneBuilder()
+        _add_all(builder, scene)
+        return builder.build()
+    except ValueError as error:
+        if isinstance(error, DaguerreError):
+            raise
+        raise InputError(f"{scene.path or 'scene'}: {error}") from None
+
+
+def _add_all(builder: _core.SceneBuilder, scene: Scene) -> None:
     for texture in scene.textures:
         builder.add_texture(
             texture.name, texture.pixels, texture.srgb, *texture.wrap, texture.filter
@@ -46,10 +60,6 @@ def build(scene: Scene) -> _core.Scene:
         _add_light(builder, light, transform)
     if scene.environment is not None:
         _set_environment(builder, scene.environment)
-    try:
-        return builder.build()
-    except ValueError as error:
-        raise InputError(f"{scene.path or 'scene'}: {error}") from None
 
 
 def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:

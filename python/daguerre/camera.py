@@ -1,5 +1,8 @@
-"""A camera in a photographer's terms. Units are the ones read on the object: mm for lens and sensor,
-m for distances, s for time, degrees for angles."""
+"""A camera in a photographer's terms.
+
+Units are the ones read on the object: mm for lens and sensor, m for distances, s for time, degrees
+for angles.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,22 @@ if TYPE_CHECKING:
     from .lenses import Lens
 
 
+#: lenses without a prescription
+IDEAL = ("thin", "pinhole")
+
+
+#: smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
+#: precision would overflow on the way
+LIMITS = {
+    "focal_length": (1e-3, 1e6),  # mm
+    "f_stop": (1e-2, 1e9),
+    "aperture_diameter": (1e-9, 1e6),  # mm
+    "sensor_size": (1e-3, 1e5),  # mm
+    "focus_distance": (1e-6, 1e12),  # m, or infinite
+    "shift": (-1e5, 1e5),  # mm
+}
+
+
 @dataclass(frozen=True)
 class Camera:
     """A camera; ``with_`` makes changed copies.
@@ -23,10 +42,11 @@ class Camera:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
         lens_model: exact, thin or pinhole; None: exact if a prescription is named.
-        focal_length: mm; None: the lens's own, else 50.
+        focal_length: mm, of an ideal lens; None: 50. A prescription has its own and takes no other.
         sensor_size: Width and height, mm.
         sensor_fit: horizontal, vertical, auto or fill: which side of the sensor the picture spans.
-        f_stop: Focal length / entrance pupil diameter; None: the lens's own, else 5.6.
+        f_stop: Focal length / entrance pupil diameter; None: the file's, else 5.6, or the widest of
+            the lens if that is slower.
         aperture_diameter: mm; the lecture's parameter, instead of ``f_stop`` (thin lens only).
         focus_distance: m from the entrance pupil along the axis; None: autofocus.
         focus_at: Pixel (x, y) whose surface is to be sharp.
@@ -68,10 +88,30 @@ class Camera:
     exposure_compensation: float = 0.0
 
     def with_(self, **changes: Any) -> Camera:
-        """A copy with some parameters changed; unknown names are an error that suggests the nearest."""
+        """A copy with some parameters changed.
+
+        What the change makes obsolete goes: the focal length of an ideal lens when a prescription
+        takes its place, the f-stop for an aperture diameter, one way to focus for another.
+
+        Raises:
+            UsageError: An unknown name (the nearest is suggested), or values that exclude others.
+        """
         for name in changes:
             if name not in self.__dataclass_fields__:
                 raise UsageError(
                     f"camera: no parameter {name!r}{suggest(name, self.__dataclass_fields__)}"
                 )
-        return replace(self, **changes)
+        given = {name for name, value in changes.items() if value is not None}
+        if "pinhole" in (changes.get("lens"), changes.get("lens_model")):
+            odd = sorted(given & {"f_stop", "aperture_diameter", "aperture_image"})
+            if odd:
+                raise UsageError(f"camera: a pinhole has no {odd[0]}")
+        replaced: dict[str, None] = {}
+        for rivals in (("f_stop", "aperture_diameter"), ("focus_distance", "focus_at", "focus_on")):
+            both = sorted(given & set(rivals))
+            if len(both) > 1:
+                raise UsageError(f"camera: wanted either {both[0]} or {both[1]}, got both")
+            replaced |= dict.fromkeys(rivals) if both else {}
+        if changes.get("lens") not in (None, *IDEAL):
+            replaced |= {"focal_length": None, "aperture_diameter": None}
+        return replace(self, **(replaced | changes))

@@ -10,14 +10,18 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, lenses
-from .camera import Camera
-from .errors import UsageError, suggest
+import daguerre._core as _core
+
+from . import lenses
+from .camera import IDEAL, LIMITS, Camera
+from .checks import number, numbers, short, whole
+from .errors import InputError, UsageError, suggest
 from .scene import Scene
 
 DEFAULT_FOCAL_LENGTH = 50.0
@@ -47,9 +51,12 @@ class CameraSetup:
 
 def frame_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, float]:
     """Width and height (mm) of the part of the film that a picture of this resolution covers."""
-    width, height = camera.sensor_size
-    if not (width > 0 and height > 0 and math.isfinite(width + height)):
-        raise UsageError(f"camera: sensor_size: wanted positive mm, got {camera.sensor_size}")
+    width, height = numbers(camera.sensor_size, "camera: sensor_size", 2, "two positive mm")
+    low, high = LIMITS["sensor_size"]
+    if not (low <= min(width, height) and max(width, height) <= high):
+        raise UsageError(
+            f"camera: sensor_size: wanted {low:g} .. {high:g} mm, got {camera.sensor_size}"
+        )
     columns, rows = resolution
     if camera.sensor_fit not in FITS:
         raise UsageError(
@@ -77,14 +84,17 @@ def set_up(
         core_scene: For autofocus; None: autofocus gives infinity.
 
     Raises:
-        UsageError: A parameter that the chosen kind of lens cannot honour.
-        InputError: The lens file cannot be used.
+        UsageError: A parameter that is wrong, or that the chosen kind of lens cannot honour.
+        InputError: The lens file cannot be used, the lens cannot focus or open so far, or the scene
+            has no such node.
     """
+    if not isinstance(camera, Camera):
+        raise UsageError(f"camera: wanted a Camera, got {short(camera)}")
     lens, model = _lens_and_model(camera)
     size = frame_size(camera, resolution)
-    _check(camera, model)
+    _check(camera, model, prescription=lens is not None)
     world = rigid(camera.transform)
-    setup = CameraSetup(core=None, frame_size=size, pinhole_focal_length=0)  # type: ignore[arg-type]
+    setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
     if lens is not None:
         _set_up_prescription(setup, camera, lens, model, world, focus)
@@ -113,29 +123,47 @@ def _lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
             f"camera: lens_model: wanted {', '.join(MODELS)}, got {model!r}"
             f"{suggest(str(model), MODELS)}"
         )
-    if camera.lens is None or camera.lens in ("thin", "pinhole"):
+    if not isinstance(camera.lens, lenses.Lens | str | Path | None):
+        raise UsageError(
+            f"camera: lens: wanted a name, a file, a Lens or None, got {short(camera.lens)}"
+        )
+    if camera.lens is None or camera.lens in IDEAL:
         kind = str(camera.lens or "thin")
         if model == "exact":
-            raise UsageError("camera: lens_model exact: wanted the name or file of a lens, got none")
+            raise UsageError(
+                "camera: lens_model exact: wanted the name or file of a lens, got none"
+            )
         return None, model or kind
     lens = camera.lens if isinstance(camera.lens, lenses.Lens) else lenses.load(camera.lens)
     return lens, model or "exact"
 
 
-def _check(camera: Camera, model: str) -> None:
+def _check(camera: Camera, model: str, *, prescription: bool) -> None:
     """Values that no lens has, and values that this kind cannot honour."""
-    for name, positive in (
-        ("focal_length", True),
-        ("f_stop", True),
-        ("aperture_diameter", True),
-        ("focus_distance", True),
-    ):
+    for name in ("focal_length", "f_stop", "aperture_diameter", "iso"):
         value = getattr(camera, name)
-        if value is not None and positive and not value > 0:
-            hint = "; a pinhole is its own kind: lens='pinhole'" if name != "focus_distance" else ""
-            raise UsageError(f"camera: {name}: wanted a number above 0, got {value}{hint}")
-    if model != "thin" and camera.aperture_diameter is not None:
-        raise UsageError(f"camera: aperture_diameter: the {model} lens takes f_stop instead")
+        if value is not None:
+            hint = name in ("f_stop", "aperture_diameter") and value == 0
+            _positive(name, value, "; a pinhole is its own kind: lens='pinhole'" if hint else "")
+    if camera.focus_distance is not None:
+        _positive("focus_distance", camera.focus_distance, infinite=True)
+    if camera.shutter_time is not None:
+        number(camera.shutter_time, "camera: shutter_time", 0)
+    number(camera.exposure_compensation, "camera: exposure_compensation")
+    for shift in numbers(camera.shift, "camera: shift", 2, "two finite numbers (mm)"):
+        number(shift, "camera: shift", *LIMITS["shift"])
+    whole(camera.blades, "camera: blades", 0, 64, "0 (round) or 3 .. 64")
+    number(camera.blade_rotation, "camera: blade_rotation")
+    number(camera.blade_curvature, "camera: blade_curvature", -1)
+    if camera.focus_at is not None:
+        numbers(camera.focus_at, "camera: focus_at", 2, "a pixel (x, y)")
+    if prescription and camera.focal_length is not None:
+        raise UsageError(
+            "camera: focal_length: a lens with a prescription has its own; "
+            "wanted none with it, or an ideal lens (lens='thin' or 'pinhole')"
+        )
+    if (model != "thin" or prescription) and camera.aperture_diameter is not None:
+        raise UsageError(f"camera: aperture_diameter: this {model} lens takes f_stop instead")
     if camera.aperture_diameter is not None and camera.f_stop is not None:
         raise UsageError("camera: wanted either f_stop or aperture_diameter, got both")
     if camera.focus_from not in ("pupil", "sensor"):
@@ -146,19 +174,36 @@ def _check(camera: Camera, model: str) -> None:
         raise UsageError("camera: natural_vignetting: the exact lens has its own vignetting")
 
 
+def _positive(name: str, value: Any, hint: str = "", *, infinite: bool = False) -> None:
+    low, high = LIMITS.get(name, (0.0, math.inf))
+    where = f"camera: {name}"
+    try:
+        number(value, where, above=0, infinite=infinite)
+        number(value, where, low, high, infinite=infinite)
+    except UsageError as error:
+        raise UsageError(f"{error}{hint}") from None
+
+
 def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
     """The rotation and position of a transform: a camera has no scale.
 
     Raises:
         UsageError: The matrix is no 4x4 of finite numbers, or is singular.
     """
-    matrix = np.asarray(transform, np.float64)
+    try:
+        matrix = np.asarray(transform, np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"camera: transform: wanted a 4x4 matrix, got {short(transform)}"
+        ) from None
     if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
         raise UsageError("camera: transform: wanted a finite 4x4 matrix")
     forward, up = -matrix[:3, 2], matrix[:3, 1]
     right = np.cross(forward, up)
     if not (np.linalg.norm(forward) > 0 and np.linalg.norm(right) > 0):
-        raise UsageError("camera: transform: wanted a view direction and an up vector, got a singular matrix")
+        raise UsageError(
+            "camera: transform: wanted a view direction and an up vector, got a singular matrix"
+        )
     z = -forward / np.linalg.norm(forward)
     x = right / np.linalg.norm(right)
     out = np.eye(4)
@@ -170,11 +215,16 @@ def iris_of(camera: Camera) -> _core.Iris:
     """The shape of the iris: round, blades, or a picture."""
     try:
         if camera.aperture_image is not None:
-            return _core.Iris.image(np.ascontiguousarray(camera.aperture_image, np.float32))
+            picture = np.asarray(camera.aperture_image, np.float32)
+            if picture.ndim != 2:
+                raise UsageError(
+                    f"camera: aperture_image: wanted shape (H, W), got {picture.shape}"
+                )
+            return _core.Iris.image(np.ascontiguousarray(picture))
         if camera.blades:
-            return _core.Iris.polygon(
-                camera.blades, camera.blade_rotation, camera.blade_curvature
-            )
+            return _core.Iris.polygon(camera.blades, camera.blade_rotation, camera.blade_curvature)
+    except UsageError:
+        raise
     except (TypeError, ValueError) as error:
         raise UsageError(f"camera: {error}") from None
     return _core.Iris()
@@ -199,7 +249,11 @@ class Focus:
             direction_of: Unit view direction in the camera's frame of a film point (mm, upright).
         """
         camera = self.camera
-        if camera.focus_at is None and camera.focus_on is None and camera.focus_distance is not None:
+        if (
+            camera.focus_at is None
+            and camera.focus_on is None
+            and camera.focus_distance is not None
+        ):
             return camera.focus_distance
         if camera.focus_on is not None:
             return self._on_node(camera.focus_on)
@@ -222,7 +276,7 @@ class Focus:
         if hit is None:
             self.notes.append(f"autofocus: {what} meets nothing; focus at infinity")
             return math.inf
-        depth = hit[0] * -float(direction[2])
+        depth = float(hit[0]) * -float(direction[2])
         self.notes.append(f"autofocus: {what} meets a surface {depth:.4g} m away")
         return depth
 
@@ -231,7 +285,7 @@ class Focus:
         scene = self.scene
         if name not in scene.node_positions and name not in scene.nodes:
             known = set(scene.node_positions) | set(scene.nodes)
-            raise UsageError(f"camera: focus_on: no node named {name!r}{suggest(name, known)}")
+            raise InputError(f"camera: focus_on: no node named {name!r}{suggest(name, known)}")
         instances = scene.nodes.get(name, [])
         eye, axis = self.world[:3, 3], -self.world[:3, 2]
         if not instances:
@@ -251,7 +305,9 @@ class Focus:
 
     def _in_front(self, name: str, depth: float, verb: str) -> float:
         if not depth > 0:
-            raise UsageError(f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)")
+            raise InputError(
+                f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)"
+            )
         self.notes.append(f"focus: node {name!r} {verb} {depth:.4g} m away")
         return depth
 
@@ -267,7 +323,7 @@ def ideal_direction(film_distance: float) -> Callable[[float, float], NDArray[np
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
         d = np.array([x, y, -film_distance])
-        return d / np.linalg.norm(d)
+        return np.asarray(d / np.linalg.norm(d))
 
     return direction
 
@@ -290,7 +346,7 @@ def _set_up_thin(
     film = f
     if camera.focus_breathing:
         if not distance * 1e3 > f:
-            raise UsageError(
+            raise InputError(
                 f"camera: focus_distance: a {f:g} mm lens wanted more than {f * 1e-3:g} m, "
                 f"got {distance:g} m"
             )
@@ -319,7 +375,7 @@ def _from_pupil(total_m: float, f: float) -> float:
         return total_m
     total = total_m * 1e3
     if total < 4 * f:
-        raise UsageError(
+        raise InputError(
             f"camera: focus_distance from the sensor: a {f:g} mm lens wanted at least "
             f"{4e-3 * f:g} m, got {total_m:g} m"
         )
@@ -418,7 +474,7 @@ def _exact_lens(
             lens.prescription, f_stop, iris_of(camera), distance, from_sensor, half_diagonal
         )
     except ValueError as error:
-        raise UsageError(str(error)) from None
+        raise InputError(str(error)) from None
 
 
 def _hash_lens(lens: lenses.Lens) -> str:

@@ -220,6 +220,11 @@ def bounds(scene: Scene) -> tuple[list[float] | None, list[float] | None]:
     return low.tolist(), high.tolist()
 
 
+def lit(scene: Scene) -> bool:
+    """Whether there is any light."""
+    return bool(scene.lights or scene.environment or any(_emits(scene, i) for i in scene.instances))
+
+
 def _emits(scene: Scene, instance: Instance) -> bool:
     material = scene.materials[instance.material]
     own = getattr(material.kind, "emissive", (0, 0, 0))

@@ -1,9 +1,12 @@
-"""Emitters that are not surfaces. They sit at the origin of their transform and shine along its -z."""
+"""Emitters that are no surfaces. They sit at the origin of their transform and shine along -z."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+
+from .checks import color, number, short
+from .errors import InputError
 
 Color = tuple[float, float, float]
 
@@ -44,3 +47,36 @@ class SphereLight:
     luminance: Color = (1.0, 1.0, 1.0)
     radius: float = 0.1
     name: str = ""
+
+
+Light = PointLight | SpotLight | DirectionalLight | SphereLight
+
+
+def check_light(light: Light) -> None:
+    """Refuses what is no light, and numbers that no light has.
+
+    Raises:
+        InputError: With the light's name and the field.
+    """
+    if not isinstance(light, Light):
+        raise InputError(
+            f"light: wanted a point, spot, directional or sphere light, got {short(light)}"
+        )
+    where = f"light {light.name!r}"
+    for name, value in vars(light).items():
+        if name in ("intensity", "illuminance", "luminance"):
+            color(value, f"{where}: {name}")
+        elif name == "range":
+            number(value, f"{where}: range", above=0, infinite=True, error=InputError)
+        elif name == "radius":
+            number(value, f"{where}: radius", 0, error=InputError)
+    if isinstance(light, SphereLight) and not light.radius > 0:
+        raise InputError(f"{where}: radius: wanted a number above 0, got {light.radius}")
+    if isinstance(light, SpotLight):
+        inner = number(light.inner_angle, f"{where}: inner_angle", 0, error=InputError)
+        outer = number(light.outer_angle, f"{where}: outer_angle", 0, error=InputError)
+        if not inner < outer <= 90:
+            raise InputError(
+                f"{where}: wanted 0 <= inner_angle < outer_angle <= 90 degrees, "
+                f"got {inner:g} and {outer:g}"
+            )

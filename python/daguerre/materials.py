@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from .checks import color, number, short
+from .errors import InputError
+
 Color = tuple[float, float, float]
 
 
@@ -49,7 +52,7 @@ class Dielectric:
 
 @dataclass(frozen=True)
 class Gltf:
-    """glTF 2.0 metallic-roughness with KHR emissive_strength, ior, transmission, volume, specular."""
+    """glTF metallic-roughness with KHR emissive_strength, ior, transmission, volume, specular."""
 
     base_color: Color = (1.0, 1.0, 1.0)
     base_alpha: float = 1.0
@@ -77,6 +80,9 @@ class Gltf:
     attenuation_color: Color = (1.0, 1.0, 1.0)
 
 
+Kind = Diffuse | Conductor | Dielectric | Gltf
+
+
 @dataclass(frozen=True)
 class Material:
     """A named material: one of the kinds above, and emission on top of it.
@@ -87,7 +93,32 @@ class Material:
         two_sided_emission: Emit from the back too.
     """
 
-    kind: Diffuse | Conductor | Dielectric | Gltf = field(default_factory=Diffuse)
+    kind: Kind = field(default_factory=Diffuse)
     name: str = ""
     emission: Color = (0.0, 0.0, 0.0)
     two_sided_emission: bool = False
+
+
+def check_material(material: Material, where: str) -> None:
+    """Refuses what is no material, and values of the wrong shape; ranges are the core's to check.
+
+    Raises:
+        InputError: With the name of the field.
+    """
+    if not isinstance(material, Material):
+        raise InputError(f"{where}: wanted a Material, got {short(material)}")
+    kind = material.kind
+    if not isinstance(kind, Kind):
+        raise InputError(
+            f"{where}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, got {short(kind)}"
+        )
+    color(material.emission, f"{where}: emission")
+    for name, like in kind.__dataclass_fields__.items():
+        value = getattr(kind, name)
+        if isinstance(like.default, tuple):
+            color(value, f"{where}: {name}")
+        elif isinstance(like.default, float):
+            endless = math.isinf(like.default)
+            number(value, f"{where}: {name}", infinite=endless, error=InputError)
+        elif name.endswith("_texture") and not isinstance(value, TextureSlot | None):
+            raise InputError(f"{where}: {name}: wanted a TextureSlot or None, got {short(value)}")

@@ -5,19 +5,22 @@ World frame: metres, +y up (glTF); transforms are 4x4 matrices that act on colum
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .camera import Camera
+from .checks import array, matrix, optional_array, short, to_numbers
+from .checks import color as check_color
+from .checks import number as check_number
 from .errors import InputError, UsageError, suggest
-from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
-from .materials import Diffuse, Material
-
-Light = PointLight | SpotLight | DirectionalLight | SphereLight
+from .lights import Light, check_light
+from .materials import Diffuse, Kind, Material, check_material
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Environment:
-    """Light from infinity: an equirectangular picture (H, W, 3) or one colour, times ``scale`` cd/m2."""
+    """Light from infinity: a panorama (H, W, 3) or one colour, times ``scale`` cd/m2."""
 
     image: NDArray[np.float32] | None = None
     color: tuple[float, float, float] | None = None
@@ -110,14 +113,28 @@ class Scene:
             )
         if array.dtype != np.uint8:
             array = array.astype(np.float32)
-        self.textures.append(
-            Texture(np.ascontiguousarray(array), srgb, wrap, filter, name)
-        )
+        self.textures.append(Texture(np.ascontiguousarray(array), srgb, wrap, filter, name))
         return len(self.textures) - 1
 
-    def add_material(self, material: Material | None = None, **kind: object) -> int:
-        """Adds a material; returns its index."""
-        self.materials.append(material if material is not None else Material(**kind))  # type: ignore[arg-type]
+    def add_material(self, material: Material | Kind | None = None, **fields: Any) -> int:
+        """Adds a material; returns its index.
+
+        Args:
+            material: A material, or only what it is made of; absent: made from ``fields``.
+            **fields: Those of :class:`Material`.
+        """
+        if material is None:
+            unknown = sorted(set(fields) - set(Material.__dataclass_fields__))
+            if unknown:
+                known = Material.__dataclass_fields__
+                raise UsageError(f"material: no field {unknown[0]!r}{suggest(unknown[0], known)}")
+            material = Material(**fields)
+        elif isinstance(material, Kind):
+            material = Material(material)
+        check_material(
+            material, f"material {getattr(material, 'name', '') or len(self.materials)!r}"
+        )
+        self.materials.append(material)
         return len(self.materials) - 1
 
     def add_mesh(
@@ -130,6 +147,7 @@ class Scene:
         uv1: ArrayLike | None = None,
         tangents: ArrayLike | None = None,
         colors: ArrayLike | None = None,
+        steps: ArrayLike | None = None,
         name: str = "",
     ) -> int:
         """Adds triangles; returns the index of the mesh.
@@ -142,37 +160,43 @@ class Scene:
             uv1: The same, set 1.
             tangents: Shape (N, 4), w is the handedness.
             colors: Linear RGB or RGBA, shape (N, 3) or (N, 4).
+            steps: Vertices per time step; not supported yet.
             name: For messages.
 
         Raises:
             InputError: A shape, an index or a number is wrong; the message names it.
+            UsageError: ``steps`` were given.
         """
         where = f"mesh {name or len(self.meshes)!r}"
-        points = _array(positions, where, "positions", 3)
-        triangles = np.asarray(indices)
+        if steps is not None:
+            raise UsageError(f"{where}: steps: vertices per time step are not supported yet")
+        points = array(positions, where, "positions", 3)
+        triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
         if triangles.dtype.kind not in "iu":
             raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
         if triangles.size % 3:
             raise InputError(f"{where}: indices: wanted a multiple of 3, got {triangles.size}")
+        if triangles.ndim != 1 and triangles.shape[1:] != (3,):
+            raise InputError(f"{where}: indices: wanted shape (M, 3), got {triangles.shape}")
         triangles = triangles.reshape(-1, 3)
         if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
             raise InputError(
                 f"{where}: indices: wanted 0 .. {len(points) - 1}, "
                 f"got {triangles.min()} .. {triangles.max()}"
             )
-        if colors is not None and np.asarray(colors).shape[-1:] == (3,):
-            rgb = np.asarray(colors, np.float32)
+        if colors is not None and np.shape(colors)[-1:] == (3,):
+            rgb = array(colors, where, "colors", 3)
             colors = np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
         n = len(points)
         self.meshes.append(
             Mesh(
                 points,
                 np.ascontiguousarray(triangles, np.uint32),
-                _optional(normals, where, "normals", 3, n),
-                _optional(uv, where, "uv", 2, n),
-                _optional(uv1, where, "uv1", 2, n),
-                _optional(tangents, where, "tangents", 4, n),
-                _optional(colors, where, "colors", 4, n),
+                optional_array(normals, where, "normals", 3, n),
+                optional_array(uv, where, "uv", 2, n),
+                optional_array(uv1, where, "uv1", 2, n),
+                optional_array(tangents, where, "tangents", 4, n),
+                optional_array(colors, where, "colors", 4, n),
                 name,
             )
         )
@@ -181,7 +205,7 @@ class Scene:
     def add_instance(
         self,
         mesh: int,
-        material: int | Material | None = None,
+        material: int | Material | Kind | None = None,
         transform: ArrayLike | None = None,
         *,
         name: str = "",
@@ -193,19 +217,22 @@ class Scene:
             material: Index from ``add_material`` or a material; absent: grey diffuse.
             transform: World from local, shape (4, 4); absent: identity.
             name: For messages, ids and ``focus_on``.
+
+        Raises:
+            InputError: There is no such mesh or material, or the transform is no finite matrix.
+            UsageError: The transform is a list of keys over time, which is not supported yet.
         """
         where = f"instance {name or len(self.instances)!r}"
-        if not 0 <= mesh < len(self.meshes):
-            raise InputError(f"{where}: mesh: wanted 0 .. {len(self.meshes) - 1}, got {mesh}")
+        mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
+        if _are_keys(transform):
+            raise UsageError(f"{where}: transform: keys over time are not supported yet")
+        world = matrix(transform, where)
         if material is None:
             material = Material(Diffuse())
-        if isinstance(material, Material):
+        if isinstance(material, Material | Kind):
             material = self.add_material(material)
-        if not 0 <= material < len(self.materials):
-            raise InputError(
-                f"{where}: material: wanted 0 .. {len(self.materials) - 1}, got {material}"
-            )
-        self.instances.append(Instance(mesh, material, _matrix(transform, where), name))
+        material = self._index(material, len(self.materials), f"{where}: material")
+        self.instances.append(Instance(mesh, material, world, name))
         index = len(self.instances) - 1
         if name:
             self.nodes.setdefault(name, []).append(index)
@@ -213,18 +240,22 @@ class Scene:
 
     def add_light(self, light: Light, transform: ArrayLike | None = None) -> int:
         """Adds a light at the origin of ``transform`` (4, 4), shining along its -z."""
-        self.lights.append((light, _matrix(transform, f"light {light.name!r}")))
+        check_light(light)
+        self.lights.append((light, matrix(transform, f"light {light.name!r}")))
         return len(self.lights) - 1
 
     def add_camera(self, name: str, camera: Camera) -> None:
         """Adds a camera under a name; the first one becomes the default."""
+        for value, kind in ((name, str), (camera, Camera)):
+            if not isinstance(value, kind):
+                raise UsageError(f"add_camera: wanted a {kind.__name__}, got {short(value)}")
         self.cameras[name] = camera
         if self.default_camera is None:
             self.default_camera = name
 
     def set_environment(
         self,
-        image: ArrayLike | None = None,
+        image: ArrayLike | str | Path | None = None,
         *,
         color: Sequence[float] | None = None,
         scale: float = 1.0,
@@ -233,7 +264,7 @@ class Scene:
         """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
 
         Args:
-            image: Equirectangular, row 0 at the zenith (+y), centre column along -z.
+            image: Equirectangular, row 0 at the zenith (+y), centre column along -z; or its file.
             color: One linear colour for the whole sky.
             scale: cd/m2 of a value of 1.
             rotation: Degrees about +y.
@@ -241,16 +272,26 @@ class Scene:
         if (image is None) == (color is None):
             raise UsageError("environment: wanted either an image or a color")
         pixels = None
-        if image is not None:
-            pixels = np.ascontiguousarray(image, np.float32)
-            if pixels.ndim != 3 or pixels.shape[2] < 3:
-                raise InputError(f"environment: wanted shape (H, W, 3), got {pixels.shape}")
-            pixels = np.ascontiguousarray(pixels[:, :, :3])
-            bad = int((~np.isfinite(pixels)).sum())
-            if bad:
-                raise InputError(f"environment: wanted finite pixels, got {bad} NaN or Inf")
-        rgb = None if color is None else (float(color[0]), float(color[1]), float(color[2]))
-        self.environment = Environment(pixels, rgb, float(scale), float(rotation))
+        if isinstance(image, str | Path):
+            from .io.images import read_environment
+
+            pixels = read_environment(image)
+        elif image is not None:
+            pixels = _panorama(image)
+        rgb = None if color is None else check_color(color, "environment: color")
+        scale = check_number(scale, "environment: scale", 0)
+        rotation = check_number(rotation, "environment: rotation")
+        self.environment = Environment(pixels, rgb, scale, rotation)
+
+    @staticmethod
+    def _index(value: Any, count: int, where: str) -> int:
+        if isinstance(value, bool | str) or not hasattr(value, "__index__"):
+            raise InputError(f"{where}: wanted an index, got {short(value)}")
+        index = operator.index(value)
+        if not 0 <= index < count:
+            wanted = f"0 .. {count - 1}" if count else "one that was added before"
+            raise InputError(f"{where}: wanted {wanted}, got {index}")
+        return index
 
     def camera(self, name: str | None = None) -> Camera:
         """The camera of that name, or the default one.
@@ -271,36 +312,24 @@ class Scene:
         return self.cameras[name]
 
 
-def _array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.float32]:
-    array = np.ascontiguousarray(values, np.float32)
-    if array.ndim != 2 or array.shape[1] != columns:
-        raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {array.shape}")
-    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
-    if bad.size:
-        raise InputError(
-            f"{where}: {what}[{bad[0]}]: wanted finite numbers, got {array[bad[0]].tolist()} "
-            f"({bad.size} such elements)"
+def _are_keys(transform: Any) -> bool:
+    """Whether this looks like [(time, matrix), ...]."""
+    return (
+        isinstance(transform, list | tuple)
+        and len(transform) > 0
+        and all(
+            isinstance(key, list | tuple) and len(key) == 2 and np.ndim(key[0]) == 0
+            for key in transform
         )
-    return array
+    )
 
 
-def _optional(
-    values: ArrayLike | None, where: str, what: str, columns: int, count: int
-) -> NDArray[np.float32] | None:
-    if values is None:
-        return None
-    array = _array(values, where, what, columns)
-    if len(array) != count:
-        raise InputError(f"{where}: {what}: wanted {count} elements, got {len(array)}")
-    return array
-
-
-def _matrix(transform: ArrayLike | None, where: str) -> NDArray[np.float64]:
-    if transform is None:
-        return np.eye(4)
-    matrix = np.array(transform, np.float64)
-    if matrix.shape != (4, 4):
-        raise InputError(f"{where}: transform: wanted shape (4, 4), got {matrix.shape}")
-    if not np.isfinite(matrix).all():
-        raise InputError(f"{where}: transform: wanted finite numbers, got {matrix.tolist()}")
-    return matrix
+def _panorama(image: ArrayLike) -> NDArray[np.float32]:
+    numbers = to_numbers(image, "environment", "image", "shape (H, W, 3)")
+    if numbers.ndim != 3 or numbers.shape[2] < 3 or numbers.size == 0:
+        raise InputError(f"environment: wanted shape (H, W, 3), got {numbers.shape}")
+    pixels = np.ascontiguousarray(numbers[:, :, :3], np.float32)
+    bad = int((~np.isfinite(pixels) | (pixels < 0)).sum())
+    if bad:
+        raise InputError(f"environment: wanted finite pixels of at least 0, got {bad} others")
+    return pixels

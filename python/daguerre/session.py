@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import operator
 import platform
 import time
 from collections.abc import Callable, Iterator
@@ -14,10 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+import daguerre._core as _core
+
 from .build import build, content_hash
 from .camera import Camera
 from .camera_setup import set_up
+from .checks import short, whole
 from .errors import MismatchError, UsageError, suggest
 from .frame import Frame
 from .scene import Scene
@@ -42,11 +45,12 @@ MAX_SAMPLES = 1 << 31
 class Session:
     """One picture in the making: scene, camera and a film of exact sums.
 
-    Any split of the samples into ranges, in any order and on any number of threads, gives the same bits.
+    Any split of the samples into ranges, in any order and on any number of threads, gives the same
+    bits.
 
     Args:
         scene: What is seen.
-        camera: What sees it; None: the scene's own.
+        camera: What sees it, or its name in the scene; None: the scene's own.
         resolution: Width and height, px.
         seed: Of all random numbers.
         filter: box, gaussian, blackman_harris or mitchell; ``"name:radius"`` sets the radius in px.
@@ -66,7 +70,7 @@ class Session:
     def __init__(
         self,
         scene: Scene,
-        camera: Camera | None = None,
+        camera: Camera | str | None = None,
         *,
         resolution: tuple[int, int] = (960, 540),
         seed: int = 0,
@@ -81,14 +85,13 @@ class Session:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
         kind, radius = _filter(filter)
-        if not 0 <= seed < 1 << 64:
-            raise UsageError(f"seed: wanted 0 .. 2^64 - 1, got {seed}")
-        if not 0 <= threads <= 1024:
-            raise UsageError(f"threads: wanted 0 (all) .. 1024, got {threads}")
-        if not 1 <= max_depth <= 4096:
-            raise UsageError(f"max_depth: wanted 1 .. 4096, got {max_depth}")
+        seed = whole(seed, "seed", 0, (1 << 64) - 1, "0 .. 2^64 - 1")
+        threads = whole(threads, "threads", 0, 1024, "0 (all) .. 1024")
+        max_depth = whole(max_depth, "max_depth", 1, 4096)
+        if not isinstance(scene, Scene):
+            raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
         self.scene = scene
-        self.camera = camera if camera is not None else scene.camera()
+        self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.aovs = aovs
         started = time.perf_counter()
         self._core_scene = build(scene)
@@ -98,7 +101,8 @@ class Session:
         self._settings = _core.RenderSettings()
         self._settings.resolution = (self.width, self.height)
         self._settings.sensor_size_mm = self._setup.frame_size
-        self._settings.sensor_center_mm = tuple(self.camera.shift)
+        shift_x, shift_y = self.camera.shift
+        self._settings.sensor_center_mm = (shift_x, shift_y)
         self._settings.seed = seed
         self._settings.threads = threads
         self._settings.filter = _core.Filter(kind, radius)
@@ -127,9 +131,7 @@ class Session:
         x0, y0, x1, y1 = self.crop
         return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs)
 
-    def draw(
-        self, begin: int, end: int, progress: Callable[[float], bool] | None = None
-    ) -> bool:
+    def draw(self, begin: int, end: int, progress: Callable[[float], bool] | None = None) -> bool:
         """Draws samples [begin, end) of every pixel.
 
         Args:
@@ -140,11 +142,15 @@ class Session:
         Returns:
             False if stopped; the film is then as it was before the call.
         """
-        if not 0 <= begin < end <= MAX_SAMPLES:
+        begin = whole(begin, "samples", 0, MAX_SAMPLES)
+        end = whole(end, "samples", 0, MAX_SAMPLES)
+        if not begin < end:
             raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
         for a, b in self.ranges:
             if begin < b and a < end:
-                raise MismatchError(f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already")
+                raise MismatchError(
+                    f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
+                )
         # Drawn apart and added when complete, so that a pass that stops midway leaves no trace.
         film = self._film if progress is None else self._new_film()
         complete, camera_rays, stopped, rays = _core.render(
@@ -216,7 +222,7 @@ class Session:
 
     @cached_property
     def key(self) -> dict[str, str]:
-        """What passes must share to be added: hashes of scene, camera and settings, and the build."""
+        """What passes must share to be added: hashes of scene, camera, settings, and the build."""
         return {
             "scene": content_hash(self.scene),
             "camera": _hash_json(self._setup.facts),
@@ -236,7 +242,9 @@ class Session:
             "aperture": facts.get("f_stop"),
             "focus": facts.get("focus_distance_m"),
             "nominalFocalLength": facts.get("focal_length_mm"),
-            "effectiveFocalLength": facts.get("effective_focal_length_mm", facts.get("focal_length_mm")),
+            "effectiveFocalLength": facts.get(
+                "effective_focal_length_mm", facts.get("focal_length_mm")
+            ),
             "pinholeFocalLength": self._setup.pinhole_focal_length,
             "entrancePupilOffset": facts.get("entrance_pupil_offset_mm"),
             "lensModel": facts.get("lens"),
@@ -252,6 +260,9 @@ class Session:
             "resolution": (self.width, self.height),
             "crop": self.crop,
             "filter": self._identity["filter"],
+            "scene_hash": self.key["scene"],
+            "bad_samples": self.bad_samples[0],
+            "bad_sample_places": [list(place) for place in self.bad_samples[1]],
             "version": _core.__version__,
             "intersector": self._core_scene.intersector,
         }
@@ -259,7 +270,7 @@ class Session:
 
 
 def render(
-    scene: Scene, camera: Camera | None = None, *, spp: int = 64, **options: Any
+    scene: Scene, camera: Camera | str | None = None, *, spp: int = 64, **options: Any
 ) -> Frame:
     """Renders a picture.
 
@@ -272,19 +283,17 @@ def render(
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
     """
-    if not 1 <= spp <= MAX_SAMPLES:
-        raise UsageError(f"spp: wanted 1 .. 2^31, got {spp}")
+    spp = whole(spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
     session = Session(scene, camera, **options)
     session.draw(0, spp)
     return session.frame()
 
 
 def iter_render(
-    scene: Scene, camera: Camera | None = None, *, spp: int = 64, **options: Any
+    scene: Scene, camera: Camera | str | None = None, *, spp: int = 64, **options: Any
 ) -> Iterator[Frame]:
-    """Yields the picture again and again as it refines: after 1, 2, 4, ... and at last ``spp`` samples."""
-    if not 1 <= spp <= MAX_SAMPLES:
-        raise UsageError(f"spp: wanted 1 .. 2^31, got {spp}")
+    """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples."""
+    spp = whole(spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
     session = Session(scene, camera, **options)
     begin, end = 0, 1
     while begin < spp:
@@ -305,10 +314,17 @@ def merge_ranges(ranges: list[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def _resolution(resolution: tuple[int, int]) -> tuple[int, int]:
-    width, height = (int(v) for v in resolution)
-    if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):
-        raise UsageError(f"resolution: wanted 1 .. {MAX_RESOLUTION} px a side, got {width}x{height}")
-    return width, height
+    try:
+        width, height = resolution
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"resolution: wanted (width, height) in px, got {short(resolution)}"
+        ) from None
+    size = [
+        whole(v, "resolution", 1, MAX_RESOLUTION, f"1 .. {MAX_RESOLUTION} px a side")
+        for v in (width, height)
+    ]
+    return size[0], size[1]
 
 
 def _crop(
@@ -316,19 +332,26 @@ def _crop(
 ) -> tuple[int, int, int, int]:
     if crop is None:
         return 0, 0, width, height
-    x0, y0, x1, y1 = (int(v) for v in crop)
+    try:
+        x0, y0, x1, y1 = (operator.index(v) for v in crop)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"crop: wanted whole numbers (x0, y0, x1, y1), got {short(crop)}"
+        ) from None
     if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
         raise UsageError(
-            f"crop: wanted x0 < x1 and y0 < y1 within {width}x{height}, got {x0},{x1},{y0},{y1} "
-            "(as x0,x1,y0,y1)"
+            f"crop: wanted (x0, y0, x1, y1) with x0 < x1 and y0 < y1 within {width}x{height}, "
+            f"got ({x0}, {y0}, {x1}, {y1})"
         )
     return x0, y0, x1, y1
 
 
 def _filter(text: str) -> tuple[str, float]:
-    kind, _, radius = text.replace("-", "_").partition(":")
+    kind, _, radius = str(text).replace("-", "_").partition(":")
     if kind not in FILTERS:
-        raise UsageError(f"filter: wanted {', '.join(FILTERS)}, got {kind!r}{suggest(kind, FILTERS)}")
+        raise UsageError(
+            f"filter: wanted {', '.join(FILTERS)}, got {kind!r}{suggest(kind, FILTERS)}"
+        )
     try:
         value = float(radius) if radius else 0.0
     except ValueError:
@@ -345,7 +368,7 @@ def _hash_json(value: Any) -> str:
 def _world_to_camera(world_from_camera: NDArray[np.float64]) -> NDArray[np.float64]:
     """OpenEXR's convention: row vectors, left-handed camera with +z forward, +x right, +y up."""
     camera_from_world = np.linalg.inv(world_from_camera)
-    return (np.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world).T
+    return np.asarray((np.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world).T)
 
 
 def _world_to_ndc(
@@ -354,4 +377,4 @@ def _world_to_ndc(
     """Row-vector matrix to NDC (-1 .. 1, y up) of the pinhole with the same framing."""
     scale = np.diag([2 * focal_length / width, 2 * focal_length / height, 1.0, 0.0])
     scale[2, 3] = 1.0  # w = z
-    return _world_to_camera(world_from_camera) @ scale
+    return np.asarray(_world_to_camera(world_from_camera) @ scale)

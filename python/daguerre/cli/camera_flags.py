@@ -144,9 +144,6 @@ class CameraFlags:
             panel=_CAMERA,
         ),
     ] = None
-    near: Annotated[
-        Text, option("--near", metavar="M", help="Nothing nearer is seen, m.", panel=_CAMERA)
-    ] = None
 
     def changes(self) -> dict[str, Any]:
         """The parameters of ``Camera.with_`` that were given."""
@@ -160,7 +157,6 @@ class CameraFlags:
             "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
             "shutter": ("shutter_time", "--shutter", q.time_s),
-            "near": ("near", "--near", q.distance_m),
         }
         plain = {
             "lens": "lens",
@@ -187,11 +183,11 @@ class CameraFlags:
             from daguerre.io.iris import read_grey
 
             out["aperture_image"] = read_grey(self.aperture_image)
-        return _resolve_rivals(out)
+        return _refuse_rivals(out)
 
 
-def _resolve_rivals(changes: dict[str, Any]) -> dict[str, Any]:
-    """One way to focus and one to open the iris may be given; each replaces the file's."""
+def _refuse_rivals(changes: dict[str, Any]) -> dict[str, Any]:
+    """One way to focus and one to open the iris may be given."""
     from daguerre.errors import UsageError
 
     for rivals in (
@@ -202,6 +198,4 @@ def _resolve_rivals(changes: dict[str, Any]) -> dict[str, Any]:
         if len(given) > 1:
             flags = " and ".join(rivals[name] for name in given)
             raise UsageError(f"{flags}: wanted one of them, got {len(given)}")
-        if given:
-            changes |= {name: None for name in rivals if name not in given}
     return changes

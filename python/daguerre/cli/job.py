@@ -73,11 +73,7 @@ class Job:
         self.plan.checkpoint.unlink(missing_ok=True)
         count, places = frame.bad_samples
         if count:
-            x, y, sample = places[0] if places else ("?", "?", "?")
-            console.warn(
-                f"{count} samples were NaN or Inf and count as black; "
-                f"the first is sample {sample} of pixel ({x}, {y})"
-            )
+            console.warn(bad_samples(count, places))
         elapsed = time.monotonic() - self.loop.started
         names = ", ".join(str(path) for path in self.plan.outputs)
         console.note(f"wrote {names} ({self.loop.done()} samples per pixel, {elapsed:.1f} s)")
@@ -104,9 +100,7 @@ class Job:
             "resolution": (self.session.width, self.session.height),
             "crop": self.session.crop,
             "samples": self.loop.done(),
-            "bad_samples": frame.bad_samples[0],
             "aovs": self.plan.aovs,
-            "scene_hash": self.session.key["scene"],
         }
         frame = replace(frame, metadata={**frame.metadata, **facts})
         if self.plan.denoise:
@@ -157,6 +151,13 @@ class Job:
         }
         for name, value in rows.items():
             console.say(f"daguerre: {name}: {value}")
+
+
+def bad_samples(count: int, places: list[tuple[int, int, int]]) -> str:
+    """How many samples were dropped, and the first of them by name."""
+    named = ", ".join(f"sample {sample} of pixel ({x}, {y})" for x, y, sample in places[:4])
+    more = ", ..." if len(places) > 4 else ""
+    return f"{count} samples were NaN or Inf and are left out: {named}{more}"
 
 
 @contextmanager

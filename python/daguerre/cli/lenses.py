@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -40,7 +40,12 @@ def lens(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
     json: Annotated[bool, option("--json", help="As one JSON object, lengths in mm.")] = False,
     plot: Annotated[
-        Path | None, option("--plot", metavar="FILE.svg", help="Drawing with rays.")
+        Path | None,
+        option(
+            "--plot",
+            metavar="FILE.svg|png|pdf",
+            help="Drawing with rays; .png, .pdf: extra `plot`.",
+        ),
     ] = None,
     wavelength: Annotated[
         float, option("--wavelength", metavar="NM", help="Wavelength, nm [587.56].")
@@ -51,15 +56,20 @@ def lens(
 
     from daguerre import lenses as library
     from daguerre.io.atomic import check_writable, write_bytes
+    from daguerre.lenses.plot import FORMATS, check_available, picture
 
     if plot is not None:
-        if plot.suffix.lower() != ".svg":
-            raise UsageError(f"--plot: wanted a name ending in .svg, got {str(plot)!r}")
+        suffix = plot.suffix.lower()
+        if suffix not in FORMATS:
+            raise UsageError(
+                f"--plot: wanted a name ending in {' or '.join(FORMATS)}, got {str(plot)!r}"
+            )
+        check_available(suffix)
         check_writable(plot)
     item = library.load(name)
     order = asdict(item.first_order(wavelength))
     if plot is not None:
-        write_bytes(plot, item._repr_svg_().encode())
+        write_bytes(plot, picture(item, plot.suffix.lower()))
     if json:
         print(dumps(_facts(item, order), indent=2))
         return 0
@@ -83,9 +93,8 @@ def _summary(name: str, item: Lens) -> dict[str, Any]:
 
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
-    surfaces = [asdict(replace(s, core_glass=None)) for s in item.surfaces]
-    for surface in surfaces:
-        del surface["core_glass"]
+    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop")
+    surfaces = [{name: getattr(s, name) for name in names} for s in item.surfaces]
     return {
         "name": item.name,
         "source": item.patent,

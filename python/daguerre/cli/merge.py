@@ -64,8 +64,9 @@ def merge(
             frame.save(path, tone=tone)
     count, places = frame.bad_samples
     if count:
-        x, y, sample = places[0] if places else ("?", "?", "?")
-        console.warn(f"{count} bad samples; the first is sample {sample} of pixel ({x}, {y})")
+        from .job import bad_samples
+
+        console.warn(bad_samples(count, places))
     names = ", ".join(map(str, output))
     console.note(f"wrote {names} (samples {show_ranges(total.ranges)})")
     return 0

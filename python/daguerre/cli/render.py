@@ -102,6 +102,8 @@ def render(
 
     Stop with Ctrl-C: what was drawn is kept, and the command that goes on is printed.
     """
+    from daguerre.info import lit
+
     console.quiet = quiet
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, spp, samples, checkpoint)
     _check_numbers(seed, threads, max_depth)
@@ -128,6 +130,8 @@ def render(
         return INTERRUPTED
     for text in session.notes:
         console.note(text)
+    if not lit(scene):
+        console.warn(f"{scene_path}: nothing shines, so the picture will be black; --env lights it")
     if dry_run:
         _describe(plan, session, scene_path)
         return 0

@@ -67,6 +67,9 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
     }
     header |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
     header |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
+    if known.get("bad_sample_places"):
+        places = known["bad_sample_places"]
+        header["daguerre:bad_sample_places"] = json.dumps(places, default=jsonable)
     if "camera" in known:
         header["daguerre:camera"] = json.dumps(known["camera"], sort_keys=True, default=jsonable)
     return header

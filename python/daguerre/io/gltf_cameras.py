@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera import Camera
+from daguerre.camera import IDEAL, LIMITS, Camera
 
 from .json_item import Item, clean, short
 from .notes import Notes
@@ -24,6 +24,10 @@ _SENSOR_HEIGHT_MM = 24.0
 _SENSOR_WIDTH_MM = 36.0
 
 _Reader = Callable[[Item], Any]
+
+
+def _within(name: str) -> _Reader:
+    return lambda item: item.number(*LIMITS[name], above=0)
 
 
 def _positive(item: Item) -> float:
@@ -38,7 +42,7 @@ def _sensor(item: Item) -> tuple[float, ...]:
     size = item.numbers(2, 0)
     if min(size) <= 0:
         item.fail(f"out of range: wanted two numbers above 0, got {list(size)}")
-    return size
+    return item.numbers(2, *LIMITS["sensor_size"])
 
 
 def _f_stop(item: Item) -> float:
@@ -47,7 +51,7 @@ def _f_stop(item: Item) -> float:
         item.fail(
             f"out of range: wanted a number above 0 (a pinhole is a lens of its own), got {value:g}"
         )
-    return value
+    return item.number(*LIMITS["f_stop"])
 
 
 def _lens(item: Item) -> str:
@@ -63,16 +67,16 @@ def _one_of(*options: str) -> _Reader:
 
 
 _PHYSICAL: dict[str, _Reader] = {
-    "focalLength": _positive,
+    "focalLength": _within("focal_length"),
     "sensorSize": _sensor,
     "fStop": _f_stop,
-    "focusDistance": _positive,
+    "focusDistance": _within("focus_distance"),
 }
 _EXTRAS: dict[str, _Reader] = _PHYSICAL | {
     "lens": _lens,
     "lensModel": _one_of("exact", "thin", "pinhole"),
     "sensorFit": _one_of("horizontal", "vertical", "auto", "fill"),
-    "apertureDiameter": _positive,
+    "apertureDiameter": _within("aperture_diameter"),
     "focusOn": lambda item: item.text(),
     "focusAt": lambda item: item.numbers(2),
     "focusFrom": _one_of("pupil", "sensor"),
@@ -81,7 +85,7 @@ _EXTRAS: dict[str, _Reader] = _PHYSICAL | {
     "bladeRotation": _any,
     "bladeCurvature": lambda item: item.number(-1, 1),
     "naturalVignetting": lambda item: item.flag(),
-    "shift": lambda item: item.numbers(2),
+    "shift": lambda item: item.numbers(2, *LIMITS["shift"]),
     "shutterTime": lambda item: item.number(0),
     "iso": _positive,
     "exposureCompensation": _any,
@@ -102,7 +106,7 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
     yfov = yfov_item.number(above=0)
     if yfov >= math.pi:
         yfov_item.fail(f"out of range: wanted less than pi (radians), got {yfov:g}")
-    aspect = perspective.number_of("aspectRatio", 0.0, above=0)
+    aspect = perspective.number_of("aspectRatio", 0.0, 1e-3, 1e3, above=0)
     # The stated shape of the picture becomes the shape of the sensor, so that yfov holds for it.
     width = _SENSOR_HEIGHT_MM * aspect if aspect else _SENSOR_WIDTH_MM
     values: dict[str, Any] = {"sensor_size": (round(width, 6), _SENSOR_HEIGHT_MM)}
@@ -114,7 +118,14 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
         ours = extras.get("daguerre")
         if ours is not None:
             values |= _known(ours, _EXTRAS, notes, "extras.daguerre")
-    values.setdefault("focal_length", 0.5 * values["sensor_size"][1] / math.tan(0.5 * yfov))
+    if values.get("lens") in (None, *IDEAL):  # a prescription has its own
+        values.setdefault("focal_length", 0.5 * values["sensor_size"][1] / math.tan(0.5 * yfov))
+        low, high = LIMITS["focal_length"]
+        if not low <= values["focal_length"] <= high:
+            yfov_item.fail(
+                f"out of range: wanted a focal length of {low:g} .. {high:g} mm, "
+                f"got {yfov:g} rad, which is {values['focal_length']:g} mm"
+            )
     _doubt(values, notes)
     return Camera(transform=transform, **values)
 
@@ -132,8 +143,8 @@ def _known(item: Item, readers: dict[str, _Reader], notes: Notes, of: str) -> di
 
 def _doubt(values: dict[str, Any], notes: Notes) -> None:
     """Figures that no camera has are probably in another unit."""
-    focal, width = values["focal_length"], values["sensor_size"][0]
-    if not 1 <= focal <= 2000:
+    focal, width = values.get("focal_length"), values["sensor_size"][0]
+    if focal is not None and not 1 <= focal <= 2000:
         notes.add(f"a camera says a {focal:.4g} mm lens; its unit is probably not mm")
     if not 0.5 <= width <= 200:
         notes.add(f"a camera says a {width:.4g} mm wide sensor; its unit is probably not mm")

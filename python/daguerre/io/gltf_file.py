@@ -77,7 +77,7 @@ def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | Non
     if version != 2:
         fail("header.version", f"wanted 2, got {version}")
     if length > len(data):
-        fail("header.length", f"truncated: wanted {length} bytes, got {len(data)}")
+        fail("header.length", f"truncated: wanted {short(length)} bytes, got {len(data)}")
     if length < 20:
         fail("header.length", f"wanted at least 20 bytes, got {length}")
     chunks: list[tuple[int, memoryview]] = []
@@ -177,5 +177,5 @@ def _load_buffer(document: Document, item: Item) -> memoryview:
         except OSError as error:
             uri.fail(f"cannot be read: {error.strerror}")
     if len(data) < length:
-        length_item.fail(f"{source} is too short: wanted {length} bytes, got {len(data)}")
+        length_item.fail(f"{source} is too short: wanted {short(length)} bytes, got {len(data)}")
     return data[:length]

@@ -21,6 +21,8 @@ def read_light(item: Item, name: str) -> PointLight | SpotLight | DirectionalLig
     r, g, b = item.numbers_of("color", (1.0, 1.0, 1.0), 0)
     power = item.number_of("intensity", 1.0, 0)
     color = (r * power, g * power, b * power)
+    if not max(color) <= 3e38:  # single precision
+        item.fail(f"out of range: wanted color x intensity of at most 3e+38, got {max(color):g}")
     if kind == "directional":
         return DirectionalLight(color, name=name)
     reach = item.number_of("range", math.inf, above=0)

@@ -55,7 +55,12 @@ def merge(
     merged = join_ranges([r for r, _ in ranges])
     drawn = sum(end - begin for begin, end in merged)
     count = int(total.bad_sample_count)
-    metadata = {**first.metadata, "samples": drawn, "bad_samples": count}
+    metadata = {
+        **first.metadata,
+        "samples": drawn,
+        "bad_samples": count,
+        "bad_sample_places": [list(place) for place in total.bad_samples],
+    }
     state = {name: total.state(name) for name in total.state_channels()}
     frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
     return frame, Pass(state, merged, first.key, metadata)

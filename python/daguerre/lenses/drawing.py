@@ -1,8 +1,9 @@
-"""A lens as a plain SVG: elements, stop, film and a few rays."""
+"""A lens in section: elements, stop, film and a few rays, as plain SVG."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -13,27 +14,89 @@ from .lens import DESIGN_WAVELENGTH_NM, Lens, LensSurface
 WIDTH = 760.0  # px
 AXIAL, OBLIQUE = "#c0392b", "#2471a3"
 
+Points = list[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A polyline through points (z, y), mm; width and dashes in px."""
+
+    points: Points
+    stroke: str
+    width: float
+    dash: str = ""
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A closed, filled outline of points (z, y), mm."""
+
+    points: Points
+    fill: str = "#7fb3d5"
+    stroke: str = "#1b4f72"
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What is drawn, from back to front, and the window: left to right, -top to top, mm."""
+
+    title: str
+    left: float
+    right: float
+    top: float
+    shapes: list[Line | Polygon]
+
 
 def draw(lens: Lens) -> str:
-    """The meridional section, object on the left."""
+    """The meridional section as SVG, object on the left."""
+    return to_svg(section(lens))
+
+
+def section(lens: Lens) -> Drawing:
+    """The meridional section: elements, stop, film and rays."""
     heights = _heights(lens)
     z = lens.vertices
     image_z = lens.image_z
-    paths = [*_elements(lens, z, heights), *_stop(lens, z, heights)]
     rays, low_z = _rays(lens, image_z)
     top = 1.15 * max(heights)
     left = min(low_z, -0.25 * top)
     right = image_z + 0.1 * top
     film = min(top, 21.6)
-    paths.append(_line([(image_z, -film), (image_z, film)], "#333", 1.5))
-    paths.insert(0, _line([(left, 0), (right, 0)], "#999", 0.6, "4 3"))
-    height = 2 * top * WIDTH / (right - left)
-    title = f"{escape(lens.name)} ({lens.first_order().efl:.1f} mm)"
-    body = "\n".join([*rays, *paths])
+    shapes: list[Line | Polygon] = [
+        *rays,
+        Line([(left, 0), (right, 0)], "#999999", 0.6, "4 3"),
+        *_elements(lens, z, heights),
+        *_stop(lens, z, heights),
+        Line([(image_z, -film), (image_z, film)], "#333333", 1.5),
+    ]
+    title = f"{lens.name} ({lens.first_order().efl:.1f} mm)"
+    return Drawing(title, left, right, top, shapes)
+
+
+def to_svg(drawing: Drawing) -> str:
+    """The drawing as an SVG document."""
+    left, top, span = drawing.left, drawing.top, drawing.right - drawing.left
+    body = "\n".join(_svg_shape(shape) for shape in drawing.shapes)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH:.0f}" height="{height:.0f}" '
-        f'viewBox="{left:.3f} {-top:.3f} {right - left:.3f} {2 * top:.3f}">\n'
-        f"<title>{title}</title>\n{body}\n</svg>\n"
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH:.0f}" '
+        f'height="{2 * top * WIDTH / span:.0f}" '
+        f'viewBox="{left:.3f} {-top:.3f} {span:.3f} {2 * top:.3f}">\n'
+        f"<title>{escape(drawing.title)}</title>\n{body}\n</svg>\n"
+    )
+
+
+def _svg_shape(shape: Line | Polygon) -> str:
+    text = " ".join(f"{z:.3f},{-y:.3f}" for z, y in shape.points)
+    if isinstance(shape, Polygon):
+        return (
+            f'<polygon points="{text}" fill="{shape.fill}" fill-opacity="0.35" '
+            f'stroke="{shape.stroke}" stroke-width="1" vector-effect="non-scaling-stroke" '
+            'stroke-linejoin="round"/>'
+        )
+    dashes = f' stroke-dasharray="{shape.dash}"' if shape.dash else ""
+    return (
+        f'<polyline points="{text}" fill="none" stroke="{shape.stroke}" '
+        f'stroke-width="{shape.width}"{dashes} vector-effect="non-scaling-stroke"/>'
     )
 
 
@@ -48,7 +111,7 @@ def _heights(lens: Lens) -> list[float]:
     return out
 
 
-def _profile(surface: LensSurface, z: float, height: float) -> list[tuple[float, float]]:
+def _profile(surface: LensSurface, z: float, height: float) -> Points:
     """Points (z, y) from bottom to top."""
     y = np.linspace(-height, height, 41)
     c = 0.0 if surface.radius is None else 1 / surface.radius
@@ -56,29 +119,25 @@ def _profile(surface: LensSurface, z: float, height: float) -> list[tuple[float,
     return list(zip((z + sag).tolist(), y.tolist(), strict=True))
 
 
-def _elements(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[str]:
+def _elements(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[Polygon]:
     out = []
     for i in range(len(lens.surfaces) - 1):
         if lens.surfaces[i].core_glass.index(DESIGN_WAVELENGTH_NM) == 1:
             continue
         front = _profile(lens.surfaces[i], float(z[i]), heights[i])
         back = _profile(lens.surfaces[i + 1], float(z[i + 1]), heights[i + 1])
-        points = " ".join(f"{a:.3f},{-b:.3f}" for a, b in [*front, *reversed(back)])
-        out.append(
-            f'<polygon points="{points}" fill="#7fb3d5" fill-opacity="0.35" stroke="#1b4f72" '
-            'stroke-width="1" vector-effect="non-scaling-stroke" stroke-linejoin="round"/>'
-        )
+        out.append(Polygon([*front, *reversed(back)]))
     return out
 
 
-def _stop(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[str]:
+def _stop(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[Line]:
     i = next(k for k, s in enumerate(lens.surfaces) if s.stop)
     edge, outer = heights[i], 1.08 * max(heights)
     at = float(z[i])
-    return [_line([(at, side * edge), (at, side * outer)], "#000", 2.5) for side in (-1, 1)]
+    return [Line([(at, side * edge), (at, side * outer)], "#000000", 2.5) for side in (-1, 1)]
 
 
-def _rays(lens: Lens, image_z: float) -> tuple[list[str], float]:
+def _rays(lens: Lens, image_z: float) -> tuple[list[Line], float]:
     """Parallel fans on the axis and under half of the field, through the entrance pupil."""
     order = lens.first_order()
     pupil, radius = order.entrance_pupil.z, 0.5 * order.entrance_pupil.diameter
@@ -97,14 +156,5 @@ def _rays(lens: Lens, image_z: float) -> tuple[list[str], float]:
                 continue
             end = lens.trace(origin, direction, image_z=image_z)
             points = [origin[0], *path, end[0]]
-            out.append(_line([(float(p[2]), float(p[1])) for p in points], colour, 0.8))
+            out.append(Line([(float(p[2]), float(p[1])) for p in points], colour, 0.8))
     return out, start
-
-
-def _line(points: list[tuple[float, float]], colour: str, width: float, dash: str = "") -> str:
-    text = " ".join(f"{a:.3f},{-b:.3f}" for a, b in points)
-    dashes = f' stroke-dasharray="{dash}"' if dash else ""
-    return (
-        f'<polyline points="{text}" fill="none" stroke="{colour}" stroke-width="{width}"'
-        f'{dashes} vector-effect="non-scaling-stroke"/>'
-    )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre import _core
+import daguerre._core as _core
 from daguerre.errors import InputError
 
 DESIGN_WAVELENGTH_NM = 587.5618

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any, NoReturn
 
-from daguerre import _core
+import daguerre._core as _core
 from daguerre.errors import InputError, suggest
 from daguerre.io.json_item import Item, clean
 

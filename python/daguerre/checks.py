@@ -1,0 +1,137 @@
+"""Checks of what users hand over: one clear error that names what, wanted and got."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import DaguerreError, InputError, UsageError
+
+
+def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.float32]:
+    """Finite numbers of shape (N, columns), float32."""
+    numbers = to_numbers(values, where, what, f"shape (N, {columns})")
+    if numbers.ndim != 2 or numbers.shape[1] != columns:
+        raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {numbers.shape}")
+    with np.errstate(over="ignore"):
+        single = np.ascontiguousarray(numbers, np.float32)
+    bad = np.flatnonzero(~np.isfinite(single).all(axis=1))
+    if bad.size:
+        raise InputError(
+            f"{where}: {what}[{bad[0]}]: wanted finite numbers, got {numbers[bad[0]].tolist()} "
+            f"({bad.size} such elements)"
+        )
+    return single
+
+
+def optional_array(
+    values: ArrayLike | None, where: str, what: str, columns: int, count: int
+) -> NDArray[np.float32] | None:
+    """As :func:`array`, with a given number of rows; None stays None."""
+    if values is None:
+        return None
+    numbers = array(values, where, what, columns)
+    if len(numbers) != count:
+        raise InputError(f"{where}: {what}: wanted {count} elements, got {len(numbers)}")
+    return numbers
+
+
+def to_numbers(values: Any, where: str, what: str, wanted: str) -> NDArray[Any]:
+    """A numeric array; what is none is named by its type."""
+    try:
+        numbers = np.asarray(values)
+    except ValueError:
+        raise InputError(f"{where}: {what}: wanted {wanted}, got rows of unequal length") from None
+    if numbers.dtype.kind not in "iufb":
+        raise InputError(f"{where}: {what}: wanted {wanted}, got {short(values)}")
+    return numbers
+
+
+def matrix(transform: Any, where: str) -> NDArray[np.float64]:
+    """A finite transform (4, 4); None is the identity."""
+    if transform is None:
+        return np.eye(4)
+    numbers = to_numbers(transform, where, "transform", "shape (4, 4)").astype(np.float64)
+    if numbers.shape != (4, 4):
+        raise InputError(f"{where}: transform: wanted shape (4, 4), got {numbers.shape}")
+    if not np.isfinite(numbers).all():
+        raise InputError(f"{where}: transform: wanted finite numbers, got {numbers.tolist()}")
+    return numbers
+
+
+def color(
+    value: Any, where: str, error: type[DaguerreError] = InputError
+) -> tuple[float, float, float]:
+    """Three finite numbers of at least 0."""
+    try:
+        r, g, b = (float(v) for v in value)
+    except (TypeError, ValueError):
+        raise error(f"{where}: wanted three numbers, got {short(value)}") from None
+    if not all(0 <= v < math.inf for v in (r, g, b)):
+        raise error(f"{where}: wanted three finite numbers of at least 0, got {short(value)}")
+    return r, g, b
+
+
+def number(
+    value: Any,
+    where: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    above: float | None = None,
+    infinite: bool = False,
+    error: type[DaguerreError] = UsageError,
+) -> float:
+    """A number in [low, high], or above ``above``; infinite only if that is allowed."""
+    wanted = "a number" if low == -math.inf else f"a number of at least {low:g}"
+    if above is not None:
+        wanted = f"a number above {above:g}"
+    if high < math.inf:
+        wanted += f" and at most {high:g}"
+    if isinstance(value, str | bytes | bool):
+        raise error(f"{where}: wanted {wanted}, got {short(value)}")
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise error(f"{where}: wanted {wanted}, got {short(value)}") from None
+    fits = result >= low if above is None else result > above
+    if math.isinf(result) and infinite:
+        fits = result > 0
+    elif not math.isfinite(result) or result > high:
+        fits = False
+    if not fits:
+        raise error(f"{where}: wanted {wanted}, got {value}")
+    return result
+
+
+def numbers(value: Any, where: str, count: int, wanted: str) -> tuple[float, ...]:
+    """``count`` finite numbers."""
+    try:
+        result = tuple(float(v) for v in value)
+    except (TypeError, ValueError):
+        raise UsageError(f"{where}: wanted {wanted}, got {short(value)}") from None
+    if len(result) != count or not all(math.isfinite(v) for v in result):
+        raise UsageError(f"{where}: wanted {wanted}, got {short(value)}")
+    return result
+
+
+def whole(value: Any, where: str, low: int, high: int, bounds: str | None = None) -> int:
+    """An integer of any kind in [low, high]."""
+    wanted = bounds or f"{low} .. {high}"
+    try:
+        result = operator.index(value)
+    except TypeError:
+        raise UsageError(f"{where}: wanted a whole number, {wanted}, got {short(value)}") from None
+    if not low <= result <= high:
+        raise UsageError(f"{where}: wanted {wanted}, got {result}")
+    return result
+
+
+def short(value: Any, length: int = 60) -> str:
+    """The value as text that fits into a message."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= length else text[: length - 3] + "..."
