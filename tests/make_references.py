@@ -210,9 +210,15 @@ def build(description: Description) -> mi.Scene:
     return mi.load_dict(scene)
 
 
-def rounded(values: Any) -> list[float]:
-    """Five significant digits, row by row."""
-    return [float(f"{v:.5g}") for v in np.ravel(values)]
+def rounded(rows: Any) -> list[list[float]]:
+    """Five significant digits."""
+    return [[float(f"{v:.5g}") for v in row] for row in rows]
+
+
+def as_text(data: dict[str, Any]) -> str:
+    """JSON with a line for each key and each row of pixels."""
+    text = json.dumps(data, separators=(",", ":"))
+    return text.replace(',"', ',\n"').replace("],[", "],\n[") + "\n"
 
 
 def main() -> None:
@@ -233,8 +239,8 @@ def main() -> None:
             "mean": rounded(pictures.mean(axis=0)),
             "variance_of_mean": rounded(pictures.var(axis=0, ddof=1) / BATCHES),
         }
-        text = json.dumps(header, separators=(",", ":")).replace(',"', ',\n"')
-        (FOLDER / f"{name}.json").write_text(text + "\n")
+        text = as_text(header)
+        (FOLDER / f"{name}.json").write_text(text)
         error = np.sqrt(pictures.mean(axis=(1, 2)).var(ddof=1) / BATCHES)
         print(f"{name}: mean {pictures.mean():.5f} +- {error:.1e}, {len(text)} bytes", flush=True)
 
