@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::array<const char*, 4> kNames{"box", "gaussian", "blackman_harris",
                                             "mitchell"};
-constexpr int kSteps = 256;
 
 /// exp(-x^2 / 2 s^2) with s = radius / 3, lowered to end at 0.
 double gaussian(double x) {
@@ -57,8 +56,8 @@ double shape(FilterKind kind, double x) {
 }
 
 /// Mean of the formula over step i, by Simpson's rule.
-double step_mean(FilterKind kind, int i) {
-    const double a = 2.0 * i / kSteps - 1, b = 2.0 * (i + 1) / kSteps - 1;
+double step_mean(FilterKind kind, int i, int steps) {
+    const double a = 2.0 * i / steps - 1, b = 2.0 * (i + 1) / steps - 1;
     return (shape(kind, a) + 4 * shape(kind, (a + b) / 2) + shape(kind, b)) / 6;
 }
 
@@ -76,14 +75,15 @@ float default_radius(FilterKind kind) {
     return kind == FilterKind::mitchell ? 2.f : 1.5f;
 }
 
-Filter::Filter(FilterKind kind, float radius) : kind_(kind), radius_(radius) {
+Filter::Filter(FilterKind kind, float radius)
+    : kind_(kind), radius_(radius), steps_per_px_(kSteps / (2 * radius)) {
     if (!(radius > 0 && radius <= 16))
         throw input_error("filter", "radius", "more than 0 and at most 16 px",
                           std::to_string(radius));
     std::vector<double> values(kSteps), magnitudes(kSteps);
     double sum = 0, absolute = 0;
     for (int i = 0; i < kSteps; ++i) {
-        values[i] = step_mean(kind, i);
+        values[i] = step_mean(kind, i, kSteps);
         magnitudes[i] = std::abs(values[i]);
         sum += values[i];
         absolute += magnitudes[i];
@@ -93,12 +93,6 @@ Filter::Filter(FilterKind kind, float radius) : kind_(kind), radius_(radius) {
     absolute_ = absolute / sum;
     for (const double v : values) table_.push_back(float(v / (sum * step)));
     magnitude_ = DiscreteDistribution(std::span<const double>(magnitudes));
-}
-
-float Filter::axis(float x) const {
-    const float t = (x + radius_) / (2 * radius_);
-    if (!(t >= 0 && t < 1)) return 0;
-    return table_[int(t * kSteps)];
 }
 
 FilterSample Filter::sample(Vec2f u) const {

@@ -34,6 +34,12 @@ class Filter {
     FilterSample sample(Vec2f u) const;
     /// Of unit integral; 0 outside.
     float evaluate(Vec2f offset) const { return axis(offset.x) * axis(offset.y); }
+    /// Its factor along one axis.
+    float axis(float x) const {
+        const float t = (x + radius_) * steps_per_px_;
+        if (!(t >= 0 && t < float(kSteps))) return 0;
+        return table_[int(t)];
+    }
 
     FilterKind kind() const { return kind_; }
     float radius() const { return radius_; }
@@ -43,10 +49,10 @@ class Filter {
     double absolute_integral() const { return absolute_ * absolute_; }
 
   private:
-    float axis(float x) const;
+    static constexpr int kSteps = 256;
 
     FilterKind kind_;
-    float radius_;
+    float radius_, steps_per_px_;
     double integral_ = 0, absolute_ = 1;
     std::vector<float> table_;        // unit integral along one axis
     DiscreteDistribution magnitude_;  // |table|

@@ -23,9 +23,16 @@ void for_each_pixel(const Filter& filter, const FilmLayout& region, Vec2f px, Vi
 float FilmDensity::absolute_integral() const { return filter_.absolute_integral(); }
 
 float FilmDensity::total(Vec2f px) const {
-    float sum = 0;
-    for_each_pixel(filter_, region_, px, [&](Pixel, float f) { sum += f; });
-    return sum;
+    const auto along = [&](float at, int first, int count) {
+        const float r = filter_.radius();
+        const int end = std::min(int(std::floor(at + r)), first + count - 1);
+        float sum = 0;
+        for (int i = std::max(int(std::floor(at - r)), first); i <= end; ++i)
+            sum += std::abs(filter_.axis(at - i - 0.5f));
+        return sum;
+    };
+    return along(px.x, region_.offset_x, region_.width) *
+           along(px.y, region_.offset_y, region_.height);
 }
 
 float FilmDensity::of(Vec2f px, Pixel p) const {
