@@ -1,12 +1,13 @@
 #include "render/render.h"
 
-#include <oneapi/tbb/blocked_range2d.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "render/dispersion.h"
@@ -182,6 +183,10 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
                            std::min(y + kTileSize, y0 + region.height));
         if (progress && !progress(double(++done) / (columns * rows))) stop = true;
     };
+    // TBB keeps to the number of cores unless more is allowed.
+    std::optional<oneapi::tbb::global_control> allowed;
+    if (settings.threads > oneapi::tbb::this_task_arena::max_concurrency())
+        allowed.emplace(oneapi::tbb::global_control::max_allowed_parallelism, settings.threads);
     oneapi::tbb::task_arena arena(settings.threads > 0 ? settings.threads
                                                        : oneapi::tbb::task_arena::automatic);
     arena.execute([&] {
