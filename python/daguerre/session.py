@@ -227,7 +227,8 @@ class Session:
             "scene": content_hash(self.scene),
             "camera": _hash_json(self._setup.facts),
             "settings": _hash_json(self._identity),
-            "build": f"{_core.__version__} {platform.machine()} {self._core_scene.intersector}",
+            "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
+            f"{self._core_scene.intersector}",
         }
 
     @property
