@@ -1,4 +1,4 @@
-// warp.h -- maps of the unit square to discs, triangles, directions and irises, with
+// warp.h -- maps of the unit square to discs, triangles and directions, with
 // their densities. Each is continuous or nearly so, so that stratified points stay
 // stratified.
 #pragma once

@@ -9,7 +9,6 @@
 
 #include "math/error.h"
 #include "math/hash.h"
-#include "math/polygon.h"
 #include "math/statistics.h"
 
 using namespace dg;
@@ -116,45 +115,4 @@ TEST_CASE("directions have unit length, also in a cone of a microradian") {
         CHECK(length(Vec2f{w.x, w.y}) ==
               doctest::Approx(1e-6 * std::sqrt(u.x)).epsilon(1e-4));
     }
-}
-
-TEST_CASE("irises are sampled evenly for every bend of the blades") {
-    for (const int blades : {3, 5, 8})
-        for (const double curvature : {-1.0, -0.4, 0.0, 1e-7, 0.5, 1.0}) {
-            CAPTURE(blades);
-            CAPTURE(curvature);
-            const CurvedPolygon iris(blades, 0.3, curvature);
-            CHECK(warp_p_value([&](Vec2f u) { return iris.sample(u); },
-                               [&](Vec2f p) { return iris.pdf(p); }, {-1, -1}, {1, 1},
-                               11) > 1e-4);
-        }
-}
-
-TEST_CASE(
-    "areas of irises: polygon, circle, mirrored segments; and continuous in the bend") {
-    for (const int n : {3, 6, 9}) {
-        const double polygon = 0.5 * n * std::sin(2 * kPiD / n);
-        CHECK(CurvedPolygon(n, 0, 0).area() == doctest::Approx(polygon).epsilon(1e-12));
-        CHECK(CurvedPolygon(n, 1, 1).area() == doctest::Approx(kPiD).epsilon(1e-12));
-        if (n > 3)
-            CHECK(CurvedPolygon(n, 1, -1).area() ==
-                  doctest::Approx(2 * polygon - kPiD).epsilon(1e-12));
-        double before = CurvedPolygon(n, 0, -1).area();
-        for (double c = -0.999; c < 1.0005; c += 0.001) {
-            const double area = CurvedPolygon(n, 0, std::min(c, 1.0)).area();
-            CHECK(area > before);
-            CHECK(area - before < 0.004);
-            before = area;
-        }
-    }
-}
-
-TEST_CASE("the first corner lies at the rotation, and corners on the unit circle") {
-    const CurvedPolygon iris(6, 0.2, 0);
-    CHECK(iris.contains({0.999f * std::cos(0.2f), 0.999f * std::sin(0.2f)}));
-    const float middle = 0.2f + kPi / 6;
-    CHECK_FALSE(iris.contains({0.9f * std::cos(middle), 0.9f * std::sin(middle)}));
-    CHECK_THROWS_AS(CurvedPolygon(2, 0, 0), Error);
-    CHECK_THROWS_AS(CurvedPolygon(5, 0, 1.5), Error);
-    CHECK_THROWS_AS(CurvedPolygon(5, 0, std::nan("")), Error);
 }
