@@ -511,3 +511,13 @@ def test_real_denoiser_lowers_the_error() -> None:
     noise = np.random.default_rng(1).exponential(1, (64, 64, 1)).astype(np.float32)
     frame = denoise(Frame(clean * noise))
     assert ((frame.rgb - clean) ** 2).mean() < 0.05 * ((clean * noise - clean) ** 2).mean()
+
+
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_a_reader_that_leaves_does_not_end_the_render(tmp_path: Path, stream: str) -> None:
+    flags = ["--json-progress"] if stream == "stdout" else []
+    run = ["render", "s.glb", "-o", str(tmp_path / "a.exr"), "--spp", "8", *flags, *SMALL]
+    with spawn(*run, seconds=0.05) as process:
+        getattr(process, stream).close()
+        assert process.wait(60) == 0
+    assert (tmp_path / "a.exr").exists()

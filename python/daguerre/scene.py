@@ -301,7 +301,8 @@ class Scene:
         """
         if name is None:
             if self.default_camera is None:
-                raise InputError(f"{self.path or 'scene'}: no camera in it; name a view yourself")
+                where = self.path or "scene"
+                raise InputError(f"{where}: cameras: wanted one, in the file or by add_camera")
             name = self.default_camera
         if name not in self.cameras:
             name = self.camera_aliases.get(name, name)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
 from collections.abc import Callable
+from typing import TextIO
 
 #: the arguments that this run was started with, without the program's name
 argv: list[str] = []
@@ -17,10 +19,18 @@ quiet = False
 def say(text: str) -> None:
     """A line on stderr, whatever ``--quiet`` says."""
     line = " ".join(text.split())
-    if writer is not None:
-        writer(line)
-    else:
-        print(line, file=sys.stderr, flush=True)
+    try:
+        if writer is not None:
+            writer(line)
+        else:
+            print(line, file=sys.stderr, flush=True)
+    except BrokenPipeError:
+        nobody_reads(sys.stderr)
+
+
+def nobody_reads(stream: TextIO) -> None:
+    """Whoever read this stream has gone; the picture is still wanted, words about it are not."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def note(text: str) -> None:

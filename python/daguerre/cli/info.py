@@ -134,20 +134,13 @@ def _print_json(
 ) -> None:
     from json import dumps
 
+    from daguerre.io.exr import without_infinity
+
     cameras = {
         name: {**asdict(one), "default": name == default, "warnings": warnings[name]}
         for name, one in facts.items()
     }
-    print(dumps(_no_infinity({**content, "cameras": cameras}), indent=2))
-
-
-def _no_infinity(value: Any) -> Any:
-    """JSON has no infinity; the text "inf" is read back by every float()."""
-    if isinstance(value, dict):
-        return {key: _no_infinity(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_no_infinity(inner) for inner in value]
-    return "inf" if isinstance(value, float) and math.isinf(value) else value
+    print(dumps(without_infinity({**content, "cameras": cameras}), indent=2))
 
 
 def _angles(angles: tuple[float, float, float]) -> str:

@@ -163,14 +163,14 @@ class Loop:
 
     def _draw(self, begin: int, end: int, signals: Signals) -> bool:
         """One pass, in a thread of its own: Python runs signal handlers in the main thread only."""
-        fraction = 0.0
+        fraction, given_up = 0.0, False
         result: list[bool] = []
         failure: list[BaseException] = []
 
         def progress(share: float) -> bool:
             nonlocal fraction
             fraction = share
-            return not _out_of_patience(signals)
+            return not (given_up or _out_of_patience(signals))
 
         def work() -> None:
             try:
@@ -180,12 +180,17 @@ class Loop:
 
         thread = threading.Thread(target=work, name="draw", daemon=True)
         thread.start()
-        while thread.is_alive():
-            thread.join(0.1)
-            if signals.stops and not signals.answered:
-                signals.answered = True
-                console.note("stopping after this pass; Ctrl-C again stops at once")
-            self._report(end - begin, fraction)
+        try:
+            while thread.is_alive():
+                thread.join(0.1)
+                if signals.stops and not signals.answered:
+                    signals.answered = True
+                    console.note("stopping after this pass; Ctrl-C again stops at once")
+                self._report(end - begin, fraction)
+        finally:
+            # Python must not end while the core draws.
+            given_up = True
+            thread.join()
         if failure:
             raise failure[0]
         return result[0]

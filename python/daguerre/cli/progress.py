@@ -88,7 +88,10 @@ class JsonLines(Silent):
 
     def event(self, name: str, **facts: Any) -> None:
         """Prints one object."""
-        print(json.dumps({"event": name, **facts}), flush=True)
+        try:
+            print(json.dumps({"event": name, **facts}), flush=True)
+        except BrokenPipeError:
+            console.nobody_reads(sys.stdout)
 
 
 class Bar(Silent):

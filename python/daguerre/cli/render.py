@@ -168,7 +168,7 @@ def _session(scene: Any, camera: Any, plan: Plan, settings: dict[str, Any]) -> S
 
 def _describe(plan: Plan, session: Session, scene_path: Path) -> None:
     """What would be drawn, on stdout."""
-    from daguerre.io.exr import jsonable
+    from daguerre.io.exr import jsonable, without_infinity
 
     facts = {
         "scene": str(scene_path),
@@ -180,4 +180,4 @@ def _describe(plan: Plan, session: Session, scene_path: Path) -> None:
         "camera": session.metadata.get("camera"),
         "key": session.key,
     }
-    print(json.dumps(facts, indent=2, default=jsonable))
+    print(json.dumps(without_infinity(facts), indent=2, default=jsonable))

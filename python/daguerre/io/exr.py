@@ -71,7 +71,8 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
         places = known["bad_sample_places"]
         header["daguerre:bad_sample_places"] = json.dumps(places, default=jsonable)
     if "camera" in known:
-        header["daguerre:camera"] = json.dumps(known["camera"], sort_keys=True, default=jsonable)
+        camera = without_infinity(known["camera"])
+        header["daguerre:camera"] = json.dumps(camera, sort_keys=True, default=jsonable)
     return header
 
 
@@ -119,6 +120,15 @@ def write_parts(
         except (RuntimeError, OSError) as error:
             reason = str(error).replace(str(temp), str(path))
             raise OutputError(f"{path}: cannot write: {reason}") from error
+
+
+def without_infinity(value: Any) -> Any:
+    """JSON has no infinity; the text "inf" is read back by every float()."""
+    if isinstance(value, dict):
+        return {key: without_infinity(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_infinity(inner) for inner in value]
+    return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
 def jsonable(value: Any) -> Any:

@@ -78,7 +78,7 @@ class Accessors:
             if bad.size:
                 use.fail(
                     f"{what} {bad[0]}: wanted finite numbers, got {array[bad[0]].tolist()} "
-                    f"({bad.size} such {what}s)"
+                    f"({bad.size} such)"
                 )
         values = np.array(array, np.float32)
         if normalized and component != 5126:
