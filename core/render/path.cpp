@@ -1,6 +1,8 @@
 #include "render/path.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace dg {
 namespace {
@@ -110,6 +112,11 @@ void record_first_hit(const Scene& scene, const SurfaceHit& hit, AovSample& aov)
     aov.object_id = hit.instance + 1;
 }
 
+bool is_finite(const Ray& ray) {
+    const Vec3f o = ray.origin, d = ray.direction;
+    return std::isfinite(o.x + o.y + o.z + d.x + d.y + d.z);
+}
+
 /// False: the path ends. Only paths that carry less than kRouletteThreshold are at stake (without the
 /// 1/eta^2 of radiance inside glass): ending stronger ones saves little and was measured to cost more
 /// noise than time. What survives is raised by what was ended, so that the mean does not change.
@@ -132,6 +139,8 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
     walk.previous = ray.origin;
     std::uint64_t rays = 0;
     for (int vertex = 0;; ++vertex) {
+        if (!is_finite(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
+            return Spectrum(std::numeric_limits<float>::quiet_NaN());
         ++rays;
         auto found = scene.intersect(walk.ray);
         if (!found) {

@@ -87,6 +87,18 @@ TEST_CASE("a path of limited depth leaves out exactly the later bounces") {
     }
 }
 
+TEST_CASE("a ray that is no ray becomes a bad sample, not a crash") {
+    const auto scene = furnace(shining(0.5f, 1));
+    PathSampler sampler(0, 0, 0, 0);
+    Wavelengths wavelengths = Wavelengths::sample(0.5f);
+    Ray ray;
+    ray.direction = {std::nanf(""), 0, 1};
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr)[0]));
+    ray.direction = {0, 0, 1};
+    ray.origin = {0, std::numeric_limits<float>::infinity(), 0};
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr)[0]));
+}
+
 TEST_CASE("the same numbers give the same radiance") {
     const auto scene = furnace(shining(0.5f, 1));
     CHECK(look(*scene, {}, 1000).mean == look(*scene, {}, 1000).mean);

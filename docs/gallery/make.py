@@ -44,7 +44,9 @@ PICTURES = [
         NIGHT,
         f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
     ),
-    Picture("pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 64 --denoise"),
+    Picture(
+        "pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 64 --denoise"
+    ),
     Picture(
         "focus_far",
         "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",

@@ -63,6 +63,8 @@ def __getattr__(name: str) -> Any:
 def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path] = ()) -> Scene:
     """Reads a scene file (.glb or .gltf) at a time in seconds.
 
+    A file without a camera gets one, named ``framing``, that has everything in view.
+
     Args:
         path: The file.
         time: Where the animations are evaluated, s.
@@ -71,9 +73,14 @@ def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it.
     """
+    from .framing import frame_everything
     from .io import gltf
 
     suffix = Path(path).suffix.lower()
     if suffix not in (".glb", ".gltf"):
         raise InputError(f"{path}: format: wanted .glb or .gltf, got {suffix or 'no suffix'}")
-    return gltf.read(path, time=time, allow_dirs=allow_dirs)
+    scene = gltf.read(path, time=time, allow_dirs=allow_dirs)
+    if not scene.cameras and (camera := frame_everything(scene)) is not None:
+        scene.add_camera("framing", camera)
+        scene.warnings.append("no camera in the file; 'framing' has everything in view")
+    return scene
