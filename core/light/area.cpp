@@ -1,7 +1,7 @@
 // area.cpp -- lights with an extent: spheres and triangles.
 #include "light/emitter.h"
 #include "light/emitter_check.h"
-#include "math/warp.h"
+#include "light/triangle_sampler.h"
 
 namespace dg {
 namespace {
@@ -24,16 +24,10 @@ VisibleDisc visible_disc(const Sphere& sphere, Vec3f position) {
     return v;
 }
 
-/// Along the front side; twice the area long.
-Vec3f front_normal(const TriangleLight& t) {
-    const Vec3f n = cross(t.b - t.a, t.c - t.a);
-    return t.mirrored ? -n : n;
-}
-
 }  // namespace
 
 float triangle_area(const TriangleLight& light) {
-    return 0.5f * length(front_normal(light));
+    return TriangleSampler(light).area;
 }
 
 void check_emitter(const SphereLight& light, const std::string& where) {
@@ -60,7 +54,7 @@ LightBounds emitter_bounds(const SphereLight& light) {
 }
 
 LightBounds emitter_bounds(const TriangleLight& light) {
-    const Vec3f n = front_normal(light);
+    const Vec3f n = TriangleSampler(light).normal;
     LightBounds b;
     b.min = {std::min({light.a.x, light.b.x, light.c.x}),
              std::min({light.a.y, light.b.y, light.c.y}),
@@ -104,27 +98,15 @@ float emitter_pdf(const SphereLight& light, Vec3f position) {
     return v.inside ? warp_sphere_pdf() : warp_cone_pdf(v.one_minus_cos);
 }
 
-/// Uniform over the area.
 std::optional<EmitterSample> sample_emitter(const TriangleLight& light, Vec2f u,
                                             Vec3f position) {
-    const Vec2f b = warp_triangle(u);
-    const Vec3f to =
-        light.a + (light.b - light.a) * b.x + (light.c - light.a) * b.y - position;
-    const float d2 = length_squared(to);
-    if (!(d2 > 0)) return std::nullopt;
-    const float d = std::sqrt(d2);
-    const Vec3f wi = to * (1 / d), n = front_normal(light);
-    const float cos_times_2_area = -dot(wi, n);
-    if (light.two_sided ? cos_times_2_area == 0 : cos_times_2_area <= 0)
-        return std::nullopt;
-    const float pdf = d2 / (0.5f * std::abs(cos_times_2_area));
-    if (!std::isfinite(pdf)) return std::nullopt;
-    return EmitterSample{wi, d, light.mean_luminance, pdf, false, b};
+    EmitterSample sample;
+    if (!TriangleSampler(light).sample(u, position, sample)) return std::nullopt;
+    return sample;
 }
 
 float emitter_pdf(const TriangleLight& light, float t, float cos_light) {
-    const float projected = std::abs(cos_light) * triangle_area(light);
-    return projected > 0 ? t * t / projected : 0;
+    return TriangleSampler(light).pdf(t, cos_light);
 }
 
 }  // namespace dg

@@ -3,6 +3,7 @@
 
 #include "light/emitter.h"
 #include "light/emitter_check.h"
+#include "light/triangle_sampler.h"
 
 namespace dg {
 namespace {
@@ -20,6 +21,11 @@ const char* kind_name(const Light& light) {
 }
 
 }  // namespace
+
+LightSet::LightSet() = default;
+LightSet::~LightSet() = default;
+LightSet::LightSet(LightSet&&) noexcept = default;
+LightSet& LightSet::operator=(LightSet&&) noexcept = default;
 
 LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment)
     : lights_(std::move(lights)), environment_(std::move(environment)) {
@@ -50,12 +56,15 @@ void LightSet::build_groups() {
         tree_index_[i] = static_cast<std::int32_t>(bounds.size());
         tree_lights_.push_back(static_cast<std::uint32_t>(i));
         bounds.push_back(b);
+        const auto* triangle = std::get_if<TriangleLight>(&lights_[i]);
+        triangles_.push_back(triangle ? TriangleSampler(*triangle) : TriangleSampler());
     }
     tree_ = LightTree(bounds);
 
-    // An even sky is left to the BSDF: following its lobe is already sampling in proportion to the light,
-    // and every shadow ray goes to a light that needs one.
-    if (environment_ && !environment_->is_constant() && environment_->mean_luminance() > 0) {
+    // An even sky is left to the BSDF: following its lobe is already sampling in
+    // proportion to the light, and every shadow ray goes to a light that needs one.
+    if (environment_ && !environment_->is_constant() &&
+        environment_->mean_luminance() > 0) {
         infinite_lights_.push_back(kEnvironment);
         weights.push_back(kPiD *
                           environment_->mean_luminance());  // E = pi L under an even sky
@@ -103,7 +112,12 @@ void LightSet::build_lookup() {
 float LightSet::infinite_probability(Vec3f position) const {
     if (infinite_.empty()) return 0;
     if (tree_.empty()) return 1;
-    const float local = tree_.importance(position);
+    return infinite_share(tree_.importance(position));
+}
+
+/// Among all lights, where those nearby bring `local` lux.
+float LightSet::infinite_share(float local) const {
+    if (infinite_.empty()) return 0;
     if (!(local > 0)) return 1;
     const float share = infinite_illuminance_ / (infinite_illuminance_ + local);
     return std::clamp(share, kLeastShare, 1 - kLeastShare);
@@ -118,45 +132,61 @@ float LightSet::local_probability(Vec3f position, std::size_t light) const {
 std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f position,
                                             const Wavelengths& wavelengths) const {
     if (empty()) return std::nullopt;
-    const float p_infinite = infinite_probability(position);
-    std::int64_t chosen;
-    float probability;
+    LightTree::Weights weights;
+    weights.sum = 0;
+    if (!tree_.empty()) weights = tree_.weigh(position);
+    const float p_infinite = infinite_share(weights.sum);
     if (u_select < p_infinite) {
-        const DiscreteSample s =
-            infinite_.sample(std::min(u_select / p_infinite, 0x1.fffffep-1f));
-        chosen = infinite_lights_[s.index];
-        probability = p_infinite * s.pmf;
-    } else {
-        const float rest = (u_select - p_infinite) / (1 - p_infinite);
-        const auto choice = tree_.sample(position, std::min(rest, 0x1.fffffep-1f));
-        if (!choice) return std::nullopt;
-        chosen = tree_lights_[choice->light];
-        probability = (1 - p_infinite) * choice->probability;
+        const float rest = std::min(u_select / p_infinite, 0x1.fffffep-1f);
+        return sample_infinite(rest, p_infinite, u, wavelengths);
     }
+    const float rest = (u_select - p_infinite) / (1 - p_infinite);
+    const auto choice = tree_.sample(weights, position, std::min(rest, 0x1.fffffep-1f));
+    if (!choice) return std::nullopt;
+    const std::uint32_t light = tree_lights_[choice->light];
+    const TriangleSampler& triangle = triangles_[choice->light];
+    EmitterSample s;
+    if (triangle.area > 0) {
+        if (!triangle.sample(u, position, s)) return std::nullopt;
+    } else {
+        const auto found =
+            std::visit([&](const auto& l) { return sample_emitter(l, u, position); },
+                       lights_[light]);
+        if (!found) return std::nullopt;
+        s = *found;
+    }
+    const bool is_triangle = triangle.area > 0;
+    return LightSample{s.wi,
+                       s.distance,
+                       wavelengths.emission(s.value),
+                       s.pdf * ((1 - p_infinite) * choice->probability),
+                       s.delta,
+                       is_triangle ? std::int64_t(light) : -1,
+                       s.barycentric,
+                       is_triangle && !triangle.even};
+}
 
-    if (chosen == kEnvironment) {
+std::optional<LightSample> LightSet::sample_infinite(
+    float u_select, float p_infinite, Vec2f u, const Wavelengths& wavelengths) const {
+    const DiscreteSample choice = infinite_.sample(u_select);
+    const float probability = p_infinite * choice.pmf;
+    const std::int32_t light = infinite_lights_[choice.index];
+    LightSample sample{};
+    sample.distance = std::numeric_limits<float>::infinity();
+    if (light == kEnvironment) {
         const Environment::Sample s = environment_->sample(u);
         if (!(s.pdf > 0)) return std::nullopt;
-        return LightSample{s.direction,
-                           std::numeric_limits<float>::infinity(),
-                           environment_radiance(s.direction, wavelengths),
-                           s.pdf * probability,
-                           false,
-                           -1,
-                           {}};
+        sample.wi = s.direction;
+        sample.radiance = environment_radiance(s.direction, wavelengths);
+        sample.pdf = s.pdf * probability;
+        return sample;
     }
-    const Light& light = lights_[chosen];
-    const auto s =
-        std::visit([&](const auto& l) { return sample_emitter(l, u, position); }, light);
-    if (!s) return std::nullopt;
-    const bool triangle = std::holds_alternative<TriangleLight>(light);
-    return LightSample{s->wi,
-                       s->distance,
-                       wavelengths.emission(s->value),
-                       s->pdf * probability,
-                       s->delta,
-                       triangle ? chosen : -1,
-                       s->barycentric};
+    const auto s = sample_emitter(std::get<DirectionalLight>(lights_[light]), u, {});
+    sample.wi = s->wi;
+    sample.radiance = wavelengths.emission(s->value);
+    sample.pdf = s->pdf * probability;
+    sample.delta = true;
+    return sample;
 }
 
 float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
@@ -167,7 +197,9 @@ float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, fl
     const std::size_t light = triangle_slots_[slot];
     const auto& triangle = std::get<TriangleLight>(lights_[light]);
     if (triangle.instance != instance || triangle.primitive != primitive) return 0;
-    return emitter_pdf(triangle, t, cos_light) * local_probability(position, light);
+    if (tree_index_[light] == kNone) return 0;
+    return triangles_[tree_index_[light]].pdf(t, cos_light) *
+           local_probability(position, light);
 }
 
 float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position) const {

@@ -48,6 +48,8 @@ struct TriangleLight {
     bool two_sided;
     bool mirrored = false;  // the front is where a, b, c run clockwise (instance with
                             // determinant < 0)
+    bool even =
+        false;  // the side or sides that shine do so with mean_luminance everywhere
 };
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
@@ -61,10 +63,14 @@ struct LightSample {
                 // probability
     bool delta;
     /// Index of the triangle light in lights(), or -1, and where it was sampled (weights
-    /// of its second and third corner); the scene evaluates textured emission there.
+    /// of its second and third corner).
     std::int64_t triangle_light = -1;
     Vec2f barycentric;
+    /// The triangle does not shine evenly: the scene evaluates the emission there.
+    bool uneven = false;
 };
+
+struct TriangleSampler;
 
 /// All lights of a scene with the law by which one is chosen for a point: by an estimate
 /// of the illuminance that each brings there, so that neither a huge scene nor a near
@@ -72,14 +78,17 @@ struct LightSample {
 /// group, the rest a LightTree.
 class LightSet {
   public:
-    LightSet() = default;
+    LightSet();
+    ~LightSet();
+    LightSet(LightSet&&) noexcept;
+    LightSet& operator=(LightSet&&) noexcept;
     /// Throws Error naming light and value: not finite, negative colour, zero direction,
     /// radius or range not positive, angles of a spot out of order.
     LightSet(std::vector<Light> lights, std::optional<Environment> environment);
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
-    /// Radiance of triangle lights is mean_luminance here; LightSample::triangle_light
-    /// tells the caller to replace it by the textured value. Empty when the choice cannot
+    /// Radiance of triangle lights is mean_luminance here; LightSample::uneven tells the
+    /// caller to replace it by the textured value. Empty when the choice cannot
     /// light the position.
     std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position,
                                       const Wavelengths& wavelengths) const;
@@ -105,12 +114,16 @@ class LightSet {
     void build_groups();
     void build_lookup();
     float infinite_probability(Vec3f position) const;
+    float infinite_share(float local) const;
+    std::optional<LightSample> sample_infinite(float u_select, float p_infinite, Vec2f u,
+                                               const Wavelengths& wavelengths) const;
     float local_probability(Vec3f position, std::size_t light) const;
 
     std::vector<Light> lights_;
     std::optional<Environment> environment_;
     LightTree tree_;
     std::vector<std::uint32_t> tree_lights_;  // light by tree index
+    std::vector<TriangleSampler> triangles_;  // by tree index
     std::vector<std::int32_t> tree_index_;    // and back; kNone: dark
     DiscreteDistribution infinite_;
     std::vector<std::int32_t> infinite_lights_;  // light, or kEnvironment

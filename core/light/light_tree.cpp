@@ -1,24 +1,17 @@
 // light_tree.cpp -- building the tree of lights, and choosing from it.
 #include "light/light_tree.h"
 
-#include <array>
+#include <cstring>
 #include <numeric>
 
 namespace dg {
 namespace {
 
-// The root alone knows too little when lights surround the point, so the first choice is
-// made among the nodes of a cut through the tree.
-constexpr std::size_t kCutSize = 8;
 // Rounding must not turn a light off at the very edge of its cone.
 constexpr float kCosineSlack = 1e-3f;
 
-/// cos(max(0, a - b)) from the cosines and sines of two angles in [0, pi].
-float cos_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
-    return cos_a > cos_b ? 1.f : cos_a * cos_b + sin_a * sin_b;
-}
-float sin_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
-    return cos_a > cos_b ? 0.f : sin_a * cos_b - cos_a * sin_b;
+float larger(float a, float b) {  // by value, so that loops over it become SIMD
+    return a > b ? a : b;
 }
 
 float sine(float cosine) {
@@ -73,18 +66,20 @@ LightTree::LightTree(std::span<const LightBounds> lights) : leaf_of_(lights.size
     LightBounds all;
     build(lights, order, all);
     choose_cut();
+    pack_cut();
 }
 
 LightTree::Node LightTree::make_node(const LightBounds& b) {
     Node n;
     n.center = (b.min + b.max) * 0.5f;
     n.radius2 = length_squared(b.max - b.min) * 0.25f;
+    n.radius = std::sqrt(n.radius2);
     n.axis = b.axis;
     n.cos_spread = std::cos(b.spread);
     n.sin_spread = sine(n.cos_spread);
     n.cos_falloff = std::cos(b.falloff);
     n.intensity = b.intensity;
-    n.two_sided = b.two_sided;
+    n.back = b.two_sided ? -1.f : 1.f;
     return n;
 }
 
@@ -126,7 +121,9 @@ std::int32_t LightTree::build(std::span<const LightBounds> lights,
     return index;
 }
 
-/// Opens the node that is largest for its light, until the cut is full.
+/// The root alone knows too little when lights surround the point, so the first choice is
+/// made among the nodes of a cut through the tree. Opens the node that is largest for its
+/// light, until the cut is full.
 void LightTree::choose_cut() {
     cut_ = {0};
     while (cut_.size() < kCutSize) {
@@ -144,53 +141,92 @@ void LightTree::choose_cut() {
     for (std::int32_t n : cut_) nodes_[n].in_cut = true;
 }
 
+void LightTree::pack_cut() {
+    for (std::size_t i = 0; i < cut_.size(); ++i) {
+        const Emission& e = nodes_[cut_[i]];
+        float values[sizeof(Emission) / sizeof(float)];
+        std::memcpy(values, &e, sizeof values);
+        for (std::size_t k = 0; k < std::size(values); ++k) {
+            packed_[i / 4].of[k][i % 4] = values[k];
+        }
+    }
+}
+
 /// Upper bound of the cosine at the emitter over the box, times intensity, over squared
 /// distance; inside the sphere around the box the distance is not known better than its
-/// radius.
-float LightTree::Node::importance(Vec3f position) const {
-    const Vec3f to = position - center;
+/// radius. Without branches, for four nodes at once.
+inline float LightTree::estimate(const Emission& e, Vec3f position) {
+    // Cosines and sines are all times the distance, so that the three roots wait for
+    // nothing but d2, and not for each other.
+    const Vec3f to = position - e.center;
     const float d2 = length_squared(to);
-    const float strength = intensity / std::max(std::max(d2, radius2), 1e-20f);
-    if (cos_spread <= -1 || d2 <= radius2) return strength;
-    const float inverse_d = 1 / std::sqrt(d2);
-    float cos_axis = dot(axis, to) * inverse_d;
-    if (two_sided) cos_axis = std::abs(cos_axis);
-    const float sin_axis = sine(cos_axis);
+    const float inverse_d2 = 1 / larger(larger(d2, e.radius2), 1e-20f);
+    const float d = std::sqrt(d2);
+    const float along = dot(e.axis, to);
+    const float cos_axis = larger(along, along * e.back);
+    const float sin_axis = std::sqrt(larger(d2 - cos_axis * cos_axis, 0.f));
+    const float cos_box = std::sqrt(larger(d2 - e.radius2, 0.f));
     // theta' = max(0, theta - spread - angle under which the sphere is seen)
-    const float cos_1 = cos_difference(cos_axis, sin_axis, cos_spread, sin_spread);
-    const float sin_1 = sin_difference(cos_axis, sin_axis, cos_spread, sin_spread);
-    const float sin_box = std::sqrt(radius2) * inverse_d;
-    const float cos_final = cos_difference(cos_1, sin_1, sine(sin_box), sin_box);
-    if (cos_final < cos_falloff - kCosineSlack) return 0;
-    return strength * std::max(cos_final, kCosineSlack);
+    const bool within = cos_axis > e.cos_spread * d;
+    const float cos_1 = within ? d : cos_axis * e.cos_spread + sin_axis * e.sin_spread;
+    const float sin_1 = within ? 0.f : sin_axis * e.cos_spread - cos_axis * e.sin_spread;
+    const float turned = (cos_1 * cos_box + sin_1 * e.radius) * inverse_d2;
+    const float cos_final = cos_1 > cos_box ? 1.f : turned;
+    const float strength = e.intensity * inverse_d2;
+    const float dimmed = strength * larger(cos_final, kCosineSlack);
+    const float facing = cos_final < e.cos_falloff - kCosineSlack ? 0.f : dimmed;
+    const bool anywhere = (e.cos_spread <= -1) | (d2 <= e.radius2);
+    return anywhere ? strength : facing;
 }
 
-float LightTree::importance(Vec3f position) const {
-    float sum = 0;
-    for (std::int32_t n : cut_) sum += nodes_[n].importance(position);
-    return sum;
+float LightTree::Node::importance(Vec3f position) const {
+    return estimate(*this, position);
 }
 
-std::optional<LightTree::Choice> LightTree::sample(Vec3f position, float u) const {
-    std::array<float, kCutSize> weights;
-    float sum = 0;
-    for (std::size_t i = 0; i < cut_.size(); ++i) {
-        sum += weights[i] = nodes_[cut_[i]].importance(position);
+LightTree::Weights LightTree::weigh(Vec3f position) const {
+    Weights weights;
+    for (std::size_t first = 0; first < cut_.size(); first += 4) {
+        const auto& n = packed_[first / 4].of;
+        for (int i = 0; i < 4; ++i) {
+            weights.of_cut[first + i] = estimate({{n[0][i], n[1][i], n[2][i]},
+                                                  n[3][i],
+                                                  n[4][i],
+                                                  {n[5][i], n[6][i], n[7][i]},
+                                                  n[8][i],
+                                                  n[9][i],
+                                                  n[10][i],
+                                                  n[11][i],
+                                                  n[12][i]},
+                                                 position);
+        }
     }
+    weights.sum = 0;
+    for (std::size_t i = 0; i < cut_.size(); ++i) weights.sum += weights.of_cut[i];
+    return weights;
+}
+
+std::optional<LightTree::Choice> LightTree::sample(const Weights& cut, Vec3f position,
+                                                   float u) const {
+    const auto& weights = cut.of_cut;
+    const float sum = cut.sum;
     if (!(sum > 0)) return std::nullopt;
 
-    float rest = u * sum;
-    std::size_t chosen = cut_.size();
-    for (std::size_t i = 0; i < cut_.size(); ++i) {
-        if (weights[i] <= 0) continue;
-        chosen = i;  // the last possible one, if rounding runs past the end
-        if (rest < weights[i]) break;
-        rest -= weights[i];
+    // Counted, not searched: which one it is cannot be foreseen by the processor.
+    const float target = u * sum;
+    float before = 0, below = 0;
+    std::size_t chosen = 0;
+    for (std::size_t i = 0; i + 1 < cut_.size(); ++i) {
+        below += weights[i];
+        const bool beyond = target >= below;
+        chosen += beyond;
+        before = beyond ? below : before;
     }
+    // Rounding may run past the last one that shines.
+    while (!(weights[chosen] > 0)) --chosen;
     float probability = weights[chosen] / sum;
-    u = std::min(rest / weights[chosen], 0x1.fffffep-1f);
-
     const Node* node = &nodes_[cut_[chosen]];
+    if (node->left < 0) return Choice{node->light, probability};
+    u = std::clamp((target - before) / weights[chosen], 0.f, 0x1.fffffep-1f);
     while (node->left >= 0) {
         const float left = nodes_[node->left].importance(position);
         const float right = nodes_[node->right].importance(position);

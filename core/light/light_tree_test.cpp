@@ -98,3 +98,29 @@ TEST_CASE("a near lamp wins over a far one") {
     CHECK(tree.probability({9, 0, 0}, 0) == doctest::Approx(1.0 / 82));
     CHECK(tree.importance({5, 0, 0}) == doctest::Approx(2.0 / 25));
 }
+
+TEST_CASE("importance: the formula in angles; a cut adds up its nodes") {
+    int compared = 0;
+    for (int n : {1, 3, 4, 5, 8}) {
+        const auto lights = random_lights(n);
+        for (int k = 0; k < 200; ++k) {
+            const Vec3f p = random_vector(4, k) * 20;
+            double sum = 0;
+            for (const LightBounds& b : lights) {
+                const Vec3d to = to_double(p - (b.min + b.max) * 0.5f);
+                const double d = length(to), r = length(to_double(b.max - b.min)) / 2;
+                double cosine = dot(to, to_double(b.axis)) / d;
+                if (b.two_sided) cosine = std::abs(cosine);
+                const double theta = std::max(
+                    0.0, std::acos(cosine) - double(b.spread) - std::asin(r / d));
+                const bool lit = b.spread >= kPi || theta < double(b.falloff);
+                const double slant = b.spread >= kPi ? 1 : std::cos(theta);
+                if (lit) sum += b.intensity / (d * d) * std::max(slant, 1e-3);
+            }
+            if (sum < 0.01) continue;  // at the edge of a cone the rounding decides
+            ++compared;
+            CHECK(LightTree(lights).importance(p) == doctest::Approx(sum).epsilon(0.01));
+        }
+    }
+    CHECK(compared > 200);
+}

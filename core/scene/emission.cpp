@@ -30,10 +30,31 @@ int texel_steps(const InstanceRecord& r, const GltfMaterial& m,
 struct Measured {
     Rgb mean{0, 0, 0};  // of the brighter side
     bool front = false, back = false;
+    bool even = false;  // the mean is what a ray finds, wherever light sampling looks
 };
+
+/// Neither emission nor opacity change from point to point.
+bool same_everywhere(const InstanceRecord& record, const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m) return true;
+    const bool opaque = m->alpha_mode == GltfMaterial::AlphaMode::opaque;
+    return !m->emissive_texture.used() &&
+           (opaque || (!m->base_color_texture.used() && !record.colors));
+}
 
 Measured measure(const InstanceRecord& record, const Material& material,
                  const std::vector<Texture>& textures, std::uint32_t primitive) {
+    if (same_everywhere(record, material)) {
+        const Vec2f anywhere{0, 0};
+        const Rgb front =
+            emission_at(record, material, textures, primitive, anywhere, true);
+        const Rgb back =
+            emission_at(record, material, textures, primitive, anywhere, false);
+        Measured m{front, max_component(front) > 0, max_component(back) > 0};
+        if (m.back && max_component(back) > max_component(front)) m.mean = back;
+        m.even = m.front && (!m.back || front == back);
+        return m;
+    }
     const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
     const bool textured = gltf && gltf->emissive_texture.used();
     const int wanted = textured ? texel_steps(record, *gltf, textures, primitive) : 2;
@@ -98,6 +119,7 @@ void append_emissive_triangles(const InstanceRecord& record, std::uint32_t insta
         if (!m.front && !m.back) continue;
         light.mean_luminance = m.mean;
         light.two_sided = m.back;
+        light.even = m.even;
         lights.push_back(light);
     }
 }

@@ -168,3 +168,35 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
     }
     CHECK(compared > 1000);
 }
+
+TEST_CASE("an even light needs no second look; a texture or a veil does") {
+    auto uneven = [](const GltfMaterial& material, bool colors) {
+        SceneDescription d = describe(ball_mesh(1), material);
+        if (colors)
+            d.meshes[0].colors.assign(d.meshes[0].positions.size(), {1, 1, 1, 0.5f});
+        const auto scene = Scene::build(d);
+        for (int i = 0; i < 1000; ++i) {
+            const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
+            const auto s = scene->sample_light(float(hash_uniform(3, i)), u, {3, 0, 0},
+                                               test_wavelengths());
+            if (!s) continue;
+            const float alpha = material.alpha_mode == GltfMaterial::AlphaMode::opaque
+                                    ? 1.f
+                                    : material.base_alpha * (colors ? 0.5f : 1.f);
+            const Spectrum expected = test_wavelengths().emission(Rgb{1, 2, 3} * alpha);
+            CHECK(s->triangle_light >= 0);
+            CHECK(s->radiance[0] == doctest::Approx(expected[0]).epsilon(1e-5));
+            return s->uneven;
+        }
+        FAIL("no sample");
+        return false;
+    };
+    GltfMaterial m;
+    m.emissive = {1, 2, 3};
+    CHECK_FALSE(uneven(m, false));
+    CHECK_FALSE(uneven(m, true));  // opaque: alpha is not looked at
+    m.alpha_mode = GltfMaterial::AlphaMode::blend;
+    m.base_alpha = 0.5f;
+    CHECK_FALSE(uneven(m, false));
+    CHECK(uneven(m, true));
+}

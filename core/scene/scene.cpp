@@ -163,7 +163,7 @@ bool Scene::occluded(Vec3f from, Vec3f to_direction, float distance, float time)
 std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
                                                const Wavelengths& wavelengths) const {
     auto sample = lights_.sample(u_select, u, position, wavelengths);
-    if (!sample || sample->triangle_light < 0) return sample;
+    if (!sample || !sample->uneven) return sample;
     const auto& light = std::get<TriangleLight>(lights_.lights()[sample->triangle_light]);
     const InstanceRecord& record = records_[light.instance];
     const Vec3f winding = cross(light.b - light.a, light.c - light.a);

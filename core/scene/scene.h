@@ -55,7 +55,7 @@ class Scene {
     }
     const std::vector<Texture>& textures() const { return description_.textures; }
     const LightSet& lights() const { return lights_; }
-    /// Light sampling with textured emission resolved (see LightSample::triangle_light).
+    /// Light sampling with textured emission resolved (see LightSample::uneven).
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
                                             const Wavelengths& wavelengths) const;
 

@@ -1,0 +1,51 @@
+// triangle_sampler.h -- a triangle light as the loop wants it: edges, normal and area are
+// found once, not at every sample.
+#pragma once
+#include "light/emitter.h"
+#include "math/warp.h"
+
+namespace dg {
+
+struct TriangleSampler {
+    Vec3f a, to_b, to_c;  // m
+    Vec3f normal;         // along the front side; twice the area long
+    Rgb luminance;        // cd/m2, mean
+    float area = 0;       // m2; 0: not a triangle
+    bool two_sided = false, even = false;
+
+    TriangleSampler() = default;
+    explicit TriangleSampler(const TriangleLight& t)
+        : a(t.a),
+          to_b(t.b - t.a),
+          to_c(t.c - t.a),
+          normal(cross(to_b, to_c)),
+          luminance(t.mean_luminance),
+          two_sided(t.two_sided),
+          even(t.even) {
+        if (t.mirrored) normal = -normal;
+        area = 0.5f * length(normal);
+    }
+
+    /// Uniform over the area. False where the point shows its dark side.
+    bool sample(Vec2f u, Vec3f position, EmitterSample& out) const {
+        const Vec2f b = warp_triangle(u);
+        const Vec3f to = a + to_b * b.x + to_c * b.y - position;
+        const float d2 = length_squared(to);
+        if (!(d2 > 0)) return false;
+        const float facing = -dot(to, normal);  // cos * distance * 2 area
+        if (two_sided ? facing == 0 : facing <= 0) return false;
+        const float d = std::sqrt(d2);
+        const Vec3f wi = to * (1 / d);
+        const float pdf = d2 * d / (0.5f * std::abs(facing));
+        if (!(pdf < std::numeric_limits<float>::infinity())) return false;
+        out = {wi, d, luminance, pdf, false, b};
+        return true;
+    }
+    /// Density per solid angle, for a point met at `t` metres.
+    float pdf(float t, float cos_light) const {
+        const float projected = std::abs(cos_light) * area;
+        return projected > 0 ? t * t / projected : 0;
+    }
+};
+
+}  // namespace dg
