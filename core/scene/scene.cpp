@@ -126,9 +126,12 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
 
 std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     const auto raw = intersector_->intersect(ray);
-    std::optional<Hit> result;
-    if (!raw) return result;
-    Hit& hit = result.emplace();
+    std::optional<Hit> result(std::in_place);  // the one object that is returned: no copy
+    if (!raw) {
+        result.reset();
+        return result;
+    }
+    Hit& hit = *result;
     hit.surface.wo = -ray.direction;
     hit.surface.t = raw->t;
     hit.surface.primitive = raw->primitive;

@@ -44,6 +44,7 @@ class Scene {
     struct Hit {
         SurfaceHit surface;
         std::int64_t sphere_light = -1;
+        Hit() {}  // written, so that nothing is cleared first and then set (measured)
     };
     std::optional<Hit> intersect(const Ray& ray) const;
     /// Is anything between `from` (as spawn_ray moved it) and the point at `distance`
