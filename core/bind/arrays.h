@@ -32,10 +32,6 @@ inline Affine3d to_affine(const Matrix4& m) {
     return {{p[0], p[4], p[8]}, {p[1], p[5], p[9]}, {p[2], p[6], p[10]}, {p[3], p[7], p[11]}};
 }
 
-inline Affine3f to_float(const Affine3d& a) {
-    return {dg::to_float(a.x), dg::to_float(a.y), dg::to_float(a.z), dg::to_float(a.origin)};
-}
-
 /// A numpy array that owns a vector; shape must multiply to its size.
 template <typename T>
 nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> values, std::initializer_list<std::size_t> shape) {

@@ -1,10 +1,16 @@
 // embree.cpp -- ray tracing by Embree, 3.13 or 4: the only file that includes it.
 //
 // One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world
-// space (flattened) or as an Embree instance of the mesh's own scene; geometry
+// space (flattened) or as a user geometry that traces the mesh's own scene; geometry
 // `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
 // stands between them.
+//
+// User geometries and not Embree's own instances, because those take the box of the
+// transformed box of the mesh, up to three times the surface of the true one for a turned
+// ball: rays enter many instances for nothing.
 #include <cstring>
+#include <deque>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <string>
@@ -58,6 +64,108 @@ struct Context {
     QueryContext embree;
     const Ray* ray;
 };
+
+struct WorldBounds {
+    Vec3f min, max;
+    Vec3f center;           // of the sphere around the middle of the box
+    float radius_squared;
+
+    /// Whether the ray (unit direction) comes near the sphere: most rays that enter the box of a
+    /// roundish thing pass it by, and a question to Embree costs ten times this one.
+    bool near(const RTCRay& ray) const {
+        const Vec3f d{ray.dir_x, ray.dir_y, ray.dir_z};
+        const Vec3f to = center - Vec3f{ray.org_x, ray.org_y, ray.org_z};
+        const Vec3f aside = to - d * dot(to, d);
+        return length_squared(aside) <= radius_squared;
+    }
+};
+
+/// Box and sphere of the transformed vertices, grown by the rounding of the two transforms.
+WorldBounds world_bounds(const Mesh& mesh, const Affine3f& world_from_local) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    WorldBounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, {}, 0};
+    float largest = 0;
+    for (const Vec3f& p : mesh.positions) {
+        const Vec3f q = world_from_local.point(p);
+        for (int k = 0; k < 3; ++k) {
+            b.min[k] = std::min(b.min[k], q[k]);
+            b.max[k] = std::max(b.max[k], q[k]);
+            largest = std::max(largest, std::abs(q[k]));
+        }
+    }
+    const float slack = 16 * 0x1p-24f * largest;
+    const Vec3f grow{slack, slack, slack};
+    b.min = b.min - grow;
+    b.max = b.max + grow;
+    b.center = (b.min + b.max) * 0.5f;
+    for (const Vec3f& p : mesh.positions) {
+        const float r2 = length_squared(world_from_local.point(p) - b.center);
+        b.radius_squared = std::max(b.radius_squared, r2);
+    }
+    const float radius = 1.0001f * std::sqrt(b.radius_squared) + 4 * slack;
+    b.radius_squared = radius * radius;
+    return b;
+}
+
+/// A mesh in its place; what the callbacks of a user geometry see.
+struct PlacedMesh {
+    RTCScene scene;             // of the mesh, in its own space
+    std::uint32_t id;           // of the instance
+    Affine3f local_from_world;
+    WorldBounds bounds;
+
+    RTCRay to_local(const RTCRay& ray) const {
+        const Vec3f o = local_from_world.point({ray.org_x, ray.org_y, ray.org_z});
+        const Vec3f d = local_from_world.vector({ray.dir_x, ray.dir_y, ray.dir_z});
+        RTCRay local = ray;     // t is the same in both spaces, as d is not normalised
+        local.org_x = o.x, local.org_y = o.y, local.org_z = o.z;
+        local.dir_x = d.x, local.dir_y = d.y, local.dir_z = d.z;
+        return local;
+    }
+    /// The context of a query inside, which tells hits and filters the instance.
+    Context inside(const void* outer) const {
+        Context context;
+        init_context(context.embree);
+        context.embree.instID[0] = id;
+        context.ray = static_cast<const Context*>(outer)->ray;
+        return context;
+    }
+};
+
+// Only single rays are traced, so N is 1 and the packets are plain structures.
+void bounds_of_placed(const RTCBoundsFunctionArguments* a) {
+    const WorldBounds& b = static_cast<const PlacedMesh*>(a->geometryUserPtr)->bounds;
+    RTCBounds& out = *a->bounds_o;
+    out.lower_x = b.min.x, out.lower_y = b.min.y, out.lower_z = b.min.z;
+    out.upper_x = b.max.x, out.upper_y = b.max.y, out.upper_z = b.max.z;
+}
+
+void intersect_placed(const RTCIntersectFunctionNArguments* a) {
+    if (a->valid[0] == 0) return;
+    const auto& placed = *static_cast<const PlacedMesh*>(a->geometryUserPtr);
+    auto& world = *reinterpret_cast<RTCRayHit*>(a->rayhit);
+    if (!placed.bounds.near(world.ray)) return;
+    Context context = placed.inside(a->context);
+    RTCRayHit local;
+    local.ray = placed.to_local(world.ray);
+    local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query(placed.scene, context.embree, local);
+    if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+    world.ray.tfar = local.ray.tfar;
+    world.hit = local.hit;
+    world.hit.instID[0] = placed.id;
+}
+
+void occlude_placed(const RTCOccludedFunctionNArguments* a) {
+    if (a->valid[0] == 0) return;
+    const auto& placed = *static_cast<const PlacedMesh*>(a->geometryUserPtr);
+    auto& world = *reinterpret_cast<RTCRay*>(a->ray);
+    if (!placed.bounds.near(world)) return;
+    Context context = placed.inside(a->context);
+    RTCRay local = placed.to_local(world);
+    query(placed.scene, context.embree, local);
+    if (local.tfar < 0) world.tfar = local.tfar;
+}
 
 /// Owners of Embree's handles.
 struct ReleaseDevice {
@@ -139,6 +247,7 @@ class EmbreeIntersector final : public Intersector {
     Device device_;
     CutoutFunction cutout_;
     std::vector<bool> flattened_;
+    std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
     std::map<std::pair<std::uint32_t, bool>, SceneOwner>
         mesh_scenes_;  // by mesh and cutout
     SceneOwner top_;
@@ -258,12 +367,16 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
         attach(top_.get(), std::move(geometry), id);
         return;
     }
-    GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    GeometryOwner geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
     device_.check("instance of mesh '" + mesh.name + "'");
-    rtcSetGeometryInstancedScene(geometry.get(), mesh_scene(instance, mesh));
-    // Affine3f is four columns of three floats: exactly this format.
-    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
-                            &instance.world_from_local);
+    const Affine3f local = to_float(inverse(to_double(instance.world_from_local)));
+    placed_.push_back({mesh_scene(instance, mesh), id, local,
+                       world_bounds(mesh, instance.world_from_local)});
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
+    rtcSetGeometryUserData(geometry.get(), &placed_.back());
+    rtcSetGeometryBoundsFunction(geometry.get(), &bounds_of_placed, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), &intersect_placed);
+    rtcSetGeometryOccludedFunction(geometry.get(), &occlude_placed);
     attach(top_.get(), std::move(geometry), id);
 }
 

@@ -37,6 +37,13 @@ Affine<T> inverse(const Affine<T>& a) {
     return r;
 }
 
+inline Affine<double> to_double(const Affine<float>& a) {
+    return {to_double(a.x), to_double(a.y), to_double(a.z), to_double(a.origin)};
+}
+inline Affine<float> to_float(const Affine<double>& a) {
+    return {to_float(a.x), to_float(a.y), to_float(a.z), to_float(a.origin)};
+}
+
 using Affine3f = Affine<float>;
 using Affine3d = Affine<double>;
 

@@ -33,11 +33,6 @@ double row_norm(Vec3d x, Vec3d y, Vec3d z) {
     return norm;
 }
 
-Affine3d to_double(const Affine3f& m) {
-    return {dg::to_double(m.x), dg::to_double(m.y), dg::to_double(m.z),
-            dg::to_double(m.origin)};
-}
-
 Vec3f unit_or(Vec3f v, Vec3f fallback) {
     const float l2 = length_squared(v);
     return l2 > 1e-30f ? v * (1 / std::sqrt(l2)) : fallback;  // false for NaN too
