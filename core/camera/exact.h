@@ -66,7 +66,7 @@ class ExactLens {
 };
 
 /// E / L on the axis at one wavelength, by quadrature in double; with T = 1 if `perfect`.
-/// For a perfect lens this is pi sin^2(theta') (science.md 2).
+/// For a perfect lens this is pi sin^2(theta') (uniform radiance, on the axis).
 double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
                         double iris_radius, double wavelength_nm, bool perfect = false);
 

@@ -1,7 +1,7 @@
 // polynomial.h -- the complete basis with the lens's symmetry. With f the film point and
 // a the iris point, every axially symmetric map has the form m = f A(u, s, w, l) + a B(u,
 // s, w, l), where u = |f|^2, s = f.a, w = |a|^2 and l stands for the wavelength
-// (science.md 4.4; Hullin et al. 2012).
+// (symmetry: Hullin, Hanika and Heidrich 2012, Polynomial Optics, CGF 31(4)).
 //
 // f and a are given in units that make them at most 1, in the meridional frame: f = (r,
 // 0). The basis is all monomials U^p s^i W^j l^q, U = 2u-1, W = 2w-1, with p + i + j + 2q

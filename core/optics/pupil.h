@@ -1,5 +1,5 @@
 // pupil.h -- guided exact tracing: where to aim from the film so that most rays pass
-// (science.md 2).
+// (aperture sampling: Hanika and Dachsbacher 2014, CGF 33(2)).
 //
 // A ray is drawn by choosing a point a of the iris (enlarged by 1 %) and looking up the
 // film slope m(f, a, l) in a polynomial. The exact trace decides whether it passes. The
