@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-constexpr float kRouletteThreshold = 0.1f;
+constexpr float kRouletteThreshold = 0.3f;
 
 /// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
 float power_heuristic(float pdf, float other) {
