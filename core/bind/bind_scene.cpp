@@ -93,7 +93,7 @@ struct Builder {
     int add_mesh(const std::string& name, const Rows3f& positions, const Rows3u& triangles,
                  std::optional<Rows3f> normals, std::optional<Rows2f> uv0,
                  std::optional<Rows2f> uv1, std::optional<Rows4f> tangents,
-                 std::optional<Rows4f> colors, bool double_sided) {
+                 std::optional<Rows4f> colors) {
         Mesh mesh;
         mesh.name = name;
         mesh.positions = to_vector<Vec3f>(positions);
@@ -103,7 +103,6 @@ struct Builder {
         if (uv1) mesh.uv[1] = to_vector<Vec2f>(*uv1);
         if (tangents) mesh.tangents = to_vector<std::array<float, 4>>(*tangents);
         if (colors) mesh.colors = to_vector<std::array<float, 4>>(*colors);
-        mesh.double_sided = double_sided;
         description.meshes.push_back(std::move(mesh));
         return int(description.meshes.size()) - 1;
     }
@@ -183,7 +182,7 @@ void bind_scene(nb::module_& m) {
         .def(nb::init<>())
         .def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
              "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
-             "colors"_a.none(), "double_sided"_a = true)
+             "colors"_a.none())
         .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
              "wrap_v"_a, "filter"_a)
         .def("add_diffuse",

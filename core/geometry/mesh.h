@@ -18,7 +18,6 @@ struct Mesh {
     std::array<std::vector<Vec2f>, 2> uv;        // two texture sets
     std::vector<std::array<float, 4>> tangents;  // xyz, w = handedness
     std::vector<std::array<float, 4>> colors;    // linear RGBA
-    bool double_sided = true;  // informs nothing but emission and glTF culling
 
     /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
     /// length.

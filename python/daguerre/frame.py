@@ -17,6 +17,19 @@ if TYPE_CHECKING:
 
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png")
+#: Auxiliary channels of a film, in the names of the files.
+AOV_NAMES = (
+    "depth.Z",
+    "P.X",
+    "P.Y",
+    "P.Z",
+    "N.X",
+    "N.Y",
+    "N.Z",
+    "albedo.R",
+    "albedo.G",
+    "albedo.B",
+)
 
 
 @dataclass
@@ -161,3 +174,28 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
     above = np.maximum(peak, knee)
     rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
     return np.asarray(linear * (rolled / above), np.float32)
+
+
+def frame_of(
+    film: Any,
+    metadata: dict[str, Any],
+    *,
+    aovs: bool,
+) -> Frame:
+    """The picture of a film: means, variance and counts as plain arrays."""
+    planes: dict[str, NDArray[Any]] = {}
+    alpha = np.ones(film.shape, np.float32)
+    if aovs:
+        planes = {name: film.aov(name) for name in AOV_NAMES}
+        planes["object_id"] = film.object_ids()
+        alpha = film.aov("alpha")
+    return Frame(
+        rgb=film.mean_rgb(),
+        xyz=film.mean_xyz(),
+        alpha=alpha,
+        variance=film.variance_rgb(),
+        samples=film.sample_counts(),
+        aovs=planes,
+        metadata=metadata,
+        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
+    )

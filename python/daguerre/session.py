@@ -22,22 +22,11 @@ from .camera import Camera
 from .camera_setup import set_up
 from .checks import short, whole
 from .errors import MismatchError, UsageError, suggest
-from .frame import Frame
+from .frame import Frame, frame_of
+from .io.ranges import join_ranges
 from .scene import Scene
 
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
-AOV_NAMES = (
-    "depth.Z",
-    "P.X",
-    "P.Y",
-    "P.Z",
-    "N.X",
-    "N.Y",
-    "N.Z",
-    "albedo.R",
-    "albedo.G",
-    "albedo.B",
-)
 MAX_RESOLUTION = 65536
 MAX_SAMPLES = 1 << 31
 
@@ -164,29 +153,12 @@ class Session:
         self.stopped_rays += stopped
         self.rays += rays
         self.samples += camera_rays
-        self.ranges = merge_ranges([*self.ranges, (begin, end)])
+        self.ranges = join_ranges([*self.ranges, (begin, end)])
         return True
 
     def frame(self) -> Frame:
         """The picture of the samples drawn so far."""
-        film = self._film
-        xyz = film.mean_xyz()
-        aovs: dict[str, NDArray[Any]] = {}
-        alpha = np.ones(xyz.shape[:2], np.float32)
-        if self.aovs:
-            aovs = {name: film.aov(name) for name in AOV_NAMES}
-            aovs["object_id"] = film.object_ids()
-            alpha = film.aov("alpha")
-        return Frame(
-            rgb=film.mean_rgb(),
-            xyz=xyz,
-            alpha=alpha,
-            variance=film.variance_rgb(),
-            samples=film.sample_counts(),
-            aovs=aovs,
-            metadata=self.metadata,
-            bad_samples=self.bad_samples,
-        )
+        return frame_of(self._film, self.metadata, aovs=self.aovs)
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
@@ -218,7 +190,7 @@ class Session:
                 )
             film.set_state(name, np.ascontiguousarray(state[name], np.uint32))
         self._film = film
-        self.ranges = merge_ranges(ranges)
+        self.ranges = join_ranges(ranges)
 
     @cached_property
     def key(self) -> dict[str, str]:
@@ -301,17 +273,6 @@ def iter_render(
         session.draw(begin, min(end, spp))
         yield session.frame()
         begin, end = end, 2 * end
-
-
-def merge_ranges(ranges: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Sorted half-open ranges with the touching ones joined; overlap is the caller's business."""
-    out: list[tuple[int, int]] = []
-    for begin, end in sorted(ranges):
-        if out and out[-1][1] == begin:
-            out[-1] = (out[-1][0], end)
-        else:
-            out.append((begin, end))
-    return out
 
 
 def _resolution(resolution: tuple[int, int]) -> tuple[int, int]:

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame import Frame
+from daguerre.frame import Frame, frame_of
 
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
@@ -82,33 +81,6 @@ def film_of(one: Pass) -> Any:
     for name, words in one.state.items():
         film.set_state(name, np.ascontiguousarray(words, np.uint32))
     return film
-
-
-def frame_of(
-    film: Any,
-    metadata: dict[str, Any],
-    *,
-    aovs: bool,
-) -> Frame:
-    """The picture of a film: means, variance and counts as plain arrays."""
-    from daguerre.session import AOV_NAMES
-
-    planes: dict[str, NDArray[Any]] = {}
-    alpha = np.ones(film.shape, np.float32)
-    if aovs:
-        planes = {name: film.aov(name) for name in AOV_NAMES}
-        planes["object_id"] = film.object_ids()
-        alpha = film.aov("alpha")
-    return Frame(
-        rgb=film.mean_rgb(),
-        xyz=film.mean_xyz(),
-        alpha=alpha,
-        variance=film.variance_rgb(),
-        samples=film.sample_counts(),
-        aovs=planes,
-        metadata=metadata,
-        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
-    )
 
 
 def _check_overlap(seen: list[tuple[Range, Path | None]], one: Pass) -> None:
