@@ -1,11 +1,13 @@
-// arrays.h -- numpy arrays in and out. Copies: the core owns what it keeps.
+// arrays.h -- numpy arrays in and out. The core reads them in place and keeps them alive; that
+// nobody changes them meanwhile is the caller's word (build.py).
 #pragma once
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <cstring>
+#include <memory>
 #include <vector>
 
+#include "math/shared_array.h"
 #include "math/transform.h"
 
 namespace dg::bind {
@@ -18,13 +20,16 @@ using Rows4f = nb::ndarray<const float, nb::shape<-1, 4>, nb::c_contig, nb::devi
 using Rows3u = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Matrix4 = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
 
-/// Rows of a C-contiguous array as a vector of T, bit for bit.
-template <typename T, typename Array>
-std::vector<T> to_vector(const Array& array) {
-    std::vector<T> out(array.shape(0));
-    static_assert(std::is_trivially_copyable_v<T>);
-    if (!out.empty()) std::memcpy(static_cast<void*>(out.data()), array.data(), array.nbytes());
-    return out;
+/// A C-contiguous array in place, bit for bit, as elements of type T (void: those of the array).
+/// It goes when the last user does, on any thread: nanobind takes the interpreter's lock for that.
+template <typename T = void, typename Array>
+auto shared(const Array& array) {
+    using Own = std::remove_const_t<typename Array::Scalar>;
+    using Element = std::conditional_t<std::is_void_v<T>, Own, T>;
+    static_assert(std::is_trivially_copyable_v<Element>);
+    return SharedArray<Element>(reinterpret_cast<const Element*>(array.data()),
+                                array.nbytes() / sizeof(Element),
+                                std::make_shared<const Array>(array));
 }
 
 inline Affine3d to_affine(const Matrix4& m) {

@@ -6,6 +6,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
+#include <cstring>
+
 #include "bind/arrays.h"
 #include "math/error.h"
 #include "scene/scene.h"
@@ -80,12 +82,6 @@ GltfMaterial to_gltf(const nb::dict& d) {
 using Pixels8 = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using PixelsF = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-template <typename Array>
-auto flat(const Array& a) {
-    using T = std::remove_const_t<typename Array::Scalar>;
-    return std::vector<T>(a.data(), a.data() + a.size());
-}
-
 /// Collects the parts; Scene::build checks them.
 struct Builder {
     SceneDescription description;
@@ -96,13 +92,13 @@ struct Builder {
                  std::optional<Rows4f> colors) {
         Mesh mesh;
         mesh.name = name;
-        mesh.positions = to_vector<Vec3f>(positions);
-        mesh.triangles = to_vector<std::array<std::uint32_t, 3>>(triangles);
-        if (normals) mesh.normals = to_vector<Vec3f>(*normals);
-        if (uv0) mesh.uv[0] = to_vector<Vec2f>(*uv0);
-        if (uv1) mesh.uv[1] = to_vector<Vec2f>(*uv1);
-        if (tangents) mesh.tangents = to_vector<std::array<float, 4>>(*tangents);
-        if (colors) mesh.colors = to_vector<std::array<float, 4>>(*colors);
+        mesh.positions = shared<Vec3f>(positions);
+        mesh.triangles = shared<std::array<std::uint32_t, 3>>(triangles);
+        if (normals) mesh.normals = shared<Vec3f>(*normals);
+        if (uv0) mesh.uv[0] = shared<Vec2f>(*uv0);
+        if (uv1) mesh.uv[1] = shared<Vec2f>(*uv1);
+        if (tangents) mesh.tangents = shared<std::array<float, 4>>(*tangents);
+        if (colors) mesh.colors = shared<std::array<float, 4>>(*colors);
         description.meshes.push_back(std::move(mesh));
         return int(description.meshes.size()) - 1;
     }
@@ -117,7 +113,7 @@ struct Builder {
                 t.height = int(p.shape(0));
                 t.width = int(p.shape(1));
                 t.channels = int(p.shape(2));
-                t.pixels = flat(p);
+                t.pixels = shared(p);
             },
             pixels);
         t.srgb = srgb;

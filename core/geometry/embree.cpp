@@ -307,9 +307,17 @@ GeometryOwner EmbreeIntersector::triangles_of(const Mesh& mesh) {
     return geometry;
 }
 
+/// Whether the bytes behind an array can be read: memory comes in pages (of 4096 bytes or a
+/// multiple), and a page that holds the end of an array is readable as a whole.
+bool readable_behind(const void* end, std::size_t bytes) {
+    constexpr std::uintptr_t kPage = 4096;
+    const std::uintptr_t used = reinterpret_cast<std::uintptr_t>(end) % kPage;
+    return used != 0 && used + bytes <= kPage;
+}
+
 void EmbreeIntersector::set_positions(RTCGeometry geometry, const Mesh& mesh) {
-    const std::vector<Vec3f>& p = mesh.positions;
-    if (p.capacity() > p.size()) {  // 16 bytes may be read at the last vertex
+    const SharedArray<Vec3f>& p = mesh.positions;
+    if (readable_behind(p.end(), 4)) {  // 16 bytes are read at the last vertex
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    p.data(), 0, sizeof(Vec3f), p.size());
         return;

@@ -52,7 +52,9 @@ TEST_CASE(
     "a triangle: distance and barycentrics, on both paths, under shear and mirroring") {
     const Vec3f a{0.1f, 0.2f, 0.3f}, b{1.3f, 0.1f, -0.2f}, c{0.2f, 1.5f, 0.4f};
     std::vector<Mesh> meshes{triangle_mesh(a, b, c)};
-    meshes[0].triangles.resize(1000, {0, 0, 0});  // zero-area ones are never hit
+    std::vector<std::array<std::uint32_t, 3>> triangles(1000);  // zero-area ones are never hit
+    triangles[0] = {0, 1, 2};
+    meshes[0].triangles = triangles;
     const Affine3f transforms[] = {
         {},
         {{-2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {3, 4, 5}},

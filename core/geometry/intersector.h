@@ -40,9 +40,9 @@ class Intersector {
   public:
     /// Builds the acceleration structures once; meshes may be shared by instances. The
     /// meshes must be valid, and outlive the intersector unchanged: their arrays are read
-    /// in place (positions only where the vector's capacity has room for one more, since
-    /// Embree reads 16 bytes at the last vertex; otherwise they are copied). Throws Error
-    /// when memory runs out.
+    /// in place (positions are copied in the rare case that they end with a page of
+    /// memory, since Embree reads 16 bytes at the last vertex). Throws Error when memory
+    /// runs out.
     static std::unique_ptr<Intersector> build(
         const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
         const std::vector<Sphere>& spheres, CutoutFunction cutout);

@@ -32,7 +32,7 @@ std::string text(const std::array<float, 4>& v) {
 }
 
 template <typename T>
-void check_array(const std::string& where, const char* what, const std::vector<T>& values,
+void check_array(const std::string& where, const char* what, const SharedArray<T>& values,
                  std::size_t vertices) {
     if (values.size() != vertices) {
         throw input_error(where, std::string("length of ") + what,

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
+#include "math/shared_array.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -12,12 +12,12 @@ namespace dg {
 /// Empty attribute arrays mean "absent". Sizes are checked by validate().
 struct Mesh {
     std::string name;
-    std::vector<Vec3f> positions;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3f> normals;                  // unit, per vertex; absent: flat shading
-    std::array<std::vector<Vec2f>, 2> uv;        // two texture sets
-    std::vector<std::array<float, 4>> tangents;  // xyz, w = handedness
-    std::vector<std::array<float, 4>> colors;    // linear RGBA
+    SharedArray<Vec3f> positions;
+    SharedArray<std::array<std::uint32_t, 3>> triangles;
+    SharedArray<Vec3f> normals;                  // unit, per vertex; absent: flat shading
+    std::array<SharedArray<Vec2f>, 2> uv;        // two texture sets
+    SharedArray<std::array<float, 4>> tangents;  // xyz, w = handedness
+    SharedArray<std::array<float, 4>> colors;    // linear RGBA
 
     /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
     /// length.

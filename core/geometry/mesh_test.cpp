@@ -29,7 +29,7 @@ std::string message(const Mesh& mesh) {
 
 Mesh mesh_of_size(std::size_t triangles) {
     Mesh mesh = triangle_mesh();
-    mesh.triangles.assign(triangles, {0, 1, 2});
+    mesh.triangles = std::vector<std::array<std::uint32_t, 3>>(triangles, {0, 1, 2});
     return mesh;
 }
 
@@ -38,30 +38,31 @@ Mesh mesh_of_size(std::size_t triangles) {
 TEST_CASE("a valid mesh passes") {
     Mesh mesh = triangle_mesh();
     CHECK(message(mesh) == "");
-    mesh.normals.assign(3, {0, 0, 1});
-    mesh.uv[1].assign(3, {0, 0});
+    mesh.normals = std::vector<Vec3f>(3, {0, 0, 1});
+    mesh.uv[1] = std::vector<Vec2f>(3);
     CHECK(message(mesh) == "");
     CHECK(message(Mesh{}) == "");
 }
 
 TEST_CASE("a bad mesh is an error that names mesh and element") {
     Mesh mesh = triangle_mesh();
-    mesh.positions[1].y = std::numeric_limits<float>::quiet_NaN();
+    mesh.positions = {{0, 0, 0}, {1, std::numeric_limits<float>::quiet_NaN(), 0}, {0, 1, 0}};
     CHECK(message(mesh).find("mesh 'tri': positions of vertex 1: wanted finite") == 0);
 
     mesh = triangle_mesh();
-    mesh.triangles[0][2] = 3;
+    mesh.triangles = {{0, 1, 3}};
     CHECK(message(mesh) ==
           "mesh 'tri': vertex index of triangle 0: wanted less than 3, got 3");
 
     mesh = triangle_mesh();
-    mesh.uv[1].assign(2, {0, 0});
+    mesh.uv[1] = std::vector<Vec2f>(2);
     CHECK(
         message(mesh) ==
         "mesh 'tri': length of texture coordinates 1: wanted 3 (one per vertex), got 2");
 
     mesh = triangle_mesh();
-    mesh.colors.assign(3, {1, 1, 1, std::numeric_limits<float>::infinity()});
+    const std::array<float, 4> blinding{1, 1, 1, std::numeric_limits<float>::infinity()};
+    mesh.colors = {blinding, blinding, blinding};
     CHECK(message(mesh).find("colours of vertex 0") != std::string::npos);
 }
 

@@ -100,7 +100,7 @@ Texture::Texel interpolate(const T* pixels, int width, Tap u, Tap v,
 }
 
 template <typename T>
-Texture::Texel interpolate(const Texture& texture, const std::vector<T>& pixels,
+Texture::Texel interpolate(const Texture& texture, const SharedArray<T>& pixels,
                            Vec2f uv) {
     if (pixels.empty()) return {1, 1, 1, 1};
     const Tap u = tap(uv.x, texture.width, texture.wrap_u, texture.filter);
@@ -122,9 +122,9 @@ Texture::Texel interpolate(const Texture& texture, const std::vector<T>& pixels,
 }  // namespace
 
 Texture::Texel Texture::lookup(Vec2f uv) const {
-    if (const auto* bytes = std::get_if<std::vector<std::uint8_t>>(&pixels))
+    if (const auto* bytes = std::get_if<SharedArray<std::uint8_t>>(&pixels))
         return interpolate(*this, *bytes, uv);
-    return interpolate(*this, *std::get_if<std::vector<float>>(&pixels), uv);
+    return interpolate(*this, *std::get_if<SharedArray<float>>(&pixels), uv);
 }
 
 void Texture::validate() const {
@@ -139,7 +139,7 @@ void Texture::validate() const {
     if (got != wanted)
         throw input_error(where, "pixel values", std::to_string(wanted),
                           std::to_string(got));
-    if (const auto* values = std::get_if<std::vector<float>>(&pixels))
+    if (const auto* values = std::get_if<SharedArray<float>>(&pixels))
         for (std::size_t i = 0; i < values->size(); ++i)
             if (!std::isfinite((*values)[i]))
                 throw input_error(where, "pixel value " + std::to_string(i),

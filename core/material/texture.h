@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 #include <variant>
-#include <vector>
 
+#include "math/shared_array.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -17,7 +17,7 @@ enum class TextureFilter { linear, nearest };
 struct Texture {
     std::string name;
     int width = 0, height = 0, channels = 0;  // channels 1..4
-    std::variant<std::vector<std::uint8_t>, std::vector<float>> pixels;
+    std::variant<SharedArray<std::uint8_t>, SharedArray<float>> pixels;
     bool srgb = false;  // decode the first three channels on lookup (8-bit only)
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     TextureFilter filter = TextureFilter::linear;

@@ -149,7 +149,7 @@ TEST_CASE("validate names the texture and what is wrong") {
     t.channels = 5;
     CHECK_THROWS_AS(t.validate(), Error);
     t = quad(Wrap::repeat);
-    std::get<std::vector<float>>(t.pixels)[2] = std::nanf("");
+    t.pixels = std::vector<float>{1, 2, std::nanf(""), 4};
     CHECK_THROWS_AS(t.validate(), Error);
 }
 

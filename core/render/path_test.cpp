@@ -13,8 +13,10 @@ std::shared_ptr<const Scene> furnace(Material material) {
     SceneDescription d;
     Mesh cube;
     cube.name = "cube";
+    std::vector<Vec3f> corners;
     for (int i = 0; i < 8; ++i)
-        cube.positions.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
+        corners.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
+    cube.positions = corners;
     cube.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                       {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
     d.meshes.push_back(cube);

@@ -173,7 +173,8 @@ TEST_CASE("an even light needs no second look; a texture or a veil does") {
     auto uneven = [](const GltfMaterial& material, bool colors) {
         SceneDescription d = describe(ball_mesh(1), material);
         if (colors)
-            d.meshes[0].colors.assign(d.meshes[0].positions.size(), {1, 1, 1, 0.5f});
+            d.meshes[0].colors = std::vector<std::array<float, 4>>(
+                d.meshes[0].positions.size(), {1, 1, 1, 0.5f});
         const auto scene = Scene::build(d);
         for (int i = 0; i < 1000; ++i) {
             const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};

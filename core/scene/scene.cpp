@@ -47,9 +47,6 @@ Scene::~Scene() = default;
 
 std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     validate(description);
-    // Room for one more vertex lets the ray tracer read the positions in place.
-    for (Mesh& mesh : description.meshes)
-        mesh.positions.reserve(mesh.positions.size() + 1);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
     scene->build_intersector();
     scene->build_records();

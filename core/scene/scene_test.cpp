@@ -52,7 +52,7 @@ TEST_CASE("bad input is named") {
     d.instances[0].world_from_local.z = {0, 0, 0};
     CHECK(build_error(d).find("wanted an invertible matrix") != std::string::npos);
     d = one_quad();
-    d.meshes[0].triangles[0][1] = 77;
+    d.meshes[0].triangles = {{0, 77, 2}, {0, 2, 3}};
     CHECK(build_error(d).find("mesh 'quad'") == 0);
     d = one_quad();
     std::get<GltfMaterial>(d.materials[0].kind).base_color_texture.index = 0;
@@ -105,7 +105,7 @@ TEST_CASE(
     CHECK(length(s.tangent - Vec3f{-1, 0, 0}) < 1e-6f);
     CHECK(length(bitangent(s) - Vec3f{0, 1, 0}) < 1e-6f);
 
-    d.meshes[0].tangents.assign(4, {0, 1, 0, 1});
+    d.meshes[0].tangents = std::vector<std::array<float, 4>>(4, {0, 1, 0, 1});
     s = hit();
     CHECK(length(s.tangent - Vec3f{0, 1, 0}) < 1e-6f);
     CHECK(length(bitangent(s) - Vec3f{1, 0, 0}) < 1e-6f);

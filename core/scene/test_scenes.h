@@ -35,18 +35,16 @@ inline Mesh quad_mesh() {
 inline Mesh ball_mesh(int levels) {
     Mesh mesh;
     mesh.name = "ball";
-    mesh.positions = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
-                      {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+    std::vector<Vec3f> positions{{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                 {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
     mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                       {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
         auto middle = [&](std::uint32_t a, std::uint32_t b) {
             const auto [it, fresh] =
-                middles.try_emplace(std::minmax(a, b), mesh.positions.size());
-            if (fresh)
-                mesh.positions.push_back(
-                    normalize(mesh.positions[a] + mesh.positions[b]));
+                middles.try_emplace(std::minmax(a, b), positions.size());
+            if (fresh) positions.push_back(normalize(positions[a] + positions[b]));
             return it->second;
         };
         std::vector<std::array<std::uint32_t, 3>> finer;
@@ -56,6 +54,7 @@ inline Mesh ball_mesh(int levels) {
         }
         mesh.triangles = finer;
     }
+    mesh.positions = positions;
     return mesh;
 }
 

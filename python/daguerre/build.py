@@ -11,7 +11,7 @@ import numpy as np
 
 import daguerre._core as _core
 
-from .checks import short
+from .checks import frozen, short
 from .errors import DaguerreError, InputError, UsageError
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
@@ -38,19 +38,15 @@ def build(scene: Scene) -> _core.Scene:
 
 def _add_all(builder: _core.SceneBuilder, scene: Scene) -> None:
     for texture in scene.textures:
-        builder.add_texture(
-            texture.name, texture.pixels, texture.srgb, *texture.wrap, texture.filter
-        )
+        pixels = frozen(texture.pixels)
+        builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, texture.filter)
     for mesh in scene.meshes:
+        optional = (mesh.normals, mesh.uv, mesh.uv1, mesh.tangents, mesh.colors)
         builder.add_mesh(
             mesh.name,
-            mesh.positions,
-            mesh.indices,
-            mesh.normals,
-            mesh.uv,
-            mesh.uv1,
-            mesh.tangents,
-            mesh.colors,
+            frozen(mesh.positions),
+            frozen(mesh.indices),
+            *(None if values is None else frozen(values) for values in optional),
         )
     for material in scene.materials:
         _add_material(builder, material)

@@ -7,7 +7,7 @@ import operator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import DaguerreError, InputError, UsageError
 
@@ -18,7 +18,7 @@ def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.
     if numbers.ndim != 2 or numbers.shape[1] != columns:
         raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {numbers.shape}")
     with np.errstate(over="ignore"):
-        single = np.ascontiguousarray(numbers, np.float32)
+        single = frozen(numbers, np.float32)
     bad = np.flatnonzero(~np.isfinite(single).all(axis=1))
     if bad.size:
         raise InputError(
@@ -49,6 +49,28 @@ def to_numbers(values: Any, where: str, what: str, wanted: str) -> NDArray[Any]:
     if numbers.dtype.kind not in "iufb":
         raise InputError(f"{where}: {what}: wanted {wanted}, got {short(values)}")
     return numbers
+
+
+def frozen(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
+    """The array itself if nobody can change it, else a read-only copy: the core reads in place."""
+    base: Any = values
+    while isinstance(base, np.ndarray) and not base.flags.writeable:
+        base = base.base
+    in_order = values.flags.c_contiguous and values.flags.aligned
+    if base is None and in_order and values.dtype == (values.dtype if dtype is None else dtype):
+        return values
+    copy = np.array(values, dtype, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
+def given_up(values: NDArray[Any]) -> NDArray[Any]:
+    """The array, from now on read-only, so that :func:`frozen` need not copy it."""
+    base: Any = values
+    while isinstance(base, np.ndarray):
+        base.flags.writeable = False
+        base = base.base
+    return values
 
 
 def matrix(transform: Any, where: str) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .camera import Camera
-from .checks import array, matrix, optional_array, short, to_numbers
+from .checks import array, frozen, given_up, matrix, optional_array, short, to_numbers
 from .checks import color as check_color
 from .checks import number as check_number
 from .errors import InputError, UsageError, suggest
@@ -111,9 +111,8 @@ class Scene:
             raise InputError(
                 f"texture {name!r}: pixels: wanted shape (H, W, 1..4), got {array.shape}"
             )
-        if array.dtype != np.uint8:
-            array = array.astype(np.float32)
-        self.textures.append(Texture(np.ascontiguousarray(array), srgb, wrap, filter, name))
+        array = frozen(array, np.uint8 if array.dtype == np.uint8 else np.float32)
+        self.textures.append(Texture(array, srgb, wrap, filter, name))
         return len(self.textures) - 1
 
     def add_material(self, material: Material | Kind | None = None, **fields: Any) -> int:
@@ -186,12 +185,12 @@ class Scene:
             )
         if colors is not None and np.shape(colors)[-1:] == (3,):
             rgb = array(colors, where, "colors", 3)
-            colors = np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
+            colors = given_up(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))
         n = len(points)
         self.meshes.append(
             Mesh(
                 points,
-                np.ascontiguousarray(triangles, np.uint32),
+                frozen(triangles, np.uint32),
                 optional_array(normals, where, "normals", 3, n),
                 optional_array(uv, where, "uv", 2, n),
                 optional_array(uv1, where, "uv1", 2, n),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import given_up
 from daguerre.scene import Scene
 
 from .gltf_accessors import Accessors
@@ -109,14 +110,17 @@ class Meshes:
         normals = arrays.get("NORMAL")
         if normals is not None:
             normals = self._unit_normals(normals, positions, triangles)
+        optional = {
+            "normals": normals,
+            "uv": arrays.get("TEXCOORD_0"),
+            "uv1": arrays.get("TEXCOORD_1"),
+            "tangents": self._unit_tangents(arrays.get("TANGENT")),
+            "colors": arrays.get("COLOR_0"),
+        }
         self._scene.add_mesh(
-            positions,
-            triangles,
-            normals,
-            arrays.get("TEXCOORD_0"),
-            uv1=arrays.get("TEXCOORD_1"),
-            tangents=self._unit_tangents(arrays.get("TANGENT")),
-            colors=arrays.get("COLOR_0"),
+            given_up(positions),
+            given_up(triangles),
+            **{key: given_up(values) for key, values in optional.items() if values is not None},
             name=name,
         )
         return len(self._scene.meshes) - 1

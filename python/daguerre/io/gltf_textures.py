@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import given_up
 from daguerre.errors import InputError
 from daguerre.materials import TextureSlot
 from daguerre.scene import Scene
@@ -112,7 +113,11 @@ class Textures:
             if srgb and pixels.dtype != np.uint8:  # only 8-bit textures are decoded on lookup
                 pixels, srgb = _linear(pixels), False
             scene.add_texture(
-                pixels, srgb=srgb, wrap=plan.wrap, filter=plan.filter, name=self._name(plan.image)
+                given_up(pixels),
+                srgb=srgb,
+                wrap=plan.wrap,
+                filter=plan.filter,
+                name=self._name(plan.image),
             )
 
     def _path(self, item: Item) -> Path | None:
