@@ -193,14 +193,15 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
     if (!aim.all_shape) {
         const VI i = segment_of(f.r);
         region = hn::GatherIndex(d, aim.region, i);
-        const V width = hn::GatherIndex(d, aim.width, i),
-                half = hn::GatherIndex(d, aim.half, i);
-        const M boxed = hn::Gt(region, constant(0.5f));
-        const V bx = hn::MulAdd(u, width, hn::GatherIndex(d, aim.x0, i));
-        const V by = hn::Mul(half, hn::MulAdd(v, constant(2), constant(-1)));
-        ax = hn::IfThenElse(boxed, bx, ax);
-        ay = hn::IfThenElse(boxed, by, ay);
-        area = hn::IfThenElse(boxed, hn::Mul(hn::Add(half, half), width), area);
+        const M columns = hn::Gt(region, constant(0.5f));
+        const VI k = hn::Add(split(u, kColumns), hn::Mul(i, hn::Set(DI(), kColumns + 1)));
+        const V left = hn::GatherIndex(d, aim.column_x, k),
+                right = hn::GatherIndex(d, aim.column_x + 1, k),
+                half = hn::GatherIndex(d, aim.column_half, k);
+        ax = hn::IfThenElse(columns, hn::MulAdd(u, hn::Sub(right, left), left), ax);
+        ay = hn::IfThenElse(columns, hn::Mul(half, hn::MulAdd(v, constant(2), constant(-1))),
+                            ay);
+        area = hn::GatherIndex(d, aim.area, i);
     }
     const LaneSlope s = slope_at(aim, f.r, ax, ay, l);
     V mx = s.mx, my = s.my, j = hn::Abs(jacobian(s));
@@ -242,10 +243,7 @@ HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy
     if (!aim.all_shape) {
         const VI i = segment_of(f.r);
         const V region = hn::GatherIndex(d, aim.region, i);
-        const V width = hn::GatherIndex(d, aim.width, i),
-                half = hn::GatherIndex(d, aim.half, i);
-        const V box = hn::Mul(hn::Add(half, half), width);
-        area = hn::IfThenElse(hn::Gt(region, constant(0.5f)), box, area);
+        area = hn::GatherIndex(d, aim.area, i);
         j = hn::IfThenElse(hn::Gt(region, constant(1.5f)), constant(1), j);
     }
     return hn::IfThenElseZero(f.covered, slope_weight(hn::Mul(area, j), tx, ty));

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "math/error.h"
+#include "optics/pupil_region.h"
 
 namespace dg {
 namespace {
@@ -21,6 +22,8 @@ constexpr double kShapeMargin =
 // which no one-to-one map follows.
 constexpr double kWidened = 1.2;
 constexpr int kCoverageRays = 16384;
+// What is drawn reaches so far beyond what was seen from the two ends of a segment, in iris radii.
+constexpr double kOutlineMargin = 0.005;
 
 /// Point n of a low-discrepancy sequence in four dimensions: multiples of powers of 1/g,
 /// g^5 = g + 1. Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom
@@ -68,24 +71,24 @@ class AimMaker {
             if (empty()) return;
             x0 -= x, x1 += x, half += y;
         }
-        double area() const { return empty() ? 0 : (x1 - x0) * 2 * half; }
     };
     struct Visible {
-        Box box;
+        Outline outline;
         bool jacobian_ok = true;
     };
 
     std::optional<Vec2d> trace_iris(double r, Vec2d m, double nm) const;
     std::vector<SlopeSample> training(int count, int first) const;
     double lit_radius() const;
-    Visible visible_at(double r, Box range, int nx, int ny) const;
+    std::vector<bool> visible(double r, const std::vector<Vec2d>& points,
+                              bool& jacobian_ok) const;
     Visible visible_iris(double r) const;
     Box slope_box(double r) const;
     Box slope_range(double r, double reach, double nm) const;
     Box passing_slopes(double r, const Box& range, int nx, int ny) const;
     bool fit(int k);
     void choose_regions();
-    void set_region(int segment, AimRegion region, const Box& box);
+    void set_region(int segment, AimRegion region, const Columns& columns);
     std::vector<bool> uncovered_segments() const;
     bool covers(int segment, double r, Vec2d m, Vec2d iris, double l,
                 double azimuth) const;
@@ -98,6 +101,7 @@ class AimMaker {
     RearHalf rear_;
     double outer_;  // mm, radius around the enlarged iris
     std::array<bool, kRadialSegments> jacobian_ok_;
+    std::array<Columns, kRadialSegments> columns_;
     Aim aim_;
 };
 
@@ -191,60 +195,68 @@ bool AimMaker::fit(int k) {
     return true;
 }
 
-/// Traces a grid over `range` (units of the iris scale, y >= 0 by symmetry) at one film
-/// radius.
-AimMaker::Visible AimMaker::visible_at(double r, Box range, int nx, int ny) const {
-    Visible v;
+/// Which of these points of the iris (unit, y >= 0 by symmetry) the mounts leave visible from a film
+/// radius, at any of the bounding wavelengths.
+std::vector<bool> AimMaker::visible(double r, const std::vector<Vec2d>& points,
+                                    bool& jacobian_ok) const {
+    std::vector<bool> seen(points.size());
     const AimTables& t = aim_.tables;
     const double axis_sign = aim_.slopes.evaluate(0, {0, 0}, 0).jacobian;
-    const double dx = (range.x1 - range.x0) / nx, dy = range.half / ny,
-                 limit = unit(outer_);
     auto in = std::make_unique<LensSamples>();
     auto film = std::make_unique<FilmRays>();
     auto out = std::make_unique<SceneRays>();
     alignas(64) float jacobian[kLensBatch];
-    int count = 0;
-    const auto flush = [&] {
-        for (int i = count; i < kLensBatch; ++i) {  // the tail: copies
-            in->x[i] = in->x[0], in->y[i] = 0, in->u[i] = in->u[0], in->v[i] = in->v[0];
-            in->nm[i] = in->nm[0];
+    const std::size_t rays = points.size() * kBoundWavelengths.size();
+    for (std::size_t begin = 0; begin < rays; begin += kLensBatch) {
+        const auto ray = [&](int i) { return std::min(begin + i, rays - 1); };
+        for (int i = 0; i < kLensBatch; ++i) {
+            const Vec2d a = points[ray(i) % points.size()] * t.iris_scale;
+            in->x[i] = float(r), in->y[i] = 0, in->u[i] = float(a.x), in->v[i] = float(a.y);
+            in->nm[i] = float(kBoundWavelengths[ray(i) / points.size()]);
         }
         aim_slopes(open_, t, *in, *film, jacobian, kLensBatch);
         trace_to_scene(open_, *film, *out, kLensBatch);
-        for (int i = 0; i < count; ++i) {
-            if (!(jacobian[i] * axis_sign > 0)) v.jacobian_ok = false;
-            if (out->pass[i] > 0) v.box.add(unit(in->u[i]), unit(in->v[i]));
+        for (int i = 0; i < kLensBatch; ++i) {
+            if (!(jacobian[i] * axis_sign > 0)) jacobian_ok = false;
+            if (out->pass[i] > 0) seen[ray(i) % points.size()] = true;
         }
-        count = 0;
-    };
-    for (const double nm : kBoundWavelengths)
-        for (int iy = 0; iy <= ny; ++iy)
-            for (int ix = 0; ix <= nx; ++ix) {
-                const double x = range.x0 + ix * dx, y = iy * dy;
-                if (x * x + y * y > limit * limit * 1.0001) continue;
-                in->x[count] = float(r), in->y[count] = 0, in->nm[count] = float(nm);
-                in->u[count] = float(x * t.iris_scale),
-                in->v[count] = float(y * t.iris_scale);
-                if (++count == kLensBatch) flush();
-            }
-    if (count) flush();
-    v.box.grow(dx, dy);
-    return v;
+    }
+    return seen;
 }
 
-/// The visible part of the iris: coarsely, then again inside what was found.
+/// Up to where the columns of the iris are visible from one film radius: a coarse search upward from the
+/// meridian, then a fine one in the step where visibility ends.
 AimMaker::Visible AimMaker::visible_iris(double r) const {
-    const double limit = unit(outer_);
-    const Box all{-limit, limit, limit};
-    Visible coarse = visible_at(r, all, 24, 12);
-    if (coarse.box.empty()) coarse.box = visible_at(r, all, 96, 48).box;
-    if (coarse.box.empty() || coarse.box.area() > 0.9 * all.area()) return coarse;
-    Box range = coarse.box;
-    range.x0 = std::max(range.x0, -limit), range.x1 = std::min(range.x1, limit);
-    range.half = std::min(range.half, limit);
-    Visible fine = visible_at(r, range, 40, 20);
-    if (fine.box.empty()) return coarse;
-    return fine;
+    constexpr int kRows = 12, kFine = 8, kPoints = Outline::kPoints;
+    Visible v{{unit(outer_), {}}, true};
+    std::array<double, kPoints> low{}, step{};
+    for (int i = 0; i < kPoints; ++i) {
+        const double x = v.outline.x(i);
+        step[i] = std::sqrt(std::max(0.0, v.outline.reach * v.outline.reach - x * x)) / kRows;
+    }
+    const auto search = [&](int rows) {
+        std::vector<Vec2d> points;
+        for (int i = 0; i < kPoints; ++i)
+            for (int row = 0; row <= rows; ++row)
+                points.push_back({v.outline.x(i), low[i] + row * step[i]});
+        const std::vector<bool> seen = visible(r, points, v.jacobian_ok);
+        for (int i = 0; i < kPoints; ++i) {
+            int last = rows;
+            while (last >= 0 && !seen[i * (rows + 1) + last]) --last;
+            // Up to the first row that is not seen: conservative.
+            if (last >= 0) v.outline.half[i] = low[i] + std::min(last + 1, rows) * step[i];
+            low[i] += std::max(last, 0) * step[i];
+        }
+    };
+    search(kRows);
+    for (int i = 0; i < kPoints; ++i) {
+        step[i] = (v.outline.half[i] - low[i]) / kFine;
+    }
+    const Outline coarse = v.outline;
+    search(kFine);
+    for (int i = 0; i < kPoints; ++i)
+        if (!(coarse.half[i] > 0)) v.outline.half[i] = 0;
+    return v;
 }
 
 AimMaker::Box AimMaker::passing_slopes(double r, const Box& range, int nx, int ny) const {
@@ -303,13 +315,16 @@ AimMaker::Box AimMaker::slope_box(double r) const {
     return {};
 }
 
-void AimMaker::set_region(int segment, AimRegion region, const Box& box) {
+void AimMaker::set_region(int segment, AimRegion region, const Columns& columns) {
     AimTables& t = aim_.tables;
-    const bool drawn = region != AimRegion::shape && !box.empty();
+    columns_[segment] = columns;
     t.region[segment] = float(int(region));
-    t.x0[segment] = drawn ? float(box.x0) : 0;
-    t.width[segment] = drawn ? float(box.x1 - box.x0) : 0;
-    t.half[segment] = drawn ? float(box.half) : 0;
+    t.area[segment] = region == AimRegion::shape ? t.shape_area : float(columns.area);
+    for (int k = 0; k <= kColumns; ++k) {
+        const int at = segment * (kColumns + 1) + k;
+        t.column_x[at] = float(columns.x[k]);
+        t.column_half[at] = k < kColumns ? float(columns.half[k]) : 0;
+    }
     if (region != AimRegion::shape) t.all_shape = false;
 }
 
@@ -320,12 +335,11 @@ void AimMaker::choose_regions() {
     for (int i = 0; i < kNodes; ++i)
         at[i] = visible_iris(t.film_radius * i / kRadialSegments);
     for (int i = 0; i < kRadialSegments; ++i) {
-        Box box = at[i].box;
-        box.add(at[i + 1].box);
-        box.grow(0.005 * unit(outer_), 0.005 * unit(outer_));
         jacobian_ok_[i] = at[i].jacobian_ok && at[i + 1].jacobian_ok;
-        const bool smaller = box.area() < 0.97 * t.shape_area;
-        set_region(i, smaller ? AimRegion::box : AimRegion::shape, box);
+        const Columns seen =
+            cover(at[i].outline.joined(at[i + 1].outline, kOutlineMargin * unit(outer_)));
+        const bool smaller = seen.area < 0.97 * t.shape_area;
+        set_region(i, smaller ? AimRegion::visible : AimRegion::shape, seen);
     }
 }
 
@@ -344,8 +358,7 @@ bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
     }
     if (length(aim_.slopes.evaluate(rn, a, l).m - m) > 1e-6) return false;
     if (t.region[segment] > 0.5f)
-        return a.x >= t.x0[segment] && a.x <= t.x0[segment] + t.width[segment] &&
-               std::abs(a.y) <= t.half[segment];
+        return columns_[segment].contain(a.x, a.y);
     const double c = std::cos(azimuth), s = std::sin(azimuth);
     const Vec2d turned{c * a.x - s * a.y, s * a.x + c * a.y};
     return request_.iris.in_sampling_region(
@@ -419,7 +432,8 @@ Aim AimMaker::make() {
         Box box = box_at(i);
         box.add(box_at(i + 1));
         box.grow(0.01 * (box.x1 - box.x0), 0.01 * box.half);
-        set_region(i, AimRegion::slopes, box);
+        set_region(i, AimRegion::slopes,
+                   box.empty() ? Columns{} : rectangle(box.x0, box.x1, box.half));
         ++aim_.fallback_segments;
     }
     return aim_;
