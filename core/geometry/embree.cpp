@@ -14,6 +14,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <tuple>
 
 #include "geometry/intersector.h"
 #include "geometry/layout.h"
@@ -63,6 +64,7 @@ void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
 struct Context {
     QueryContext embree;
     const Ray* ray;
+    Crossings* crossings = nullptr;
 };
 
 struct WorldBounds {
@@ -128,6 +130,7 @@ struct PlacedMesh {
         init_context(context.embree);
         context.embree.instID[0] = id;
         context.ray = static_cast<const Context*>(outer)->ray;
+        context.crossings = static_cast<const Context*>(outer)->crossings;
         return context;
     }
 };
@@ -224,7 +227,7 @@ class EmbreeIntersector final : public Intersector {
                       const std::vector<Sphere>& spheres, CutoutFunction cutout);
 
     std::optional<RawHit> intersect(const Ray& ray) const override;
-    bool occluded(const Ray& ray) const override;
+    bool occluded(const Ray& ray, Crossings* crossings) const override;
     const char* name() const override { return name_.c_str(); }
     bool is_flattened(std::uint32_t instance) const override {
         return flattened_[instance];
@@ -236,20 +239,22 @@ class EmbreeIntersector final : public Intersector {
     void set_positions(RTCGeometry geometry, const Mesh& mesh);
     void set_world_positions(RTCGeometry geometry, const Mesh& mesh,
                              const Affine3f& transform);
-    void set_cutout(RTCGeometry geometry);
+    void set_filters(RTCGeometry geometry, const InstanceGeometry& instance);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
     void attach_spheres(const std::vector<Sphere>& spheres);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
     RawHit raw_hit(float t, const RTCHit& hit) const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
+    static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
 
     Device device_;
     CutoutFunction cutout_;
-    std::vector<bool> flattened_;
+    std::vector<bool> flattened_, has_cutout_;
+    std::vector<Clear> clear_;
     std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
-    std::map<std::pair<std::uint32_t, bool>, SceneOwner>
-        mesh_scenes_;  // by mesh and cutout
+    std::map<std::tuple<std::uint32_t, bool, bool>, SceneOwner>
+        mesh_scenes_;  // by mesh, and whether it is cut out, and clear
     SceneOwner top_;
     unsigned sphere_geometry_;
     std::string name_;
@@ -282,6 +287,8 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
       name_(version_name(device_.get())) {
     for (unsigned i = 0; i < instances.size(); ++i) {
         const Mesh& mesh = meshes[instances[i].mesh];
+        has_cutout_.push_back(instances[i].cutout);
+        clear_.push_back(instances[i].clear);
         if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
     }
     if (!spheres.empty()) attach_spheres(spheres);
@@ -340,10 +347,13 @@ void EmbreeIntersector::set_world_positions(RTCGeometry geometry, const Mesh& me
     }
 }
 
-void EmbreeIntersector::set_cutout(RTCGeometry geometry) {
+void EmbreeIntersector::set_filters(RTCGeometry geometry,
+                                    const InstanceGeometry& instance) {
     rtcSetGeometryUserData(geometry, this);
-    rtcSetGeometryIntersectFilterFunction(geometry, &EmbreeIntersector::filter);
-    rtcSetGeometryOccludedFilterFunction(geometry, &EmbreeIntersector::filter);
+    if (instance.cutout)
+        rtcSetGeometryIntersectFilterFunction(geometry, &EmbreeIntersector::filter);
+    if (instance.cutout || instance.clear != Clear::no)
+        rtcSetGeometryOccludedFilterFunction(geometry, &EmbreeIntersector::filter_shadow);
 }
 
 void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned id) {
@@ -354,12 +364,13 @@ void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned 
 
 RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
                                        const Mesh& mesh) {
-    SceneOwner& scene = mesh_scenes_[{instance.mesh, instance.cutout}];
+    SceneOwner& scene =
+        mesh_scenes_[{instance.mesh, instance.cutout, instance.clear != Clear::no}];
     if (scene) return scene.get();
     scene = new_scene();
     GeometryOwner geometry = triangles_of(mesh);
     set_positions(geometry.get(), mesh);
-    if (instance.cutout) set_cutout(geometry.get());
+    set_filters(geometry.get(), instance);
     attach(scene.get(), std::move(geometry), 0);
     rtcCommitScene(scene.get());
     device_.check("building the acceleration structure of mesh '" + mesh.name + "'");
@@ -371,7 +382,7 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
     if (flattened_[id]) {
         GeometryOwner geometry = triangles_of(mesh);
         set_world_positions(geometry.get(), mesh, instance.world_from_local);
-        if (instance.cutout) set_cutout(geometry.get());
+        set_filters(geometry.get(), instance);
         attach(top_.get(), std::move(geometry), id);
         return;
     }
@@ -418,6 +429,20 @@ void EmbreeIntersector::filter(const RTCFilterFunctionNArguments* arguments) {
     if (self.cutout_(*context.ray, self.raw_hit(ray.tfar, hit))) arguments->valid[0] = 0;
 }
 
+/// Any hit will do for a shadow, so what may be passed is passed here.
+void EmbreeIntersector::filter_shadow(const RTCFilterFunctionNArguments* arguments) {
+    if (arguments->valid[0] == 0) return;
+    const auto& self = *static_cast<const EmbreeIntersector*>(arguments->geometryUserPtr);
+    const auto& context = *reinterpret_cast<const Context*>(arguments->context);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const RawHit hit =
+        self.raw_hit(ray.tfar, *reinterpret_cast<const RTCHit*>(arguments->hit));
+    const bool passed =
+        (self.has_cutout_[hit.instance] && self.cutout_(*context.ray, hit)) ||
+        (context.crossings && context.crossings->add(self.clear_[hit.instance], hit));
+    if (passed) arguments->valid[0] = 0;
+}
+
 RTCRay embree_ray(const Ray& ray) {
     return {ray.origin.x,
             ray.origin.y,
@@ -446,10 +471,11 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
     return raw_hit(ray_hit.ray.tfar, ray_hit.hit);
 }
 
-bool EmbreeIntersector::occluded(const Ray& ray) const {
+bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
     Context context;
     init_context(context.embree);
     context.ray = &ray;
+    context.crossings = crossings;
     RTCRay shadow_ray = embree_ray(ray);
     query(top_.get(), context.embree, shadow_ray);
     return shadow_ray.tfar < 0;  // Embree's sign for "something was met"

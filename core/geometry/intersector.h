@@ -7,28 +7,19 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/crossings.h"
 #include "geometry/mesh.h"
 #include "geometry/ray.h"
 #include "math/transform.h"
 
 namespace dg {
 
-/// Where a ray met the geometry; barycentrics as glTF and Embree have them: p = (1-u-v) a
-/// + u b + v c. No normal: the scene computes it from the vertices, with the side that
-/// the instance gives it.
-struct RawHit {
-    float t;
-    float u, v;
-    std::uint32_t instance;   // index into the instances; kSphere for sphere lights
-    std::uint32_t primitive;  // triangle, or index of the sphere
-    static constexpr std::uint32_t kSphere = 0xffffffffu;
-};
-
 struct InstanceGeometry {
     std::uint32_t mesh;
     Affine3f world_from_local;
     bool cutout =
         false;  // some texel may be transparent: the cutout function decides each hit
+    Clear clear = Clear::no;  // shadow rays that collect crossings pass it
 };
 
 /// Returns true when the surface lets the ray pass there (alpha). Must be thread safe and
@@ -48,7 +39,8 @@ class Intersector {
         const std::vector<Sphere>& spheres, CutoutFunction cutout);
     virtual ~Intersector() = default;
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
-    virtual bool occluded(const Ray& ray) const = 0;
+    /// With `crossings` the ray goes through clear surfaces and notes them there.
+    virtual bool occluded(const Ray& ray, Crossings* crossings = nullptr) const = 0;
     virtual const char* name() const = 0;  // "Embree 3.13.5"
 
     /// True when hits on the instance are found in world space, against vertices that

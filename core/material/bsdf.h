@@ -14,7 +14,11 @@ namespace dg {
 /// Each alternative has: Evaluation evaluate_with_pdf(wo, wi) const (f * |cos wi| and the
 /// density of sample(), both without delta lobes) and its halves Spectrum evaluate(wo,
 /// wi) const and float pdf(wo, wi) const; optional<BsdfSample> sample(wo, u_lobe, u)
-/// const; bool is_specular() const (nothing but deltas); Interior interior() const.
+/// const; bool is_specular() const (nothing but deltas); Interior interior() const; bool
+/// bounds_volume() const (behind it lies another medium); Spectrum straight(wo) const
+/// (share of light that a smooth clear surface lets through unbent; where it bounds a
+/// volume, as if light went on without being bent: both faces of a plane slab have the
+/// Fresnel reflectance of the angle outside).
 using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf>;
 
 inline Evaluation evaluate_with_pdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi) {

@@ -44,6 +44,8 @@ struct ConductorBsdf {
         return BsdfSample{.wi = wi, .weight = e.f_cos / e.pdf, .pdf = e.pdf};
     }
     Interior interior() const { return {}; }
+    bool bounds_volume() const { return false; }
+    Spectrum straight(Vec3f) const { return 0.f; }
 };
 
 }  // namespace dg

@@ -66,6 +66,12 @@ struct DielectricBsdf {
         return s;
     }
     Interior interior() const { return {}; }
+    bool bounds_volume() const { return ior != 1; }
+    Spectrum straight(Vec3f wo) const {
+        const Facing side(ns, ng, wo);
+        if (!is_specular() || side.cos_o <= 0) return 0.f;
+        return tint * (1 - fresnel_dielectric(side.cos_o, std::max(ior, 1 / ior)));
+    }
 };
 
 }  // namespace dg

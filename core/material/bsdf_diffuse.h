@@ -32,6 +32,8 @@ struct DiffuseBsdf {
     static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
     bool is_specular() const { return false; }
     Interior interior() const { return {}; }
+    bool bounds_volume() const { return false; }
+    Spectrum straight(Vec3f) const { return 0.f; }
 };
 
 }  // namespace dg

@@ -79,6 +79,13 @@ GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
     return p;
 }
 
+Spectrum GltfBsdf::straight(Vec3f wo) const {
+    const Facing side(ns, ng, wo);
+    if (!smooth || clear == Clear::none || side.cos_o <= 0) return 0.f;
+    return split(side.cos_o, clear == Clear::volume ? std::max(ior, 1 / ior) : 1.f)
+        .transmitted;
+}
+
 GltfBsdf::Mix GltfBsdf::mix(float cos_o) const {
     if (diffuse_albedo == 0) return {0, 0};
     if (!has_specular) return {1, 0};

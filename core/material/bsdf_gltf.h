@@ -72,6 +72,8 @@ struct GltfBsdf {
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return smooth && diffuse_albedo == 0; }
     Interior interior() const { return inside; }
+    bool bounds_volume() const { return clear == Clear::volume; }
+    Spectrum straight(Vec3f wo) const;
 
   private:
     /// What a facet whose normal makes cos_h with wo does: colours, and the chance to

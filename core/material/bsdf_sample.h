@@ -38,6 +38,14 @@ struct Interior {
     }
 };
 
+/// What lies behind a surface that is met in the medium `here`. A thin sheet inside a
+/// volume bounds nothing.
+inline Interior medium_beyond(const Interior& here, const Interior& inside,
+                              bool bounds_volume, bool entering) {
+    if (!bounds_volume) return here;
+    return entering ? inside : Interior{};
+}
+
 /// Both normals turned to the side of wo. The geometric normal decides what is reflection
 /// and what is transmission (no light leaks through a bumped surface); the shading normal
 /// gives the cosines.

@@ -171,6 +171,20 @@ float opacity(const Material& material, const Textures& textures, const Vec2f uv
     return masked(*m, alpha * read(m->base_color_texture, textures, uv).a);
 }
 
+Clear clearness(const Material& material) {
+    if (const auto* d = std::get_if<DielectricMaterial>(&material.kind)) {
+        if (!DielectricBsdf{{}, {}, 1.f, d->ior, d->alpha}.is_specular())
+            return Clear::no;
+        return d->ior == 1 ? Clear::sheet : Clear::volume;
+    }
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m || m->transmission <= 0) return Clear::no;
+    const bool textured = m->metallic_roughness_texture.used();
+    const bool rough = m->roughness * m->roughness >= kSmoothAlpha;
+    if (!textured && (rough || m->metallic >= 1)) return Clear::no;
+    return m->thickness > 0 ? Clear::volume : Clear::sheet;
+}
+
 bool has_cutout(const Material& material, const Textures&) {
     // A mesh may bring its own alpha at the vertices, so factor and texture alone prove
     // nothing.

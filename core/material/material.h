@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/crossings.h"
 #include "geometry/hit.h"
 #include "material/bsdf.h"
 #include "material/texture.h"
@@ -88,6 +89,10 @@ Rgb emitted(const Material& material, const std::vector<Texture>& textures,
 
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);
+
+/// What light may go straight on through at some point of the material: never less than
+/// its BSDFs' straight() says.
+Clear clearness(const Material& material);
 
 /// False where the material is opaque everywhere, so that rays need not ask.
 bool has_cutout(const Material& material, const std::vector<Texture>& textures);

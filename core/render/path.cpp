@@ -22,6 +22,7 @@ struct Walk {
     Vec3f previous;              // where the ray left from, for the density of light sampling
     float bsdf_pdf = 0;
     bool from_delta = true;      // camera, or a mirror: light sampling cannot have found this
+    float straight = 0;          // m from there to the ray's origin, through clear sheets
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
 };
@@ -48,10 +49,11 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
     if (!emits(material)) return 0.f;
     const Rgb luminance = emitted(material, scene.textures(), hit);
     if (max_component(luminance) <= 0) return 0.f;
-    const float pdf =
-        walk.from_delta ? 0
-                        : scene.lights().pdf_triangle(hit.instance, hit.primitive, hit.t,
-                                                      std::abs(dot(hit.ng, hit.wo)), walk.previous);
+    const float pdf = walk.from_delta
+                          ? 0
+                          : scene.lights().pdf_triangle(
+                                hit.instance, hit.primitive, walk.straight + hit.t,
+                                std::abs(dot(hit.ng, hit.wo)), walk.previous);
     return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
 }
 
@@ -86,22 +88,54 @@ VertexRandom draw_vertex(const BsdfKind& bsdf, bool lit, PathSampler& sampler) {
     return u;
 }
 
+/// The medium of a ray that leaves along `wi`.
+template <typename BsdfKind>
+Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+                      Vec3f wi) {
+    const float side = dot(wi, hit.ng);
+    const bool transmitted = (side > 0) != hit.front;
+    if (!transmitted) return walk.medium;
+    return medium_beyond(walk.medium, bsdf.interior(), bsdf.bounds_volume(), side < 0);
+}
+
 /// Next-event estimation at one vertex.
 template <typename BsdfKind>
 Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
-                      const VertexRandom& u, float time, const Wavelengths& wl, PathSettings::Strategy strategy,
-                      std::uint64_t& rays) {
+                      const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
+                      PathSettings::Strategy strategy, std::uint64_t& rays) {
     const auto light = scene.sample_light(u.select, u.light, hit.position, wl);
     if (!light || light->pdf <= 0) return 0.f;
     if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
     const auto [f_cos, pdf] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
     if (f_cos.is_black()) return 0.f;
-    const Ray shadow = spawn_ray(hit, light->wi, time);
     ++rays;
-    if (scene.occluded(shadow.origin, light->wi, light->distance, time)) return 0.f;
+    const Spectrum visible =
+        scene.visibility(spawn_ray(hit, light->wi, walk.ray.time), light->distance,
+                         light->delta, medium_after(walk, hit, bsdf, light->wi), wl);
+    if (visible.is_black()) return 0.f;
     const bool alone = light->delta || strategy == PathSettings::Strategy::light;
     const float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
-    return f_cos * light->radiance * (weight / light->pdf);
+    return f_cos * light->radiance * visible * (weight / light->pdf);
+}
+
+/// Carries on from a vertex. What goes straight on through a clear sheet comes from where
+/// it came from: light sampling there sees through the sheet too.
+template <typename BsdfKind>
+void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+             const BsdfSample& sample) {
+    walk.throughput *= sample.weight;
+    if (sample.transmitted) {
+        walk.eta_squared *= sample.eta * sample.eta;
+        walk.medium = medium_after(walk, hit, bsdf, sample.wi);
+        if (sample.specular && !bsdf.bounds_volume()) {
+            walk.straight += hit.t;
+            return;
+        }
+    }
+    walk.bsdf_pdf = sample.pdf;
+    walk.from_delta = sample.specular;
+    walk.previous = hit.position;
+    walk.straight = 0;
 }
 
 void record_first_hit(const Scene& scene, const SurfaceHit& hit, AovSample& aov) {
@@ -138,7 +172,7 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
     walk.ray = ray;
     walk.previous = ray.origin;
     std::uint64_t rays = 0;
-    for (int vertex = 0;; ++vertex) {
+    for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
         if (!is_finite(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
             return Spectrum(std::numeric_limits<float>::quiet_NaN());
         ++rays;
@@ -160,30 +194,22 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         }
         result += walk.throughput *
                   surface_emission(scene, walk, hit, wavelengths, settings.strategy);
-        if (vertex == settings.max_depth) break;
+        const bool last = vertex == settings.max_depth;  // behind it only windows count
+        if (last && !scene.has_clear()) break;
 
         const Bsdf bsdf = shade(scene.material(hit), scene.textures(), hit, wavelengths);
-        if (aov && vertex == 0) record_first_hit(scene, hit, *aov);
+        if (aov && !aov->hit) record_first_hit(scene, hit, *aov);
         const bool alive = std::visit(
             [&](const auto& kind) {
                 const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);
-                if (!kind.is_specular())
-                    result += walk.throughput *
-                              direct_light(scene, hit, kind, u, walk.ray.time, wavelengths,
-                                           settings.strategy, rays);
+                if (!last && !kind.is_specular())
+                    result += walk.throughput * direct_light(scene, hit, kind, u, walk,
+                                                             wavelengths,
+                                                             settings.strategy, rays);
                 const auto sample = kind.sample(hit.wo, u.lobe, u.direction);
                 if (!sample || sample->weight.is_black()) return false;
-                walk.throughput *= sample->weight;
-                walk.bsdf_pdf = sample->pdf;
-                walk.from_delta = sample->specular;
-                if (sample->transmitted) {
-                    walk.eta_squared *= sample->eta * sample->eta;
-                    // A thin sheet inside a volume bends nothing and bounds nothing.
-                    const Interior interior = kind.interior();
-                    if (interior.present || sample->eta != 1)
-                        walk.medium = dot(sample->wi, hit.ng) < 0 ? interior : Interior{};
-                }
-                walk.previous = hit.position;
+                advance(walk, hit, kind, *sample);
+                if (last && walk.straight == 0) return false;
                 walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);
                 return true;
             },

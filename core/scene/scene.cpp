@@ -1,6 +1,7 @@
 // scene.cpp -- building a scene, and asking it for surfaces, shadows and light.
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "math/hash.h"
@@ -56,12 +57,18 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
 }
 
 void Scene::build_intersector() {
+    const bool delta_lights =
+        std::ranges::any_of(description_.lights, [](const Light& light) {
+            return !std::holds_alternative<SphereLight>(light);
+        });
     std::vector<InstanceGeometry> geometry;
     for (const Instance& i : description_.instances) {
         const bool cutout =
             may_be_transparent(description_.materials[i.material],
                                description_.meshes[i.mesh], description_.textures);
-        geometry.push_back({i.mesh, i.world_from_local, cutout});
+        const Clear clear = clear_for_shadows(i, delta_lights);
+        has_clear_ = has_clear_ || clear != Clear::no;
+        geometry.push_back({i.mesh, i.world_from_local, cutout, clear});
     }
     std::vector<Sphere> spheres;
     for (const Light& light : description_.lights) {
@@ -70,6 +77,12 @@ void Scene::build_intersector() {
     intersector_ = Intersector::build(
         description_.meshes, geometry, spheres,
         [this](const Ray& ray, const RawHit& hit) { return passes(ray, hit); });
+}
+
+/// Where no light is a delta light, shadow rays need not ask about volumes.
+Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) const {
+    const Clear clear = clearness(description_.materials[instance.material]);
+    return clear == Clear::volume && !delta_lights ? Clear::no : clear;
 }
 
 void Scene::build_records() {
@@ -121,6 +134,15 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
     return alpha <= 0 || cutout_random(ray, hit) >= alpha;
 }
 
+void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const {
+    hit.wo = -ray.direction;
+    hit.t = raw.t;
+    hit.primitive = raw.primitive;
+    hit.instance = raw.instance;
+    surface_at(records_[raw.instance], raw.primitive, raw.u, raw.v, hit);
+    hit.front = dot(hit.ng, hit.wo) > 0;
+}
+
 std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     const auto raw = intersector_->intersect(ray);
     std::optional<Hit> result(std::in_place);  // the one object that is returned: no copy
@@ -128,36 +150,18 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
         result.reset();
         return result;
     }
-    Hit& hit = *result;
-    hit.surface.wo = -ray.direction;
-    hit.surface.t = raw->t;
-    hit.surface.primitive = raw->primitive;
-    hit.surface.instance = raw->instance;
-    if (raw->instance == RawHit::kSphere) {
-        hit.sphere_light = raw->primitive;
-        hit.surface.position = ray.origin + ray.direction * raw->t;
+    if (raw->instance != RawHit::kSphere) {
+        find_surface(ray, *raw, result->surface);
         return result;
     }
-    surface_at(records_[raw->instance], raw->primitive, raw->u, raw->v, hit.surface);
-    hit.surface.front = dot(hit.surface.ng, hit.surface.wo) > 0;
+    SurfaceHit& hit = result->surface;
+    hit.wo = -ray.direction;
+    hit.t = raw->t;
+    hit.position = ray.origin + ray.direction * raw->t;
+    hit.instance = RawHit::kSphere;
+    hit.primitive = raw->primitive;
+    result->sphere_light = raw->primitive;
     return result;
-}
-
-bool Scene::occluded(Vec3f from, Vec3f to_direction, float distance, float time) const {
-    Ray ray;
-    ray.origin = from;
-    ray.direction = to_direction;
-    ray.time = time;
-    if (distance < std::numeric_limits<float>::infinity()) {
-        // Stops short of the light by more than its position is uncertain.
-        const Vec3f end = from + to_direction * distance;
-        const float largest =
-            std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z), std::abs(from.x),
-                      std::abs(from.y), std::abs(from.z)});
-        ray.t_max = distance - (1e-4f * distance + 0x1p-19f * largest);
-        if (ray.t_max <= 0) return false;
-    }
-    return intersector_->occluded(ray);
 }
 
 std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,

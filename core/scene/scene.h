@@ -47,9 +47,19 @@ class Scene {
         Hit() {}  // written, so that nothing is cleared first and then set (measured)
     };
     std::optional<Hit> intersect(const Ray& ray) const;
+    /// What is left of light that comes to `ray` from `distance` metres along it: 0 or 1,
+    /// and between them where it passes clear surfaces. It goes through smooth sheets,
+    /// which bend nothing, as a path does. The boundaries of volumes are passed only by the
+    /// light of delta lights, which no path could find behind them, and as if they did not
+    /// bend it: Fresnel's losses at each, and absorption along the straight way, which
+    /// begins in `medium`.
+    Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
+                        const Wavelengths& wavelengths) const;
     /// Is anything between `from` (as spawn_ray moved it) and the point at `distance`
     /// along the unit direction? What lies at the point itself does not count.
     bool occluded(Vec3f from, Vec3f to_direction, float distance, float time) const;
+
+    bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
 
     const Material& material(const SurfaceHit& hit) const {
         return description_.materials[records_[hit.instance].material];
@@ -76,6 +86,11 @@ class Scene {
     void build_lights();
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
+    void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
+    Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
+                               float distance, const Wavelengths& wavelengths) const;
+    Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
+    bool has_clear_ = false;
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;

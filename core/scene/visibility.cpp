@@ -1,0 +1,72 @@
+// visibility.cpp -- what is left of light on its way through clear surfaces.
+#include <algorithm>
+#include <tuple>
+
+#include "scene/scene.h"
+
+namespace dg {
+namespace {
+
+/// Ends the ray short of a light by more than the light's position is uncertain.
+void stop_before(Ray& ray, float distance) {
+    if (!(distance < std::numeric_limits<float>::infinity())) return;
+    const Vec3f from = ray.origin, end = from + ray.direction * distance;
+    const float largest =
+        std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z), std::abs(from.x),
+                  std::abs(from.y), std::abs(from.z)});
+    ray.t_max = distance - (1e-4f * distance + 0x1p-19f * largest);
+}
+
+}  // namespace
+
+bool Scene::occluded(Vec3f from, Vec3f to_direction, float distance, float time) const {
+    Ray ray;
+    ray.origin = from;
+    ray.direction = to_direction;
+    ray.time = time;
+    stop_before(ray, distance);
+    return ray.t_max > 0 && intersector_->occluded(ray);
+}
+
+Spectrum Scene::visibility(Ray ray, float distance, bool delta, const Interior& medium,
+                           const Wavelengths& wavelengths) const {
+    stop_before(ray, distance);
+    if (ray.t_max <= 0) return 1.f;
+    if (!has_clear_ && !medium.present) return intersector_->occluded(ray) ? 0.f : 1.f;
+    Crossings crossings(delta);
+    if (intersector_->occluded(ray, &crossings)) return 0.f;
+    return through_crossings(ray, crossings, medium, distance, wavelengths);
+}
+
+/// One crossing after the other, as a path would meet them: those that come sooner than
+/// rounding lets a ray start anew (see spawn_ray) are the same surface twice.
+Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
+                                  float distance, const Wavelengths& wavelengths) const {
+    const auto hits = std::span(crossings.hits).first(crossings.count);
+    std::ranges::sort(hits, {}, [](const RawHit& h) {
+        return std::tuple(h.t, h.instance, h.primitive);
+    });
+    Spectrum left{1.f};
+    float here = 0, next = 0;
+    for (const RawHit& hit : hits) {
+        if (hit.t < next) continue;
+        SurfaceHit surface;
+        find_surface(ray, hit, surface);
+        left *= medium.transmittance(hit.t - here);
+        here = hit.t;
+        next = here + surface.error / std::abs(dot(surface.ng, surface.wo));
+        const Bsdf bsdf = shade(material(surface), textures(), surface, wavelengths);
+        std::visit(
+            [&](const auto& kind) {
+                left *= kind.straight(surface.wo);
+                medium = medium_beyond(medium, kind.interior(), kind.bounds_volume(),
+                                       surface.front);
+            },
+            bsdf);
+        if (left.is_black()) return 0.f;
+    }
+    const bool finite = distance < std::numeric_limits<float>::infinity();
+    return finite ? left * medium.transmittance(distance - here) : left;
+}
+
+}  // namespace dg
