@@ -23,13 +23,14 @@ Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
 
 template <typename Enum>
 Enum choose(const std::string& what, const std::string& name,
-            std::initializer_list<std::pair<const char*, Enum>> known) {
+            std::initializer_list<std::pair<const char*, Enum>> known,
+            const char* where = "texture") {
     std::string names;
     for (const auto& [key, value] : known) {
         if (name == key) return value;
         names += (names.empty() ? "" : ", ") + std::string(key);
     }
-    throw input_error("texture", what, names, name);
+    throw input_error(where, what, names, name);
 }
 
 /// A slot as (texture, uv_set, transform) or None.
@@ -239,10 +240,17 @@ void bind_scene(nb::module_& m) {
                  b.description.environment = Environment::constant(to_rgb(luminance));
              })
         .def("build",
-             [](Builder& b) {
+             [](Builder& b, const std::string& light_choice) {
+                 b.description.light_choice =
+                     choose<LightChoice>("light_choice", light_choice,
+                                         {{"tree", LightChoice::tree},
+                                          {"power", LightChoice::power},
+                                          {"even", LightChoice::even}},
+                                         "scene");
                  nb::gil_scoped_release release;
                  return std::const_pointer_cast<Scene>(Scene::build(std::move(b.description)));
              },
+             "light_choice"_a = "tree",
              "Checks everything, finds emissive triangles and builds the ray tracer; the builder is "
              "empty afterwards.");
 }

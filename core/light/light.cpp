@@ -20,6 +20,16 @@ const char* kind_name(const Light& light) {
     return names[light.index()];
 }
 
+/// A light that the tree takes to be everywhere, so that only its intensity counts.
+LightBounds placeless(float intensity) {
+    constexpr float kFar = 1e9f;
+    LightBounds b;
+    b.min = {-kFar, -kFar, -kFar};
+    b.max = {kFar, kFar, kFar};
+    b.intensity = intensity;
+    return b;
+}
+
 }  // namespace
 
 LightSet::LightSet() = default;
@@ -27,18 +37,19 @@ LightSet::~LightSet() = default;
 LightSet::LightSet(LightSet&&) noexcept = default;
 LightSet& LightSet::operator=(LightSet&&) noexcept = default;
 
-LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment)
+LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment,
+                   LightChoice choice)
     : lights_(std::move(lights)), environment_(std::move(environment)) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const std::string where =
             "light " + std::to_string(i) + " (" + kind_name(lights_[i]) + ")";
         std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
     }
-    build_groups();
+    build_groups(choice);
     build_lookup();
 }
 
-void LightSet::build_groups() {
+void LightSet::build_groups(LightChoice choice) {
     std::vector<LightBounds> bounds;
     std::vector<double> weights;
     tree_index_.assign(lights_.size(), kNone);
@@ -50,9 +61,11 @@ void LightSet::build_groups() {
             weights.push_back(lux);
             continue;
         }
-        const LightBounds b =
+        LightBounds b =
             std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[i]);
         if (!(b.intensity > 0) || !std::isfinite(b.intensity)) continue;
+        if (choice != LightChoice::tree)
+            b = placeless(choice == LightChoice::power ? b.intensity : 1);
         tree_index_[i] = static_cast<std::int32_t>(bounds.size());
         tree_lights_.push_back(static_cast<std::uint32_t>(i));
         bounds.push_back(b);

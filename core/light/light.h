@@ -72,6 +72,10 @@ struct LightSample {
 
 struct TriangleSampler;
 
+/// How one light with a place is chosen: by the tree; by power alone or evenly, to
+/// measure what the tree is worth.
+enum class LightChoice { tree, power, even };
+
 /// All lights of a scene with the law by which one is chosen for a point: by an estimate
 /// of the illuminance that each brings there, so that neither a huge scene nor a near
 /// lamp starves the others. Lights from infinity (directional, environment) form one
@@ -84,7 +88,8 @@ class LightSet {
     LightSet& operator=(LightSet&&) noexcept;
     /// Throws Error naming light and value: not finite, negative colour, zero direction,
     /// radius or range not positive, angles of a spot out of order.
-    LightSet(std::vector<Light> lights, std::optional<Environment> environment);
+    LightSet(std::vector<Light> lights, std::optional<Environment> environment,
+             LightChoice choice = LightChoice::tree);
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
     /// Radiance of triangle lights is mean_luminance here; LightSample::uneven tells the
@@ -111,7 +116,7 @@ class LightSet {
 
   private:
     static constexpr std::int32_t kEnvironment = -1, kNone = -2;
-    void build_groups();
+    void build_groups(LightChoice choice);
     void build_lookup();
     float infinite_probability(Vec3f position) const;
     float infinite_share(float local) const;

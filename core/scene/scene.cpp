@@ -103,7 +103,8 @@ void Scene::build_lights() {
             description_.meshes[description_.instances[i].mesh].triangles.size(),
             description_.materials[records_[i].material], description_.textures, lights);
     }
-    lights_ = LightSet(std::move(lights), description_.environment);
+    lights_ = LightSet(std::move(lights), description_.environment,
+                       description_.light_choice);
 }
 
 void Scene::measure() {

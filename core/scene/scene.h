@@ -28,6 +28,7 @@ struct SceneDescription {
     std::vector<Instance> instances;
     std::vector<Light> lights;  // punctual and sphere lights
     std::optional<Environment> environment;
+    LightChoice light_choice = LightChoice::tree;
 };
 
 class Scene {
