@@ -367,22 +367,6 @@ def test_mirrored_transform_is_kept(tmp_path):
     assert transform.tolist() == np.diag([-1, 1, 1, 1]).tolist()
 
 
-def test_skins_and_morphs_in_rest_pose(tmp_path):
-    b = triangle()
-    b.json["skins"] = [{"joints": [0]}]
-    b.json["nodes"][0]["skin"] = 0
-    primitive = b.json["meshes"][0]["primitives"][0]
-    primitive["targets"] = [{"POSITION": b.accessor(CORNERS)}]
-    primitive["attributes"]["JOINTS_0"] = b.accessor([[0, 0, 0, 0]] * 3, "u1")
-    primitive["attributes"]["WEIGHTS_0"] = b.accessor([[1, 0, 0, 0]] * 3)
-    scene = gltf.read(b.glb(tmp_path / "a.glb"))
-    assert scene.meshes[0].positions.tolist() == CORNERS
-    assert scene.warnings == [
-        "a mesh with a skin is shown in its rest pose (1 use)",
-        "a mesh with morph targets is shown in its rest pose (1 use)",
-    ]
-
-
 def test_optional_unknown_extensions_are_counted(tmp_path):
     b = triangle()
     b.json["extensionsUsed"] = ["KHR_materials_sheen", "KHR_lights_punctual", "VENDOR_x"]

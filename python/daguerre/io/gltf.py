@@ -15,25 +15,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError, UsageError
-from daguerre.materials import Gltf, Material
 from daguerre.scene import Scene
 
 from .gltf_accessors import Accessors
-from .gltf_animation import poses_at
+from .gltf_animation import play
+from .gltf_budget import Budget
 from .gltf_cameras import read_camera
 from .gltf_extensions import check_extensions
 from .gltf_file import load_buffers, open_document
+from .gltf_instancing import instance_transforms
 from .gltf_lights import light_items, read_light
 from .gltf_materials import read_materials
 from .gltf_meshes import Meshes
-from .gltf_nodes import Placed, Tree, unique_names, without_scale
+from .gltf_nodes import Placed, Tree, unique_names
+from .gltf_placing import Placing
+from .gltf_skins import Skins
 from .gltf_textures import Textures
+from .gltf_transforms import without_scale
 from .json_item import Item
 from .notes import Notes
 from .uris import Folder
 
 # Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.
 _MAX_NODE_ENTRIES = 4_000_000
+# Vertices that morphs, skins and flat nodes have for themselves.
+_MAX_COPIES = 1 << 25
 
 
 def read(
@@ -75,21 +81,22 @@ class _Reader:
         if self.document.trailing:
             self.notes.add("a byte behind the stated end of the file", self.document.trailing)
         self.accessors = Accessors(self.root, load_buffers(self.document))
+        play(self.root, self.accessors, time, self.notes)  # before anything else is read
         self.tree = Tree(self.root)
-        self.meshes = Meshes(self.root, self.accessors, self.scene, self.notes)
+        skins = Skins(self.root, self.accessors, self.tree, self.notes)
+        copies = Budget(_MAX_COPIES, "vertices that are not shared")
+        self.meshes = Meshes(self.root, self.accessors, skins, self.scene, copies, self.notes)
+        self.placing = Placing(self.scene, copies, self.notes)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)
-        self.skins = self.root.list_of("skins")
         self.names = unique_names(self.tree, self.meshes.items, self.cameras)
-        self._default_material: int | None = None
 
     def read(self, scene_index: int | None) -> Scene:
         scene = self.scene
         textures = Textures(self.document, self.accessors, self.notes)
         scene.materials = read_materials(self.root, textures, self.notes)
         textures.decode(scene)
-        poses = poses_at(self.root, self.accessors, len(self.tree.items), scene.time, self.notes)
-        placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)), poses)
+        placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
         firsts = []
         for position in placed:
             firsts.append(len(scene.instances))
@@ -119,47 +126,24 @@ class _Reader:
         item, name = self.tree.items[placed.index], self.names[placed.index]
         self.scene.node_positions[name] = placed.world[:3, 3].copy()
         mesh, camera = item.get("mesh"), item.get("camera")
-        skin, light = item.get("skin"), item.extension("KHR_lights_punctual")
-        if skin is not None:
-            skin.index(len(self.skins), "skins")
-            self.notes.add("a mesh with a skin is shown in its rest pose")
-        if mesh is not None:
-            for part, material in self.meshes.parts(mesh.index(len(self.meshes.items), "meshes")):
-                self._instance(part, material, placed.world, name)
+        light = item.extension("KHR_lights_punctual")
+        if mesh is not None and placed.visible:
+            self._mesh(item, placed.world, name)
         if camera is not None:
             self._camera(self.cameras[camera.index(len(self.cameras), "cameras")], placed, name)
-        if light is not None:
+        if light is not None and placed.visible:
             chosen = self.lights[light.need("light").index(len(self.lights), "lights")]
             self._light(chosen, placed, name)
 
-    def _instance(
-        self, mesh: int, material: int | None, world: NDArray[np.float64], name: str
-    ) -> None:
-        if material is None:
-            if self._default_material is None:
-                self._default_material = self.scene.add_material(Material(Gltf(), name="default"))
-            material = self._default_material
-        self._note_missing_uv(mesh, material)
-        rank = _rank(world[:3, :3])
-        if rank < 2:  # scale 0 is how files hide things (glTF 2.0, 3.5.3)
-            self.notes.add("a mesh that its node scales to nothing is left out")
-            return
-        if rank == 2:  # squashed flat: no inverse, so the world's vertices are written down
-            flat = self.scene.meshes[mesh]
-            points = flat.positions @ world[:3, :3].T + world[:3, 3]
-            mesh = self.scene.add_mesh(
-                points, flat.indices, None, flat.uv, uv1=flat.uv1, colors=flat.colors, name=name
-            )
-            world = np.eye(4)
-        self.scene.add_instance(mesh, material, world, name=name)
-
-    def _note_missing_uv(self, mesh: int, material: int) -> None:
-        kind = self.scene.materials[material].kind
-        arrays = (self.scene.meshes[mesh].uv, self.scene.meshes[mesh].uv1)
-        for key, slot in vars(kind).items():
-            if key.endswith("_texture") and slot is not None and arrays[slot.uv_set] is None:
-                self.notes.add("a textured mesh lacks the texture coordinates that it needs")
-                return
+    def _mesh(self, node: Item, world: NDArray[np.float64], name: str) -> None:
+        copies = instance_transforms(node, self.accessors, self.notes)
+        for part in self.meshes.parts(node):
+            worlds = world[None] if copies is None else world @ copies
+            if part.in_world:
+                worlds = np.eye(4)[None]
+                if copies is not None:
+                    self.notes.add("a mesh that a skin moves is shown once, not at its instances")
+            self.placing.add(node, part.mesh, part.material, worlds, name)
 
     def _camera(self, item: Item, placed: Placed, name: str) -> None:
         rigid = without_scale(placed.world)
@@ -191,12 +175,3 @@ class _Reader:
                 self.notes.add("a node too deep in the tree stands for its own meshes only")
                 last = firsts[position + 1]
             self.scene.nodes[self.names[node.index]] = list(range(first, last))
-
-
-def _rank(linear: NDArray[np.float64]) -> int:
-    """Dimensions that a transform leaves; 2 also where its float determinant would vanish."""
-    volume, size = abs(float(np.linalg.det(linear))), float(np.abs(linear).max())
-    if volume > 1e-30 and volume > 1e-12 * size**3:
-        return 3
-    rank = int(np.linalg.matrix_rank(linear, tol=1e-12 * size))
-    return min(rank, 2) if volume <= 1e-30 else rank

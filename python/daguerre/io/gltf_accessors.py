@@ -69,22 +69,44 @@ class Accessors:
         Returns:
             float32, shape (count, components).
         """
+        kind, _, normalized = self.kind(use)
+        if kind not in types:
+            use.fail(f"wrong accessor type: wanted {' or '.join(types)}, got {kind}")
+        return _decoded(self._raw(self.index(use)), normalized, use, what)
+
+    def changes(
+        self, use: Item, types: tuple[str, ...], what: str
+    ) -> tuple[NDArray[np.int64] | slice, NDArray[np.float32]]:
+        """As ``floats``, but only those elements that may differ from 0, and which they are.
+
+        Returns:
+            Indices of the elements, and their numbers (indices, components).
+        """
+        item = self._items[self.index(use)]
+        sparse = item.get("sparse")
+        if sparse is None or item.get("bufferView") is not None:
+            return slice(None), self.floats(use, types, what)
         kind, component, normalized = self.kind(use)
         if kind not in types:
             use.fail(f"wrong accessor type: wanted {' or '.join(types)}, got {kind}")
-        array = self._raw(self.index(use))
-        if component == 5126:
-            bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
-            if bad.size:
-                use.fail(
-                    f"{what} {bad[0]}: wanted finite numbers, got {array[bad[0]].tolist()} "
-                    f"({bad.size} such)"
-                )
-        values = np.array(array, np.float32)
-        if normalized and component != 5126:
-            values /= np.float32(np.iinfo(array.dtype).max)
-            np.maximum(values, -1, out=values)
-        return values
+        places, values = self._sparse(
+            sparse, np.dtype(_COMPONENTS[component]), _WIDTHS[kind], self.count(use)
+        )
+        return places, _decoded(values, normalized, use, what)
+
+    def count(self, use: Item) -> int:
+        """Number of elements of the accessor that ``use`` names."""
+        return self._items[self.index(use)].need("count").integer(1)
+
+    def joints(self, use: Item) -> NDArray[Any]:
+        """Four small unsigned integers per element, shape (count, 4), as they lie in the file."""
+        kind, component, normalized = self.kind(use)
+        if kind != "VEC4" or component not in (5121, 5123) or normalized:
+            use.fail(
+                "wrong accessor type: wanted VEC4 of component type 5121 or 5123, not normalized, "
+                f"got {kind} of {component}{', normalized' if normalized else ''}"
+            )
+        return self._raw(self.index(use))
 
     def integers(self, use: Item) -> NDArray[np.uint32]:
         """Unsigned integers, shape (count,)."""
@@ -118,7 +140,8 @@ class Accessors:
             array = self._strided(view, item, dtype, width, count)
         if sparse is not None:
             array = array.copy()
-            self._patch(array, sparse)
+            places, values = self._sparse(sparse, dtype, width, count)
+            array[places] = values
         return array
 
     def _strided(
@@ -144,9 +167,11 @@ class Accessors:
             (count, width), dtype, view.data, offset=offset, strides=(stride, dtype.itemsize)
         )
 
-    def _patch(self, array: NDArray[Any], sparse: Item) -> None:
-        """Replaces single elements; the list of their indices must rise (chapter 3.6.2.3)."""
-        count = sparse.need("count").integer(1, len(array))
+    def _sparse(
+        self, sparse: Item, dtype: np.dtype[Any], width: int, length: int
+    ) -> tuple[NDArray[np.int64], NDArray[Any]]:
+        """Single elements and their indices; the list of these must rise (chapter 3.6.2.3)."""
+        count = sparse.need("count").integer(1, length)
         places_item, values_item = sparse.need("indices"), sparse.need("values")
         component = places_item.need("componentType").choice((5121, 5123, 5125))
         places = self._strided(
@@ -154,11 +179,26 @@ class Accessors:
         )[:, 0].astype(np.int64)
         if (np.diff(places) <= 0).any():
             places_item.fail("wanted indices that rise strictly, got some that do not")
-        if places[-1] >= len(array):
-            places_item.fail(f"index out of range: wanted 0 .. {len(array) - 1}, got {places[-1]}")
-        array[places] = self._strided(
-            values_item.need("bufferView"), values_item, array.dtype, array.shape[1], count
-        )
+        if places[-1] >= length:
+            places_item.fail(f"index out of range: wanted 0 .. {length - 1}, got {places[-1]}")
+        values_view = values_item.need("bufferView")
+        return places, self._strided(values_view, values_item, dtype, width, count)
+
+
+def _decoded(array: NDArray[Any], normalized: bool, use: Item, what: str) -> NDArray[np.float32]:
+    """Finite float32 numbers; normalised integers mapped to [0, 1] or [-1, 1]."""
+    if array.dtype.kind == "f":
+        bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+        if bad.size:
+            use.fail(
+                f"{what} {bad[0]}: wanted finite numbers, got {array[bad[0]].tolist()} "
+                f"({bad.size} such)"
+            )
+    values = np.array(array, np.float32)
+    if normalized and array.dtype.kind != "f":
+        values /= np.float32(np.iinfo(array.dtype).max)
+        np.maximum(values, -1, out=values)
+    return values
 
 
 def _view(item: Item, buffers: list[memoryview]) -> _View:

@@ -10,6 +10,8 @@ from .notes import Notes
 KNOWN = frozenset(
     {
         "EXT_camera_physical",
+        "EXT_mesh_gpu_instancing",
+        "KHR_animation_pointer",
         "KHR_lights_punctual",
         "KHR_materials_emissive_strength",
         "KHR_materials_ior",
@@ -17,6 +19,7 @@ KNOWN = frozenset(
         "KHR_materials_transmission",
         "KHR_materials_volume",
         "KHR_mesh_quantization",
+        "KHR_node_visibility",
         "KHR_texture_transform",
     }
 )

@@ -8,11 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .gltf_transforms import Matrix, affine, compose
 from .json_item import Item
 
-Matrix = NDArray[np.float64]
 #: Lengths beyond this (m) overflow when a renderer squares them in float.
 MAX_SIZE = 1e18
 _DEFAULTS = {
@@ -29,11 +28,13 @@ class Placed:
     Attributes:
         index: Its index in the file.
         world: World from node, shape (4, 4).
+        visible: Whether meshes and lights are shown there.
         end: The node's descendants are the placed nodes from the next one up to this position.
     """
 
     index: int
     world: Matrix
+    visible: bool
     end: int
 
 
@@ -51,6 +52,8 @@ class Tree:
         self.items = root.list_of("nodes")
         self.children: list[list[int]] = []
         self.parents = [-1] * len(self.items)
+        self._worlds: dict[int, Matrix] = {}
+        self._placed: set[int] = set()
         for node, item in enumerate(self.items):
             self.children.append([])
             for child_item in item.list_of("children"):
@@ -93,83 +96,69 @@ class Tree:
             roots[node] = None
         return list(roots)
 
-    def place(self, roots: list[int], poses: dict[tuple[int, str], Matrix]) -> list[Placed]:
-        """World transforms, parents before their children, a subtree in one piece."""
-        order: list[tuple[int, Matrix]] = []
+    def place(self, roots: list[int]) -> list[Placed]:
+        """The nodes below some roots, parents before their children, a subtree in one piece."""
+        order: list[tuple[int, bool]] = []
         ends: list[int] = []
-        stack: list[tuple[int, Matrix | None, int]] = [(r, None, -1) for r in reversed(roots)]
+        stack: list[tuple[int, bool, int]] = [(root, True, -1) for root in reversed(roots)]
         while stack:
-            node, above, closes = stack.pop()
+            node, visible, closes = stack.pop()
             if closes >= 0:
                 ends[closes] = len(order)
                 continue
-            local = self.local(node, poses)
-            world = local if above is None else above @ local
+            visible = visible and _is_visible(self.items[node])
+            stack.append((node, visible, len(order)))
+            order.append((node, visible))
+            ends.append(0)
+            self.world(node)
+            stack.extend((child, visible, -1) for child in reversed(self.children[node]))
+        self._placed.update(node for node, _ in order)
+        return [Placed(n, self.world(n), v, end) for (n, v), end in zip(order, ends, strict=True)]
+
+    def is_placed(self, node: int) -> bool:
+        """Whether the node stands in the scene."""
+        return node in self._placed
+
+    def world(self, node: int) -> Matrix:
+        """World from node, also of nodes outside of the scene."""
+        chain = []
+        while node >= 0 and node not in self._worlds:
+            chain.append(node)
+            node = self.parents[node]
+        for below in reversed(chain):
+            local = self._local(below)
+            parent = self.parents[below]
+            world = local if parent < 0 else self._worlds[parent] @ local
             size = float(np.abs(world).max())
             if not size < MAX_SIZE:  # NaN is not smaller than anything
-                self.items[node].fail(
+                self.items[below].fail(
                     f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
                 )
-            stack.append((node, None, len(order)))
-            order.append((node, world))
-            ends.append(0)
-            stack.extend((child, world, -1) for child in reversed(self.children[node]))
-        return [Placed(n, w, end) for (n, w), end in zip(order, ends, strict=True)]
+            self._worlds[below] = world
+        return self._worlds[chain[0] if chain else node]
 
-    def local(self, node: int, poses: dict[tuple[int, str], Matrix]) -> Matrix:
-        """Parent from node at the time of the poses."""
+    def _local(self, node: int) -> Matrix:
+        """Parent from node."""
         item = self.items[node]
-        animated = any((node, path) in poses for path in _DEFAULTS)
         matrix = item.get("matrix")
         if matrix is None:
-            t, q, s = (
-                poses[node, path] if (node, path) in poses else item.numbers_of(path, default)
-                for path, default in _DEFAULTS.items()
-            )
-            return _compose(np.asarray(t), np.asarray(q), np.asarray(s), item)
-        if animated or any(path in item.value for path in _DEFAULTS):
+            t, q, s = (np.array(item.numbers_of(path, d)) for path, d in _DEFAULTS.items())
+            length = float(np.sqrt(q @ q))
+            if not 1e-9 < length < np.inf:
+                item.need("rotation").fail(
+                    f"wanted a quaternion of length 1, got length {length:g}"
+                )
+            return compose(t, q / length, s)
+        if any(path in item.value for path in _DEFAULTS):  # as of a node that is animated
             matrix.fail("wanted either a matrix or translation, rotation and scale, got both")
-        values = np.array(matrix.numbers(16)).reshape(4, 4).T  # stored by columns
-        if not np.allclose(values[3], (0, 0, 0, 1), atol=1e-6):
-            matrix.fail(f"wanted 0, 0, 0, 1 as its last row, got {values[3].tolist()}")
-        values[3] = (0, 0, 0, 1)
-        return values
+        return affine(np.array(matrix.numbers(16)).reshape(4, 4).T, matrix)  # stored by columns
 
 
-def _compose(t: Matrix, q: Matrix, s: Matrix, item: Item) -> Matrix:
-    """Translation x rotation x scale; the quaternion is x, y, z, w and made a unit first."""
-    length = float(np.sqrt(q @ q))
-    if not 1e-9 < length < np.inf:
-        rotation = Item(q.tolist(), "rotation", item)
-        rotation.fail(f"wanted a quaternion of length 1, got length {length:g}")
-    x, y, z, w = (q / length).tolist()
-    matrix = np.eye(4)
-    matrix[:3, :3] = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
-    )
-    matrix[:3, :3] *= s
-    matrix[:3, 3] = t
-    return matrix
-
-
-def without_scale(world: Matrix) -> Matrix | None:
-    """The rigid part of a transform: place, -z and +y kept; None if there is no direction left.
-
-    Cameras and lights ignore the scale of their node (glTF 2.0, 3.10; KHR_lights_punctual).
-    """
-    z, y = world[:3, 2], world[:3, 1]
-    x = np.cross(y, z)
-    lengths = np.linalg.norm(z), np.linalg.norm(x)
-    if lengths[0] < 1e-20 or lengths[1] < 1e-30:
-        return None
-    rigid = np.eye(4)
-    rigid[:3, 2] = z / lengths[0]
-    rigid[:3, 0] = x / lengths[1]
-    rigid[:3, 1] = np.cross(rigid[:3, 2], rigid[:3, 0])
-    rigid[:3, 3] = world[:3, 3]
-    return rigid
+def _is_visible(item: Item) -> bool:
+    """KHR_node_visibility; it rules the node's descendants too."""
+    extension = item.extension("KHR_node_visibility")
+    visible = None if extension is None else extension.get("visible")
+    return visible is None or visible.flag()
 
 
 def unique_names(tree: Tree, meshes: list[Item], cameras: list[Item]) -> list[str]:

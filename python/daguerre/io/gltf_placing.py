@@ -1,0 +1,96 @@
+"""Meshes into the world: one instance of the scene for each part of a mesh and each transform.
+
+Source: glTF 2.0 specification, chapters 3.5.3 (scale 0) and 3.7.4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.materials import Gltf, Material
+from daguerre.scene import Instance, Scene
+
+from .gltf_budget import Budget
+from .gltf_instancing import MAX_INSTANCES
+from .gltf_nodes import MAX_SIZE
+from .json_item import Item
+from .notes import Notes
+
+Matrices = NDArray[np.float64]
+
+
+class Placing:
+    """Adds instances to a scene.
+
+    Args:
+        scene: Has the meshes and the materials.
+        copies: For vertices that cannot be shared.
+        notes: What was not understood.
+    """
+
+    def __init__(self, scene: Scene, copies: Budget, notes: Notes) -> None:
+        self._scene = scene
+        self._copies = copies
+        self._instances = Budget(MAX_INSTANCES, "instances in a scene")
+        self._notes = notes
+        self._default_material: int | None = None
+
+    def add(self, node: Item, mesh: int, material: int | None, worlds: Matrices, name: str) -> None:
+        """Places a mesh.
+
+        Args:
+            node: For complaints.
+            mesh: Index of the scene's mesh.
+            material: Index of its material; None: glTF's default.
+            worlds: World from mesh, shape (instances, 4, 4).
+            name: Of the instances.
+        """
+        scene = self._scene
+        self._instances.spend(len(worlds), node)
+        if not np.abs(worlds).max() < MAX_SIZE:  # NaN is not smaller than anything
+            node.fail(f"world transform: wanted numbers below {MAX_SIZE:g}, got larger ones")
+        if material is None:
+            material = self._default()
+        self._note_missing_uv(mesh, material)
+        ranks = _ranks(worlds[:, :3, :3])
+        hidden = int((ranks < 2).sum())
+        if hidden:  # scale 0 is how files hide things
+            self._notes.add("a mesh that its node scales to nothing is left out", hidden)
+        for world, rank in zip(worlds, ranks.tolist(), strict=True):
+            if rank == 3:  # checked above, all at once: there may be a million
+                scene.instances.append(Instance(mesh, material, world, name))
+            elif rank == 2:
+                self._copies.spend(len(scene.meshes[mesh].positions), node)
+                scene.add_instance(self._flattened(mesh, world, name), material, name=name)
+
+    def _default(self) -> int:
+        if self._default_material is None:
+            self._default_material = self._scene.add_material(Material(Gltf(), name="default"))
+        return self._default_material
+
+    def _flattened(self, mesh: int, world: Matrices, name: str) -> int:
+        """Squashed flat, there is no inverse: the world's vertices are written down."""
+        flat = self._scene.meshes[mesh]
+        points = flat.positions @ world[:3, :3].T + world[:3, 3]
+        return self._scene.add_mesh(
+            points, flat.indices, None, flat.uv, uv1=flat.uv1, colors=flat.colors, name=name
+        )
+
+    def _note_missing_uv(self, mesh: int, material: int) -> None:
+        kind = self._scene.materials[material].kind
+        arrays = (self._scene.meshes[mesh].uv, self._scene.meshes[mesh].uv1)
+        for key, slot in vars(kind).items():
+            if key.endswith("_texture") and slot is not None and arrays[slot.uv_set] is None:
+                self._notes.add("a textured mesh lacks the texture coordinates that it needs")
+                return
+
+
+def _ranks(linear: Matrices) -> NDArray[np.int64]:
+    """Dimensions that transforms leave; 2 also where the float determinant would vanish."""
+    volumes, sizes = np.abs(np.linalg.det(linear)), np.abs(linear).max(axis=(1, 2))
+    ranks = np.full(len(linear), 3)
+    for i in np.flatnonzero(~((volumes > 1e-30) & (volumes > 1e-12 * sizes**3))):
+        rank = int(np.linalg.matrix_rank(linear[i], tol=1e-12 * sizes[i]))
+        ranks[i] = min(rank, 2) if volumes[i] <= 1e-30 else rank
+    return ranks

@@ -1,0 +1,58 @@
+"""Transforms as 4x4 matrices that act on column vectors.
+
+Source: glTF 2.0 specification, chapter 3.5.3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .json_item import Item
+
+Matrix = NDArray[np.float64]
+
+
+def affine(matrices: Matrix, item: Item) -> Matrix:
+    """Matrices (..., 4, 4) with a last row of exactly 0, 0, 0, 1, which it must nearly be."""
+    last = matrices[..., 3, :].reshape(-1, 4)
+    bad = np.flatnonzero(np.abs(last - (0, 0, 0, 1)).max(axis=1) > 1e-5)
+    if bad.size:
+        item.fail(f"wanted 0, 0, 0, 1 as its last row, got {last[bad[0]].tolist()}")
+    matrices[..., 3, :] = (0, 0, 0, 1)
+    return matrices
+
+
+def compose(t: Matrix, q: Matrix, s: Matrix) -> Matrix:
+    """Translation x rotation x scale, shapes (..., 3), (..., 4; unit x, y, z, w), (..., 3)."""
+    x, y, z, w = q.tolist() if q.ndim == 1 else q.T  # one by one, floats are faster
+    rows = np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+        )
+    )
+    matrix = np.zeros((*q.shape[:-1], 4, 4))
+    matrix[..., :3, :3] = (rows if q.ndim == 1 else rows.transpose(2, 0, 1)) * s[..., None, :]
+    matrix[..., :3, 3] = t
+    matrix[..., 3, 3] = 1
+    return matrix
+
+
+def without_scale(world: Matrix) -> Matrix | None:
+    """The rigid part of a transform: place, -z and +y kept; None if there is no direction left.
+
+    Cameras and lights ignore the scale of their node (glTF 2.0, 3.10; KHR_lights_punctual).
+    """
+    z, y = world[:3, 2], world[:3, 1]
+    x = np.cross(y, z)
+    lengths = np.linalg.norm(z), np.linalg.norm(x)
+    if lengths[0] < 1e-20 or lengths[1] < 1e-30:
+        return None
+    rigid = np.eye(4)
+    rigid[:3, 2] = z / lengths[0]
+    rigid[:3, 0] = x / lengths[1]
+    rigid[:3, 1] = np.cross(rigid[:3, 2], rigid[:3, 0])
+    rigid[:3, 3] = world[:3, 3]
+    return rigid
