@@ -6,6 +6,7 @@
 
 namespace nb = nanobind;
 
+void bind_codec(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
@@ -21,6 +22,7 @@ NB_MODULE(_core, m) {
             PyErr_SetString(PyExc_ValueError, e.what());
         }
     });
+    bind_codec(m);
     bind_optics(m);
     bind_scene(m);
     bind_camera(m);

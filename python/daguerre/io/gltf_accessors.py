@@ -6,25 +6,50 @@ Source: glTF 2.0 specification, chapter 3.6.2; KHR_mesh_quantization.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import gltf_meshopt
+from .budget import Budget
 from .json_item import Item, short
 
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 # An accessor without bytes is zeros: no file size bounds it, so this does (elements x components).
 _MAX_ZEROS = 1 << 26
+#: All compressed bufferViews of a file together, unpacked.
+_MAX_UNPACKED_BYTES = 8 << 30
 
 
-@dataclass(frozen=True)
 class _View:
-    data: memoryview
-    stride: int | None
-    item: Item
+    """A bufferView; a compressed one is unpacked when it is first read.
+
+    Args:
+        item: The bufferView.
+        buffers: Bytes of all buffers.
+        budget: For what is unpacked.
+    """
+
+    def __init__(self, item: Item, buffers: list[memoryview], budget: Budget) -> None:
+        self.item = item
+        self.packed = gltf_meshopt.packed(item)
+        self._budget = budget
+        self._data = _slice(item if self.packed is None else self.packed, buffers)
+        stride = item.get("byteStride")
+        self.stride = None if stride is None else stride.integer(1, 252)
+        if self.packed is not None:
+            gltf_meshopt.check(item, self.packed)
+
+    @property
+    def data(self) -> memoryview:
+        """The bytes, unpacked."""
+        if self.packed is not None:
+            self._budget.spend(self.item.need("byteLength").integer(), self.item)
+            self._data = gltf_meshopt.unpack(self._data, self.item, self.packed)
+            self.packed = None
+        return self._data
 
 
 class Accessors:
@@ -36,7 +61,8 @@ class Accessors:
     """
 
     def __init__(self, root: Item, buffers: list[memoryview]) -> None:
-        self._views = [_view(item, buffers) for item in root.list_of("bufferViews")]
+        budget = Budget("compressed bufferViews", _MAX_UNPACKED_BYTES)
+        self._views = [_View(item, buffers, budget) for item in root.list_of("bufferViews")]
         self._items = root.list_of("accessors")
         self._arrays: dict[int, NDArray[Any]] = {}
 
@@ -201,7 +227,8 @@ def _decoded(array: NDArray[Any], normalized: bool, use: Item, what: str) -> NDA
     return values
 
 
-def _view(item: Item, buffers: list[memoryview]) -> _View:
+def _slice(item: Item, buffers: list[memoryview]) -> memoryview:
+    """The part of a buffer that a bufferView, or its compressed form, names."""
     buffer = buffers[item.need("buffer").index(len(buffers), "buffers")]
     offset_item = item.get("byteOffset")
     offset = 0 if offset_item is None else offset_item.integer(0)
@@ -211,9 +238,4 @@ def _view(item: Item, buffers: list[memoryview]) -> _View:
             f"beyond its buffer ({len(buffer)} bytes): wanted byteOffset + byteLength at most "
             f"{len(buffer)}, got {short(offset)} + {short(length)}"
         )
-    stride = item.get("byteStride")
-    return _View(
-        buffer[offset : offset + length],
-        None if stride is None else stride.integer(1, 252),
-        item,
-    )
+    return buffer[offset : offset + length]

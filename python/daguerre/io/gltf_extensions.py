@@ -11,6 +11,7 @@ KNOWN = frozenset(
     {
         "EXT_camera_physical",
         "EXT_mesh_gpu_instancing",
+        "EXT_meshopt_compression",
         "KHR_animation_pointer",
         "KHR_lights_punctual",
         "KHR_materials_emissive_strength",
@@ -19,6 +20,7 @@ KNOWN = frozenset(
         "KHR_materials_transmission",
         "KHR_materials_volume",
         "KHR_mesh_quantization",
+        "KHR_meshopt_compression",
         "KHR_node_visibility",
         "KHR_texture_transform",
     }

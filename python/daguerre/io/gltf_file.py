@@ -17,6 +17,7 @@ from typing import Any, NoReturn
 
 from daguerre.errors import InputError
 
+from .gltf_meshopt import placeholders
 from .json_item import Item, short
 from .uris import Folder, data_bytes, is_data
 
@@ -149,12 +150,16 @@ def _check_asset(root: Item) -> None:
 
 
 def load_buffers(document: Document) -> list[memoryview]:
-    """The bytes of every buffer, exactly ``byteLength`` of them.
+    """The bytes of every buffer, exactly ``byteLength`` of them; none of those that nobody reads.
 
     Raises:
         InputError: A file is missing, outside of the folder, or shorter than ``byteLength``.
     """
-    return [_load_buffer(document, item) for item in document.root.list_of("buffers")]
+    unread = placeholders(document.root)
+    return [
+        memoryview(b"") if index in unread else _load_buffer(document, item)
+        for index, item in enumerate(document.root.list_of("buffers"))
+    ]
 
 
 def _load_buffer(document: Document, item: Item) -> memoryview:

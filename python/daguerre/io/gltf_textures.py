@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import given_up
-from daguerre.errors import InputError
 from daguerre.materials import TextureSlot
 from daguerre.scene import Scene
 
 from . import images
+from .budget import Budget
 from .gltf_accessors import Accessors
 from .gltf_file import Document
 from .json_item import Item, clean
@@ -93,7 +93,7 @@ class Textures:
     def decode(self, scene: Scene) -> None:
         """Decodes what the slots need and adds it to the scene, which has no textures yet."""
         wanted = sorted({plan.image for plan in self._plans})
-        budget = _Budget(_MAX_TOTAL_BYTES)
+        budget = Budget("images", _MAX_TOTAL_BYTES)
 
         def load(index: int) -> NDArray[Any]:
             pixels = images.decode(self._bytes(index), self._where(index))
@@ -157,19 +157,6 @@ class Textures:
         item, path = self._images[index], self._paths[index]
         name = item.name() or (path.name if path else "")
         return f"{item.file}: {item.path}" + (f" ({clean(name)[:60]!r})" if name else "")
-
-
-class _Budget:
-    def __init__(self, limit: int) -> None:
-        self._left = limit
-
-    def spend(self, size: int, item: Item) -> None:
-        self._left -= size  # the lock of the interpreter suffices: it need not be exact
-        if self._left < 0:
-            raise InputError(
-                f"{item.file}: images: wanted at most {_MAX_TOTAL_BYTES >> 30} GiB decoded, "
-                f"got more at {item.path}"
-            )
 
 
 def _sampler(item: Item) -> tuple[tuple[str, str], str]:
