@@ -234,7 +234,7 @@ class EmbreeIntersector final : public Intersector {
     }
 
   private:
-    SceneOwner new_scene();
+    SceneOwner new_scene(std::size_t triangles);
     GeometryOwner triangles_of(const Mesh& mesh);
     void set_positions(RTCGeometry geometry, const Mesh& mesh);
     void set_world_positions(RTCGeometry geometry, const Mesh& mesh,
@@ -282,7 +282,7 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
                                      CutoutFunction cutout)
     : cutout_(std::move(cutout)),
       flattened_(choose_flattened(meshes, instances)),
-      top_(new_scene()),
+      top_(new_scene(count_flattened(meshes, instances, flattened_))),
       sphere_geometry_(static_cast<unsigned>(instances.size())),
       name_(version_name(device_.get())) {
     for (unsigned i = 0; i < instances.size(); ++i) {
@@ -296,10 +296,11 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
     device_.check("building the acceleration structure of the scene");
 }
 
-SceneOwner EmbreeIntersector::new_scene() {
+SceneOwner EmbreeIntersector::new_scene(std::size_t triangles) {
     SceneOwner scene(rtcNewScene(device_.get()));
     device_.check("creating an acceleration structure");
-    rtcSetSceneFlags(scene.get(), kSceneFlags);
+    const int compact = triangles > kCompactLimit ? RTC_SCENE_FLAG_COMPACT : 0;
+    rtcSetSceneFlags(scene.get(), RTCSceneFlags(kSceneFlags | compact));
     rtcSetSceneBuildQuality(scene.get(), kBuildQuality);
     return scene;
 }
@@ -337,6 +338,7 @@ void EmbreeIntersector::set_positions(RTCGeometry geometry, const Mesh& mesh) {
 
 void EmbreeIntersector::set_world_positions(RTCGeometry geometry, const Mesh& mesh,
                                             const Affine3f& transform) {
+    if (is_identity(transform)) return set_positions(geometry, mesh);
     void* copy =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                 sizeof(Vec3f), mesh.positions.size());
@@ -367,7 +369,7 @@ RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
     SceneOwner& scene =
         mesh_scenes_[{instance.mesh, instance.cutout, instance.clear != Clear::no}];
     if (scene) return scene.get();
-    scene = new_scene();
+    scene = new_scene(mesh.triangles.size());
     GeometryOwner geometry = triangles_of(mesh);
     set_positions(geometry.get(), mesh);
     set_filters(geometry.get(), instance);

@@ -1,6 +1,7 @@
 // embree_test.cpp -- hits against closed forms, on both paths: flattened and through an
 // instance.
 #include <doctest/doctest.h>
+#include <sys/mman.h>
 
 #include <random>
 
@@ -47,6 +48,27 @@ std::vector<InstanceGeometry> crowd(const Mesh& mesh, const Affine3f& transform,
 }
 
 }  // namespace
+
+TEST_CASE("positions that end with a page of memory are not read beyond it") {
+    constexpr std::size_t kPage = 4096;
+    auto* pages = static_cast<char*>(mmap(nullptr, 2 * kPage, PROT_READ | PROT_WRITE,
+                                          MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    REQUIRE(pages != MAP_FAILED);
+    REQUIRE(mprotect(pages + kPage, kPage, PROT_NONE) == 0);
+    for (const std::size_t spare : {0, 4, 8}) {  // bytes before the end of the page
+        auto* corners = reinterpret_cast<Vec3f*>(pages + kPage - spare) - 3;
+        corners[0] = {0, 0, 0}, corners[1] = {1, 0, 0}, corners[2] = {0, 1, 0};
+        Mesh mesh;
+        mesh.positions = SharedArray<Vec3f>(corners, 3, nullptr);
+        mesh.triangles = {{0, 1, 2}};
+        const auto tracer = Intersector::build({mesh}, {{0, {}, false}}, {}, {});
+        Ray ray;
+        ray.origin = {0.25f, 0.25f, 1};
+        ray.direction = {0, 0, -1};
+        CHECK(tracer->intersect(ray)->t == 1);
+    }
+    munmap(pages, 2 * kPage);
+}
 
 TEST_CASE(
     "a triangle: distance and barycentrics, on both paths, under shear and mirroring") {

@@ -18,9 +18,22 @@ std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
     // top level).
     std::vector<bool> flattened(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        flattened[i] = shared <= limit || uses[instances[i].mesh] == 1;
+        const std::uint32_t m = instances[i].mesh;
+        const bool copied_large = meshes[m].triangles.size() > kCompactLimit &&
+                                  !is_identity(instances[i].world_from_local);
+        flattened[i] = uses[m] == 1 ? !copied_large : shared <= limit;
     }
     return flattened;
+}
+
+std::size_t count_flattened(const std::vector<Mesh>& meshes,
+                            const std::vector<InstanceGeometry>& instances,
+                            const std::vector<bool>& flattened) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        if (flattened[i]) count += meshes[instances[i].mesh].triangles.size();
+    }
+    return count;
 }
 
 }  // namespace dg

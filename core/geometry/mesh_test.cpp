@@ -77,4 +77,15 @@ TEST_CASE("meshes used once are flattened, shared ones while the total stays sma
           std::vector{true, false, false, false, false});
     CHECK(choose_flattened(meshes, instances, 80) == std::vector<bool>(5, true));
     CHECK(choose_flattened(meshes, instances) == std::vector<bool>(5, true));
+    CHECK(count_flattened(meshes, instances, {true, false, false, false, true}) == 1030);
+}
+
+TEST_CASE("a large mesh is copied for no transform") {
+    const std::vector<Mesh> meshes{mesh_of_size(kCompactLimit + 1), mesh_of_size(kCompactLimit)};
+    Affine3f moved;
+    moved.origin.y = 1;
+    CHECK(choose_flattened(meshes, {{0, {}, false}, {1, moved, false}}) ==
+          std::vector{true, true});
+    CHECK(choose_flattened(meshes, {{0, moved, false}, {1, moved, false}}) ==
+          std::vector{false, true});
 }

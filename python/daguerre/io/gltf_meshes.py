@@ -165,7 +165,8 @@ class Meshes:
             return None
         triangles = self._deform(source, arrays, triangles)
         positions, normals = arrays["POSITION"], arrays.get("NORMAL")
-        if not np.abs(positions).max() < MAX_SIZE:  # NaN is not smaller than anything
+        # NaN is not smaller than anything.
+        if not max(positions.max(), -positions.min()) < MAX_SIZE:
             far = np.flatnonzero(~(np.abs(positions) < MAX_SIZE).all(axis=1))
             attributes["POSITION"].fail(
                 f"vertex {far[0]}: wanted coordinates below {MAX_SIZE:g}, "

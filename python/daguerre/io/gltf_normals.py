@@ -14,7 +14,7 @@ def unit_normals(
     normals: FloatArray, positions: FloatArray, triangles: NDArray[np.uint32], notes: Notes
 ) -> FloatArray:
     """Unit length; where it is 0, the normal of a face there."""
-    lengths = np.linalg.norm(normals.astype(np.float64), axis=1)
+    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals, dtype=np.float64))
     empty = lengths == 0
     if empty.any():
         a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
@@ -26,7 +26,8 @@ def unit_normals(
         lost = lengths == 0
         normals[lost], lengths[lost] = (0, 1, 0), 1
         notes.add("a vertex normal of length 0 is replaced", int(empty.sum()))
-    return np.asarray(normals / lengths[:, None], np.float32)
+    normals /= lengths[:, None]
+    return normals
 
 
 def unit_tangents(tangents: FloatArray | None, notes: Notes) -> FloatArray | None:
