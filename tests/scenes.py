@@ -66,12 +66,13 @@ def lamp_room() -> dg.Scene:
         down,
         name="lamp",
     )
-    scene.add_light(dg.SphereLight((40, 60, 90), 0.05, name="bulb"), _at(-1.5, 1.5, -4))
+    scene.add_light(dg.SphereLight((40, 60, 90), 0.05, name="bulb"), at(-1.5, 1.5, -4))
     scene.set_environment(color=(0.05, 0.06, 0.08))
     return scene
 
 
-def _at(x: float, y: float, z: float) -> np.ndarray:
+def at(x: float, y: float, z: float) -> np.ndarray:
+    """A translation."""
     transform = np.eye(4)
     transform[:3, 3] = (x, y, z)
     return transform

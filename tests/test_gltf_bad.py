@@ -304,6 +304,14 @@ CASES: dict[str, tuple[Callable[[Builder], None], str]] = {
         put("materials.0.extensions.KHR_materials_ior.ior", 0.5),
         r"materials\[0\]\.extensions\.KHR_materials_ior\.ior: out of range: wanted 0 or at least 1",
     ),
+    "dispersion": (
+        put("materials.0.extensions.KHR_materials_dispersion", {"dispersion": -0.1}),
+        r"extensions\.KHR_materials_dispersion\.dispersion: out of range: wanted at least 0",
+    ),
+    "dispersion is text": (
+        put("materials.0.extensions.KHR_materials_dispersion", {"dispersion": "1"}),
+        r"materials\[0\]\.extensions\.KHR_materials_dispersion\.dispersion: wrong type",
+    ),
     "extension is a list": (put("materials.0.extensions", []), r"extensions: wrong type"),
     "emission": (put("materials.0.emissiveFactor", [-1, 0, 0]), r"emissiveFactor\[0\]: out of ran"),
     "attenuation": (

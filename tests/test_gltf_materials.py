@@ -97,6 +97,7 @@ def test_extensions(tmp_path):
                         "specularFactor": 0.3,
                         "specularColorFactor": [1, 2, 0.5],
                     },
+                    "KHR_materials_dispersion": {"dispersion": 0.36},
                 }
             }
         ),
@@ -110,11 +111,12 @@ def test_extensions(tmp_path):
         attenuation_color=(0.9, 0.8, 0.7),
         specular=0.3,
         specular_color=(1, 2, 0.5),
+        dispersion=0.36,
     )
 
 
 def test_empty_extensions_give_their_defaults(tmp_path):
-    names = ("ior", "transmission", "volume", "specular", "emissive_strength")
+    names = ("ior", "transmission", "volume", "specular", "emissive_strength", "dispersion")
     b = with_material({"extensions": {f"KHR_materials_{name}": {} for name in names}})
     assert kind(b, tmp_path) == Gltf()
 

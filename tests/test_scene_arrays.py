@@ -24,7 +24,7 @@ FACES = [[0, 1, 2], [0, 2, 3]]
 def small() -> dg.Scene:
     scene = dg.Scene()
     scene.add_instance(scene.add_mesh(SQUARE, FACES), dg.Diffuse((0.5, 0.5, 0.5)), name="wall")
-    scene.add_camera("Camera", dg.Camera(transform=scenes._at(0, 0, 3)))
+    scene.add_camera("Camera", dg.Camera(transform=scenes.at(0, 0, 3)))
     scene.set_environment(color=(1, 1, 1))
     return scene
 

@@ -77,6 +77,7 @@ GltfMaterial to_gltf(const nb::dict& d) {
     m.thickness = number("thickness");
     m.attenuation_distance = number("attenuation_distance");
     m.attenuation_color = rgb("attenuation_color");
+    m.dispersion = number("dispersion");
     return m;
 }
 
@@ -195,9 +196,9 @@ void bind_scene(nb::module_& m) {
              })
         .def("add_dielectric",
              [](Builder& b, const std::string& name, float ior, float alpha, const Triple& tint,
-                const Triple& emission, bool two_sided) {
-                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint)}, emission,
-                                       two_sided);
+                float dispersion, const Triple& emission, bool two_sided) {
+                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint), dispersion},
+                                       emission, two_sided);
              })
         .def("add_gltf",
              [](Builder& b, const std::string& name, const nb::dict& values,

@@ -7,16 +7,20 @@
 #include <optional>
 
 #include "material/bsdf_sample.h"
+#include "material/dispersive.h"
 #include "material/fresnel.h"
 #include "material/ggx.h"
+#include "spectrum/wavelengths.h"
 
 namespace dg {
 
 struct DielectricBsdf {
     Vec3f ns, ng;
     Spectrum tint{1.f};
-    float ior = 1.5f;
+    float ior = 1.5f;  // the hero's
     float alpha = 0;
+    bool disperses = false;  // what is bent is the hero's alone
+    Spectrum iors{1.f};      // of the four wavelengths, if so
 
     /// An interface without a change of index has no facet normals to scatter about: a
     /// window.
@@ -33,9 +37,10 @@ struct DielectricBsdf {
         const Facet f =
             reflected ? reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2)
                       : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2, eta);
-        const float r = fresnel_dielectric(f.cos_h, eta);
-        if (reflected) return {Spectrum(r * f.f_cos), r * f.pdf};
-        return {tint * ((1 - r) * f.f_cos), (1 - r) * f.pdf};
+        const Split p = split(f.cos_h, eta, side.front);
+        if (reflected) return {p.reflectance * f.f_cos, p.probability * f.pdf};
+        return {tint * (p.transmittance * f.f_cos), (1 - p.probability) * f.pdf,
+                disperses};
     }
     Spectrum evaluate(Vec3f wo, Vec3f wi) const {
         return evaluate_with_pdf(wo, wi).f_cos;
@@ -48,15 +53,17 @@ struct DielectricBsdf {
         const bool smooth = is_specular();
         const float eta = side.front ? ior : 1 / ior;
         const Vec3f h = smooth ? side.ns : sample_visible_normal(side.ns, wo, alpha, u);
-        const float r = fresnel_dielectric(dot(wo, h), eta);
-        const bool transmitted = u_lobe >= r;
+        const Split p = split(dot(wo, h), eta, side.front);
+        const bool transmitted = u_lobe >= p.probability;
         const Vec3f wi = transmitted ? refract(wo, h, eta) : reflect(wo, h);
         if (side.reflects(wi) == transmitted) return std::nullopt;
         BsdfSample s{.wi = wi, .specular = smooth, .transmitted = transmitted};
         if (transmitted) s.eta = eta;
+        s.hero_only = transmitted && disperses;
         if (smooth) {
-            s.pdf = transmitted ? 1 - r : r;
-            s.weight = transmitted ? tint / (eta * eta) : Spectrum(1.f);
+            s.pdf = transmitted ? 1 - p.probability : p.probability;
+            s.weight = transmitted ? tint * (p.transmittance / (s.pdf * eta * eta))
+                                   : p.reflectance / s.pdf;
             return s;
         }
         const Evaluation e = evaluate_with_pdf(wo, wi);
@@ -70,7 +77,24 @@ struct DielectricBsdf {
     Spectrum straight(Vec3f wo) const {
         const Facing side(ns, ng, wo);
         if (!is_specular() || side.cos_o <= 0) return 0.f;
-        return tint * (1 - fresnel_dielectric(side.cos_o, std::max(ior, 1 / ior)));
+        const float r = fresnel_dielectric(side.cos_o, std::max(ior, 1 / ior));
+        if (!disperses) return tint * (1 - r);
+        return tint * (Spectrum(1.f) - fresnel_dielectric(side.cos_o, iors, true));
+    }
+
+  private:
+    /// What a facet whose normal makes cos_h with wo does, and the chance to reflect.
+    struct Split {
+        Spectrum reflectance, transmittance;
+        float probability;
+    };
+    Split split(float cos_h, float eta, bool front) const {
+        const float r = fresnel_dielectric(cos_h, eta);
+        if (!disperses) return {r, 1 - r, r};
+        // What is reflected serves all wavelengths, what is transmitted the hero's.
+        const Spectrum all = fresnel_dielectric(cos_h, iors, front);
+        const float mean = all.average();
+        return {all, hero_alone() * (1 - r), mean / (mean + 1 - r)};
     }
 };
 

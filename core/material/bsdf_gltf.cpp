@@ -37,6 +37,8 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     f90 = s.specular;
     ior = bending_ior(s.ior);
     if (s.ior <= 0) f0_ior = 0;  // the exact curve below is that of the index 1
+    disperses = s.disperses;
+    if (disperses) disperse(s);
 
     const float dielectric = 1 - s.metallic;
     clear_weight = dielectric * s.transmission;
@@ -61,6 +63,26 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     if (clear == Clear::volume) inside = s.interior;
 }
 
+void GltfBsdf::disperse(const GltfSurface& s) {
+    iors = s.iors;
+    for (int k = 0; k < kWavelengths; ++k) {
+        const float f = normal_reflectance(iors[k]);
+        f0.set(k, std::min(s.specular_color[k] * f, 1.f) * s.specular);
+    }
+    f0_max = std::min(s.specular_color.max() * f0_ior, 1.f) * s.specular;
+}
+
+/// As the volume's share in split(), each wavelength by its own curve.
+Spectrum GltfBsdf::dispersed_reflectance(float cos_h, bool front) const {
+    Spectrum r = fresnel_dielectric(cos_h, iors, front);
+    for (int k = 0; k < kWavelengths; ++k) {
+        const float f = normal_reflectance(iors[k]);
+        const float shape = std::max(0.f, r[k] - f) / (1 - f);
+        if (r[k] < 1) r.set(k, f0[k] + (f90 - f0[k]) * shape);
+    }
+    return r;
+}
+
 GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
     const float s = schlick(cos_h);
     Split p{.reflected = r0 + r90_r0 * s};
@@ -70,10 +92,13 @@ GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
         const float exact = fresnel_dielectric(cos_h, eta);
         const float shape = std::max(0.f, exact - f0_ior) / (1 - f0_ior);
         f_max = exact < 1 ? f0_max + (f90 - f0_max) * shape : 1.f;
-        p.reflected +=
-            (exact < 1 ? lerp(shape, f0, Spectrum(f90)) : Spectrum(1.f)) * clear_weight;
+        const Spectrum volume = disperses   ? dispersed_reflectance(cos_h, eta > 1)
+                                : exact < 1 ? lerp(shape, f0, Spectrum(f90))
+                                            : Spectrum(1.f);
+        p.reflected += volume * clear_weight;
     }
     p.transmitted = transmitted * (1 - f_max);
+    if (disperses) p.transmitted *= hero_alone();
     const float r = p.reflected.average(), t = p.transmitted.average();
     p.reflect_probability = t > 0 ? r / (r + t) : 1.f;
     return p;
@@ -82,6 +107,8 @@ GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
 Spectrum GltfBsdf::straight(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!smooth || clear == Clear::none || side.cos_o <= 0) return 0.f;
+    if (disperses)
+        return transmitted * (Spectrum(1.f) - dispersed_reflectance(side.cos_o, true));
     return split(side.cos_o, clear == Clear::volume ? std::max(ior, 1 / ior) : 1.f)
         .transmitted;
 }
@@ -126,7 +153,8 @@ Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
             ? reflecting_facet(side.ns, wo, mirrored, side.cos_o, -cos_i, alpha2)
             : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha2, n);
     const Split p = split(f.cos_h, n);
-    return {p.transmitted * f.f_cos, specular * (1 - p.reflect_probability) * f.pdf};
+    return {p.transmitted * f.f_cos, specular * (1 - p.reflect_probability) * f.pdf,
+            disperses};
 }
 
 std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) const {
@@ -150,6 +178,7 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         } else if (s.transmitted) {
             s.wi = refract(wo, h, n);
             s.eta = n;
+            s.hero_only = disperses;
         }
         if (smooth) {
             const float chosen =

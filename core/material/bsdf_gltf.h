@@ -24,8 +24,10 @@
 #include <optional>
 
 #include "material/bsdf_sample.h"
+#include "material/dispersive.h"
 #include "material/ggx.h"
 #include "material/ggx_albedo.h"
+#include "spectrum/wavelengths.h"
 
 namespace dg {
 
@@ -33,7 +35,9 @@ namespace dg {
 struct GltfSurface {
     Spectrum base{1.f};
     float metallic = 0, roughness = 1;
-    float ior = 1.5f, specular = 1;
+    float ior = 1.5f, specular = 1;  // a dispersive volume: the hero's index
+    bool disperses = false;          // such a volume, and the path has all wavelengths
+    Spectrum iors{1.5f};             // of the four, if it disperses
     Spectrum specular_color{1.f};
     float transmission = 0;
     bool volume = false;  // thickness > 0
@@ -55,7 +59,9 @@ struct GltfBsdf {
     float f90, f0_max;
     float clear_weight;    // (1 - metallic) transmission
     Spectrum transmitted;  // its colour
-    float ior, f0_ior;
+    float ior, f0_ior;     // the hero's, where the volume disperses
+    bool disperses;        // what is bent is the hero's alone
+    Spectrum iors;
     GgxAlbedo::Row row;
     Spectrum coupling;         // albedo E_c of the interface above the diffuse lobe
     Spectrum specular_albedo;  // estimate, all specular lobes together
@@ -83,6 +89,8 @@ struct GltfBsdf {
         float reflect_probability = 1;
     };
     Split split(float cos_h, float eta) const;
+    void disperse(const GltfSurface& surface);
+    Spectrum dispersed_reflectance(float cos_h, bool front) const;
     float eta(bool front) const {
         return clear != Clear::volume ? 1.f : front ? ior : 1 / ior;
     }

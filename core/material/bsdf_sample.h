@@ -16,12 +16,14 @@ struct BsdfSample {
     bool transmitted = false;
     float eta =
         1;  // relative index change of a refraction (for Russian roulette: eta^2 scaling)
+    bool hero_only = false;  // bent by a dispersive interface: weight is hero_alone()'s
 };
 
 /// Value and density of one pair of directions; delta lobes count in neither.
 struct Evaluation {
     Spectrum f_cos{0.f};  // f * |cos wi|
     float pdf = 0;        // of sample(), solid angle
+    bool hero_only = false;  // as in BsdfSample
 };
 
 /// Absorption of the medium behind the surface: spectral transmittance over `distance`

@@ -103,8 +103,20 @@ Bsdf shade_kind(const ConductorMaterial& m, const Textures&, SurfaceHit& hit,
 
 Bsdf shade_kind(const DielectricMaterial& m, const Textures&, SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
-    return DielectricBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.tint)), m.ior,
-                          m.alpha};
+    DielectricBsdf b{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.tint)), m.ior,
+                     m.alpha};
+    if (m.dispersion <= 0) return b;
+    b.iors = dispersed_ior(m.ior, m.dispersion, wavelengths.nm);
+    b.ior = b.iors[0];
+    b.disperses = !wavelengths.secondary_ended;
+    return b;
+}
+
+void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface& s) {
+    if (s.ior <= 0) return;  // bends nothing
+    s.iors = dispersed_ior(s.ior, m.dispersion, wavelengths.nm);
+    s.ior = s.iors[0];
+    s.disperses = !wavelengths.secondary_ended;
 }
 
 Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
@@ -121,6 +133,7 @@ Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit
     if (s.volume && std::isfinite(m.attenuation_distance))
         s.interior = {true, wavelengths.reflectance(m.attenuation_color),
                       m.attenuation_distance};
+    if (s.volume && m.dispersion > 0 && s.transmission > 0) disperse(m, wavelengths, s);
     return Bsdf(std::in_place_type<GltfBsdf>, s, hit.ns, hit.ng);
 }
 

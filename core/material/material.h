@@ -29,8 +29,9 @@ struct ConductorMaterial {
 /// Clear dielectric, smooth or GGX rough; the normal's side is outside.
 struct DielectricMaterial {
     float ior = 1.5f;
-    float alpha = 0;    // < 1e-3 smooth
-    Rgb tint{1, 1, 1};  // multiplies transmission
+    float alpha = 0;       // < 1e-3 smooth
+    Rgb tint{1, 1, 1};     // multiplies transmission
+    float dispersion = 0;  // 20 / Abbe number (KHR_materials_dispersion); `ior` is n_d
 };
 
 /// glTF 2.0 metallic-roughness with KHR_materials_{emissive_strength, ior, transmission,
@@ -59,6 +60,7 @@ struct GltfMaterial {
     float thickness = 0;               // > 0: a volume with refraction; 0: thin-walled
     float attenuation_distance = std::numeric_limits<float>::infinity();  // m
     Rgb attenuation_color{1, 1, 1};
+    float dispersion = 0;  // 20 / Abbe number; of a volume
 };
 
 struct Material {

@@ -51,6 +51,7 @@ void check(const Checker& c, const DielectricMaterial& m) {
     c.number("ior", m.ior, 0.1f, 10);
     c.number("alpha", m.alpha, 0, 1);
     c.color("tint", m.tint, 1);
+    c.number("dispersion", m.dispersion, 0, Checker::kLargest);
 }
 void check(const Checker& c, const GltfMaterial& m) {
     c.color("base_color", m.base_color, 1);
@@ -69,6 +70,7 @@ void check(const Checker& c, const GltfMaterial& m) {
         throw input_error(c.where, "attenuation_distance", "more than 0 m",
                           Checker::text(m.attenuation_distance));
     c.color("attenuation_color", m.attenuation_color, 1);
+    c.number("dispersion", m.dispersion, 0, Checker::kLargest);
     c.slot("base_color_texture", m.base_color_texture);
     c.slot("metallic_roughness_texture", m.metallic_roughness_texture);
     c.slot("normal_texture", m.normal_texture);

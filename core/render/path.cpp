@@ -98,16 +98,17 @@ Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& b
     return medium_beyond(walk.medium, bsdf.interior(), bsdf.bounds_volume(), side < 0);
 }
 
-/// Next-event estimation at one vertex.
+/// Next-event estimation at one vertex. hero_only: see Evaluation.
 template <typename BsdfKind>
 Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
                       const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
-                      PathSettings::Strategy strategy, std::uint64_t& rays) {
+                      PathSettings::Strategy strategy, bool& hero_only, std::uint64_t& rays) {
     const auto light = scene.sample_light(u.select, u.light, hit.position, wl);
     if (!light || light->pdf <= 0) return 0.f;
     if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
-    const auto [f_cos, pdf] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
+    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
     if (f_cos.is_black()) return 0.f;
+    hero_only = alone_bent;
     ++rays;
     const Spectrum visible =
         scene.visibility(spawn_ray(hit, light->wi, walk.ray.time), light->distance,
@@ -165,21 +166,22 @@ bool survives_roulette(Walk& walk, float u) {
 
 }  // namespace
 
-Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count) {
-    Spectrum result{0.f};
+    Radiance light;
+    Spectrum* gathered = &light.shared;
     Walk walk;
     walk.ray = ray;
     walk.previous = ray.origin;
     std::uint64_t rays = 0;
     for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
         if (!is_finite(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
-            return Spectrum(std::numeric_limits<float>::quiet_NaN());
+            return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
         ++rays;
         auto found = scene.intersect(walk.ray);
         if (!found) {
-            result += walk.throughput *
-                      environment_emission(scene, walk, wavelengths, settings.strategy);
+            *gathered += walk.throughput *
+                         environment_emission(scene, walk, wavelengths, settings.strategy);
             break;
         }
         SurfaceHit& hit = found->surface;
@@ -188,12 +190,12 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
             const auto sphere = std::uint32_t(found->sphere_light);
             const float pdf =
                 walk.from_delta ? 0 : scene.lights().pdf_sphere(sphere, walk.previous);
-            result += walk.throughput * scene.lights().sphere_radiance(sphere, wavelengths) *
-                      emission_weight(walk, pdf, settings.strategy);
+            *gathered += walk.throughput * scene.lights().sphere_radiance(sphere, wavelengths) *
+                         emission_weight(walk, pdf, settings.strategy);
             break;
         }
-        result += walk.throughput *
-                  surface_emission(scene, walk, hit, wavelengths, settings.strategy);
+        *gathered += walk.throughput *
+                     surface_emission(scene, walk, hit, wavelengths, settings.strategy);
         const bool last = vertex == settings.max_depth;  // behind it only windows count
         if (last && !scene.has_clear()) break;
 
@@ -202,14 +204,23 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         const bool alive = std::visit(
             [&](const auto& kind) {
                 const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);
-                if (!last && !kind.is_specular())
-                    result += walk.throughput * direct_light(scene, hit, kind, u, walk,
-                                                             wavelengths,
-                                                             settings.strategy, rays);
+                if (!last && !kind.is_specular()) {
+                    bool hero_only = false;
+                    const Spectrum direct =
+                        walk.throughput * direct_light(scene, hit, kind, u, walk, wavelengths,
+                                                       settings.strategy, hero_only, rays);
+                    (hero_only ? light.hero : *gathered) += direct;
+                }
                 const auto sample = kind.sample(hit.wo, u.lobe, u.direction);
                 if (!sample || sample->weight.is_black()) return false;
                 advance(walk, hit, kind, *sample);
                 if (last && walk.straight == 0) return false;
+                if (sample->hero_only) {
+                    // The throughput carries the hero's share from here on, so the weights of what was
+                    // gathered before stay. A BSDF disperses no path whose wavelengths have ended.
+                    wavelengths.secondary_ended = true;
+                    gathered = &light.hero;
+                }
                 walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);
                 return true;
             },
@@ -220,7 +231,7 @@ Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
             break;
     }
     if (ray_count) *ray_count += rays;
-    return result;
+    return light;
 }
 
 }  // namespace dg

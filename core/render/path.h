@@ -13,9 +13,17 @@ struct PathSettings {
     enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
 };
 
+/// Light in two parts that add up: what any wavelength of the path could have found as its hero, and
+/// what was found behind a dispersive interface, where the path went the way of its hero alone (lane 0,
+/// with the share of all four already; see hero_alone()).
+struct Radiance {
+    Spectrum shared{0.f}, hero{0.f};
+    Spectrum sum() const { return shared + hero; }
+};
+
 /// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
 /// sampling. `aov`, if given, receives the first hit.
-Spectrum radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count);
 
 }  // namespace dg

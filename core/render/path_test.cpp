@@ -39,7 +39,7 @@ SampleMoments look(const Scene& scene, const PathSettings& settings, int n) {
         const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
         Ray ray;
         ray.direction = normalize(Vec3f{r * std::cos(phi), r * std::sin(phi), z});
-        const Spectrum l = radiance(scene, ray, wavelengths, sampler, settings, nullptr, nullptr);
+        const Spectrum l = radiance(scene, ray, wavelengths, sampler, settings, nullptr, nullptr).sum();
         values.push_back(wavelengths.to_xyz(l).y);
     }
     return moments(values);
@@ -95,10 +95,10 @@ TEST_CASE("a ray that is no ray becomes a bad sample, not a crash") {
     Wavelengths wavelengths = Wavelengths::sample(0.5f);
     Ray ray;
     ray.direction = {std::nanf(""), 0, 1};
-    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr)[0]));
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).shared[0]));
     ray.direction = {0, 0, 1};
     ray.origin = {0, std::numeric_limits<float>::infinity(), 0};
-    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr)[0]));
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).shared[0]));
 }
 
 TEST_CASE("the same numbers give the same radiance") {

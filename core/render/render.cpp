@@ -114,7 +114,7 @@ class Renderer {
         if (end_secondary_) sample.wavelengths.end_secondary();
         AovSample aov;
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
-        const Spectrum light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
+        const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
                                         settings_.path, wanted, &work.counters.rays);
         if (wanted) add_aov(sample, aov);
         if (exact_) {
@@ -122,23 +122,30 @@ class Renderer {
             splat(sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index,
-                      sample.wavelengths.to_xyz(light * (camera_ray.weight * sample.filter_weight)));
+                      sample.wavelengths.to_xyz(light.sum() *
+                                                (camera_ray.weight * sample.filter_weight)));
         }
     }
 
-    /// Each wavelength at its own film point; those of one pixel are added as one value.
+    /// Each wavelength at its own film point; those of one pixel are added as one value. Light that only
+    /// this hero could have found (Radiance::hero) has no share in the heuristic over four heroes that
+    /// weighs the landings: another hero would have been bent elsewhere in the scene, so its technique
+    /// has the density 0 for this path. It has the plain weight of the hero's own film sample.
     void splat(const Sample& sample, const CameraRay& camera_ray,
-               std::span<const Reprojection> others, Spectrum light) const {
+               std::span<const Reprojection> others, const Radiance& light) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
         auto landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
+        Spectrum landed = light.hero * (camera_ray.weight * sample.filter_weight);
+        for (int k = 0; k < kWavelengths; ++k)
+            landed.set(k, landed[k] + light.shared[k] * landings[k].weight);
         for (int k = 0; k < kWavelengths; ++k) {
             if (landings[k].weight == 0) continue;
             Spectrum here{0.f};
             const Pixel pixel = landings[k].pixel;
             for (int j = k; j < kWavelengths; ++j) {
                 if (landings[j].pixel.x != pixel.x || landings[j].pixel.y != pixel.y) continue;
-                here.set(j, light[j] * landings[j].weight);
+                here.set(j, landed[j]);
                 landings[j].weight = 0;
             }
             film_.add_shared(pixel.x, pixel.y, sample.index, sample.wavelengths.to_xyz(here));

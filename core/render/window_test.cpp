@@ -62,7 +62,7 @@ SampleMoments floor_radiance(const SceneDescription& d, Strategy strategy, int n
         Ray ray;
         ray.origin = {0.05f, 0.08f, 0.02f};
         ray.direction = normalize(Vec3f{} - ray.origin);
-        const Spectrum l = radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr);
+        const Spectrum l = radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr).sum();
         values.push_back(l[0] / wl.emission({1, 1, 1})[0]);
     }
     return moments(values);
@@ -256,7 +256,7 @@ TEST_CASE("a lamp inside coloured glass: light sampling knows the absorption") {
             ray.origin = {0.8f, 5, 0};
             ray.direction = {0, -1, 0};
             values.push_back(
-                radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr)[0] /
+                radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr).shared[0] /
                 wl.emission({1, 1, 1})[0]);
         }
         return moments(values);

@@ -164,10 +164,9 @@ Wavelengths Wavelengths::sample(float u) {
 void Wavelengths::end_secondary() {
     if (secondary_ended) return;
     secondary_ended = true;
-    const Spectrum hero_only(kWavelengths, 0, 0, 0);
-    cie_x *= hero_only;
-    cie_y *= hero_only;
-    cie_z *= hero_only;
+    cie_x *= hero_alone();
+    cie_y *= hero_alone();
+    cie_z *= hero_alone();
 }
 
 Vec3f Wavelengths::to_xyz(Spectrum radiance) const {

@@ -17,7 +17,7 @@ struct Wavelengths {
     Spectrum red, green, blue;  // basis of the upsampling at nm
     Spectrum d65;  // D65 shape, scaled so that luminance(d65) = 1 (cd/m2 for Rgb 1,1,1)
     Spectrum cie_x, cie_y, cie_z;  // colour matching / (4 pdf), scaled so that Y(d65) = 1
-    bool secondary_ended = false;
+    bool secondary_ended = false;  // only the hero counts from here on
 
     /// u in [0,1); importance sampled (see wavelengths.cpp).
     static Wavelengths sample(float u);
@@ -25,13 +25,19 @@ struct Wavelengths {
     Spectrum reflectance(Rgb c) const { return red * c.x + green * c.y + blue * c.z; }
     Spectrum emission(Rgb c) const { return d65 * reflectance(c); }
 
-    /// From here on only the hero wavelength is followed (dispersion): its weight becomes
-    /// 4, the others 0. Idempotent.
+    /// Only the hero wavelength is followed (dispersion in the lens): its weight becomes 4,
+    /// the others 0. Idempotent.
     void end_secondary();
 
     /// One sample's estimate of CIE XYZ (2 degree), white = D65 with Y = 1.
     Vec3f to_xyz(Spectrum radiance) const;
 };
+
+/// Weights of a path that goes on with the hero alone: each wavelength is the hero of one
+/// path in four.
+inline Spectrum hero_alone() {
+    return {kWavelengths, 0, 0, 0};
+}
 
 /// Density per nm of Wavelengths::sample; 0 outside 380-780 nm.
 float wavelength_pdf(float nm);

@@ -69,7 +69,9 @@ def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
     elif isinstance(kind, Conductor):
         builder.add_conductor(material.name, kind.reflectance, kind.alpha, *rest)
     elif isinstance(kind, Dielectric):
-        builder.add_dielectric(material.name, kind.ior, kind.alpha, kind.tint, *rest)
+        builder.add_dielectric(
+            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, *rest
+        )
     elif isinstance(kind, Gltf):
         values = {f.name: getattr(kind, f.name) for f in dataclasses.fields(kind)}
         for name, value in values.items():

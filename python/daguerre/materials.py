@@ -43,16 +43,27 @@ class Conductor:
 
 @dataclass(frozen=True)
 class Dielectric:
-    """Clear glass, smooth (``alpha`` below 1e-3) or GGX rough; the normal's side is outside."""
+    """Clear glass, smooth (``alpha`` below 1e-3) or GGX rough; the normal's side is outside.
+
+    Attributes:
+        ior: Index of refraction, at 587.6 nm.
+        alpha: GGX roughness.
+        tint: Multiplies what is transmitted.
+        dispersion: 20 / Abbe number; 0: the same index at every wavelength.
+    """
 
     ior: float = 1.5
     alpha: float = 0.0
     tint: Color = (1.0, 1.0, 1.0)
+    dispersion: float = 0.0
 
 
 @dataclass(frozen=True)
 class Gltf:
-    """glTF metallic-roughness with KHR emissive_strength, ior, transmission, volume, specular."""
+    """glTF metallic-roughness and its extensions, by the names of the glTF properties.
+
+    KHR emissive_strength, ior, transmission, volume, specular, dispersion (20 / Abbe number).
+    """
 
     base_color: Color = (1.0, 1.0, 1.0)
     base_alpha: float = 1.0
@@ -78,6 +89,7 @@ class Gltf:
     thickness: float = 0.0
     attenuation_distance: float = math.inf
     attenuation_color: Color = (1.0, 1.0, 1.0)
+    dispersion: float = 0.0
 
 
 Kind = Diffuse | Conductor | Dielectric | Gltf

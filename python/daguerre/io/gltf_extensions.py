@@ -14,6 +14,7 @@ KNOWN = frozenset(
         "EXT_meshopt_compression",
         "KHR_animation_pointer",
         "KHR_lights_punctual",
+        "KHR_materials_dispersion",
         "KHR_materials_emissive_strength",
         "KHR_materials_ior",
         "KHR_materials_specular",

@@ -1,7 +1,7 @@
 """Materials of glTF: metallic-roughness and the KHR extensions that Daguerre knows.
 
 Source: glTF 2.0 specification, chapters 3.9 and 5.19; KHR_materials_{emissive_strength, ior,
-transmission, volume, specular}.
+transmission, volume, specular, dispersion}.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ def _material(item: Item, textures: Textures, notes: Notes) -> Material:
     _surface(item, textures, values)
     _specular(item, textures, values)
     _transmission(item, textures, notes, values)
+    _dispersion(item, values)
     return Material(Gltf(**values), name=item.name() or f"material{item.key}")
 
 
@@ -110,3 +111,9 @@ def _transmission(item: Item, textures: Textures, notes: Notes, values: dict[str
         values["attenuation_distance"] = distance.number(above=0)
     r, g, b = _color(volume, "attenuationColor", 1.0, 1 + _SLACK)
     values["attenuation_color"] = (min(r, 1.0), min(g, 1.0), min(b, 1.0))
+
+
+def _dispersion(item: Item, values: dict[str, Any]) -> None:
+    dispersion = item.extension("KHR_materials_dispersion")
+    if dispersion is not None:
+        values["dispersion"] = dispersion.number_of("dispersion", 0.0, 0)
