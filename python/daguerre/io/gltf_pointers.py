@@ -94,12 +94,17 @@ class Pointers:
         if not isinstance(chosen, int) or not 0 <= chosen < len(self._meshes):
             return
         mesh = self._meshes[chosen]
-        weights = [item.value for item in mesh.list_of("weights")]  # a node has its mesh's (3.7.4)
+        weights = _list(mesh, "weights")  # a node has those of its mesh (3.7.4)
         if not weights:  # and those are zeros (3.7.2.2)
             first = mesh.list_of("primitives")[:1]
-            weights = [0.0 for primitive in first for _ in primitive.list_of("targets")]
+            weights = [0.0] * sum(len(_list(primitive, "targets")) for primitive in first)
         self._copied.spend(len(weights), use)
-        owner["weights"] = weights
+        owner["weights"] = list(weights)
+
+
+def _list(owner: Item, key: str) -> list[Any]:
+    member = owner.get(key)
+    return member.value if member is not None and isinstance(member.value, list) else []
 
 
 def _is_mutable(tokens: list[str]) -> bool:
