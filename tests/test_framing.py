@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.framing import frame_everything
+from daguerre.framing import bounds, frame_everything
 
 from . import scenes
 
@@ -28,6 +28,25 @@ def test_everything_is_in_view(scale: float) -> None:
     border[1:-1, 1:-1] = False
     assert frame.alpha[border].max() == 0
     assert set(np.unique(frame.aovs["object_id"])) == {0, 1, 2}
+
+
+def test_bounds_are_those_of_the_corners() -> None:
+    rng = np.random.default_rng(5)
+    scene = dg.Scene()
+    meshes = [scene.add_mesh(rng.normal(size=(9, 3)) * (1, 2, 3) + k, [0, 1, 2]) for k in (0, 5)]
+    wanted = []
+    for mesh in meshes * 3:
+        transform = np.eye(4)
+        transform[:3] = rng.normal(size=(3, 4))
+        scene.add_instance(mesh, None, transform)
+        points = scene.meshes[mesh].positions
+        box = np.array(np.meshgrid(*zip(points.min(axis=0), points.max(axis=0), strict=True)))
+        wanted.append(transform[:3, :3] @ box.reshape(3, 8) + transform[:3, 3:])
+    corners = np.concatenate(wanted, axis=1)
+    low, high = bounds(scene)
+    assert low == pytest.approx(corners.min(axis=1))
+    assert high == pytest.approx(corners.max(axis=1))
+    assert bounds(dg.Scene()) is None
 
 
 def test_an_empty_scene_has_no_view() -> None:

@@ -513,9 +513,49 @@ def test_truncated_anywhere(tmp_path, keep):
         gltf.read(path)
 
 
-def test_random_damage_never_escapes(tmp_path):
+def moving() -> Builder:
+    """Morph targets, a skin, instances, visibility and pointers."""
+    b = triangle()
+    primitive = b.json["meshes"][0]["primitives"][0]
+    primitive["attributes"] |= {
+        "NORMAL": b.accessor([[0, 0, 1]] * 3),
+        "JOINTS_0": b.accessor([[0, 1, 0, 0]] * 3, "u1"),
+        "WEIGHTS_0": b.accessor([[0.5, 0.5, 0, 0]] * 3),
+    }
+    sparse = {
+        "count": 1,
+        "indices": {"bufferView": b.view(b"\2"), "componentType": 5121},
+        "values": {"bufferView": b.view(struct.pack("<3f", 0, 0, 6))},
+    }
+    empty = {"componentType": 5126, "count": 3, "type": "VEC3"}
+    lift = b.add("accessors", empty | {"sparse": sparse})
+    primitive["targets"] = [{"POSITION": lift}, {"NORMAL": b.accessor([[1, 0, 0]] * 3)}]
+    b.json["meshes"][0]["weights"] = [1, 0.5]
+    bind = np.tile(np.eye(4).ravel(), (2, 1))
+    b.add("skins", {"joints": [1, 2], "inverseBindMatrices": b.accessor(bind)})
+    b.json["nodes"][0]["skin"] = 0
+    b.node(children=[2], extensions={"KHR_node_visibility": {"visible": True}})
+    columns = {"ROTATION": b.accessor([[0, 0, 0, 1]] * 2), "_ID": b.accessor([1, 2])}
+    b.child(mesh=0, extensions={"EXT_mesh_gpu_instancing": {"attributes": columns}})
+    keys = b.accessor([0])
+    for pointer, output in (
+        ("/nodes/1/rotation", b.accessor([[0, 0, 0, 1]])),
+        ("/nodes/0/weights/1", b.accessor([0.25])),
+        ("/nodes/1/extensions/KHR_node_visibility/visible", b.accessor([1], "u1")),
+    ):
+        target = {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}}
+        sampler = {"input": keys, "output": output, "interpolation": "STEP"}
+        b.add(
+            "animations",
+            {"samplers": [sampler], "channels": [{"sampler": 0, "target": target}]},
+        )
+    return b
+
+
+@pytest.mark.parametrize("make", [full, moving])
+def test_random_damage_never_escapes(tmp_path, make):
     """Whatever the bytes: a scene or an InputError, nothing else."""
-    good = full().glb(tmp_path / "a.glb").read_bytes()
+    good = make().glb(tmp_path / "a.glb").read_bytes()
     rng = np.random.default_rng(7)
     outcomes = {True: 0, False: 0}
     for _ in range(800):

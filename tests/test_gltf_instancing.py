@@ -10,10 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import daguerre
+from daguerre import camera_setup
 from daguerre.errors import InputError
 from daguerre.io import gltf, gltf_placing
 
-from .make_gltf import Builder, triangle
+from .make_gltf import CORNERS, Builder, triangle
 
 HALF = math.sqrt(0.5)
 
@@ -167,6 +169,24 @@ def test_a_column_of_zeros_without_bytes_has_an_end(tmp_path, monkeypatch):
     b.json["meshes"][0]["primitives"] *= 4
     with pytest.raises(InputError, match=r"nodes\[0\]: wanted at most 1000 instances in a scene"):
         load(b, tmp_path)
+
+
+def test_focus_on_one_of_many_instances_and_on_a_skin(tmp_path, monkeypatch):
+    monkeypatch.setattr(camera_setup, "_VERTICES_AT_ONCE", 7)
+    b = triangle()
+    instanced(b, TRANSLATION=b.accessor([[0, 0, -z] for z in (9, 3, 5, 4, 8, 7)]))
+    attributes = {"POSITION": b.accessor(np.array(CORNERS) - (9, 9, 2))}
+    attributes["JOINTS_0"] = b.accessor([[0, 0, 0, 0]] * 3, "u1")
+    attributes["WEIGHTS_0"] = b.accessor([[1, 0, 0, 0]] * 3)
+    b.mesh(attributes)
+    b.add("skins", {"joints": [1]})
+    b.node(translation=[0, 0, -4])
+    b.node(mesh=1, skin=0, name="skin", translation=[0, 0, -100])
+    scene = load(b, tmp_path)
+    for name, depth in (("tri", 3), ("skin", 6)):
+        camera = daguerre.Camera(focus_on=name)
+        setup = camera_setup.set_up(scene, camera, (30, 20), None)
+        assert setup.facts["focus_distance_m"] == pytest.approx(depth)
 
 
 # Visibility ------------------------------------------------------------------------------------

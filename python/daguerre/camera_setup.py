@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
@@ -27,6 +27,7 @@ from .scene import Scene
 DEFAULT_FOCAL_LENGTH = 50.0
 DEFAULT_F_STOP = 5.6
 MODELS = ("exact", "thin", "pinhole")
+_VERTICES_AT_ONCE = 1 << 18
 FITS = ("horizontal", "vertical", "auto", "fill")
 
 
@@ -291,16 +292,20 @@ class Focus:
         if not instances:
             depth = float((scene.node_positions[name] - eye) @ axis)
             return self._in_front(name, depth, "is")
-        points = np.concatenate([_world_vertices(scene, i) for i in instances])
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2 - eye
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        nearest, farthest = math.inf, -math.inf
+        for points in _world_vertices(scene, instances):
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+            depths = (points - eye) @ axis
+            nearest = min(nearest, float(np.where(depths > 0, depths, math.inf).min()))
+            farthest = max(farthest, float(depths.max()))
+        middle = (low + high) / 2 - eye
         if self.core_scene is not None and middle @ axis > 0:
             hit = self.core_scene.first_hit(tuple(eye), tuple(middle))
             if hit is not None and hit[1] in instances:
                 depth = hit[0] * float(middle @ axis) / float(np.linalg.norm(middle))
                 return self._in_front(name, depth, "has its visible middle")
-        depths = (points - eye) @ axis
-        in_front = depths[depths > 0]
-        depth = float(in_front.min()) if in_front.size else float(depths.max())
+        depth = nearest if nearest < math.inf else farthest
         return self._in_front(name, depth, "has its nearest vertex")
 
     def _in_front(self, name: str, depth: float, verb: str) -> float:
@@ -312,10 +317,19 @@ class Focus:
         return depth
 
 
-def _world_vertices(scene: Scene, index: int) -> NDArray[np.float64]:
-    instance = scene.instances[index]
-    points = scene.meshes[instance.mesh].positions.astype(np.float64)
-    return points @ instance.transform[:3, :3].T + instance.transform[:3, 3]
+def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:
+    """Vertices of instances, shape (N, 3), m: in pieces, as a forest has more than fit."""
+    by_mesh: dict[int, list[int]] = {}
+    for i in instances:
+        by_mesh.setdefault(scene.instances[i].mesh, []).append(i)
+    for mesh, users in by_mesh.items():
+        points = scene.meshes[mesh].positions.astype(np.float64)
+        at_once = max(1, _VERTICES_AT_ONCE // max(1, len(points)))
+        for start in range(0, len(users), at_once):
+            piece = np.array([scene.instances[i].transform for i in users[start : start + at_once]])
+            world = points @ piece[:, :3, :3].swapaxes(1, 2) + piece[:, None, :3, 3]
+            if world.size:
+                yield world.reshape(-1, 3)
 
 
 def ideal_direction(film_distance: float) -> Callable[[float, float], NDArray[np.float64]]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .camera import Camera
 from .scene import Scene
 
+FloatArray = NDArray[np.float64]
 #: From where: glTF's front is +z; a little to the right and above shows depth.
 _TOWARD_CAMERA = np.array([0.35, 0.3, 1.0]) / math.sqrt(0.35**2 + 0.3**2 + 1)
 _HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
@@ -17,12 +18,10 @@ _HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
 
 def frame_everything(scene: Scene) -> Camera | None:
     """A 50 mm camera at f/8 that has the whole scene in view; None if there is nothing to see."""
-    boxes = (_world_bounds(scene, i) for i in range(len(scene.instances)))
-    bounds = [box for box in boxes if box is not None]
-    if not bounds:
+    corners = bounds(scene)
+    if corners is None:
         return None
-    low = np.min([b[0] for b in bounds], axis=0)
-    high = np.max([b[1] for b in bounds], axis=0)
+    low, high = corners
     middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
     distance = 1.05 * max(radius, 1e-3) / math.sin(_HALF_FIELD)
     z = _TOWARD_CAMERA
@@ -34,14 +33,19 @@ def frame_everything(scene: Scene) -> Camera | None:
     return Camera(transform=transform, focal_length=50.0, f_stop=8.0)
 
 
-def _world_bounds(
-    scene: Scene, index: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    instance = scene.instances[index]
-    points = scene.meshes[instance.mesh].positions
-    if not len(points):
+def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
+    """Corners (3,) of the box around the boxes of all instances, m; None if there is nothing."""
+    filled = [i for i in scene.instances if len(scene.meshes[i.mesh].positions)]
+    if not filled:
         return None
-    box = np.array([points.min(axis=0), points.max(axis=0)], np.float64)
-    corners = np.array([(box[a, 0], box[b, 1], box[c, 2]) for a, b, c in np.ndindex(2, 2, 2)])
-    world = corners @ instance.transform[:3, :3].T + instance.transform[:3, 3]
-    return world.min(axis=0), world.max(axis=0)
+    boxes = {}
+    for mesh in {instance.mesh for instance in filled}:
+        points = scene.meshes[mesh].positions
+        low, high = points.min(axis=0).astype(float), points.max(axis=0).astype(float)
+        boxes[mesh] = (low + high) / 2, (high - low) / 2
+    centers, halves = np.array([boxes[i.mesh] for i in filled]).swapaxes(0, 1)
+    matrices = np.array([i.transform for i in filled])
+    # A turned box reaches as far along an axis as its half edges together.
+    middles = np.einsum("nij,nj->ni", matrices[:, :3, :3], centers) + matrices[:, :3, 3]
+    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), halves)
+    return (middles - reach).min(axis=0), (middles + reach).max(axis=0)

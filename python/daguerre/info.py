@@ -12,7 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from .framing import bounds
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -170,7 +170,7 @@ def camera_warnings(camera: Camera) -> list[str]:
 def scene_facts(scene: Scene) -> dict[str, Any]:
     """What is in a scene, counted."""
     triangles = [len(mesh.indices) for mesh in scene.meshes]
-    low, high = bounds(scene)
+    corners = bounds(scene)
     environment = scene.environment
     light = None
     if environment is not None:
@@ -182,7 +182,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "triangles": sum(triangles),
         "instances": len(scene.instances),
         "triangles_placed": sum(triangles[i.mesh] for i in scene.instances),
-        "bounds_m": [low, high],
+        "bounds_m": [None, None] if corners is None else [c.tolist() for c in corners],
         "materials": len(scene.materials),
         "textures": [
             {
@@ -200,24 +200,6 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "animation_duration_s": getattr(scene, "duration", None),
         "warnings": list(scene.warnings),
     }
-
-
-def bounds(scene: Scene) -> tuple[list[float] | None, list[float] | None]:
-    """Corners of the box around everything, world, m; None for an empty scene."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for instance in scene.instances:
-        points = scene.meshes[instance.mesh].positions
-        if not len(points):
-            continue
-        a, b = points.min(axis=0), points.max(axis=0)
-        corners = np.array(
-            [[x, y, z, 1] for x in (a[0], b[0]) for y in (a[1], b[1]) for z in (a[2], b[2])]
-        )
-        world = (instance.transform @ corners.T)[:3]
-        low, high = np.minimum(low, world.min(axis=1)), np.maximum(high, world.max(axis=1))
-    if not np.isfinite(low).all():
-        return None, None
-    return low.tolist(), high.tolist()
 
 
 def lit(scene: Scene) -> bool:
