@@ -274,14 +274,19 @@ def test_crop_is_a_window_of_the_whole() -> None:
     assert np.array_equal(part.rgb, whole.rgb[7:22, 5:31])
 
 
-def test_stopping_a_pass_leaves_no_trace() -> None:
+def test_a_stopped_pass_leaves_no_picture_until_whole_sums_are_back() -> None:
     scene, camera = scenes.lamp_room(), dg.Camera(lens="thin", focus_distance=4)
     session = Session(scene, camera, resolution=(200, 150))
     session.draw(0, 1)
-    before = session.frame().rgb
+    before, saved = session.frame().rgb, {k: v.copy() for k, v in session.state().items()}
     assert not session.draw(1, 400, progress=lambda fraction: False)
+    for use in (session.frame, session.state, lambda: session.draw(1, 2)):
+        with pytest.raises(dg.UsageError, match="stopped midway"):
+            use()
     assert session.ranges == [(0, 1)]
+    session.set_state(saved, session.ranges)
     assert np.array_equal(session.frame().rgb, before)
+    assert session.draw(1, 2)
 
 
 def test_aovs_of_a_ball() -> None:

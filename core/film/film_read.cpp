@@ -41,6 +41,7 @@ std::vector<float> Film::variance_rgb() const {
 
 std::vector<std::uint32_t> Film::sample_counts() const {
     std::vector<std::uint32_t> counts;
+    counts.reserve(pixels_.size());
     for (const Pixel& p : pixels_) counts.push_back(p.count);
     return counts;
 }
@@ -67,6 +68,7 @@ std::vector<float> Film::aov(const std::string& name) const {
     }
     const auto k = found - names.begin();
     std::vector<float> mean;
+    mean.reserve(pixels_.size());
     for (const AovPixel& p : require_aovs()) {
         const std::uint32_t n = k < kHitAovs ? p.hits : p.passed;
         mean.push_back(n ? float(p.sums[k].value() / n) : 0.f);
@@ -76,6 +78,7 @@ std::vector<float> Film::aov(const std::string& name) const {
 
 std::vector<std::uint32_t> Film::object_ids() const {
     std::vector<std::uint32_t> ids;
+    ids.reserve(pixels_.size());
     for (const AovPixel& p : require_aovs()) ids.push_back(p.object_id);
     return ids;
 }

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png")
+_STRIPE = 64  # rows
 #: Auxiliary channels of a film, in the names of the files.
 AOV_NAMES = (
     "depth.Z",
@@ -82,10 +83,14 @@ class Frame:
         """
         if tone not in TONES:
             raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
-        linear = np.nan_to_num(self.rgb, nan=0.0, posinf=3e38)
-        if tone == "soft":
-            linear = _shoulder(linear)
-        return np.rint(_srgb(linear) * 255).astype(np.uint8)
+        shown = np.empty(self.rgb.shape, np.uint8)
+        for row in range(0, self.height, _STRIPE):  # little memory for what is in between
+            rows = slice(row, row + _STRIPE)
+            linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
+            if tone == "soft":
+                linear = _shoulder(linear)
+            shown[rows] = np.rint(_srgb(linear) * 255)
+        return shown
 
     def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
         """Writes the frame, whole or not at all; the end of the name chooses the format.

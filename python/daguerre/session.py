@@ -102,6 +102,7 @@ class Session:
         except ValueError as error:
             raise UsageError(str(error)) from None
         self._film = self._new_film()
+        self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
         self._identity = {
@@ -120,6 +121,13 @@ class Session:
         x0, y0, x1, y1 = self.crop
         return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs)
 
+    def _whole_film(self) -> _core.Film:
+        if self._torn:
+            raise UsageError(
+                "session: a pass was stopped midway; wanted set_state with saved sums, or a new one"
+            )
+        return self._film
+
     def draw(self, begin: int, end: int, progress: Callable[[float], bool] | None = None) -> bool:
         """Draws samples [begin, end) of every pixel.
 
@@ -129,7 +137,8 @@ class Session:
             progress: Told the fraction done, now and then, from any thread; False stops.
 
         Returns:
-            False if stopped; the film is then as it was before the call.
+            False if stopped. Part of the pass is in the sums then, so the session refuses to go
+            on, or to give a picture, until ``set_state`` brings sums that are whole.
         """
         begin = whole(begin, "samples", 0, MAX_SAMPLES)
         end = whole(end, "samples", 0, MAX_SAMPLES)
@@ -140,15 +149,14 @@ class Session:
                 raise MismatchError(
                     f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
                 )
-        # Drawn apart and added when complete, so that a pass that stops midway leaves no trace.
-        film = self._film if progress is None else self._new_film()
+        film = self._whole_film()
+        self._torn = True  # until the pass is complete; a second film would take as much memory
         complete, camera_rays, stopped, rays = _core.render(
             self._core_scene, self._setup.core, film, self._settings, begin, end, progress
         )
         if not complete:
             return False
-        if film is not self._film:
-            self._film.merge(film)
+        self._torn = False
         self.camera_rays += camera_rays
         self.stopped_rays += stopped
         self.rays += rays
@@ -158,16 +166,18 @@ class Session:
 
     def frame(self) -> Frame:
         """The picture of the samples drawn so far."""
-        return frame_of(self._film, self.metadata, aovs=self.aovs)
+        return frame_of(self._whole_film(), self.metadata, aovs=self.aovs)
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
         """Number of dropped (NaN, Inf) samples, and (x, y, sample) of the first ones."""
-        return self._film.bad_sample_count, list(self._film.bad_samples)
+        film = self._whole_film()
+        return film.bad_sample_count, list(film.bad_samples)
 
     def state(self) -> dict[str, NDArray[np.uint32]]:
         """The film's exact sums as planes of 32-bit words, shape (H, W) of the crop."""
-        return {name: self._film.state(name) for name in self._film.state_channels()}
+        film = self._whole_film()
+        return {name: film.state(name) for name in film.state_channels()}
 
     def set_state(
         self, state: dict[str, NDArray[np.uint32]], ranges: list[tuple[int, int]]
@@ -189,7 +199,7 @@ class Session:
                     f"film state: {name}: wanted shape {shape}, got {state[name].shape}"
                 )
             film.set_state(name, np.ascontiguousarray(state[name], np.uint32))
-        self._film = film
+        self._film, self._torn = film, False
         self.ranges = join_ranges(ranges)
 
     @cached_property

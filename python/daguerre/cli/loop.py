@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 #: A pass lasts about this long, so that Ctrl-C and checkpoints need not wait.
 PASS_S = 3.0
-#: After Ctrl-C a pass may still take this long; then it is given up.
-PATIENCE_S = 5.0
 
 
 class Signals:
@@ -33,7 +31,6 @@ class Signals:
 
     def __init__(self) -> None:
         self.stops = 0
-        self.stopped_at = 0.0
         self.answered = False
         self.snapshot = False
         self._before: dict[int, Any] = {}
@@ -59,7 +56,6 @@ class Signals:
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
         self.stops += 1
-        self.stopped_at = self.stopped_at or time.monotonic()
 
     def _snapshot(self, number: int, frame: FrameType | None) -> None:
         self.snapshot = True
@@ -170,7 +166,7 @@ class Loop:
         def progress(share: float) -> bool:
             nonlocal fraction
             fraction = share
-            return not (given_up or _out_of_patience(signals))
+            return not given_up and signals.stops < 2
 
         def work() -> None:
             try:
@@ -230,8 +226,3 @@ def frame_pixels(session: Session) -> int:
     """Pixels that are drawn."""
     x0, y0, x1, y1 = session.crop or (0, 0, session.width, session.height)
     return int((x1 - x0) * (y1 - y0))
-
-
-def _out_of_patience(signals: Signals) -> bool:
-    late = time.monotonic() - signals.stopped_at > PATIENCE_S
-    return signals.stops >= 2 or (signals.stops == 1 and late)

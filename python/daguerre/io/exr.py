@@ -77,14 +77,15 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
-    """The channels of a frame: R G B A, its AOVs, variance.R/G/B and samples.Y."""
-    planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = dict(
-        zip("RGB", np.moveaxis(frame.rgb, 2, 0), strict=True)
-    )
+    """The channels of a frame: R G B A, its AOVs, variance.R/G/B and samples.Y.
+
+    An array of three planes stands for three channels, as OpenEXR has it: no copies are made.
+    """
+    planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
     planes |= frame.aovs
     if frame.variance is not None:
-        planes |= {f"variance.{c}": frame.variance[:, :, i] for i, c in enumerate("RGB")}
+        planes["variance"] = frame.variance
     if frame.samples is not None:
         planes["samples.Y"] = frame.samples.astype(np.float32)
     return {name: _plane(name, plane) for name, plane in planes.items()}
