@@ -60,7 +60,13 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path] = ()) -> Scene:
+def load(
+    path: str | Path,
+    *,
+    time: float = 0.0,
+    variant: str | None = None,
+    allow_dirs: Sequence[str | Path] = (),
+) -> Scene:
     """Reads a scene file (.glb or .gltf) at a time in seconds.
 
     A file without a camera gets one, named ``framing``, that has everything in view.
@@ -68,6 +74,7 @@ def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path
     Args:
         path: The file.
         time: Where the animations are evaluated, s.
+        variant: One of the file's ``variants`` of materials; absent: as the file stands.
         allow_dirs: Folders outside the file's own that it may refer to.
 
     Raises:
@@ -79,7 +86,7 @@ def load(path: str | Path, *, time: float = 0.0, allow_dirs: Sequence[str | Path
     suffix = Path(path).suffix.lower()
     if suffix not in (".glb", ".gltf"):
         raise InputError(f"{path}: format: wanted .glb or .gltf, got {suffix or 'no suffix'}")
-    scene = gltf.read(path, time=time, allow_dirs=allow_dirs)
+    scene = gltf.read(path, time=time, variant=variant, allow_dirs=allow_dirs)
     if not scene.cameras and (camera := frame_everything(scene)) is not None:
         scene.add_camera("framing", camera)
         scene.warnings.append("no camera in the file; 'framing' has everything in view")

@@ -198,6 +198,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "environment": light,
         "time_s": scene.time,
         "animation_duration_s": getattr(scene, "duration", None),
+        "variants": list(scene.variants),
         "warnings": list(scene.warnings),
     }
 

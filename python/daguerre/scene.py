@@ -91,6 +91,8 @@ class Scene:
     nodes: dict[str, list[int]] = field(default_factory=dict)
     #: node name -> world position (m), also of nodes without a mesh
     node_positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    #: names of the variants of the file's materials, for ``load(variant=...)``
+    variants: list[str] = field(default_factory=list)
     #: what the reader met and did not understand, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
 

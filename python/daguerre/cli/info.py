@@ -120,6 +120,8 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
         "emissive": f"{content['emissive_instances']} instances",
         "environment": content["environment"] or "none",
     }
+    if content["variants"]:
+        rows["variants"] = ", ".join(content["variants"])
     if content["animation_duration_s"]:
         rows["animation"] = f"{content['animation_duration_s']:.4g} s"
     lines = [f"{key:12} {value}" for key, value in rows.items()]

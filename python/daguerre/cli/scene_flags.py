@@ -20,6 +20,9 @@ class SceneFlags:
     time: Annotated[
         Text, option("--time", metavar="S", help="Scene time, s [0].", panel=_LIGHT)
     ] = None
+    variant: Annotated[
+        Text, option("--variant", metavar="NAME", help="Variant of the materials.", panel=_LIGHT)
+    ] = None
     env: Annotated[
         Path | None,
         option(
@@ -50,7 +53,9 @@ class SceneFlags:
 
         time = q.time_s("--time", self.time) if self.time is not None else 0.0
         environment = self._environment()
-        scene = daguerre.load(path, time=time, allow_dirs=tuple(self.allow_dir or ()))
+        scene = daguerre.load(
+            path, time=time, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
+        )
         if environment:
             scene.set_environment(**environment)
         elif self.env_scale is not None or self.env_rotation is not None:

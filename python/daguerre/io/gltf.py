@@ -32,6 +32,7 @@ from .gltf_placing import Placing
 from .gltf_skins import Skins
 from .gltf_textures import Textures
 from .gltf_transforms import without_scale
+from .gltf_variants import Variants
 from .json_item import Item
 from .notes import Notes
 from .uris import Folder
@@ -47,6 +48,7 @@ def read(
     *,
     time: float = 0.0,
     scene_index: int | None = None,
+    variant: str | None = None,
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
 ) -> Scene:
     """Reads a .glb or .gltf file.
@@ -55,6 +57,7 @@ def read(
         path: The file.
         time: Moment at which animations are evaluated, s.
         scene_index: Which scene of the file; absent: its default.
+        variant: Name of a variant of the materials (KHR_materials_variants); absent: none.
         allow_dirs: Folders besides the file's own from which buffers and images may come.
 
     Returns:
@@ -68,11 +71,12 @@ def read(
     file = Path(path)
     # Absurd but finite numbers may overflow on the way; results are checked where they matter.
     with np.errstate(all="ignore"):
-        return _Reader(file, float(time), Folder(file, allow_dirs)).read(scene_index)
+        folder = Folder(file, allow_dirs)
+        return _Reader(file, float(time), variant, folder).read(scene_index)
 
 
 class _Reader:
-    def __init__(self, path: Path, time: float, folder: Folder) -> None:
+    def __init__(self, path: Path, time: float, variant: str | None, folder: Folder) -> None:
         self.notes = Notes()
         self.scene = Scene(path=path, time=time)
         self.document = open_document(path, folder)
@@ -85,7 +89,11 @@ class _Reader:
         self.tree = Tree(self.root)
         skins = Skins(self.root, self.accessors, self.tree, self.notes)
         copies = Budget(_MAX_COPIES, "vertices that are not shared")
-        self.meshes = Meshes(self.root, self.accessors, skins, self.scene, copies, self.notes)
+        variants = Variants(self.root, variant)
+        self.scene.variants = variants.names
+        self.meshes = Meshes(
+            self.root, self.accessors, skins, variants, self.scene, copies, self.notes
+        )
         self.placing = Placing(self.scene, copies, self.notes)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)

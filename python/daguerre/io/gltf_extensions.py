@@ -19,6 +19,7 @@ KNOWN = frozenset(
         "KHR_materials_ior",
         "KHR_materials_specular",
         "KHR_materials_transmission",
+        "KHR_materials_variants",
         "KHR_materials_volume",
         "KHR_mesh_quantization",
         "KHR_meshopt_compression",

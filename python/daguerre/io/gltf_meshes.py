@@ -21,6 +21,7 @@ from .gltf_nodes import MAX_SIZE
 from .gltf_normals import unit_normals, unit_tangents
 from .gltf_skins import Skins, skin
 from .gltf_triangles import triangles_of
+from .gltf_variants import Variants
 from .json_item import Item, clean
 from .notes import Notes
 
@@ -77,6 +78,7 @@ class Meshes:
         root: The JSON object of the file.
         accessors: Its accessors.
         skins: Its skins.
+        variants: Which materials are chosen.
         scene: Gets the meshes.
         copies: For vertices that cannot be shared.
         notes: What was not understood.
@@ -87,12 +89,13 @@ class Meshes:
         root: Item,
         accessors: Accessors,
         skins: Skins,
+        variants: Variants,
         scene: Scene,
         copies: Budget,
         notes: Notes,
     ) -> None:
         self.items = root.list_of("meshes")
-        self._materials = len(root.list_of("materials"))
+        self._variants = variants
         self._accessors = accessors
         self._skins = skins
         self._scene = scene
@@ -144,11 +147,10 @@ class Meshes:
         key = source.key(self._accessors)
         if key not in self._shared:
             self._shared[key] = self._read(source, name)
-        mesh, material = self._shared[key], primitive.get("material")
+        mesh = self._shared[key]
         if mesh is None:
             return None
-        used = None if material is None else material.index(self._materials, "materials")
-        return Part(mesh, used, chosen is not None)
+        return Part(mesh, self._variants.material(primitive), chosen is not None)
 
     def _read(self, source: _Source, name: str) -> int | None:
         attributes = source.attributes

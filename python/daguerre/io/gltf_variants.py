@@ -1,0 +1,55 @@
+"""KHR_materials_variants: named choices of materials, of which one may be active.
+
+Source: the extension's text and schema. All mappings are checked, chosen or not.
+"""
+
+from __future__ import annotations
+
+from daguerre.errors import InputError, suggest
+
+from .json_item import Item, clean
+
+_EXTENSION = "KHR_materials_variants"
+
+
+class Variants:
+    """The variants of a file and the one that is chosen.
+
+    Args:
+        root: The JSON object of the file.
+        chosen: The name of the active one; None: the materials as they stand.
+
+    Attributes:
+        names: All of them, in the order of the file.
+
+    Raises:
+        InputError: There is no variant of that name.
+    """
+
+    def __init__(self, root: Item, chosen: str | None) -> None:
+        extension = root.extension(_EXTENSION)
+        items = [] if extension is None else list(extension.need("variants"))
+        self.names = [clean(item.need("name").text()) for item in items]
+        self._materials = len(root.list_of("materials"))
+        if chosen is not None and chosen not in self.names:
+            has = "" if self.names else ": the file has none"
+            raise InputError(
+                f"{root.file}: no variant named {chosen!r}{suggest(chosen, self.names) or has}"
+            )
+        self._chosen = None if chosen is None else self.names.index(chosen)
+
+    def material(self, primitive: Item) -> int | None:
+        """The material of a primitive under the chosen variant; None: the default one."""
+        plain, extension = primitive.get("material"), primitive.extension(_EXTENSION)
+        used = None if plain is None else plain.index(self._materials, "materials")
+        seen: set[int] = set()
+        for mapping in [] if extension is None else extension.need("mappings"):
+            material = mapping.need("material").index(self._materials, "materials")
+            for item in mapping.need("variants"):
+                variant = item.index(len(self.names), "variants")
+                if variant in seen:
+                    item.fail(f"wanted each variant once, got {variant} again")
+                seen.add(variant)
+                if variant == self._chosen:
+                    used = material
+        return used
