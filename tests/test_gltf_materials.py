@@ -280,12 +280,12 @@ def test_what_is_left_out_is_told(tmp_path):
         },
         png(RED),
     )
-    b.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
+    b.add("textures", {"extensions": {"EXT_texture_avif": {"source": 0}}})
     scene = read(b, tmp_path)
     assert scene.materials[0].kind.normal_texture is None
     assert scene.materials[0].kind.emissive_texture is None
     assert scene.warnings == [
-        "extension 'KHR_texture_basisu' is not understood (1 use)",
+        "extension 'EXT_texture_avif' is not understood (1 use)",
         "a texture that asks for texture coordinates beyond set 1 is left out (1 use)",
         "a texture without an image that is understood is left out (1 use)",
         "'thicknessTexture' is not needed: the path through the volume is traced (1 use)",

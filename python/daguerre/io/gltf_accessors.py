@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import gltf_meshopt
-from .budget import Budget
+from .gltf_budget import Budget
 from .json_item import Item, short
 
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -61,10 +61,11 @@ class Accessors:
     """
 
     def __init__(self, root: Item, buffers: list[memoryview]) -> None:
-        budget = Budget("compressed bufferViews", _MAX_UNPACKED_BYTES)
+        budget = Budget(_MAX_UNPACKED_BYTES, "bytes of unpacked bufferViews")
         self._views = [_View(item, buffers, budget) for item in root.list_of("bufferViews")]
         self._items = root.list_of("accessors")
         self._arrays: dict[int, NDArray[Any]] = {}
+        self._sources: dict[int, object] = {}
 
     def index(self, use: Item) -> int:
         """The accessor that ``use`` names; checked."""
@@ -143,6 +144,45 @@ class Accessors:
                 f"got {kind} of {component}"
             )
         return np.array(self._raw(self.index(use))[:, 0], np.uint32)
+
+    def has_bytes(self, use: Item) -> bool:
+        """Whether a bufferView or changes of single elements lie behind an accessor."""
+        item = self._items[self.index(use)]
+        return item.get("bufferView") is not None or item.get("sparse") is not None
+
+    def supplied(self, use: Item, source: object) -> bool:
+        """Whether the accessor was given its array by ``source``."""
+        return self._sources.get(self.index(use)) == source
+
+    def check_size(self, uses: list[Item], limit: int) -> None:
+        """Refuses accessors that claim more than ``limit`` bytes together."""
+        total = 0
+        for use in uses:
+            kind, component, _ = self.kind(use)
+            total += self.count(use) * _WIDTHS[kind] * np.dtype(_COMPONENTS[component]).itemsize
+            if total > limit:
+                use.fail(f"too large: wanted at most {limit >> 30} GiB, got {short(total)} bytes")
+
+    def supply(
+        self, use: Item, array: NDArray[Any], source: object, *, any_count: bool = False
+    ) -> None:
+        """Gives an accessor its array, (count, components), which comes out of ``source``.
+
+        Raises:
+            InputError: It does not fit the accessor, or another source gave it one.
+        """
+        index = self.index(use)
+        if self._sources.setdefault(index, source) != source:
+            use.fail("wanted an accessor of one compressed primitive, got one of several")
+        kind, component, _ = self.kind(use)
+        dtype, count = np.dtype(_COMPONENTS[component]), self.count(use)
+        wanted = (len(array) if any_count else count, _WIDTHS[kind])
+        if array.shape != wanted:
+            use.fail(f"wrong shape of what was compressed: wanted {wanted}, got {array.shape}")
+        cast = array.astype(dtype)
+        if array.dtype != dtype and (cast != array).any():
+            use.fail(f"what was compressed does not fit component type {component}")
+        self._arrays[index] = cast
 
     def _raw(self, index: int) -> NDArray[Any]:
         if index not in self._arrays:

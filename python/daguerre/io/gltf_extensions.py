@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import extras
 from .json_item import Item, clean, short
 from .notes import Notes
 
@@ -12,7 +13,9 @@ KNOWN = frozenset(
         "EXT_camera_physical",
         "EXT_mesh_gpu_instancing",
         "EXT_meshopt_compression",
+        "EXT_texture_webp",
         "KHR_animation_pointer",
+        "KHR_draco_mesh_compression",
         "KHR_lights_punctual",
         "KHR_materials_dispersion",
         "KHR_materials_emissive_strength",
@@ -24,6 +27,7 @@ KNOWN = frozenset(
         "KHR_mesh_quantization",
         "KHR_meshopt_compression",
         "KHR_node_visibility",
+        "KHR_texture_basisu",
         "KHR_texture_transform",
     }
 )
@@ -33,13 +37,18 @@ def check_extensions(root: Item, notes: Notes) -> None:
     """Refuses what is required and unknown; reports by name and count what is optional.
 
     Raises:
-        InputError: A required extension is unknown.
+        InputError: A required extension is unknown, or needs a package that is not there.
     """
     for item in root.list_of("extensionsRequired"):
         if item.text() not in KNOWN:
             item.fail(
                 f"unknown extension: wanted one of {', '.join(sorted(KNOWN))}, "
                 f"got {short(item.text())}"
+            )
+        if package := extras.missing(item.text()):
+            item.fail(
+                f"wanted the package {package} for {item.text()}, got none; "
+                f"install it: {extras.HINT}"
             )
     listed = [item.text() for item in root.list_of("extensionsUsed")]
     counts = _count_uses(root.value)

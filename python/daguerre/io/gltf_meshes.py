@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from daguerre.checks import given_up
 from daguerre.scene import Scene
 
+from . import gltf_draco
 from .gltf_accessors import Accessors
 from .gltf_budget import Budget
 from .gltf_morphs import Displacement, displacements, morph, weights_of
@@ -142,6 +143,8 @@ class Meshes:
             # As with nodes (3.5.3): scale 0 is how files hide things.
             self._notes.add("a mesh that its skin scales to nothing is left out")
             return None
+        if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):
+            mode = 4
         moved = displacements(primitive, weights, self._accessors, self._notes)
         source = _Source(primitive, mode, primitive.get("indices"), attributes, moved, chosen)
         key = source.key(self._accessors)

@@ -19,9 +19,9 @@ from daguerre.checks import given_up
 from daguerre.materials import TextureSlot
 from daguerre.scene import Scene
 
-from . import images
-from .budget import Budget
+from . import extras, images
 from .gltf_accessors import Accessors
+from .gltf_budget import Budget
 from .gltf_file import Document
 from .json_item import Item, clean
 from .notes import Notes
@@ -29,6 +29,8 @@ from .uris import data_bytes, is_data
 
 _WRAP = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _MAG = {9728: "nearest", 9729: "linear"}
+#: Extensions that name another image of a texture; the first that can be decoded is taken.
+_COMPRESSED = ("KHR_texture_basisu", "EXT_texture_webp")
 _MIN = (9728, 9729, 9984, 9985, 9986, 9987)
 #: All images of a file together, decoded; a few kB of JSON could ask for any number of them.
 _MAX_TOTAL_BYTES = 8 << 30
@@ -73,7 +75,7 @@ class Textures:
         if info is None:
             return None
         texture = self._textures[info.need("index").index(len(self._textures), "textures")]
-        source = texture.get("source")
+        source = self._image_of(texture)
         sampler = texture.get("sampler")
         wrap, filter_name = ("repeat", "repeat"), "linear"
         if sampler is not None:
@@ -90,10 +92,26 @@ class Textures:
         plan = _Plan(self._same[image], srgb, wrap, filter_name)
         return TextureSlot(self._plans.setdefault(plan, len(self._plans)), uv_set, transform)
 
+    def _image_of(self, texture: Item) -> Item | None:
+        """The image of a texture: a compressed one where the file has it and it can be decoded."""
+        plain = texture.get("source")
+        for name in _COMPRESSED:
+            extension = texture.extension(name)
+            if extension is None:
+                continue
+            package = extras.missing(name)
+            if not package:
+                return extension.need("source")
+            self._notes.add(
+                f"{name} needs {package} ({extras.HINT}): a texture "
+                + ("is left out" if plain is None else "is shown by the plain image beside it")
+            )
+        return plain
+
     def decode(self, scene: Scene) -> None:
         """Decodes what the slots need and adds it to the scene, which has no textures yet."""
         wanted = sorted({plan.image for plan in self._plans})
-        budget = Budget("images", _MAX_TOTAL_BYTES)
+        budget = Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
 
         def load(index: int) -> NDArray[Any]:
             pixels = images.decode(self._bytes(index), self._where(index))

@@ -1,4 +1,4 @@
-"""Pictures into arrays: PNG and JPEG of textures from bytes, environments from files.
+"""Pictures into arrays: textures from bytes, environments from files.
 
 OpenImageIO decodes; what it forgives or prints itself (a cut-off JPEG becomes grey, libpng writes
 to stderr) is refused here first. Its Python wheel cannot read from memory, so bytes pass through a
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from daguerre.errors import InputError
 
+from . import ktx2
 from .json_item import short
 
 MAX_PIXELS = 16384 * 16384
@@ -39,7 +40,7 @@ def srgb_to_linear(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[np.float32]:
-    """Decodes a PNG or JPEG; straight alpha, row 0 on top.
+    """Decodes a PNG, JPEG, WebP or KTX2; straight alpha, row 0 on top.
 
     Args:
         data: The bytes of the file.
@@ -50,9 +51,12 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
         bits would show as steps in normal maps).
 
     Raises:
-        InputError: Neither PNG nor JPEG, truncated, corrupt or absurdly large.
+        InputError: None of these, truncated, corrupt or absurdly large.
     """
     data = bytes(data)
+    if data.startswith(ktx2.MAGIC):
+        _check_size(*ktx2.size(data, where), 4, 1, where)
+        return ktx2.decode(data, where)
     if data.startswith(_PNG_MAGIC):
         _check_png(data, where)
         suffix = ".png"
@@ -61,8 +65,13 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
         if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
             raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
         suffix = ".jpg"
+    elif data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+        wanted = 8 + int.from_bytes(data[4:8], "little")
+        if len(data) < wanted:
+            raise InputError(f"{where}: truncated WebP: wanted {wanted} bytes, got {len(data)}")
+        suffix = ".webp"
     else:
-        raise InputError(f"{where}: wanted a PNG or JPEG image, got {short(data[:8])}")
+        raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
     descriptor, name = tempfile.mkstemp(suffix=suffix, prefix="daguerre-")
     try:
         with os.fdopen(descriptor, "wb") as stream:
