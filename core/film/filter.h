@@ -41,6 +41,13 @@ class Filter {
         return table_[int(t)];
     }
 
+    /// The same at x, x - 1, x - 2, ...
+    void axis(float x, int count, float* values) const {
+        float t = (x + radius_) * steps_per_px_;
+        for (int i = 0; i < count; ++i, t -= steps_per_px_)
+            values[i] = t >= 0 && t < float(kSteps) ? table_[int(t)] : 0;
+    }
+
     FilterKind kind() const { return kind_; }
     float radius() const { return radius_; }
     /// Integral of the formula as it stands, px^2.

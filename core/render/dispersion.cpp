@@ -1,99 +1,114 @@
 #include "render/dispersion.h"
 
 #include <cmath>
+#include <optional>
 
 namespace dg {
 namespace {
 
-/// Calls visit(pixel, |f|) for the region's pixels whose filter covers px.
-template <typename Visit>
-void for_each_pixel(const Filter& filter, const FilmLayout& region, Vec2f px, Visit visit) {
-    const float r = filter.radius();
-    const int x0 = std::max(int(std::floor(px.x - r)), region.offset_x);
-    const int y0 = std::max(int(std::floor(px.y - r)), region.offset_y);
-    const int x1 = std::min(int(std::floor(px.x + r)), region.offset_x + region.width - 1);
-    const int y1 = std::min(int(std::floor(px.y + r)), region.offset_y + region.height - 1);
-    for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x)
-            visit(Pixel{x, y}, std::abs(filter.evaluate({px.x - x - 0.5f, px.y - y - 0.5f})));
-}
+// A smaller part of a wavelength's light than this moves to another pixel by chance: adding to one more
+// pixel costs more than that is worth.
+constexpr float kLeastShare = 0.25f;
 
 }  // namespace
 
-float FilmDensity::absolute_integral() const { return filter_.absolute_integral(); }
-
-float FilmDensity::total(Vec2f px) const {
-    const auto along = [&](float at, int first, int count) {
-        const float r = filter_.radius();
-        const int end = std::min(int(std::floor(at + r)), first + count - 1);
-        float sum = 0;
-        for (int i = std::max(int(std::floor(at - r)), first); i <= end; ++i)
-            sum += std::abs(filter_.axis(at - i - 0.5f));
-        return sum;
-    };
-    return along(px.x, region_.offset_x, region_.width) *
-           along(px.y, region_.offset_y, region_.height);
+void Landings::add(Pixel pixel, int wavelength, float weight) {
+    for (int i = 0; i < count_; ++i) {
+        if (all_[i].pixel != pixel) continue;
+        all_[i].weight.set(wavelength, all_[i].weight[wavelength] + weight);
+        return;
+    }
+    all_[count_].pixel = pixel;
+    all_[count_++].weight.set(wavelength, weight);
 }
 
-float FilmDensity::of(Vec2f px, Pixel p) const {
-    const bool inside = p.x >= region_.offset_x && p.x < region_.offset_x + region_.width &&
-                        p.y >= region_.offset_y && p.y < region_.offset_y + region_.height;
-    return inside ? std::abs(filter_.evaluate({px.x - p.x - 0.5f, px.y - p.y - 0.5f})) : 0;
+float Footprint::Axis::sum() const {
+    float total = 0;
+    for (int i = 0; i < count; ++i) total += std::abs(f[i]);
+    return total;
 }
 
-float FilmDensity::sign(Vec2f px, Pixel p) const {
-    return filter_.evaluate({px.x - p.x - 0.5f, px.y - p.y - 0.5f}) < 0 ? -1.f : 1.f;
+void Footprint::fill(Axis& axis, const Filter& filter, float at, int first, int count) {
+    const float r = filter.radius();
+    axis.first = std::max(int(std::floor(at - r)), first);
+    const int end = std::min(int(std::floor(at + r)) + 1, first + count);
+    axis.count = std::max(0, end - axis.first);
+    filter.axis(at - axis.first - 0.5f, axis.count, axis.f);
 }
 
-std::optional<Pixel> FilmDensity::choose(Vec2f px, Vec2f kept_px, Pixel kept, float u) const {
-    const float here = total(px), there = total(kept_px);
-    if (here <= 0 || there <= 0) return std::nullopt;
-    // Maximal coupling: keep with probability min(1, q/p), else draw from the part of q above p.
-    const float p = of(kept_px, kept) / there, q = of(px, kept) / here;
-    if (p > 0 && u * p < q) return kept;
+Footprint::Footprint(const FilmDensity& density, Vec2f px) : density_(density) {
+    const FilmLayout& region = density.region();
+    fill(x_, density.filter(), px.x, region.offset_x, region.width);
+    fill(y_, density.filter(), px.y, region.offset_y, region.height);
+    if (density.even()) {
+        total_ = x_.sum() * y_.sum();
+    } else {
+        for (int y = 0; y < y_.count; ++y)
+            for (int x = 0; x < x_.count; ++x)
+                total_ += density.count({x_.first + x, y_.first + y}) * std::abs(x_.f[x] * y_.f[y]);
+    }
+    per_total_ = total_ > 0 ? 1 / total_ : 0;
+}
+
+float Footprint::share(Pixel p) const {
+    const float f = std::abs(x_.of(p.x) * y_.of(p.y));
+    return f > 0 ? density_.count(p) * f * per_total_ : 0;
+}
+
+float Footprint::sign(Pixel p) const { return x_.of(p.x) * y_.of(p.y) < 0 ? -1.f : 1.f; }
+
+Pixel Footprint::choose_excess(const Footprint& other, Pixel own, float u) const {
+    float excess[kReach * kReach];
     float rest = 0;
-    const auto excess = [&](Pixel pixel, float f) {
-        return std::max(0.f, f / here - of(kept_px, pixel) / there);
-    };
-    for_each_pixel(filter_, region_, px, [&](Pixel x, float f) { rest += excess(x, f); });
-    // Conditional on not keeping, u is uniform above q/p: stretched to [0, rest) it serves again.
-    const float keep = p > 0 ? std::min(1.f, q / p) : 0.f;
-    float left = (u - keep) / std::max(1.f - keep, 1e-20f) * rest;
-    std::optional<Pixel> chosen;
-    for_each_pixel(filter_, region_, px, [&](Pixel x, float f) {
-        const float e = excess(x, f);
-        if (e <= 0 || left < 0) return;
-        chosen = x;
-        left -= e;
-    });
+    int n = 0;
+    for (int y = 0; y < y_.count; ++y) {
+        const float here = y_.f[y] * per_total_,
+                    there = other.y_.of(y_.first + y) * other.per_total_;
+        for (int x = 0; x < x_.count; ++x) {
+            const float more = std::abs(here * x_.f[x]) - std::abs(there * other.x_.of(x_.first + x));
+            const float n_p = density_.count({x_.first + x, y_.first + y});
+            rest += excess[n++] = std::max(0.f, n_p * more);
+        }
+    }
+    float left = u * rest;
+    Pixel chosen = own;
+    for (int i = 0; i < n && left >= 0; ++i) {
+        if (excess[i] <= 0) continue;
+        chosen = {x_.first + i % x_.count, y_.first + i / x_.count};
+        left -= excess[i];
+    }
     return chosen;
 }
 
-std::array<Landing, kWavelengths> land(const FilmDensity& density, const Sensor& sensor,
-                                       const Hero& hero,
-                                       std::span<const Reprojection> others, float u) {
-    std::array<Landing, kWavelengths> landings;
-    std::array<Vec2f, kWavelengths> px;
-    std::array<float, kWavelengths> total;
-    px[0] = hero.px;
-    total[0] = density.total(hero.px);
-    float sum = total[0] / hero.aim_weight;
+Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero,
+              std::span<const Reprojection> others, float u) {
+    const Footprint home(density, hero.px);
+    std::optional<Footprint> there[kWavelengths];
+    float sum = home.total() / hero.aim_weight;
     for (int i = 1; i < kWavelengths; ++i) {
         const Reprojection& other = others[i - 1];
         if (other.aim_weight <= 0) continue;
-        px[i] = sensor.px_from_mm(other.film_mm);
-        total[i] = density.total(px[i]);
-        sum += total[i] / other.aim_weight;
+        there[i].emplace(density, sensor.px_from_mm(other.film_mm));
+        sum += there[i]->total() / other.aim_weight;
     }
-    const float scale = kWavelengths * density.absolute_integral() / sum;
-    landings[0] = {hero.pixel, density.sign(hero.px, hero.pixel) * total[0] * scale *
-                                   (hero.weight / hero.aim_weight)};
+    const float scale = kWavelengths * float(density.filter().absolute_integral()) / sum;
+    Landings landings(hero.pixel);
+    landings.add(hero.pixel, 0, home.sign(hero.pixel) * home.total() * scale *
+                                    (hero.weight / hero.aim_weight));
+    const float drawn = home.share(hero.pixel);
     for (int i = 1; i < kWavelengths; ++i) {
-        const Reprojection& other = others[i - 1];
-        if (other.aim_weight <= 0 || total[i] <= 0) continue;
-        const auto pixel = density.choose(px[i], hero.px, hero.pixel, u);
-        if (!pixel) continue;
-        landings[i] = {*pixel, density.sign(px[i], *pixel) * total[i] * scale * other.transmittance};
+        if (!there[i] || there[i]->total() <= 0) continue;
+        const float weight = there[i]->total() * scale * others[i - 1].transmittance;
+        const auto add = [&](Pixel p, float share) {
+            landings.add(p, i, there[i]->sign(p) * weight * share);
+        };
+        // The hero's pixel was drawn by its share at home; as much of that as is also its share there stays.
+        const float kept = drawn > 0 ? std::min(1.f, there[i]->share(hero.pixel) / drawn) : 0.f;
+        if (kept > 0) add(hero.pixel, kept);
+        const float moved = 1 - kept, chance = std::min(1.f, moved / kLeastShare);
+        if (u < chance)
+            add(there[i]->choose_excess(home, hero.pixel, u / chance),
+                std::max(moved, kLeastShare));
     }
     return landings;
 }

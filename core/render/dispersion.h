@@ -6,9 +6,12 @@
 // heuristic over the four possible heroes weighs wavelength i by T_i / (mean_j D_j): unbiased, as every
 // wavelength of a path is equally often its hero. Source: Veach 1997, section 9.2 (multi-sample model),
 // and Wilkie et al. 2014, Hero Wavelength Spectral Sampling, EGSR.
+//
+// Which pixel a wavelength counts for is the filter's affair at its own film point. What that point has in
+// common with the hero's stays in the hero's pixel as a share of the light, not as a chance; only the rest
+// goes to another pixel. (Chances made half of the noise of the exact lens in a plain white world.)
 #pragma once
-#include <array>
-#include <optional>
+#include <cstdint>
 #include <span>
 
 #include "camera/exact.h"
@@ -21,34 +24,83 @@ namespace dg {
 
 struct Pixel {
     int x, y;
+    friend bool operator==(Pixel, Pixel) = default;
 };
 
-/// Where one wavelength of the path lands, and its factor on the radiance.
+/// A pixel that a path's light reaches, and the factor on the radiance of each wavelength.
 struct Landing {
     Pixel pixel{};
-    float weight = 0;   // 0: stopped, or outside the region
+    Spectrum weight{0.f};
 };
 
-/// Region of pixels that are drawn, with the filter: says how densely film points are drawn, and which
-/// pixel a film point counts for.
+/// All landings of a path; the first is in the hero's pixel.
+class Landings {
+  public:
+    explicit Landings(Pixel hero) { all_[0].pixel = hero; }
+    void add(Pixel pixel, int wavelength, float weight);
+    const Landing* begin() const { return all_; }
+    const Landing* end() const { return all_ + count_; }
+
+  private:
+    Landing all_[kWavelengths];   // each other wavelength brings one more pixel at most
+    int count_ = 1;
+};
+
+/// Region of pixels that are drawn, with the filter: how densely film points are drawn. Where a round draws
+/// n(p) samples of pixel p, all densities are n(p) |f(px - centre of p)|: then the sum of what lands in p
+/// is that of n(p) samples on average, and a pixel that is not drawn gets nothing.
 class FilmDensity {
   public:
-    FilmDensity(const Filter& filter, const FilmLayout& region) : filter_(filter), region_(region) {}
+    /// `counts`: n(p), rows of the region; empty: the same for every pixel.
+    FilmDensity(const Filter& filter, const FilmLayout& region,
+                std::span<const std::uint32_t> counts = {})
+        : filter_(filter), region_(region), counts_(counts) {}
 
-    /// Sum over the region's pixels of |f(px - centre)|.
-    float total(Vec2f px) const;
-    /// |f(px - centre)| of one pixel, 0 outside the region.
-    float of(Vec2f px, Pixel pixel) const;
-    float sign(Vec2f px, Pixel pixel) const;
-    /// A pixel for the film point `px`, distributed as of(px, .) / total(px), and equal to `kept` as
-    /// often as that distribution allows when `kept` was drawn for the near-by point `kept_px`.
-    std::optional<Pixel> choose(Vec2f px, Vec2f kept_px, Pixel kept, float u) const;
-    /// Integral of |f|: 1 for filters without negative lobes.
-    float absolute_integral() const;
+    const Filter& filter() const { return filter_; }
+    const FilmLayout& region() const { return region_; }
+    bool even() const { return counts_.empty(); }
+    /// n of a pixel of the region; 1 where all are alike.
+    float count(Pixel p) const {
+        if (even()) return 1;
+        return float(counts_[std::size_t(p.y - region_.offset_y) * region_.width + p.x -
+                             region_.offset_x]);
+    }
 
   private:
     const Filter& filter_;
     const FilmLayout& region_;
+    std::span<const std::uint32_t> counts_;
+};
+
+/// The filter as it lies around one film point: the pixels in reach, each with n f.
+class Footprint {
+  public:
+    Footprint(const FilmDensity& density, Vec2f px);
+
+    /// Sum of n |f| over the pixels in reach.
+    float total() const { return total_; }
+    /// n |f| / total of a pixel; 0 where total is.
+    float share(Pixel p) const;
+    float sign(Pixel p) const;
+    /// A pixel from what this footprint's shares have above those of `other`, with u in [0,1); `other`'s own
+    /// pixel if they do not differ.
+    Pixel choose_excess(const Footprint& other, Pixel own, float u) const;
+
+  private:
+    static constexpr int kReach = 34;   // px along an axis, for the widest filter
+    struct Axis {
+        int first = 0, count = 0;
+        float f[kReach];
+        float of(int i) const {
+            return i >= first && i < first + count ? f[i - first] : 0;
+        }
+        float sum() const;
+    };
+    static void fill(Axis& axis, const Filter& filter, float at, int first, int count);
+
+    const FilmDensity& density_;
+    Axis x_, y_;
+    float total_ = 0, per_total_ = 0;
 };
 
 /// The hero's own record: where its film point is, and its density and transmittance.
@@ -59,9 +111,8 @@ struct Hero {
     float aim_weight;    // the same without transmittance
 };
 
-/// Landings of the four wavelengths; lane 0 is the hero.
-std::array<Landing, kWavelengths> land(const FilmDensity& density, const Sensor& sensor,
-                                       const Hero& hero,
-                                       std::span<const Reprojection> others, float u);
+/// Where the four wavelengths land; lane 0 is the hero.
+Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero,
+              std::span<const Reprojection> others, float u);
 
 }  // namespace dg

@@ -135,20 +135,13 @@ class Renderer {
                std::span<const Reprojection> others, const Radiance& light) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
-        auto landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
-        Spectrum landed = light.hero * (camera_ray.weight * sample.filter_weight);
-        for (int k = 0; k < kWavelengths; ++k)
-            landed.set(k, landed[k] + light.shared[k] * landings[k].weight);
-        for (int k = 0; k < kWavelengths; ++k) {
-            if (landings[k].weight == 0) continue;
-            Spectrum here{0.f};
-            const Pixel pixel = landings[k].pixel;
-            for (int j = k; j < kWavelengths; ++j) {
-                if (landings[j].pixel.x != pixel.x || landings[j].pixel.y != pixel.y) continue;
-                here.set(j, landed[j]);
-                landings[j].weight = 0;
-            }
-            film_.add_shared(pixel.x, pixel.y, sample.index, sample.wavelengths.to_xyz(here));
+        const Landings landings =
+            land(density_, settings_.sensor, hero, others, sampler.next_1d());
+        Spectrum own = light.hero * (camera_ray.weight * sample.filter_weight);
+        for (const Landing& l : landings) {   // the hero's own pixel comes first
+            film_.add_shared(l.pixel.x, l.pixel.y, sample.index,
+                             sample.wavelengths.to_xyz(own + light.shared * l.weight));
+            own = 0.f;
         }
     }
 
