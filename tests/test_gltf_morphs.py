@@ -82,9 +82,9 @@ def test_animated_weights_follow_a_spline(tmp_path):
     """Chapter 3.11: all in-tangents of a key, then its values, then its out-tangents."""
     b = morphing()
     b.node(mesh=0)
-    # Weights t^2 and 1 - t on [0, 2].
-    first = [0, -1, 0, 1, 0, -1]
-    second = [4, -1, 4, -1, 4, -1]
+    # Weights t^2 and 1 - t on [0, 2]; tangents that look outward are not used.
+    first = [77, 88, 0, 1, 0, -1]
+    second = [4, -1, 4, -1, 77, 88]
     animate(b, [0, 2], first + second, "CUBICSPLINE")
     for t in (0.0, 0.5, 1.25, 2.0):
         positions = load(b, tmp_path, t).meshes[0].positions
@@ -175,6 +175,14 @@ def test_equal_shapes_share_a_mesh(tmp_path):
     scene = load(b, tmp_path)
     assert [i.mesh for i in scene.instances] == [0, 1, 1, 0, 2, 2]
     assert [m.positions[0, 2] for m in scene.meshes] == [1, 0, 0]
+
+
+def test_targets_of_one_accessor_add_up(tmp_path):
+    b = morphing(weights=[0.5, 0.25])
+    targets = b.json["meshes"][0]["primitives"][0]["targets"]
+    targets[1] = targets[0]
+    b.node(mesh=0)
+    assert load(b, tmp_path).meshes[0].positions.tolist() == moved(0.75, 0)
 
 
 def test_a_target_without_weight_is_not_read(tmp_path):

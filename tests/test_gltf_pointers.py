@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from daguerre.errors import InputError
@@ -228,6 +228,7 @@ def test_lights(tmp_path):
 # Pointers themselves ---------------------------------------------------------------------------
 
 
+@example(["~1", "~0", "~01", "/"])
 @given(st.lists(st.text(max_size=5), min_size=1, max_size=5))
 def test_rfc_6901_escapes(tokens):
     text = "".join("/" + t.replace("~", "~0").replace("/", "~1") for t in tokens)
