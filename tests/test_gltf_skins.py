@@ -293,6 +293,17 @@ def test_pieces_do_not_show(tmp_path, monkeypatch):
         assert np.array_equal(getattr(whole, name), getattr(pieces, name))
 
 
+def test_sets_of_joints_are_counted(tmp_path, monkeypatch):
+    monkeypatch.setattr(gltf, "_MAX_COPIES", 299)
+    b = skinned(ROOT, ALL)
+    attributes = b.json["meshes"][0]["primitives"][0]["attributes"]
+    for k in range(1, 100):
+        for name in ("JOINTS", "WEIGHTS"):
+            attributes[f"{name}_{k}"] = attributes[f"{name}_0"]
+    with pytest.raises(InputError, match="wanted at most 299 vertices that are not shared"):
+        load(b, tmp_path)
+
+
 def attribute(name: str, make):
     def change(b: Builder) -> None:
         b.json["meshes"][0]["primitives"][0]["attributes"][name] = make(b)

@@ -110,12 +110,14 @@ class Accessors:
             Indices of the elements, and their numbers (indices, components).
         """
         item = self._items[self.index(use)]
-        sparse = item.get("sparse")
-        if sparse is None or item.get("bufferView") is not None:
+        if item.get("bufferView") is not None:
             return slice(None), self.floats(use, types, what)
         kind, component, normalized = self.kind(use)
         if kind not in types:
             use.fail(f"wrong accessor type: wanted {' or '.join(types)}, got {kind}")
+        sparse = item.get("sparse")
+        if sparse is None:
+            return slice(0), np.zeros((0, _WIDTHS[kind]), np.float32)
         places, values = self._sparse(
             sparse, np.dtype(_COMPONENTS[component]), _WIDTHS[kind], self.count(use)
         )

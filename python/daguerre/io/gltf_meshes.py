@@ -205,7 +205,8 @@ class Meshes:
             morph(arrays, source.displacements, self._accessors)
         if source.skin is None:
             return triangles
-        self._copies.spend(count, source.primitive)
+        sets = sum(name.startswith("JOINTS_") for name in source.attributes)
+        self._copies.spend(count * sets, source.primitive)
         found = self._skins.influences(source.attributes, source.skin, count)
         mirrored = skin(arrays, found, self._skins.matrices(source.skin))
         return np.where(mirrored[triangles[:, :1]], triangles[:, ::-1], triangles)
