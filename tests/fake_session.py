@@ -112,15 +112,12 @@ class FakeSession:
         )
 
     def state(self) -> dict[str, np.ndarray]:
-        return {
-            "sum.0": (self.sums & np.uint64(0xFFFFFFFF)).astype(np.uint32),
-            "sum.1": (self.sums >> np.uint64(32)).astype(np.uint32),
-        }
+        low, high = self.sums & np.uint64(0xFFFFFFFF), self.sums >> np.uint64(32)
+        return {"sums": np.stack([low, high, 0 * low, 0 * low], axis=2).astype(np.uint32)}
 
     def set_state(self, state: dict[str, np.ndarray], ranges: list[tuple[int, int]]) -> None:
-        self.sums = state["sum.0"].astype(np.uint64) | state["sum.1"].astype(
-            np.uint64
-        ) << np.uint64(32)
+        low, high = (state["sums"][:, :, i].astype(np.uint64) for i in range(2))
+        self.sums = low | high << np.uint64(32)
         self.ranges = list(ranges)
 
 

@@ -38,7 +38,16 @@ std::vector<float> mean_rgb(const dg::Film& film) {
     return values;
 }
 
-using Words = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Words = nb::ndarray<const std::uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+using WordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<3>>;
+
+/// Part of a film's state, (H, W, words), in place: it lives as long as the film does.
+WordsView state_view(nb::handle film, const std::string& part) {
+    const auto& f = nb::cast<const dg::Film&>(film);
+    const auto bytes = f.state(part);
+    const std::size_t height = f.layout().height, width = f.layout().width;
+    return WordsView(bytes.data(), {height, width, bytes.size() / 4 / height / width}, film);
+}
 
 }  // namespace
 
@@ -66,10 +75,9 @@ void bind_film(nb::module_& m) {
                          for (const BadSample& b : f.bad_samples()) out.emplace_back(b.x, b.y, b.sample);
                          return out;
                      })
-        .def("state_channels", &Film::state_channels)
-        .def("state",
-             [](const Film& f, const std::string& channel) { return plane(f, f.state(channel)); })
-        .def("set_state", [](Film& f, const std::string& channel, const Words& words) {
-            f.set_state(channel, std::vector<std::uint32_t>(words.data(), words.data() + words.size()));
+        .def("state_parts", &Film::state_parts)
+        .def("state", &state_view, "part"_a, "32-bit words of the sums, (H, W, words), read-only, in place.")
+        .def("set_state", [](Film& f, const std::string& part, const Words& words) {
+            f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
         });
 }

@@ -3,7 +3,9 @@
 // and merged changes a bit.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,11 +84,13 @@ class Film {
     std::vector<BadSample> bad_samples() const;
     std::uint64_t bad_sample_count() const;
 
-    /// The whole state as plain 32-bit words (little endian by value): one vector per
-    /// named channel, each width*height words. What pass files store and read back.
-    std::vector<std::string> state_channels() const;
-    std::vector<std::uint32_t> state(const std::string& channel) const;
-    void set_state(const std::string& channel, const std::vector<std::uint32_t>& words);
+    /// The whole state as it lies in memory, which is what pass files store and read back:
+    /// "sums", and "aovs" if there are any, so many bytes per pixel.
+    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192;
+    std::vector<std::string> state_parts() const;
+    std::span<const std::byte> state(const std::string& part) const;
+    /// Throws Error for another number of bytes.
+    void set_state(const std::string& part, std::span<const std::byte> bytes);
 
   private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -107,12 +111,6 @@ class Film {
     std::int64_t find(int x, int y) const;
     void add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
     static void mark_bad(Pixel& pixel, std::uint32_t sample);
-    /// Where a state channel lies: word of a Pixel or of an AovPixel.
-    struct WordPlace {
-        bool in_aovs;
-        std::size_t word;
-    };
-    WordPlace find_word(const std::string& channel) const;
     const std::vector<AovPixel>& require_aovs() const;
 
     FilmLayout layout_;

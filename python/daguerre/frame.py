@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import UsageError, suggest
+from .errors import MismatchError, UsageError, suggest
 
 if TYPE_CHECKING:
     import os
@@ -179,6 +180,20 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
     above = np.maximum(peak, knee)
     rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
     return np.asarray(linear * (rolled / above), np.float32)
+
+
+def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
+    """Puts sums that ``film.state`` gave, by part, into a film of the same size.
+
+    Raises:
+        MismatchError: A part is missing, unknown or of another size; the film is as it was then.
+    """
+    shapes = {part: film.state(part).shape for part in film.state_parts()}
+    given = {part: words.shape for part, words in state.items()}
+    if given != shapes:
+        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
+    for part, words in state.items():
+        film.set_state(part, np.ascontiguousarray(words, np.uint32))
 
 
 def frame_of(

@@ -22,7 +22,7 @@ from .camera import Camera
 from .camera_setup import set_up
 from .checks import short, whole
 from .errors import MismatchError, UsageError, suggest
-from .frame import Frame, frame_of
+from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .scene import Scene
 
@@ -175,9 +175,12 @@ class Session:
         return film.bad_sample_count, list(film.bad_samples)
 
     def state(self) -> dict[str, NDArray[np.uint32]]:
-        """The film's exact sums as planes of 32-bit words, shape (H, W) of the crop."""
+        """The film's exact sums as 32-bit words, (H, W, words) of the crop, by part.
+
+        Views of the film, without a copy: they show what is drawn later, too.
+        """
         film = self._whole_film()
-        return {name: film.state(name) for name in film.state_channels()}
+        return {part: film.state(part) for part in film.state_parts()}
 
     def set_state(
         self, state: dict[str, NDArray[np.uint32]], ranges: list[tuple[int, int]]
@@ -185,21 +188,10 @@ class Session:
         """Continues from sums that ``state`` gave, drawn from these sample ranges.
 
         Raises:
-            MismatchError: A channel is missing, unknown or of another size.
+            MismatchError: A part is missing, unknown or of another size.
         """
-        film = self._new_film()
-        wanted = film.state_channels()
-        if set(state) != set(wanted):
-            odd = sorted(set(state) ^ set(wanted))
-            raise MismatchError(f"film state: wanted {len(wanted)} channels, differs in {odd[:4]}")
-        shape = tuple(film.shape)
-        for name in wanted:
-            if state[name].shape != shape:
-                raise MismatchError(
-                    f"film state: {name}: wanted shape {shape}, got {state[name].shape}"
-                )
-            film.set_state(name, np.ascontiguousarray(state[name], np.uint32))
-        self._film, self._torn = film, False
+        set_film_state(self._film, state, "film state")
+        self._torn = False
         self.ranges = join_ranges(ranges)
 
     @cached_property

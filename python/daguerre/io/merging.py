@@ -8,10 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame import Frame, frame_of
+from daguerre.frame import Frame, frame_of, set_film_state
 
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
@@ -60,7 +58,7 @@ def merge(
         "bad_samples": count,
         "bad_sample_places": [list(place) for place in total.bad_samples],
     }
-    state = {name: total.state(name) for name in total.state_channels()}
+    state = {part: total.state(part) for part in total.state_parts()}
     frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
     return frame, Pass(state, merged, first.key, metadata)
 
@@ -70,16 +68,11 @@ def film_of(one: Pass) -> Any:
     from daguerre._core import Film
 
     if not one.state:
-        raise InputError(f"{one.path}: damaged pass file: it has no channels")
-    height, width = next(iter(one.state.values())).shape
+        raise InputError(f"{one.path}: damaged pass file: it has no sums")
+    height, width = next(iter(one.state.values())).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
     film = Film(width, height, int(x0), int(y0), aovs=_has_aovs(one.state))
-    wanted, got = set(film.state_channels()), set(one.state)
-    if wanted != got:
-        differing = ", ".join(sorted(wanted ^ got)[:4])
-        raise MismatchError(f"{one.path}: sums of another layout: channels differ: {differing}")
-    for name, words in one.state.items():
-        film.set_state(name, np.ascontiguousarray(words, np.uint32))
+    set_film_state(film, one.state, str(one.path))
     return film
 
 
@@ -95,4 +88,4 @@ def _check_overlap(seen: list[tuple[Range, Path | None]], one: Pass) -> None:
 
 
 def _has_aovs(state: State) -> bool:
-    return any(name.startswith("sum.depth") for name in state)
+    return "aovs" in state

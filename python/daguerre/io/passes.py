@@ -1,17 +1,18 @@
 """Pass files: a picture that can be looked at, and beside it the exact sums that can be added.
 
-A pass is an EXR of two parts. The first is the picture as in any frame. The second, ``sums``,
-holds the film's fixed-point sums as 32-bit words per pixel, and in its header what must agree
+A pass is an EXR of several parts. The first is the picture as in any frame. The second, ``sums``,
+has the film's fixed-point sums as they lie in memory, so that no copy is made: 28 words of 32 bits
+per pixel, in a picture of four channels that is seven times as wide. Its header has what must agree
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
-which samples were drawn (``daguerre:ranges``). The sums are integers, so adding them in any order
-gives the same bits.
+which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
+channels in the same way. The sums are integers, so adding them in any order gives the same bits.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
+STATE_PARTS = (SUMS, "aovs")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
@@ -43,7 +45,7 @@ class Pass:
     """The sums of some samples of one picture.
 
     Attributes:
-        state: The film's words by channel, each (H, W) uint32.
+        state: The film's words by part, each (H, W, words) uint32.
         ranges: Samples drawn, [begin, end), merged and sorted.
         key: What must agree with another pass, by name.
         metadata: Facts of the frame.
@@ -76,9 +78,20 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
     }
     parts: list[tuple[str, dict[str, Any], Channels]] = [
         ("beauty", attributes(frame.metadata), channels(frame)),
-        (SUMS, header, drawn.state),
+        *(_words_part(frame, name, header, words) for name, words in drawn.state.items()),
     ]
     write_parts(path, parts, frame)
+
+
+def _words_part(
+    frame: Frame, name: str, header: dict[str, Any], words: NDArray[np.uint32]
+) -> tuple[str, dict[str, Any], Channels]:
+    """Words (H, W, 4 k) as a picture (H, k W) of four channels, in place."""
+    height, width, count = words.shape
+    corner = np.array((frame.metadata.get("crop") or (0, 0))[:2], np.int32)
+    size = np.array([width * count // 4 - 1, height - 1], np.int32)
+    header = {**header, "daguerre:words": count, "dataWindow": (corner, corner + size)}
+    return name, header, {"words": words.reshape(height, -1, 4)}
 
 
 def read_pass(path: str | os.PathLike[str]) -> Pass:
@@ -96,20 +109,21 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
     if source is None:
         raise InputError(f"{path}: not a readable EXR: {oiio.geterror()}")
     try:
-        index = _find_sums(source)
-        if index is None:
+        state: State = {}
+        facts = None
+        for index in _state_parts(source):
+            spec = source.spec()
+            words = source.read_image(index, 0, 0, spec.nchannels, oiio.UINT)
+            if words is None:
+                raise InputError(f"{path}: damaged pass file: {source.geterror()}")
+            facts = facts or _header(path, spec)
+            name = spec.get_string_attribute("oiio:subimagename")
+            state[name] = _unfolded(path, words, spec.get_int_attribute("daguerre:words", 0))
+        if facts is None:
             raise InputError(
                 f"{path}: holds no sums, only a picture; "
                 "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
             )
-        spec = source.spec()
-        words = source.read_image(index, 0, 0, spec.nchannels, oiio.UINT)
-        if words is None:
-            raise InputError(f"{path}: damaged pass file: {source.geterror()}")
-        facts = _header(path, spec)
-        state = {
-            name: np.ascontiguousarray(words[:, :, i]) for i, name in enumerate(spec.channelnames)
-        }
         return replace(facts, state=state, path=path)
     finally:
         source.close()
@@ -131,13 +145,21 @@ def check_key(first: Pass, other: Pass) -> None:
         )
 
 
-def _find_sums(source: Any) -> int | None:
+def _state_parts(source: Any) -> Iterator[int]:
+    """The subimages with sums; each is the current one of the source while it is yielded."""
     index = 0
     while source.seek_subimage(index, 0):
-        if source.spec().get_string_attribute("oiio:subimagename") == SUMS:
-            return index
+        if source.spec().get_string_attribute("oiio:subimagename") in STATE_PARTS:
+            yield index
         index += 1
-    return None
+
+
+def _unfolded(path: Path, words: NDArray[np.uint32], count: int) -> NDArray[np.uint32]:
+    """Undoes :func:`_words_part`."""
+    height, size = words.shape[0], words.shape[1] * words.shape[2]
+    if count < 1 or size % count:
+        raise InputError(f"{path}: damaged pass file: daguerre:words is {count}")
+    return words.reshape(height, size // count, count)
 
 
 def _header(path: Path, spec: Any) -> Pass:
