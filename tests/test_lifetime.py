@@ -41,7 +41,7 @@ def _scene(arrays: dict[str, np.ndarray]) -> dg.Scene:
     slot = dg.materials.TextureSlot(picture)
     mesh = scene.add_mesh(**arrays)
     scene.add_instance(mesh, dg.Material(dg.Gltf(base_color_texture=slot, metallic=0)))
-    scene.add_camera("Camera", dg.Camera(transform=scenes._at(0, 0, 5)))
+    scene.add_camera("Camera", dg.Camera(transform=scenes.at(0, 0, 5)))
     scene.set_environment(color=(1, 1, 1))
     return scene
 
