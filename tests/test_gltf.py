@@ -369,11 +369,11 @@ def test_mirrored_transform_is_kept(tmp_path):
 
 def test_optional_unknown_extensions_are_counted(tmp_path):
     b = triangle()
-    b.json["extensionsUsed"] = ["KHR_materials_sheen", "KHR_lights_punctual", "VENDOR_x"]
-    sheen = {"extensions": {"KHR_materials_sheen": {}, "KHR_materials_ior": {}}}
-    b.json["materials"] = [sheen, sheen, {"extensions": {"NOT_listed": {}}}]
+    b.json["extensionsUsed"] = ["VENDOR_materials_felt", "KHR_lights_punctual", "VENDOR_x"]
+    felt = {"extensions": {"VENDOR_materials_felt": {}, "KHR_materials_ior": {}}}
+    b.json["materials"] = [felt, felt, {"extensions": {"NOT_listed": {}}}]
     assert gltf.read(b.glb(tmp_path / "a.glb")).warnings == [
-        "extension 'KHR_materials_sheen' is not understood (2 uses)",
+        "extension 'VENDOR_materials_felt' is not understood (2 uses)",
         "extension 'VENDOR_x' is not understood (0 uses)",
         "extension 'NOT_listed' is not understood (1 use)",
     ]

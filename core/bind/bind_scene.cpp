@@ -44,6 +44,26 @@ TextureSlot to_slot(nb::handle value) {
     return slot;
 }
 
+void set_layers(const nb::dict& d, GltfMaterial& m) {
+    const auto number = [&](const char* key) { return nb::cast<float>(d[key]); };
+    const auto slot = [&](const char* key) { return to_slot(d[key]); };
+    m.clearcoat = {number("clearcoat"),
+                   slot("clearcoat_texture"),
+                   number("clearcoat_roughness"),
+                   slot("clearcoat_roughness_texture"),
+                   number("clearcoat_normal_scale"),
+                   slot("clearcoat_normal_texture")};
+    m.sheen = {to_rgb(nb::cast<Triple>(d["sheen_color"])), slot("sheen_color_texture"),
+               number("sheen_roughness"), slot("sheen_roughness_texture")};
+    m.anisotropy = {number("anisotropy"), number("anisotropy_rotation"), slot("anisotropy_texture")};
+    m.iridescence = {number("iridescence"),
+                     slot("iridescence_texture"),
+                     number("iridescence_ior"),
+                     number("iridescence_thickness_min_nm"),
+                     number("iridescence_thickness_max_nm"),
+                     slot("iridescence_thickness_texture")};
+}
+
 GltfMaterial to_gltf(const nb::dict& d) {
     const auto number = [&](const char* key) { return nb::cast<float>(d[key]); };
     const auto rgb = [&](const char* key) { return to_rgb(nb::cast<Triple>(d[key])); };
@@ -78,6 +98,7 @@ GltfMaterial to_gltf(const nb::dict& d) {
     m.attenuation_distance = number("attenuation_distance");
     m.attenuation_color = rgb("attenuation_color");
     m.dispersion = number("dispersion");
+    set_layers(d, m);
     return m;
 }
 

@@ -10,7 +10,8 @@ struct SurfaceHit {
     Vec3f position;  // m
     Vec3f ng;        // unit geometric normal, as the winding gives it (front side)
     Vec3f ns;        // unit shading normal, same hemisphere as ng
-    /// Unit, along +u (glTF tangent if given), orthogonal to ns; set only for normal maps.
+    /// Unit, along +u (glTF tangent if given), orthogonal to ns; set only for normal maps
+    /// and anisotropy.
     Vec3f tangent;
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];

@@ -7,6 +7,7 @@
 #include "material/bsdf_dielectric.h"
 #include "material/bsdf_diffuse.h"
 #include "material/bsdf_gltf.h"
+#include "material/bsdf_layered.h"
 #include "material/bsdf_sample.h"
 
 namespace dg {
@@ -19,7 +20,8 @@ namespace dg {
 /// (share of light that a smooth clear surface lets through unbent; where it bounds a
 /// volume, as if light went on without being bent: both faces of a plane slab have the
 /// Fresnel reflectance of the angle outside).
-using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf>;
+using Bsdf =
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf>;
 
 inline Evaluation evaluate_with_pdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi) {
     return std::visit([&](const auto& b) { return b.evaluate_with_pdf(wo, wi); }, bsdf);

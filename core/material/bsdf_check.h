@@ -1,6 +1,7 @@
 // bsdf_check.h -- what must hold for any BSDF, measured. For tests only; a wrapper with a
 // planted fault goes through the same functions.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -76,7 +77,8 @@ Albedo albedo_by_sampling(const B& bsdf, const Setting& s, int count,
     return a;
 }
 
-/// Delta lobes: coefficient and probability of each direction that u_lobe can lead to.
+/// Delta lobes: coefficient and probability of each that u_lobe can lead to; two lobes of
+/// one direction, such as a smooth coat's and its base's, differ in their probability.
 struct Deltas {
     double value[kWavelengths] = {};
     double probability = 0;
@@ -84,11 +86,18 @@ struct Deltas {
 template <typename B>
 Deltas delta_lobes(const B& bsdf, const Setting& s) {
     Deltas sum;
-    bool seen[2] = {};
+    std::vector<BsdfSample> seen;
+    const auto same = [](const BsdfSample& a, const BsdfSample& b) {
+        return a.transmitted == b.transmitted && length_squared(a.wi - b.wi) < 1e-8f &&
+               std::abs(a.pdf - b.pdf) < 1e-5f;
+    };
     for (int i = 0; i < 1000; ++i) {
         const auto d = bsdf.sample(s.wo, (i + 0.5f) / 1000, {0.3f, 0.7f});
-        if (!d || !d->specular || seen[d->transmitted]) continue;
-        seen[d->transmitted] = true;
+        if (!d || !d->specular) continue;
+        if (std::any_of(seen.begin(), seen.end(),
+                        [&](const BsdfSample& o) { return same(*d, o); }))
+            continue;
+        seen.push_back(*d);
         sum.probability += d->pdf;
         for (int k = 0; k < kWavelengths; ++k)
             sum.value[k] +=

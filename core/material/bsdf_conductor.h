@@ -20,8 +20,8 @@ struct ConductorBsdf {
         const float cos_i = dot(side.ns, wi);
         if (is_specular() || side.cos_o <= 0 || cos_i <= 0 || !side.reflects(wi))
             return {};
-        const Facet f =
-            reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha * alpha);
+        const RoundGgx ggx{alpha * alpha};
+        const Facet f = reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, ggx);
         return {reflectance * f.f_cos, f.pdf};
     }
     Spectrum evaluate(Vec3f wo, Vec3f wi) const {

@@ -33,10 +33,10 @@ struct DielectricBsdf {
         const float cos_i = dot(side.ns, wi), eta = side.front ? ior : 1 / ior;
         const bool reflected = side.reflects(wi);
         if (reflected ? cos_i <= 0 : cos_i >= 0) return {};
-        const float a2 = alpha * alpha;
+        const RoundGgx ggx{alpha * alpha};
         const Facet f =
-            reflected ? reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2)
-                      : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, a2, eta);
+            reflected ? reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, ggx)
+                      : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, ggx, eta);
         const Split p = split(f.cos_h, eta, side.front);
         if (reflected) return {p.reflectance * f.f_cos, p.probability * f.pdf};
         return {tint * (p.transmittance * f.f_cos), (1 - p.probability) * f.pdf,

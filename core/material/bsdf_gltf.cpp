@@ -22,7 +22,30 @@ Spectrum coupling_of(float f0, float f90) {
     return {f0 - f0 * f0, f90 - f0 * f90, f0 * (f90 - f0), f0 * f0};
 }
 
+/// Angle in air of a direction that makes cos_h with a facet, on either side; 0 where it
+/// is totally reflected.
+float cos_in_air(float cos_h, float eta) {
+    if (eta >= 1) return cos_h;
+    return std::sqrt(std::max(0.f, 1 - (1 - cos_h * cos_h) / (eta * eta)));
+}
+
 }  // namespace
+
+FilmFresnel::FilmFresnel(const GltfSurface& s, Spectrum f0, float opaque)
+    : film(s.film),
+      factor(s.iridescence),
+      metal(s.metallic),
+      dielectric(opaque),
+      specular(s.specular),
+      metal_ior(index_of_f0(s.base)),
+      dielectric_ior(index_of_f0(specular > 0 ? f0 / specular : f0)) {}
+
+Spectrum FilmFresnel::mixed(Spectrum plain, float cos_h) const {
+    Spectrum f{0.f};
+    if (dielectric > 0) f += on_dielectric(cos_h) * dielectric;
+    if (metal > 0) f += film.reflectance(cos_h, metal_ior) * metal;
+    return lerp(factor, plain, f);
+}
 
 GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     : ns(shading),
@@ -55,7 +78,16 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     has_specular = r0_mean > 0 || r90 > 0 || clear_weight > 0;
     specular_albedo = {r0_mean, r90, 0, transmitted.average() + 0.05f * clear_weight};
 
-    coupling = coupling_of(f0_max, f90);
+    float f0_above = f0_max;  // of the interface above the diffuse lobe
+    if (s.iridescence > 0) {
+        film.emplace(s, f0, layered);
+        const float bound = f90 * schlick_bound(s.film, film->dielectric_ior);
+        f0_above += s.iridescence * (bound - f0_max);
+        specular_albedo.set(0, film->mixed(r0, 1).average());
+    }
+    if (s.anisotropy > 0) stretch(s);
+
+    coupling = coupling_of(f0_above, f90);
     const float entering = 1 - weigh(row.mean, coupling);
     diffuse = s.base * (entering > 1e-4f ? dielectric - clear_weight : 0.f);
     diffuse_albedo = diffuse.average();
@@ -83,21 +115,73 @@ Spectrum GltfBsdf::dispersed_reflectance(float cos_h, bool front) const {
     return r;
 }
 
+void GltfBsdf::stretch(const GltfSurface& s) {
+    const float across = std::max(alpha, kSmoothAlpha);
+    const float along = alpha + (1 - alpha) * s.anisotropy * s.anisotropy;
+    stretched = StretchedGgx{s.tangent, cross(ns, s.tangent), std::max(along, across),
+                             across};
+    smooth = false;
+    // The albedo of each direction is that of round facets which mask it alike; its mean
+    // over half a turn by the midpoint rule.
+    constexpr int kTurns = 8;
+    row.mean = 0.f;
+    for (int i = 0; i < kTurns; ++i) {
+        const Vec2f d = unit_circle((static_cast<float>(i) + 0.5f) / (2 * kTurns));
+        const Vec3f w = stretched->tangent * d.x + stretched->bitangent * d.y;
+        row.mean += stretched_row(w).mean / kTurns;
+    }
+}
+
+GgxAlbedo::Row GltfBsdf::stretched_row(Vec3f w) const {
+    return GgxAlbedo::instance().row(std::sqrt(stretched->alpha_toward(w)));
+}
+
+Facet GltfBsdf::reflecting(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const {
+    if (stretched)
+        return reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, *stretched);
+    return reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, RoundGgx{alpha * alpha});
+}
+
+Facet GltfBsdf::refracting(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const {
+    const float n = eta(side.front);
+    if (stretched)
+        return refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, *stretched, n);
+    return refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, RoundGgx{alpha * alpha},
+                            n);
+}
+
+Vec3f GltfBsdf::sample_facet(Vec3f n, Vec3f wo, Vec2f u) const {
+    if (!stretched) return sample_visible_normal(n, wo, alpha, u);
+    const StretchedGgx& g = *stretched;
+    return sample_visible_normal(Frame{g.tangent, g.bitangent, n}, wo,
+                                 Vec2f{g.alpha_t, g.alpha_b}, u);
+}
+
 GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
     const float s = schlick(cos_h);
     Split p{.reflected = r0 + r90_r0 * s};
+    if (film) p.reflected = film->mixed(p.reflected, cos_h);
     if (clear == Clear::none) return p;
     float f_max = f0_max + (f90 - f0_max) * s;
+    Spectrum volume{0.f};
+    bool total = false;
     if (clear == Clear::volume) {
         const float exact = fresnel_dielectric(cos_h, eta);
         const float shape = std::max(0.f, exact - f0_ior) / (1 - f0_ior);
-        f_max = exact < 1 ? f0_max + (f90 - f0_max) * shape : 1.f;
-        const Spectrum volume = disperses   ? dispersed_reflectance(cos_h, eta > 1)
-                                : exact < 1 ? lerp(shape, f0, Spectrum(f90))
-                                            : Spectrum(1.f);
-        p.reflected += volume * clear_weight;
+        total = exact >= 1;
+        f_max = total ? 1.f : f0_max + (f90 - f0_max) * shape;
+        volume = disperses ? dispersed_reflectance(cos_h, eta > 1)
+                 : total   ? Spectrum(1.f)
+                           : lerp(shape, f0, Spectrum(f90));
     }
-    p.transmitted = transmitted * (1 - f_max);
+    Spectrum stopped(f_max);
+    if (film && !total) {
+        const Spectrum f = film->on_dielectric(cos_in_air(cos_h, eta));
+        stopped = lerp(film->factor, stopped, f);
+        if (clear == Clear::volume) volume = lerp(film->factor, volume, f);
+    }
+    p.reflected += volume * clear_weight;
+    p.transmitted = transmitted * (1 - stopped);
     if (disperses) p.transmitted *= hero_alone();
     const float r = p.reflected.average(), t = p.transmitted.average();
     p.reflect_probability = t > 0 ? r / (r + t) : 1.f;
@@ -107,24 +191,33 @@ GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
 Spectrum GltfBsdf::straight(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!smooth || clear == Clear::none || side.cos_o <= 0) return 0.f;
-    if (disperses)
-        return transmitted * (Spectrum(1.f) - dispersed_reflectance(side.cos_o, true));
+    if (disperses) {
+        Spectrum r = dispersed_reflectance(side.cos_o, true);
+        if (film) r = lerp(film->factor, r, film->on_dielectric(side.cos_o));
+        return transmitted * (1 - r);
+    }
     return split(side.cos_o, clear == Clear::volume ? std::max(ior, 1 / ior) : 1.f)
         .transmitted;
 }
 
-GltfBsdf::Mix GltfBsdf::mix(float cos_o) const {
+GltfBsdf::Mix GltfBsdf::mix(Vec3f wo, float cos_o) const {
     if (diffuse_albedo == 0) return {0, 0};
     if (!has_specular) return {1, 0};
-    const LobeAlbedo albedo = row.at(cos_o);
+    const LobeAlbedo albedo = lobe_albedo(wo, cos_o);
     const float e = weigh(albedo, coupling);
     const float d = diffuse_albedo * (1 - e);
     return {d / (d + weigh(albedo, specular_albedo)), e};
 }
 
-Evaluation GltfBsdf::evaluate_diffuse(const Mix& m, float cos_i) const {
+float GltfBsdf::albedo_estimate(Vec3f wo) const {
+    const LobeAlbedo albedo = lobe_albedo(wo, std::abs(dot(ns, wo)));
+    const float specular = has_specular ? weigh(albedo, specular_albedo) : 0.f;
+    return specular + diffuse_albedo * (1 - weigh(albedo, coupling));
+}
+
+Evaluation GltfBsdf::evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const {
     if (m.diffuse_probability == 0) return {};
-    const float e_i = has_specular ? weigh(row.at(cos_i), coupling) : 0.f;
+    const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;
     return {diffuse * ((1 - m.interface) * (1 - e_i) * cos_i / kPi),
             m.diffuse_probability * cos_i / kPi};
 }
@@ -133,13 +226,13 @@ Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     const Facing side(ns, ng, wo);
     const float cos_i = dot(side.ns, wi);
     if (side.cos_o <= 0) return {};
-    const Mix m = mix(side.cos_o);
-    const float specular = 1 - m.diffuse_probability, alpha2 = alpha * alpha;
+    const Mix m = mix(wo, side.cos_o);
+    const float specular = 1 - m.diffuse_probability;
     if (side.reflects(wi)) {
         if (cos_i <= 0) return {};
-        Evaluation e = evaluate_diffuse(m, cos_i);
+        Evaluation e = evaluate_diffuse(m, wi, cos_i);
         if (smooth || !has_specular) return e;
-        const Facet f = reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha2);
+        const Facet f = reflecting(side, wo, wi, cos_i);
         const Split p = split(f.cos_h, eta(side.front));
         e.f_cos += p.reflected * f.f_cos;
         e.pdf += specular * p.reflect_probability * f.pdf;
@@ -147,12 +240,9 @@ Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     }
     if (cos_i >= 0 || smooth || clear == Clear::none) return {};
     const Vec3f mirrored = wi - side.ns * (2 * cos_i);
-    const float n = eta(side.front);
-    const Facet f =
-        clear == Clear::thin
-            ? reflecting_facet(side.ns, wo, mirrored, side.cos_o, -cos_i, alpha2)
-            : refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, alpha2, n);
-    const Split p = split(f.cos_h, n);
+    const Facet f = clear == Clear::thin ? reflecting(side, wo, mirrored, -cos_i)
+                                         : refracting(side, wo, wi, cos_i);
+    const Split p = split(f.cos_h, eta(side.front));
     return {p.transmitted * f.f_cos, specular * (1 - p.reflect_probability) * f.pdf,
             disperses};
 }
@@ -160,7 +250,7 @@ Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
 std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) const {
     const Facing side(ns, ng, wo);
     if (side.cos_o <= 0) return std::nullopt;
-    const Mix m = mix(side.cos_o);
+    const Mix m = mix(wo, side.cos_o);
     BsdfSample s;
     if (u_lobe < m.diffuse_probability) {
         s.wi = sample_cosine(side.ns, u);
@@ -168,7 +258,7 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         if (!has_specular) return std::nullopt;  // black
         const float specular = 1 - m.diffuse_probability, n = eta(side.front);
         u_lobe = (u_lobe - m.diffuse_probability) / specular;
-        const Vec3f h = smooth ? side.ns : sample_visible_normal(side.ns, wo, alpha, u);
+        const Vec3f h = smooth ? side.ns : sample_facet(side.ns, wo, u);
         const float cos_h = dot(wo, h);
         const Split p = split(cos_h, n);
         s.transmitted = u_lobe >= p.reflect_probability;

@@ -20,6 +20,10 @@
 // - Volumes: Walter 2007 with 1 / eta^2 (see bsdf_dielectric.h), and Schlick's s replaced
 // by the exact
 //   Fresnel curve rescaled to [0,1], which also knows total internal reflection.
+// KHR_materials_anisotropy stretches the facets of every specular lobe: alpha along the
+// direction is mix(alpha, 1, strength^2). KHR_materials_iridescence puts a film on them:
+// F = mix(F, F_film, factor) with thin_film.h in place of the extension's fit to RGB; the
+// base's index comes from its F0. What passes is the rest at each wavelength.
 #pragma once
 #include <optional>
 
@@ -27,6 +31,7 @@
 #include "material/dispersive.h"
 #include "material/ggx.h"
 #include "material/ggx_albedo.h"
+#include "material/thin_film.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -42,6 +47,27 @@ struct GltfSurface {
     float transmission = 0;
     bool volume = false;  // thickness > 0
     Interior interior;
+    float anisotropy = 0;  // strength
+    Vec3f tangent;         // unit, where the roughness grows; set if anisotropy > 0
+    float iridescence = 0;
+    ThinFilm film;
+};
+
+/// F of iridescence: what a film on the dielectric and on the metal reflects.
+struct FilmFresnel {
+    ThinFilm film;
+    float factor;
+    float metal, dielectric;  // weights in what reflects like the opaque surface
+    float specular;
+    Spectrum metal_ior, dielectric_ior;
+
+    /// `f0` of the dielectric with `specular` in it; `opaque` is the weight it has.
+    FilmFresnel(const GltfSurface& surface, Spectrum f0, float opaque);
+    Spectrum on_dielectric(float cos_h) const {
+        return specular * film.reflectance(cos_h, dielectric_ior);
+    }
+    /// The opaque surface, of which `plain` is reflected without a film.
+    Spectrum mixed(Spectrum plain, float cos_h) const;
 };
 
 struct GltfBsdf {
@@ -66,6 +92,8 @@ struct GltfBsdf {
     Spectrum coupling;         // albedo E_c of the interface above the diffuse lobe
     Spectrum specular_albedo;  // estimate, all specular lobes together
     Interior inside;
+    std::optional<StretchedGgx> stretched;
+    std::optional<FilmFresnel> film;
 
     GltfBsdf(const GltfSurface& surface, Vec3f ns, Vec3f ng);
 
@@ -77,6 +105,8 @@ struct GltfBsdf {
     float pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).pdf; }
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return smooth && diffuse_albedo == 0; }
+    /// Estimate of the share of light from wo that is scattered, for choosing lobes.
+    float albedo_estimate(Vec3f wo) const;
     Interior interior() const { return inside; }
     bool bounds_volume() const { return clear == Clear::volume; }
     Spectrum straight(Vec3f wo) const;
@@ -91,14 +121,22 @@ struct GltfBsdf {
     Split split(float cos_h, float eta) const;
     void disperse(const GltfSurface& surface);
     Spectrum dispersed_reflectance(float cos_h, bool front) const;
+    Facet reflecting(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const;
+    Facet refracting(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const;
+    Vec3f sample_facet(Vec3f n, Vec3f wo, Vec2f u) const;
+    void stretch(const GltfSurface& surface);
     float eta(bool front) const {
         return clear != Clear::volume ? 1.f : front ? ior : 1 / ior;
     }
     struct Mix {
         float diffuse_probability, interface;  // E_c(wo)
     };
-    Mix mix(float cos_o) const;
-    Evaluation evaluate_diffuse(const Mix& m, float cos_i) const;
+    Mix mix(Vec3f wo, float cos_o) const;
+    Evaluation evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const;
+    LobeAlbedo lobe_albedo(Vec3f w, float cos_w) const {
+        return stretched ? stretched_row(w).at(cos_w) : row.at(cos_w);
+    }
+    GgxAlbedo::Row stretched_row(Vec3f w) const;
 };
 
 }  // namespace dg

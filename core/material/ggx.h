@@ -38,17 +38,20 @@ inline float ggx_slope(float alpha2, float c) {
     return std::sqrt(alpha2 + (1 - alpha2) * c * c);
 }
 
-/// Visible normal of GGX facets (world frame) seen from wo, which is above n (DB23).
-inline Vec3f sample_visible_normal(Vec3f n, Vec3f wo, float alpha, Vec2f u) {
-    const Frame frame = Frame::from_normal(n);
+/// Visible normal of GGX facets (world frame) seen from wo, which is above frame.z, with
+/// the roughness alpha.x along frame.x and alpha.y along frame.y (DB23).
+inline Vec3f sample_visible_normal(const Frame& frame, Vec3f wo, Vec2f alpha, Vec2f u) {
     const Vec3f v = frame.to_local(wo);
-    const Vec3f hemi = normalize(Vec3f{alpha * v.x, alpha * v.y, v.z});
+    const Vec3f hemi = normalize(Vec3f{alpha.x * v.x, alpha.y * v.y, v.z});
     const Vec2f circle = unit_circle(u.x);
     const float z = 1 - u.y * (1 + hemi.z);
     const float r = std::sqrt(std::max(0.f, 1 - z * z));
     const Vec3f c = Vec3f{r * circle.x, r * circle.y, z} + hemi;
     return frame.to_world(
-        normalize(Vec3f{alpha * c.x, alpha * c.y, std::max(c.z, 1e-7f)}));
+        normalize(Vec3f{alpha.x * c.x, alpha.y * c.y, std::max(c.z, 1e-7f)}));
+}
+inline Vec3f sample_visible_normal(Vec3f n, Vec3f wo, float alpha, Vec2f u) {
+    return sample_visible_normal(Frame::from_normal(n), wo, Vec2f{alpha, alpha}, u);
 }
 
 /// One facet that joins two directions, without its Fresnel factor.
@@ -66,13 +69,44 @@ inline float ggx_d(Vec3f n, Vec3f h, float h2, float alpha2) {
     return alpha2 / (kPi * d * d);
 }
 
+/// Facets that are as rough in every direction about n.
+struct RoundGgx {
+    float alpha2;
+    float d(Vec3f n, Vec3f h, float h2) const { return ggx_d(n, h, h2, alpha2); }
+    float slope(Vec3f /*w*/, float cos_w) const { return ggx_slope(alpha2, cos_w); }
+};
+
+/// Facets with one roughness along `tangent` and another across it. Sources: Walter et
+/// al. 2007 in the stretched form of H14, section 5.4 and eq. 86.
+struct StretchedGgx {
+    Vec3f tangent, bitangent;
+    float alpha_t, alpha_b;
+
+    float d(Vec3f n, Vec3f h, float h2) const {
+        const float t = dot(tangent, h) / alpha_t, b = dot(bitangent, h) / alpha_b;
+        const float c = dot(n, h), q = (t * t + b * b + c * c) / h2;
+        return 1 / (kPi * alpha_t * alpha_b * q * q);
+    }
+    float slope(Vec3f w, float cos_w) const {
+        const float t = alpha_t * dot(tangent, w), b = alpha_b * dot(bitangent, w);
+        return std::sqrt(t * t + b * b + cos_w * cos_w);
+    }
+    /// alpha of the round facets that mask w alike (H14, section 5.4).
+    float alpha_toward(Vec3f w) const {
+        const float t = dot(tangent, w), b = dot(bitangent, w), r2 = t * t + b * b;
+        if (!(r2 > 0)) return std::sqrt(alpha_t * alpha_b);
+        return std::sqrt((alpha_t * alpha_t * t * t + alpha_b * alpha_b * b * b) / r2);
+    }
+};
+
 /// Reflection: f cos = D G2 / (4 cos_o), pdf = D G1 / (4 cos_o) (W07 eq. 20, H14 eq. 99).
-inline Facet reflecting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
-                              float alpha2) {
+template <typename Ggx>
+Facet reflecting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
+                       const Ggx& ggx) {
     const Vec3f h = wo + wi;
     const float h2 = length_squared(h);
-    const float d = ggx_d(n, h, h2, alpha2);
-    const float slope_o = ggx_slope(alpha2, cos_o), slope_i = ggx_slope(alpha2, cos_i);
+    const float d = ggx.d(n, h, h2);
+    const float slope_o = ggx.slope(wo, cos_o), slope_i = ggx.slope(wi, cos_i);
     return {dot(wo, h) / std::sqrt(h2),
             d * cos_i / (2 * (cos_i * slope_o + cos_o * slope_i)),
             d / (2 * (cos_o + slope_o))};
@@ -81,8 +115,9 @@ inline Facet reflecting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float co
 /// Refraction from wo (above n) to wi (below), eta = index at wi / index at wo (W07 eq.
 /// 16, 17, 21). Radiance is transported: f carries 1 / eta^2. Empty when no facet joins
 /// the two.
-inline Facet refracting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
-                              float alpha2, float eta) {
+template <typename Ggx>
+Facet refracting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
+                       const Ggx& ggx, float eta) {
     Vec3f h = wo + wi * eta;
     const float h2 = length_squared(h);
     if (h2 == 0) return {};
@@ -90,8 +125,8 @@ inline Facet refracting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float co
     if (dot(n, h) < 0) h = -h;
     const float oh = dot(wo, h), ih = dot(wi, h);
     if (oh <= 0 || ih >= 0) return {};
-    const float slope_o = ggx_slope(alpha2, cos_o), slope_i = ggx_slope(alpha2, cos_i);
-    const float d = ggx_d(n, h, 1, alpha2);
+    const float slope_o = ggx.slope(wo, cos_o), slope_i = ggx.slope(wi, cos_i);
+    const float d = ggx.d(n, h, 1);
     const float root = eta * ih + oh;
     const float pdf = d * 2 * oh / (cos_o + slope_o) * (-ih * eta * eta / (root * root));
     const float masking =

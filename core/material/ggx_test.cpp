@@ -105,7 +105,7 @@ TEST_CASE("albedo tables equal the albedo by sampling, between the nodes too") {
                 const float s = schlick(dot(wo, h));
                 facets += s;
                 if (wi.z <= 0) continue;
-                const Facet f = reflecting_facet(n, wo, wi, cos_o, wi.z, alpha2);
+                const Facet f = reflecting_facet(n, wo, wi, cos_o, wi.z, RoundGgx{alpha2});
                 a += (1 - s) * f.f_cos / f.pdf;
                 b += s * f.f_cos / f.pdf;
             }

@@ -1,39 +1,20 @@
 // material.cpp -- from a material and a hit to a BSDF, an emission, an opacity.
 #include "material/material.h"
 
+#include "material/material_read.h"
+
 namespace dg {
-namespace {
 
-using Textures = std::vector<Texture>;
-
-Texture::Texel read(const TextureSlot& slot, const Textures& textures,
-                    const Vec2f uv[2]) {
-    return textures[slot.index].lookup(slot.transform(uv[slot.uv_set]));
-}
-Rgb rgb(const Texture::Texel& t) {
-    return {t.r, t.g, t.b};
-}
-Rgb clamped(Rgb c) {
-    const auto unit = [](float v) { return v > 0 ? std::min(v, 1.f) : 0.f; };  // NaN is 0
-    return {unit(c.x), unit(c.y), unit(c.z)};
-}
-
-/// Normal map (glTF 2.0, 3.9.3): xy scaled, in the frame (tangent, bitangent, normal). On
-/// the front side of the surface, like hit.ns.
-Vec3f mapped_normal(const GltfMaterial& m, const Textures& textures,
+Vec3f mapped_normal(const TextureSlot& slot, float scale, const Textures& textures,
                     const SurfaceHit& hit) {
-    const Texture::Texel t = read(m.normal_texture, textures, hit.uv);
+    const Texture::Texel t = read(slot, textures, hit.uv);
     const Vec3f bitangent = cross(hit.ns, hit.tangent) * hit.tangent_sign;
-    const Vec3f n = hit.tangent * ((2 * t.r - 1) * m.normal_scale) +
-                    bitangent * ((2 * t.g - 1) * m.normal_scale) + hit.ns * (2 * t.b - 1);
+    const Vec3f n = hit.tangent * ((2 * t.r - 1) * scale) +
+                    bitangent * ((2 * t.g - 1) * scale) + hit.ns * (2 * t.b - 1);
     const float l2 = length_squared(n);
     return l2 > 1e-12f ? n / std::sqrt(l2) : hit.ns;
 }
 
-/// ns, or what lies nearest to it on the way to ng from where both wo and its mirror
-/// image are above the surface: at least a tenth as high as wo itself. Without this,
-/// normal maps and interpolated normals at silhouettes are black where they turn away
-/// from the viewer.
 Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
     const float g = dot(ng, wo), height = std::abs(g);
     const auto good = [&](Vec3f n) {
@@ -55,6 +36,8 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
     }
     return best;
 }
+
+namespace {
 
 Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     Rgb c = m.base_color * Rgb{hit.color[0], hit.color[1], hit.color[2]};
@@ -119,8 +102,8 @@ void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface
     s.disperses = !wavelengths.secondary_ended;
 }
 
-Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
-                const Wavelengths& wavelengths) {
+GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
+                         const SurfaceHit& hit, const Wavelengths& wavelengths) {
     GltfSurface s;
     s.base = wavelengths.reflectance(base_color(m, textures, hit));
     read_metallic_roughness(m, textures, hit, s);
@@ -134,7 +117,32 @@ Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit
         s.interior = {true, wavelengths.reflectance(m.attenuation_color),
                       m.attenuation_distance};
     if (s.volume && m.dispersion > 0 && s.transmission > 0) disperse(m, wavelengths, s);
-    return Bsdf(std::in_place_type<GltfBsdf>, s, hit.ns, hit.ng);
+    return s;
+}
+
+/// The coat follows the mesh and not the normal map of the base, so it is read first.
+Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
+                const Wavelengths& wavelengths) {
+    Coat coat;
+    if (m.clearcoat.used()) coat = read_coat(m.clearcoat, textures, hit);
+    if (m.normal_texture.used())
+        hit.ns = mapped_normal(m.normal_texture, m.normal_scale, textures, hit);
+    hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
+    GltfSurface s = gltf_surface(m, textures, hit, wavelengths);
+    if (m.anisotropy.used()) read_anisotropy(m.anisotropy, textures, hit, s);
+    if (m.iridescence.used()) {
+        const float outside = 1 + coat.factor * (kCoatIor - 1);
+        read_iridescence(m.iridescence, textures, hit, outside, wavelengths.nm, s);
+    }
+    if (!m.clearcoat.used() && !m.sheen.used())
+        return Bsdf(std::in_place_type<GltfBsdf>, s, hit.ns, hit.ng);
+    Sheen sheen;
+    if (m.sheen.used()) {
+        const Rgb color = sheen_color(m.sheen, textures, hit);
+        sheen = Sheen(wavelengths.reflectance(color), max_component(color),
+                      sheen_roughness(m.sheen, textures, hit));
+    }
+    return Bsdf(std::in_place_type<LayeredBsdf>, s, hit.ns, hit.ng, coat, sheen);
 }
 
 float masked(const GltfMaterial& m, float alpha) {
@@ -152,21 +160,38 @@ float masked(const GltfMaterial& m, float alpha) {
 
 Bsdf shade(const Material& material, const Textures& textures, SurfaceHit& hit,
            const Wavelengths& wavelengths) {
-    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
-    if (gltf && gltf->normal_texture.used()) hit.ns = mapped_normal(*gltf, textures, hit);
-    hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
+    if (!std::holds_alternative<GltfMaterial>(material.kind))
+        hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
     return std::visit(
         [&](const auto& m) { return shade_kind(m, textures, hit, wavelengths); },
         material.kind);
 }
 
-Rgb emitted(const Material& material, const Textures& textures, const SurfaceHit& hit) {
+namespace {
+
+Rgb emitted_below_coat(const Material& material, const Textures& textures,
+                       const SurfaceHit& hit) {
     Rgb sum{0, 0, 0};
     if (hit.front || material.two_sided_emission) sum = material.emission;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     if (!m || !(hit.front || m->double_sided) || m->emissive == Rgb{0, 0, 0}) return sum;
     if (!m->emissive_texture.used()) return sum + m->emissive;
     return sum + m->emissive * rgb(read(m->emissive_texture, textures, hit.uv));
+}
+
+}  // namespace
+
+bool emission_is_coated(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return m && m->clearcoat.used() && emits(material);
+}
+
+Rgb emitted(const Material& material, const Textures& textures, const SurfaceHit& hit) {
+    const Rgb sum = emitted_below_coat(material, textures, hit);
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m || !m->clearcoat.used() || max_component(sum) <= 0) return sum;
+    const float cos_o = dot(coat_normal(m->clearcoat, textures, hit), hit.wo);
+    return sum * (1 - coat_share(coat_factor(m->clearcoat, textures, hit), cos_o));
 }
 
 bool emits(const Material& material) {
@@ -205,6 +230,25 @@ bool has_cutout(const Material& material, const Textures&) {
     return m && m->alpha_mode != GltfMaterial::AlphaMode::opaque;
 }
 
+namespace {
+
+/// Sheen and coat over the albedo of the base, as seen from wo.
+Rgb layered_albedo(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,
+                   Rgb base) {
+    const float cos_o = dot(hit.ns, hit.wo);
+    if (m.sheen.used()) {
+        const Rgb color = sheen_color(m.sheen, textures, hit);
+        const float roughness = sheen_roughness(m.sheen, textures, hit);
+        const float e = Sheen(0.f, 1, roughness).albedo(cos_o);
+        base = color * e + base * (1 - max_component(color) * e);
+    }
+    if (!m.clearcoat.used()) return base;
+    const float c = coat_share(coat_factor(m.clearcoat, textures, hit), cos_o);
+    return base * (1 - c) + Rgb{c, c, c};
+}
+
+}  // namespace
+
 Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit& hit) {
     if (const auto* m = std::get_if<DiffuseMaterial>(&material.kind))
         return clamped(m->reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]});
@@ -218,7 +262,8 @@ Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit&
     const Rgb colour = read_specular(m, textures, hit, s);
     const Rgb f0 = clamped(colour * normal_reflectance(s.ior)) * s.specular;
     const Rgb dielectric = base * (1 - max_component(f0)) + f0;
-    return clamped(dielectric * (1 - s.metallic) + base * s.metallic);
+    const Rgb bare = dielectric * (1 - s.metallic) + base * s.metallic;
+    return clamped(layered_albedo(m, textures, hit, bare));
 }
 
 }  // namespace dg

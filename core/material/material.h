@@ -9,6 +9,7 @@
 #include "geometry/crossings.h"
 #include "geometry/hit.h"
 #include "material/bsdf.h"
+#include "material/gltf_layers.h"
 #include "material/texture.h"
 #include "spectrum/wavelengths.h"
 
@@ -34,8 +35,9 @@ struct DielectricMaterial {
     float dispersion = 0;  // 20 / Abbe number (KHR_materials_dispersion); `ior` is n_d
 };
 
-/// glTF 2.0 metallic-roughness with KHR_materials_{emissive_strength, ior, transmission,
-/// volume, specular}; formulas of glTF 2.0 Appendix B and of the extensions.
+/// glTF 2.0 metallic-roughness with KHR_materials_{anisotropy, clearcoat, dispersion,
+/// emissive_strength, ior, iridescence, sheen, specular, transmission, volume}; formulas
+/// of glTF 2.0 Appendix B and of the extensions.
 struct GltfMaterial {
     Rgb base_color{1, 1, 1};
     float base_alpha = 1;
@@ -61,6 +63,10 @@ struct GltfMaterial {
     float attenuation_distance = std::numeric_limits<float>::infinity();  // m
     Rgb attenuation_color{1, 1, 1};
     float dispersion = 0;  // 20 / Abbe number; of a volume
+    ClearcoatLayer clearcoat;
+    SheenLayer sheen;
+    Anisotropy anisotropy;
+    Iridescence iridescence;
 };
 
 struct Material {
@@ -85,9 +91,13 @@ Bsdf shade(const Material& material, const std::vector<Texture>& textures,
            SurfaceHit& hit, const Wavelengths& wavelengths);
 
 /// Emitted radiance toward hit.wo as Rgb in cd/m2 (D65-shaped); 0 from the back of a
-/// one-sided emitter.
+/// one-sided emitter. A clear coat takes its share (KHR_materials_clearcoat), by the mesh's
+/// normal in hit.ns and by hit.tangent.
 Rgb emitted(const Material& material, const std::vector<Texture>& textures,
             const SurfaceHit& hit);
+
+/// True when emission changes with the direction it is seen from.
+bool emission_is_coated(const Material& material);
 
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);

@@ -53,6 +53,30 @@ void check(const Checker& c, const DielectricMaterial& m) {
     c.color("tint", m.tint, 1);
     c.number("dispersion", m.dispersion, 0, Checker::kLargest);
 }
+void check_layers(const Checker& c, const GltfMaterial& m) {
+    c.number("clearcoat", m.clearcoat.factor, 0, 1);
+    c.slot("clearcoat_texture", m.clearcoat.texture);
+    c.number("clearcoat_roughness", m.clearcoat.roughness, 0, 1);
+    c.slot("clearcoat_roughness_texture", m.clearcoat.roughness_texture);
+    c.number("clearcoat_normal_scale", m.clearcoat.normal_scale, -Checker::kLargest,
+             Checker::kLargest);
+    c.slot("clearcoat_normal_texture", m.clearcoat.normal_texture);
+    c.color("sheen_color", m.sheen.color, 1);
+    c.slot("sheen_color_texture", m.sheen.color_texture);
+    c.number("sheen_roughness", m.sheen.roughness, 0, 1);
+    c.slot("sheen_roughness_texture", m.sheen.roughness_texture);
+    c.number("anisotropy", m.anisotropy.strength, 0, 1);
+    c.number("anisotropy_rotation", m.anisotropy.rotation, -Checker::kLargest,
+             Checker::kLargest);
+    c.slot("anisotropy_texture", m.anisotropy.texture);
+    c.number("iridescence", m.iridescence.factor, 0, 1);
+    c.slot("iridescence_texture", m.iridescence.texture);
+    c.number("iridescence_ior", m.iridescence.ior, 1, Checker::kLargest);
+    c.number("iridescence_thickness_min_nm", m.iridescence.thickness_min, 0, 1e6f);
+    c.number("iridescence_thickness_max_nm", m.iridescence.thickness_max, 0, 1e6f);
+    c.slot("iridescence_thickness_texture", m.iridescence.thickness_texture);
+}
+
 void check(const Checker& c, const GltfMaterial& m) {
     c.color("base_color", m.base_color, 1);
     c.number("base_alpha", m.base_alpha, 0, 1);
@@ -79,6 +103,7 @@ void check(const Checker& c, const GltfMaterial& m) {
     c.slot("specular_texture", m.specular_texture);
     c.slot("specular_color_texture", m.specular_color_texture);
     c.slot("transmission_texture", m.transmission_texture);
+    check_layers(c, m);
 }
 
 }  // namespace

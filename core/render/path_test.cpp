@@ -69,6 +69,24 @@ TEST_CASE("in a closed furnace the radiance is emission / (1 - albedo), by every
     }
 }
 
+TEST_CASE("a coated lamp is dimmed by the angle it is seen from, by every strategy") {
+    GltfMaterial lamp;
+    lamp.base_color = {0.3f, 0.3f, 0.3f};
+    lamp.metallic = lamp.specular = 0;
+    lamp.emissive = {1, 1, 1};
+    lamp.double_sided = true;
+    lamp.clearcoat.factor = 1;
+    lamp.clearcoat.roughness = 1;
+    const auto scene = furnace({"lamp", lamp, {}, false});
+    PathSettings settings;
+    settings.max_depth = 30;
+    const SampleMoments mis = look(*scene, settings, 60000);
+    for (const auto strategy : {PathSettings::Strategy::light, PathSettings::Strategy::bsdf}) {
+        settings.strategy = strategy;
+        CHECK(welch_p_value(mis, look(*scene, settings, 60000)) > 1e-4);
+    }
+}
+
 TEST_CASE("Russian roulette does not darken, wherever it begins") {
     const auto scene = furnace(shining(0.8f, 1));
     for (const int depth : {1, 3, 8, 300}) {

@@ -33,12 +33,12 @@ struct Measured {
     bool even = false;  // the mean is what a ray finds, wherever light sampling looks
 };
 
-/// Neither emission nor opacity change from point to point.
+/// Neither emission nor opacity change from point to point or with direction.
 bool same_everywhere(const InstanceRecord& record, const Material& material) {
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     if (!m) return true;
     const bool opaque = m->alpha_mode == GltfMaterial::AlphaMode::opaque;
-    return !m->emissive_texture.used() &&
+    return !m->emissive_texture.used() && !emission_is_coated(material) &&
            (opaque || (!m->base_color_texture.used() && !record.colors));
 }
 
@@ -92,10 +92,15 @@ Measured measure(const InstanceRecord& record, const Material& material,
 
 Rgb emission_at(const InstanceRecord& record, const Material& material,
                 const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front) {
+                Vec2f barycentric, bool front, std::optional<Vec3f> toward) {
     SurfaceHit hit;
     hit.front = front;
-    interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
+    if (emission_is_coated(material)) {
+        surface_at(record, primitive, barycentric.x, barycentric.y, hit);
+        hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
+    } else {
+        interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
+    }
     const Rgb full = emitted(material, textures, hit);
     if (max_component(full) <= 0) return {0, 0, 0};
     return full * opacity(material, textures, hit.uv, hit.color[3]);

@@ -6,10 +6,11 @@
 namespace dg {
 
 /// Emission (cd/m2) of a point of the triangle toward its front or back, as a ray that
-/// hits it would find it on average: with texture, vertex colour and opacity.
+/// hits it would find it on average: with texture, vertex colour and opacity. `toward` is
+/// where it is seen from, for a clear coat; without it, along the normal.
 Rgb emission_at(const InstanceRecord& record, const Material& material,
                 const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front);
+                Vec2f barycentric, bool front, std::optional<Vec3f> toward = {});
 
 /// Appends a light for each triangle of the instance that has area and emits anywhere.
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,

@@ -13,12 +13,12 @@ struct InstanceRecord {
     // Null where the mesh has none, or where its material does not look at them.
     const Vec3f* normals;
     const Vec2f* uv[2];
-    const Vec2f* tangent_uv;  // the set of the normal texture, to find its +u
+    const Vec2f* tangent_uv;  // the set whose +u is the tangent
     const std::array<float, 4>* tangents;
     const std::array<float, 4>* colors;
     std::uint32_t material;
     bool mirrored;     // determinant < 0
-    bool needs_frame;  // a normal map wants a tangent
+    bool needs_frame;  // a normal map or anisotropy wants a tangent
     Affine3d world_from_local;
     Affine3d normal_matrix;  // linear part only; keeps the side also when mirrored
     // Error bound of positions: error_scale * largest |coordinate| in the mesh's space of

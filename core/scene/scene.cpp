@@ -175,7 +175,8 @@ std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f po
     const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
     const Rgb rgb =
         emission_at(record, description_.materials[record.material],
-                    description_.textures, light.primitive, sample->barycentric, front);
+                    description_.textures, light.primitive, sample->barycentric, front,
+                    -sample->wi);
     sample->radiance = wavelengths.emission(rgb);
     return sample;
 }

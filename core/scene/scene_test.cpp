@@ -111,6 +111,48 @@ TEST_CASE(
     CHECK(length(bitangent(s) - Vec3f{1, 0, 0}) < 1e-6f);
 }
 
+TEST_CASE("anisotropy and a coat's normal map have a tangent of their own accord") {
+    SceneDescription d = one_quad();
+    const auto tangent = [&](auto change) {
+        GltfMaterial m;
+        change(m);
+        d.materials[0].kind = m;
+        const auto ray = test_ray({0.3f, 0.1f, 7}, {0, 0, -1});
+        return Scene::build(d)->intersect(ray)->surface.tangent;
+    };
+    CHECK(tangent([](GltfMaterial&) {}) == Vec3f{});
+    const auto brushed = [](GltfMaterial& m) { m.anisotropy.strength = 1; };
+    CHECK(length(tangent(brushed) - Vec3f{1, 0, 0}) < 1e-6f);
+    d.textures.push_back({"bump", 1, 1, 1, std::vector<std::uint8_t>{128}});
+    const auto bumped_coat = [](GltfMaterial& m) {
+        m.clearcoat.factor = 1;
+        m.clearcoat.normal_texture.index = 0;
+    };
+    CHECK(length(tangent(bumped_coat) - Vec3f{1, 0, 0}) < 1e-6f);
+    d.meshes[0].tangents = std::vector<std::array<float, 4>>(4, {0, 1, 0, 1});
+    CHECK(length(tangent(brushed) - Vec3f{0, 1, 0}) < 1e-6f);
+}
+
+TEST_CASE("a texture of any layer brings the texture coordinates along") {
+    const auto slots = {+[](GltfMaterial& m) { return &m.clearcoat.texture; },
+                        +[](GltfMaterial& m) { return &m.clearcoat.roughness_texture; },
+                        +[](GltfMaterial& m) { return &m.clearcoat.normal_texture; },
+                        +[](GltfMaterial& m) { return &m.sheen.color_texture; },
+                        +[](GltfMaterial& m) { return &m.sheen.roughness_texture; },
+                        +[](GltfMaterial& m) { return &m.anisotropy.texture; },
+                        +[](GltfMaterial& m) { return &m.iridescence.texture; },
+                        +[](GltfMaterial& m) { return &m.iridescence.thickness_texture; }};
+    for (const auto& slot_of : slots) {
+        SceneDescription d = one_quad();
+        d.textures.push_back({"t", 1, 1, 1, std::vector<std::uint8_t>{128}});
+        GltfMaterial m;
+        slot_of(m)->index = 0;
+        d.materials[0].kind = m;
+        const auto hit = Scene::build(d)->intersect(test_ray({0.5f, 0.25f, 7}, {0, 0, -1}));
+        CHECK(hit->surface.uv[0].x == doctest::Approx(0.75));
+    }
+}
+
 TEST_CASE(
     "normals point outward under rotation, shear and mirroring; interpolated ones too") {
     const Affine3f transforms[] = {

@@ -77,6 +77,7 @@ def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
         for name, value in values.items():
             if name.endswith("_texture"):
                 values[name] = _slot(value)
+        values["anisotropy_rotation"] = math.radians(kind.anisotropy_rotation)
         builder.add_gltf(material.name, values, *rest)
     else:
         raise InputError(

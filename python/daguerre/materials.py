@@ -62,7 +62,10 @@ class Dielectric:
 class Gltf:
     """glTF metallic-roughness and its extensions, by the names of the glTF properties.
 
-    KHR emissive_strength, ior, transmission, volume, specular, dispersion (20 / Abbe number).
+    Those are KHR anisotropy, clearcoat, dispersion (20 / Abbe number), emissive_strength, ior,
+    iridescence, sheen, specular, transmission and volume. ``anisotropy_rotation`` is in degrees
+    counter-clockwise from the tangent; the thickness of the iridescent film is in nm, the maximum
+    where no texture varies it.
     """
 
     base_color: Color = (1.0, 1.0, 1.0)
@@ -90,6 +93,25 @@ class Gltf:
     attenuation_distance: float = math.inf
     attenuation_color: Color = (1.0, 1.0, 1.0)
     dispersion: float = 0.0
+    clearcoat: float = 0.0
+    clearcoat_texture: TextureSlot | None = None
+    clearcoat_roughness: float = 0.0
+    clearcoat_roughness_texture: TextureSlot | None = None
+    clearcoat_normal_scale: float = 1.0
+    clearcoat_normal_texture: TextureSlot | None = None
+    sheen_color: Color = (0.0, 0.0, 0.0)
+    sheen_color_texture: TextureSlot | None = None
+    sheen_roughness: float = 0.0
+    sheen_roughness_texture: TextureSlot | None = None
+    anisotropy: float = 0.0
+    anisotropy_rotation: float = 0.0
+    anisotropy_texture: TextureSlot | None = None
+    iridescence: float = 0.0
+    iridescence_texture: TextureSlot | None = None
+    iridescence_ior: float = 1.3
+    iridescence_thickness_min_nm: float = 100.0
+    iridescence_thickness_max_nm: float = 400.0
+    iridescence_thickness_texture: TextureSlot | None = None
 
 
 Kind = Diffuse | Conductor | Dielectric | Gltf

@@ -1,0 +1,62 @@
+// charlie.h -- the sheen of cloth: fibres that stand about the normal. Distribution and
+// visibility of Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF, as
+// KHR_materials_sheen has them, with alpha = roughness^2:
+//   D = (2 + 1 / alpha) sin(h)^(1 / alpha) / (2 pi)
+//   V = 1 / ((1 + Lambda(wo) + Lambda(wi)) 4 cos_o cos_i)
+// Their fitted Lambda lets narrow lobes return up to four times the light at grazing
+// angles; so f is divided by the larger of both directions' albedos where that exceeds 1,
+// which is reciprocal and loses nothing elsewhere.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec.h"
+
+namespace dg {
+
+/// Below this roughness the lobe is too narrow for its table and reflects next to nothing.
+inline constexpr float kLeastSheenRoughness = 0.07f;
+
+inline float charlie_alpha(float roughness) {
+    const float r = std::max(roughness, kLeastSheenRoughness);
+    return r * r;
+}
+
+/// D of an unnormalised half vector h.
+inline float charlie_d(Vec3f n, Vec3f h, float alpha) {
+    const float sin2 = std::min(1.f, length_squared(cross(n, h)) / length_squared(h));
+    return (2 + 1 / alpha) * std::pow(sin2, 0.5f / alpha) / (2 * kPi);
+}
+
+/// Lambda of the masking (Estevez and Kulla, section 3).
+float charlie_lambda(float cos_angle, float alpha);
+
+/// Directional albedo of f = D V, before it is held to 1.
+class CharlieAlbedo {
+  public:
+    static constexpr int kAngles = 32, kRoughnesses = 32;  // uniform in sqrt(cos)
+
+    /// Computed on the first call.
+    static const CharlieAlbedo& instance();
+
+    struct Row {
+        const float *low = nullptr, *high = nullptr;
+        float blend = 0;
+
+        float at(float cos_angle) const {
+            const float c = std::clamp(std::abs(cos_angle), 0.f, 1.f);
+            const float x = std::sqrt(c) * (kAngles - 1);
+            const int i = std::min(static_cast<int>(x), kAngles - 2);
+            const float t = x - static_cast<float>(i);
+            const float a = low[i] + t * (low[i + 1] - low[i]);
+            return a + blend * (high[i] + t * (high[i + 1] - high[i]) - a);
+        }
+    };
+    Row row(float roughness) const;
+
+  private:
+    CharlieAlbedo();
+    float table_[kRoughnesses][kAngles];
+};
+
+}  // namespace dg
