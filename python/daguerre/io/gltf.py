@@ -39,8 +39,9 @@ from .uris import Folder
 
 # Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.
 _MAX_NODE_ENTRIES = 4_000_000
-# Vertices that morphs, skins and flat nodes have for themselves.
-_MAX_COPIES = 1 << 25
+# Vertices that morphs, skins and flat nodes have for themselves; large files may have more.
+_MAX_COPIES = 1 << 24
+_BYTES_PER_COPY = 4
 
 
 def read(
@@ -84,11 +85,13 @@ class _Reader:
         check_extensions(self.root, self.notes)
         if self.document.trailing:
             self.notes.add("a byte behind the stated end of the file", self.document.trailing)
-        self.accessors = Accessors(self.root, load_buffers(self.document))
+        buffers = load_buffers(self.document)
+        self.accessors = Accessors(self.root, buffers)
         play(self.root, self.accessors, time, self.notes)  # before anything else is read
         self.tree = Tree(self.root)
         skins = Skins(self.root, self.accessors, self.tree, self.notes)
-        copies = Budget(_MAX_COPIES, "vertices that are not shared")
+        limit = max(_MAX_COPIES, sum(map(len, buffers)) // _BYTES_PER_COPY)
+        copies = Budget(limit, "vertices that are not shared")
         variants = Variants(self.root, variant)
         self.scene.variants = variants.names
         self.meshes = Meshes(
