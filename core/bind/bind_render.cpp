@@ -41,6 +41,36 @@ class Progress {
     std::atomic<bool> stopped_{false};
 };
 
+/// Draws with Python's lock released, its callback asked now and then.
+auto draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
+          const dg::RenderSettings& settings, nb::object callback) {
+    Progress progress(std::move(callback));
+    std::atomic<bool> complete{true};
+    dg::RenderCounters counters;
+    {
+        nb::gil_scoped_release release;
+        counters = dg::render(scene, camera, film, settings, [&](double fraction) {
+            const bool go = progress(fraction);
+            if (!go) complete = false;
+            return go;
+        });
+    }
+    return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays};
+}
+
+using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+/// Counts per pixel of the film's region.
+std::span<const std::uint32_t> per_pixel(const Counts& counts, const dg::Film& film, const char* what) {
+    const dg::FilmLayout& l = film.layout();
+    if (counts.shape(0) != std::size_t(l.height) || counts.shape(1) != std::size_t(l.width))
+        throw dg::input_error("render", what,
+                              "shape (" + std::to_string(l.height) + ", " + std::to_string(l.width) + ")",
+                              "(" + std::to_string(counts.shape(0)) + ", " +
+                                  std::to_string(counts.shape(1)) + ")");
+    return {counts.data(), counts.size()};
+}
+
 }  // namespace
 
 void bind_render(nb::module_& m) {
@@ -102,19 +132,22 @@ void bind_render(nb::module_& m) {
              std::uint32_t begin, std::uint32_t end, nb::object callback) {
               settings.sample_begin = begin;
               settings.sample_end = end;
-              Progress progress(std::move(callback));
-              std::atomic<bool> complete{true};
-              RenderCounters counters;
-              {
-                  nb::gil_scoped_release release;
-                  counters = render(scene, camera, film, settings, [&](double fraction) {
-                      const bool go = progress(fraction);
-                      if (!go) complete = false;
-                      return go;
-                  });
-              }
-              return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays};
+              return draw(scene, camera, film, settings, std::move(callback));
           },
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
           "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, stopped rays, rays).");
+
+    m.attr("ROUND_PARTS") = SampleRound::kParts;
+    m.def("render_round",
+          [](const Scene& scene, const Camera& camera, Film& film, RenderSettings settings,
+             const Counts& begin, const Counts& count, std::uint32_t first, std::uint32_t last,
+             nb::object callback) {
+              settings.round = {per_pixel(begin, film, "begin"), per_pixel(count, film, "count"), first,
+                                std::min(last, SampleRound::kParts)};
+              return draw(scene, camera, film, settings, std::move(callback));
+          },
+          "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "count"_a, "first"_a, "last"_a,
+          "progress"_a.none() = nb::none(),
+          "Draws count (H, W) samples of each pixel from index begin (H, W) on; of these the parts "
+          "[first, last) of ROUND_PARTS.");
 }

@@ -5,8 +5,10 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -48,19 +50,35 @@ class Renderer {
                      : nullptr),
           end_secondary_(settings.dispersion == Dispersion::end_secondary &&
                          std::holds_alternative<ExactLens>(camera.lens)),
-          density_(settings.filter, film.layout()) {}
+          density_(settings.filter, film.layout(), uneven(settings.round.count)) {}
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
         for (int y = y0; y < y1; ++y)
-            for (int x = x0; x < x1; ++x)
-                for (std::uint32_t i = settings_.sample_begin; i < settings_.sample_end; ++i) {
+            for (int x = x0; x < x1; ++x) {
+                const auto [begin, end] = samples_of({x, y});
+                for (std::uint32_t i = begin; i < end; ++i) {
                     add_sample(work, {x, y}, i);
                     if (work.samples.size() == kBatchSize) draw_batch(work);
                 }
+            }
         draw_batch(work);
     }
 
   private:
+    /// Counts that are all alike need no weighing (FilmDensity).
+    static std::span<const std::uint32_t> uneven(std::span<const std::uint32_t> counts) {
+        const bool even = std::ranges::adjacent_find(counts, std::not_equal_to<>{}) == counts.end();
+        return even ? std::span<const std::uint32_t>{} : counts;
+    }
+
+    /// Samples [begin, end) that this call draws of a pixel.
+    std::array<std::uint32_t, 2> samples_of(Pixel pixel) const {
+        if (settings_.round.count.empty()) return {settings_.sample_begin, settings_.sample_end};
+        const FilmLayout& region = film_.layout();
+        return settings_.round.samples(std::size_t(pixel.y - region.offset_y) * region.width +
+                                       pixel.x - region.offset_x);
+    }
+
     /// Order of drawing: film point, time, wavelengths; the lens follows for the whole batch.
     void add_sample(Workspace& work, Pixel pixel, std::uint32_t index) const {
         const PathSampler sampler(pixel.x, pixel.y, index, settings_.seed);

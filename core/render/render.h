@@ -1,7 +1,9 @@
 // render.h -- the one page where camera, scene and film meet.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "camera/camera.h"
 #include "camera/sensor.h"
@@ -18,9 +20,28 @@ enum class Dispersion {
     end_secondary,   // dropped; the hero alone, at four times its weight: the plain reference
 };
 
+/// A round in which each pixel draws samples of its own: count[i] of them from index begin[i] on, i over
+/// the rows of the film's region. It can be drawn in parts, [first, last) of kParts: of each pixel's
+/// samples the same share, so that the picture has the right mean after each part, and the bits of the
+/// whole do not depend on the parts.
+struct SampleRound {
+    static constexpr std::uint32_t kParts = 1 << 16;
+    std::span<const std::uint32_t> begin, count;
+    std::uint32_t first = 0, last = kParts;
+
+    /// Samples [begin, end) of the pixel that this part draws.
+    std::array<std::uint32_t, 2> samples(std::size_t pixel) const {
+        const auto until = [&](std::uint64_t part) {
+            return std::uint32_t(begin[pixel] + count[pixel] * part / kParts);
+        };
+        return {until(first), until(last)};
+    }
+};
+
 struct RenderSettings {
     Sensor sensor;
     std::uint32_t sample_begin = 0, sample_end = 1;
+    SampleRound round;                          // instead of these, unless empty
     std::uint64_t seed = 0;
     int threads = 0;                            // 0: all
     double shutter_open_s = 0, shutter_close_s = 0;
@@ -33,8 +54,8 @@ struct RenderCounters {
     std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
 };
 
-/// Draws samples [sample_begin, sample_end) of every pixel of the film's region. `progress` is called
-/// from worker threads with the fraction done; returning false stops early (the film is then invalid).
+/// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.
+/// `progress` is called from worker threads with the fraction done; returning false stops early (the film is then invalid).
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
                       const RenderSettings& settings,
                       const std::function<bool(double)>& progress);
