@@ -15,6 +15,7 @@ import numpy as np
 import scene as dof_field  # type: ignore[import-not-found]
 
 import daguerre as dg
+from daguerre.adaptive import rounds
 from daguerre.session import Session
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
@@ -72,6 +73,7 @@ def main() -> None:
     parser.add_argument("--w", type=int, default=640)
     parser.add_argument("--h", type=int, default=360)
     parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--noise", type=float, help="adaptive, to this relative error; no --spp")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--strategy", default="mis")
@@ -90,7 +92,11 @@ def main() -> None:
         strategy=options.strategy,
     )
     ready, cpu = time.perf_counter(), cpu_seconds()
-    session.draw(0, options.spp)
+    if options.noise:
+        for _ in rounds(session, options.noise):
+            pass
+    else:
+        session.draw(0, options.spp)
     cpu, wall = cpu_seconds() - cpu, time.perf_counter() - ready
     picture = session.frame().rgb
     np.save(options.out + ".npy", picture)
@@ -100,6 +106,7 @@ def main() -> None:
         "render_s": round(wall, 3),
         "cpu_s": round(cpu, 2),
         "rays": session.rays,
+        "spp": session.metadata["samples"],
         "peak_rss_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
         "mean": float(picture.mean()),
     }

@@ -1,12 +1,15 @@
 """The dof-field scene through Daguerre and, where installed, its peers, in one run.
 
-    python bench/peers.py --json [--mode thin] [--spp 64] [--only daguerre] [--scene-dir DIR]
+    python bench/peers.py --json [--mode thin] [--spp 64] [--noise 0.1] [--only daguerre]
+                          [--scene-dir DIR] [--blender-python PYTHON]
 
 Two seeds give the error without a reference:
 relMSE = mean((A - B)^2 / 2 / (((A + B) / 2)^2 + 0.01)).
 CPU seconds to relMSE 0.01 are CPU seconds x relMSE / 0.01, as the error falls with 1 / samples.
-Each renderer runs in a process of its own; Mitsuba needs an interpreter that can import it
-(--mitsuba-python, default: this one).
+--noise adds each renderer's own adaptive sampling, where it has one: Daguerre's --noise, and the
+noise threshold of Cycles. Mitsuba 3 has none. relMSE 0.01 is a noise of 0.1.
+Each renderer runs in a process of its own; Mitsuba and Cycles need an interpreter that can import
+them (--mitsuba-python, --blender-python; default: this one).
 """
 
 from __future__ import annotations
@@ -24,6 +27,7 @@ from typing import Any
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
+CYCLES_SAMPLES = 4096
 DEFAULT_SCENE = HERE.parent.parent / "shared" / "peers"
 
 
@@ -44,11 +48,20 @@ def run(command: list[str], environment: dict[str, str], folder: str) -> dict[st
     raise RuntimeError(f"{command[1]} failed: {done.stderr.strip()[-400:]}")
 
 
-def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[str, Any]:
-    """Two seeds of one renderer: cost, error, and cost to a fixed error."""
+def measure(
+    name: str, command: list[str], options: argparse.Namespace, **extra: str
+) -> dict[str, Any]:
+    """Two seeds of one renderer: cost, error, and cost to a fixed error.
+
+    Args:
+        name: Of its files.
+        command: What runs it.
+        options: Of this bench.
+        **extra: Environment variables.
+    """
     paths = [str(options.scene_dir.resolve()), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     environment = dict(
-        os.environ, PYTHONPATH=os.pathsep.join(str(Path(p).resolve()) for p in paths if p)
+        os.environ, PYTHONPATH=os.pathsep.join(str(Path(p).resolve()) for p in paths if p), **extra
     )
     results, pictures = [], []
     with tempfile.TemporaryDirectory() as folder:
@@ -60,9 +73,11 @@ def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[
             pictures.append(np.load(out + ".npy").astype(np.float64))
     cpu = float(np.mean([r["cpu_s"] for r in results]))
     error = relative_mse(*pictures)
-    samples = pictures[0].shape[0] * pictures[0].shape[1] * options.spp
+    spp = float(np.mean([r.get("spp", options.spp) for r in results]))
+    samples = pictures[0].shape[0] * pictures[0].shape[1] * spp
     return {
         "renderer": results[0]["renderer"],
+        "spp": round(spp, 2),
         "cpu_s": round(cpu, 2),
         "relmse": error,
         "cpu_s_to_relmse_0.01": round(cpu * error / 0.01, 2),
@@ -71,6 +86,24 @@ def measure(name: str, command: list[str], options: argparse.Namespace) -> dict[
         "peak_memory_mb": results[0].get("peak_rss_mb"),
         "mean": [round(float(v), 5) for v in np.mean(pictures, axis=(0, 1, 2))],
     }
+
+
+def measure_cycles(options: argparse.Namespace) -> dict[str, Any]:
+    """Cycles, with even sampling and with its own adaptive sampling."""
+    command = [options.blender_python, str(options.scene_dir.resolve() / "r_blender.py")]
+    out = {"cycles": measure("cycles", command, options)}
+    if options.noise:
+        with tempfile.TemporaryDirectory() as folder:
+            # Run by the peer's script before it renders; the threshold is of one pixel's error.
+            hook = Path(folder) / "adaptive.py"
+            hook.write_text(
+                f"cy.use_adaptive_sampling = True; cy.samples = {CYCLES_SAMPLES}\n"
+                f"cy.adaptive_threshold = {options.noise}\n"
+            )
+            adaptive = measure("cycles_adaptive", command, options, CAMHOOK=str(hook))
+        adaptive.pop("samples_per_cpu_second")  # it does not say how many it drew
+        out["cycles_adaptive"] = adaptive
+    return out
 
 
 def can_import(python: str, module: str) -> bool:
@@ -85,9 +118,11 @@ def main() -> None:
     parser.add_argument("--mode", choices=("pinhole", "thin"), default="thin")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--only", choices=("daguerre", "mitsuba"))
+    parser.add_argument("--noise", type=float, help="adaptive sampling too, to this error")
+    parser.add_argument("--only", choices=("daguerre", "mitsuba", "cycles"))
     parser.add_argument("--scene-dir", type=Path, default=DEFAULT_SCENE)
     parser.add_argument("--mitsuba-python", default=sys.executable)
+    parser.add_argument("--blender-python", default=sys.executable)
     options = parser.parse_args()
     if not (options.scene_dir / "scene.py").is_file():
         sys.exit(f"peers: no scene.py in {options.scene_dir}; name its folder with --scene-dir")
@@ -98,7 +133,7 @@ def main() -> None:
         "threads": options.threads,
         "machine": f"{platform.machine()}, {os.cpu_count()} cores",
     }
-    if options.only != "mitsuba":
+    if options.only in (None, "daguerre"):
         own = [sys.executable, str(HERE / "dof_field.py")]
         out["daguerre"] = measure("daguerre", own, options)
         for key in (
@@ -108,15 +143,22 @@ def main() -> None:
             "peak_memory_mb",
         ):
             out[key] = out["daguerre"][key]
-    if options.only != "daguerre":
+        if options.noise:
+            noisy = [*own, "--noise", str(options.noise)]
+            out["daguerre_adaptive"] = measure("daguerre_adaptive", noisy, options)
+    if options.only in (None, "cycles") and can_import(options.blender_python, "bpy"):
+        out |= measure_cycles(options)
+    if options.only in (None, "mitsuba"):
         if can_import(options.mitsuba_python, "mitsuba"):
             peer = [options.mitsuba_python, str(options.scene_dir.resolve() / "r_mitsuba.py")]
             out["mitsuba"] = measure("mitsuba", peer, options)
         else:
             out["mitsuba"] = None
-    if out.get("daguerre") and out.get("mitsuba"):
-        key = "cpu_s_to_relmse_0.01"
-        out["ratio_to_mitsuba"] = round(out["daguerre"][key] / out["mitsuba"][key], 3)
+    key = "cpu_s_to_relmse_0.01"
+    for name in ("daguerre", "daguerre_adaptive"):
+        if out.get(name) and out.get("mitsuba"):
+            ratio = "ratio_to_mitsuba" + name.removeprefix("daguerre")
+            out[ratio] = round(out[name][key] / out["mitsuba"][key], 3)
     print(json.dumps(out, indent=1))
 
 
