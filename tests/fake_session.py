@@ -62,6 +62,7 @@ class FakeSession:
             "version": "0.1.0",
         }
         self.ranges: list[tuple[int, int]] = []
+        self.round = None
         self.rays = self.samples = 0
         x0, y0, x1, y1 = self.crop
         self.shape = (y1 - y0, x1 - x0)
@@ -115,7 +116,9 @@ class FakeSession:
         low, high = self.sums & np.uint64(0xFFFFFFFF), self.sums >> np.uint64(32)
         return {"sums": np.stack([low, high, 0 * low, 0 * low], axis=2).astype(np.uint32)}
 
-    def set_state(self, state: dict[str, np.ndarray], ranges: list[tuple[int, int]]) -> None:
+    def set_state(
+        self, state: dict[str, np.ndarray], ranges: list[tuple[int, int]], round: None = None
+    ) -> None:
         low, high = (state["sums"][:, :, i].astype(np.uint64) for i in range(2))
         self.sums = low | high << np.uint64(32)
         self.ranges = list(ranges)

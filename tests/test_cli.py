@@ -17,7 +17,7 @@ import pytest
 
 import daguerre
 from daguerre.cli import console, main
-from daguerre.cli.loop import pass_size
+from daguerre.cli.work import pass_size
 
 from . import fake_session
 
@@ -126,6 +126,14 @@ WRONG = {
     "spp": (["render", "s.glb", "-o", "a.exr", "--spp", "0"], 2, "--spp"),
     "spp text": (["render", "s.glb", "-o", "a.exr", "--spp", "many"], 2, "--spp"),
     "samples": (["render", "s.glb", "-o", "a.exr", "--samples", "8:8"], 2, "a < b"),
+    "noise": (["render", "s.glb", "-o", "a.exr", "--noise", "0"], 2, "--noise: wanted"),
+    "noise text": (["render", "s.glb", "-o", "a.exr", "--noise", "low"], 2, "--noise"),
+    "noise spp": (["render", "s.glb", "-o", "a.exr", "--noise", "0.1", "--spp", "1"], 2, "spp"),
+    "noise and samples": (
+        ["render", "s.glb", "-o", "a.exr", "--noise", "0.1", "--samples", "0:8"],
+        2,
+        "--noise and --samples",
+    ),
     "samples png": (["render", "s.glb", "-o", "a.png", "--samples", "0:8"], 2, ".exr"),
     "aov": (["render", "s.glb", "-o", "a.exr", "--aov", "dept"], 2, "did you mean 'depth'"),
     "crop": (["render", "s.glb", "-o", "a.exr", "--crop", "5,5,0,9"], 2, "--crop"),
@@ -447,14 +455,14 @@ def test_stats(capsys: pytest.CaptureFixture[str]) -> None:
 def test_passes_grow_on_aligned_powers_of_two() -> None:
     begin, size, sizes = 0, 0, []
     while begin < 100:
-        size = pass_size((begin, 100), size, 0.0)
+        size = pass_size((begin, 100), 2 * size)
         assert begin % size == 0 or begin + size == 100
         sizes.append(size)
         begin += size
     assert sizes == [1, 1, 2, 4, 8, 16, 32, 36]
-    assert pass_size((64, 200), 32, 1.0) == 2  # 3 s at most
-    assert pass_size((64, 200), 32, 100.0) == 1
-    assert pass_size((7, 200), 4, 0.0) == 1
+    assert pass_size((64, 200), 3.9) == 2
+    assert pass_size((64, 200), 0.03) == 1
+    assert pass_size((7, 200), 8) == 1
 
 
 def test_command_line_is_quoted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -187,3 +187,45 @@ def test_a_truncated_scene(capsys: pytest.CaptureFixture[str]) -> None:
         assert name in error
         assert len(error.strip().splitlines()) == 1
     assert not Path("a.exr").exists()
+
+
+def test_noise_is_reached_and_told(capsys: pytest.CaptureFixture[str]) -> None:
+    flags = ["--noise", "0.02", "--json-progress", *QUICK[:-1]]
+    assert main(["render", "s.glb", "-o", "a.exr", *flags]) == 0
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    last = [e for e in events if e["event"] == "progress"][-1]
+    assert last["noise"] <= last["noise_wanted"] == 0.02
+    assert last["fraction"] == pytest.approx(1)
+    assert any("noise 0.01" in e.get("text", "") for e in events)
+    with OpenEXR.File("a.exr") as file:
+        header = dict(file.header())
+    assert header["daguerre:noise"] <= 0.02
+    counts = pixels("a.exr")["samples.Y"]
+    assert header["daguerre:samples"] == pytest.approx(counts.mean())
+    assert header["daguerre:samples_min"] == counts.min()
+    assert header["daguerre:samples_max"] == counts.max()
+    assert main(["render", "s.glb", "-o", "a.exr", "--noise", "0.001", "--spp", "24", *QUICK]) == 0
+    assert pixels("a.exr")["samples.Y"].max() == 24
+
+
+def test_noise_goes_on_from_checkpoints_that_fit(capsys: pytest.CaptureFixture[str]) -> None:
+    from daguerre.cli import job
+
+    noise = ["--noise", "0.01", *QUICK]
+    assert main(["render", "s.glb", "-o", "whole.exr", *noise]) == 0
+    finish = job.Job._finish
+
+    def keep(self: job.Job) -> None:
+        self.loop.save()
+
+    job.Job._finish = keep  # type: ignore[method-assign]
+    try:  # a coarser noise leaves the checkpoint of an interrupted run
+        assert main(["render", "s.glb", "-o", "a.exr", "--noise", "0.03", *QUICK]) == 0
+    finally:
+        job.Job._finish = finish  # type: ignore[method-assign]
+    capsys.readouterr()
+    assert main(["render", "s.glb", "-o", "a.exr", "--resume", *QUICK]) == 4
+    assert "drawn with --noise" in capsys.readouterr().err
+    assert main(["merge", "a.checkpoint.exr", "-o", "b.exr"]) == 4
+    assert main(["render", "s.glb", "-o", "a.exr", "--resume", *noise]) == 0
+    assert pixels("a.exr")["samples.Y"].mean() > 16

@@ -9,6 +9,7 @@ import operator
 import platform
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
+from .adaptive import Round, check_noise, rounds
 from .build import build, content_hash
 from .camera import Camera
 from .camera_setup import set_up
@@ -26,7 +28,9 @@ from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .scene import Scene
 
+Progress = Callable[[float], bool]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
+DEFAULT_SPP = 64
 MAX_RESOLUTION = 65536
 MAX_SAMPLES = 1 << 31
 
@@ -104,6 +108,7 @@ class Session:
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
+        self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
         self._identity = {
             "resolution": [self.width, self.height],
@@ -128,7 +133,7 @@ class Session:
             )
         return self._film
 
-    def draw(self, begin: int, end: int, progress: Callable[[float], bool] | None = None) -> bool:
+    def draw(self, begin: int, end: int, progress: Progress | None = None) -> bool:
         """Draws samples [begin, end) of every pixel.
 
         Args:
@@ -149,10 +154,33 @@ class Session:
                 raise MismatchError(
                     f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
                 )
+        if self.round is not None:
+            raise MismatchError("samples: wanted another round of adaptive sampling, got a range")
+        if not self._add(_core.render, (begin, end), progress):
+            return False
+        self.ranges = join_ranges([*self.ranges, (begin, end)])
+        return True
+
+    def draw_round(self, until: int, progress: Progress | None = None) -> bool:
+        """Draws the parts of ``round`` up to ``until``; see ``daguerre.adaptive``.
+
+        Returns:
+            False if stopped; as of ``draw``.
+        """
+        if self.round is None:
+            raise UsageError("draw_round: wanted a planned round, got none")
+        begin, count, drawn = self.round.begin, self.round.count, self.round.drawn
+        if not self._add(_core.render_round, (begin, count, drawn, until), progress):
+            return False
+        self.round = replace(self.round, drawn=until)
+        self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
+        return True
+
+    def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
-        complete, camera_rays, stopped, rays = _core.render(
-            self._core_scene, self._setup.core, film, self._settings, begin, end, progress
+        complete, camera_rays, stopped, rays = draw(
+            self._core_scene, self._setup.core, film, self._settings, *which, progress
         )
         if not complete:
             return False
@@ -161,7 +189,6 @@ class Session:
         self.stopped_rays += stopped
         self.rays += rays
         self.samples += camera_rays
-        self.ranges = join_ranges([*self.ranges, (begin, end)])
         return True
 
     def frame(self) -> Frame:
@@ -174,6 +201,15 @@ class Session:
         film = self._whole_film()
         return film.bad_sample_count, list(film.bad_samples)
 
+    def sample_counts(self) -> NDArray[np.uint32]:
+        """Samples drawn of each pixel, shape (H, W)."""
+        return np.asarray(self._whole_film().sample_counts())
+
+    def estimate(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Mean R, G, B and the variance of that mean, shape (H, W, 3) each."""
+        film = self._whole_film()
+        return film.mean_rgb(), film.variance_rgb()
+
     def state(self) -> dict[str, NDArray[np.uint32]]:
         """The film's exact sums as 32-bit words, (H, W, words) of the crop, by part.
 
@@ -183,9 +219,12 @@ class Session:
         return {part: film.state(part) for part in film.state_parts()}
 
     def set_state(
-        self, state: dict[str, NDArray[np.uint32]], ranges: list[tuple[int, int]]
+        self,
+        state: dict[str, NDArray[np.uint32]],
+        ranges: list[tuple[int, int]],
+        round: Round | None = None,
     ) -> None:
-        """Continues from sums that ``state`` gave, drawn from these sample ranges.
+        """Continues from sums that ``state`` gave, drawn from these sample ranges, or in rounds.
 
         Raises:
             MismatchError: A part is missing, unknown or of another size.
@@ -193,6 +232,7 @@ class Session:
         set_film_state(self._film, state, "film state")
         self._torn = False
         self.ranges = join_ranges(ranges)
+        self.round = round
 
     @cached_property
     def key(self) -> dict[str, str]:
@@ -231,7 +271,7 @@ class Session:
             "h0": facts.get("h0"),
             "camera": facts,
             "seed": self._identity["seed"],
-            "samples": sum(b - a for a, b in self.ranges),
+            **self._sample_facts(),
             "resolution": (self.width, self.height),
             "crop": self.crop,
             "filter": self._identity["filter"],
@@ -243,38 +283,81 @@ class Session:
         }
         return {name: value for name, value in out.items() if value is not None}
 
+    def _sample_facts(self) -> dict[str, Any]:
+        """Samples per pixel; of adaptive sampling mean and bounds, and the noise reached."""
+        if self.round is None:
+            return {"samples": sum(b - a for a, b in self.ranges)}
+        counts = self.sample_counts()
+        return {
+            "samples": float(counts.mean()),
+            "samples_min": int(counts.min()),
+            "samples_max": int(counts.max()),
+            "noise": self.round.noise if self.round.complete else None,
+        }
+
 
 def render(
-    scene: Scene, camera: Camera | str | None = None, *, spp: int = 64, **options: Any
+    scene: Scene,
+    camera: Camera | str | None = None,
+    *,
+    spp: int | None = None,
+    noise: float | None = None,
+    **options: Any,
 ) -> Frame:
     """Renders a picture.
 
     Args:
         scene: What is seen.
         camera: What sees it; None: the scene's own.
-        spp: Samples per pixel.
+        spp: Samples per pixel, by default 64; with ``noise`` the most that a pixel may get, by
+            default 16384.
+        noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
+            pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
+            samples as each needs.
         **options: As of :class:`Session`: resolution, seed, filter, aovs, crop, threads, max_depth.
 
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
     """
-    spp = whole(spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
+    spp = _most_samples(spp, noise)
     session = Session(scene, camera, **options)
-    session.draw(0, spp)
+    if noise is None:
+        session.draw(0, spp)
+    else:
+        for _ in rounds(session, noise, spp):
+            pass
     return session.frame()
 
 
 def iter_render(
-    scene: Scene, camera: Camera | str | None = None, *, spp: int = 64, **options: Any
+    scene: Scene,
+    camera: Camera | str | None = None,
+    *,
+    spp: int | None = None,
+    noise: float | None = None,
+    **options: Any,
 ) -> Iterator[Frame]:
-    """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples."""
-    spp = whole(spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
+    """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
+
+    With ``noise``, after each round of adaptive sampling. Arguments as of :func:`render`.
+    """
+    spp = _most_samples(spp, noise)
     session = Session(scene, camera, **options)
+    if noise is not None:
+        for _ in rounds(session, noise, spp):
+            yield session.frame()
+        return
     begin, end = 0, 1
     while begin < spp:
         session.draw(begin, min(end, spp))
         yield session.frame()
         begin, end = end, 2 * end
+
+
+def _most_samples(spp: int | None, noise: float | None) -> int:
+    if noise is not None:
+        return check_noise(noise, spp)[1]
+    return whole(DEFAULT_SPP if spp is None else spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
 
 
 def _resolution(resolution: tuple[int, int]) -> tuple[int, int]:

@@ -38,18 +38,21 @@ class Job:
         """Draws and saves; returns the exit code."""
         from . import progress
         from .loop import Loop, Signals
+        from .work import Range, Rounds, Work
 
         plan = self.plan
+        work: Work = Range(self.session, plan.wanted)
+        if plan.noise is not None:
+            work = Rounds(self.session, plan.noise, plan.wanted[1])
         reporter = progress.choose(quiet=quiet, as_json=as_json)
         self.loop = Loop(
-            self.session, plan.wanted, plan.checkpoint, plan.interval_s, reporter, self._snapshot
+            self.session, work, plan.checkpoint, plan.interval_s, reporter, self._snapshot
         )
         with Signals() as signals, reporter, core_errors("render"):
             if resume:
                 found = self.loop.resume()
-                done = self.loop.done()
                 console.note(
-                    f"resuming at {done} of {plan.wanted[1] - plan.wanted[0]} samples"
+                    f"resuming at {self._samples()} of {work.total():.6g} samples"
                     if found
                     else f"nothing to resume: no {plan.checkpoint}; starting anew"
                 )
@@ -58,7 +61,7 @@ class Job:
                 self._interrupted(reporter, save=signals.stops < 2)
                 return INTERRUPTED
             self._finish()
-            reporter.event("done", outputs=[str(p) for p in plan.outputs], samples=self.loop.done())
+            reporter.event("done", outputs=[str(p) for p in plan.outputs], samples=work.done())
         return 0
 
     def _finish(self) -> None:
@@ -76,20 +79,24 @@ class Job:
             console.warn(bad_samples(count, places))
         elapsed = time.monotonic() - self.loop.started
         names = ", ".join(str(path) for path in self.plan.outputs)
-        console.note(f"wrote {names} ({self.loop.done()} samples per pixel, {elapsed:.1f} s)")
+        console.note(f"wrote {names} ({self._samples()} samples per pixel, {elapsed:.1f} s)")
+        self._name_noise(frame.metadata.get("noise"))
         if self.stats:
             self._print_stats(elapsed)
 
     def _interrupted(self, reporter: Any, *, save: bool) -> None:
-        done, checkpoint = self.loop.done(), self.plan.checkpoint
-        total = self.plan.wanted[1] - self.plan.wanted[0]
+        done, checkpoint = self.loop.work.done(), self.plan.checkpoint
+        total = self.loop.work.total()
         kept = "nothing was saved"
-        if save and self.session.ranges and self.loop.save():
+        if save and done and self.loop.save():
             kept = f"saved in {checkpoint}"
         elif checkpoint.exists():
             kept = f"the last checkpoint is {checkpoint}"
         command = console.command_line("--resume")
-        console.say(f"daguerre: interrupted after {done} of {total} samples; {kept}; resume with:")
+        console.say(
+            f"daguerre: interrupted after {self._samples()} of {total:.6g} samples; {kept}; "
+            "resume with:"
+        )
         console.say(command)
         reporter.event("interrupted", samples=done, resume=command)
 
@@ -99,7 +106,7 @@ class Job:
         facts = {
             "resolution": (self.session.width, self.session.height),
             "crop": self.session.crop,
-            "samples": self.loop.done(),
+            "samples": self.loop.work.done(),
             "aovs": self.plan.aovs,
         }
         frame = replace(frame, metadata={**frame.metadata, **facts})
@@ -128,8 +135,22 @@ class Job:
         paths = [p.with_suffix(f".snapshot{p.suffix}") for p in self.plan.outputs]
         self._write(self._frame(), paths)
         console.note(
-            f"snapshot: {', '.join(map(str, paths))} ({self.loop.done()} samples per pixel)"
+            f"snapshot: {', '.join(map(str, paths))} ({self._samples()} samples per pixel)"
         )
+
+    def _samples(self) -> str:
+        """Samples per pixel that are drawn; a mean with one decimal."""
+        return f"{round(self.loop.work.done(), 1):.10g}"
+
+    def _name_noise(self, reached: float | None) -> None:
+        wanted = self.plan.noise
+        if wanted is None or reached is None:
+            return
+        console.note(f"noise {reached:.3g}, wanted {wanted:g}")
+        if reached > wanted:
+            console.warn(
+                f"--noise {wanted:g} is not reached: --spp {self.plan.wanted[1]} ended it before"
+            )
 
     def _print_stats(self, elapsed: float) -> None:
         import resource
@@ -138,7 +159,7 @@ class Job:
         from .progress import quantity
 
         usage = resource.getrusage(resource.RUSAGE_SELF)
-        drawn = self.loop.drawn_here * frame_pixels(self.session)
+        drawn = round(self.loop.drawn_here * frame_pixels(self.session))
         rays = int(self.session.rays)
         rows = {
             "set-up": f"{self.setup_s:.2f} s",

@@ -12,15 +12,16 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from daguerre.errors import DaguerreError, MismatchError
+from daguerre.errors import DaguerreError
 from daguerre.io import passes as pass_files
-from daguerre.io.ranges import missing_ranges
 
 from . import console
 from .progress import Silent, Status
 
 if TYPE_CHECKING:
     from daguerre.session import Session
+
+    from .work import Work
 
 #: A pass lasts about this long, so that Ctrl-C and checkpoints need not wait.
 PASS_S = 3.0
@@ -62,11 +63,11 @@ class Signals:
 
 
 class Loop:
-    """Draws samples [begin, end) of a session.
+    """Draws the work of a session.
 
     Args:
         session: What draws.
-        wanted: Samples, [begin, end).
+        work: What is drawn.
         checkpoint: Where the sums are kept until the picture is complete.
         interval_s: Time between checkpoints; 0: only when interrupted.
         reporter: How progress is shown.
@@ -76,75 +77,60 @@ class Loop:
     def __init__(
         self,
         session: Session,
-        wanted: tuple[int, int],
+        work: Work,
         checkpoint: Path,
         interval_s: float,
         reporter: Silent,
         snapshot: Callable[[], None],
     ) -> None:
         self.session = session
-        self.wanted = wanted
+        self.work = work
         self.checkpoint = checkpoint
         self.interval_s = interval_s
         self.reporter = reporter
         self.snapshot = snapshot
         self.started = time.monotonic()
-        self.drawn_here = 0
+        self.drawn_here = 0.0
 
     def resume(self) -> bool:
         """Takes up the checkpoint, if there is one.
 
         Raises:
-            MismatchError: It is of another picture, or holds samples that are not wanted.
+            MismatchError: It is of another picture, or not of this work.
         """
         if not self.checkpoint.exists():
             return False
         saved = pass_files.read_pass(self.checkpoint)
         pass_files.check_key(saved, pass_files.pass_of(self.session))
-        begin, end = self.wanted
-        for a, b in saved.ranges:
-            if a < begin or b > end:
-                raise MismatchError(
-                    f"{self.checkpoint}: holds samples {a}:{b}, wanted only {begin}:{end}; "
-                    f"ask for {min(a, begin)}:{max(b, end)} or remove the file"
-                )
-        self.session.set_state(saved.state, saved.ranges)
+        self.work.check(saved)
+        self.session.set_state(saved.state, saved.ranges, saved.round)
         return True
 
     def run(self, signals: Signals) -> bool:
         """Draws until all is there, or until a signal asks to stop; True: complete."""
         self.started = time.monotonic()
         saved_at = self.started
-        size, seconds_per_sample = 0, 0.0
-        self._report(0, 0.0)
-        while missing := self.missing():
+        limit = 1.0
+        while True:
+            size = self.work.prepare(limit)
+            self._report(0, 0.0)
+            if not size:
+                return True
             if signals.stops:
                 return False
-            size = pass_size(missing[0], size, seconds_per_sample)
-            begin = missing[0][0]
             before = time.monotonic()
-            if not self._draw(begin, begin + size, signals):
+            if not self._draw(size, signals):
                 return False
             self.drawn_here += size
-            seconds_per_sample = (time.monotonic() - before) / size
+            seconds = max(time.monotonic() - before, 1e-9)
+            limit = size * min(2.0, PASS_S / seconds)
             if signals.snapshot:
                 signals.snapshot = False
                 self.snapshot()
             due = self.interval_s > 0 and time.monotonic() - saved_at >= self.interval_s
-            if due and self.missing():
+            if due and self.work.done() < self.work.total():
                 self.save()
                 saved_at = time.monotonic()
-            self._report(0, 0.0)
-        return True
-
-    def missing(self) -> list[tuple[int, int]]:
-        """Samples that are still to be drawn."""
-        return missing_ranges(self.session.ranges, self.wanted)
-
-    def done(self) -> int:
-        """Samples per pixel that are complete."""
-        begin, end = self.wanted
-        return end - begin - sum(b - a for a, b in self.missing())
 
     def save(self) -> bool:
         """Writes the checkpoint; False, with a warning, if that fails: the render goes on."""
@@ -154,10 +140,10 @@ class Loop:
         except DaguerreError as error:
             console.warn(f"checkpoint not saved: {error}")
             return False
-        self.reporter.event("checkpoint", path=str(self.checkpoint), samples=self.done())
+        self.reporter.event("checkpoint", path=str(self.checkpoint), samples=self.work.done())
         return True
 
-    def _draw(self, begin: int, end: int, signals: Signals) -> bool:
+    def _draw(self, size: float, signals: Signals) -> bool:
         """One pass, in a thread of its own: Python runs signal handlers in the main thread only."""
         fraction, given_up = 0.0, False
         result: list[bool] = []
@@ -170,7 +156,7 @@ class Loop:
 
         def work() -> None:
             try:
-                result.append(self.session.draw(begin, end, progress))
+                result.append(self.work.draw(progress))
             except BaseException as error:
                 failure.append(error)
 
@@ -182,7 +168,7 @@ class Loop:
                 if signals.stops and not signals.answered:
                     signals.answered = True
                     console.note("stopping after this pass; Ctrl-C again stops at once")
-                self._report(end - begin, fraction)
+                self._report(size, fraction)
         finally:
             # Python must not end while the core draws.
             given_up = True
@@ -191,35 +177,19 @@ class Loop:
             raise failure[0]
         return result[0]
 
-    def _report(self, size: int, fraction: float) -> None:
-        begin, end = self.wanted
+    def _report(self, size: float, fraction: float) -> None:
+        wanted = self.work.total()
         pixels = frame_pixels(self.session)
         elapsed = max(time.monotonic() - self.started, 1e-9)
-        done, here = self.done(), self.drawn_here
+        done, here = self.work.done(), self.drawn_here
         # While a thread draws, the session may already count its samples as done.
-        total = min((done + size * fraction) / (end - begin), 1.0)
+        total = min((done + size * fraction) / wanted, 1.0)
         rate = (here + size * fraction) / elapsed
-        left = (end - begin) * (1 - total) / rate if rate > 0 else None
+        left = wanted * (1 - total) / rate if rate > 0 else None
         rays = float(self.session.rays) / elapsed
-        self.reporter.update(Status(total, done, end - begin, rate * pixels, rays, elapsed, left))
-
-
-def pass_size(missing: tuple[int, int], last: int, seconds_per_sample: float) -> int:
-    """How many samples the next pass draws: 1, 1, 2, 4, ... on aligned powers of two.
-
-    Args:
-        missing: The first range that is missing, [begin, end).
-        last: Size of the pass before; 0: there was none.
-        seconds_per_sample: Measured by the pass before; 0: unknown.
-    """
-    begin, end = missing
-    limit = max(1, 2 * last)
-    if seconds_per_sample > 0:
-        limit = max(1, min(limit, int(PASS_S / seconds_per_sample)))
-    size = 1
-    while size * 2 <= limit and begin % (size * 2) == 0:
-        size *= 2
-    return min(size, end - begin)
+        self.reporter.update(
+            Status(total, done, wanted, rate * pixels, rays, elapsed, left, **self.work.facts())
+        )
 
 
 def frame_pixels(session: Session) -> int:

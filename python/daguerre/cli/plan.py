@@ -28,12 +28,13 @@ ALWAYS = ("variance", "samples")
 
 @dataclass(frozen=True)
 class Plan:
-    """One picture: its files, its size, its samples."""
+    """One picture: its files, its size, its samples (with ``noise``: at most)."""
 
     outputs: list[Path]
     resolution: tuple[int, int]
     crop: tuple[int, int, int, int] | None
     wanted: tuple[int, int]
+    noise: float | None
     is_pass: bool
     aovs: list[str]
     denoise: bool
@@ -55,6 +56,7 @@ def make_plan(
     denoise: bool,
     spp: int | None,
     samples: str | None,
+    noise: float | None,
     checkpoint: str,
 ) -> Plan:
     """Checks what the flags of a render ask for.
@@ -71,6 +73,8 @@ def make_plan(
     if spp is not None and not 1 <= spp < 2**32:
         raise UsageError(f"--spp: wanted a number from 1, got {spp}")
     wanted = q.sample_range("--samples", samples) if samples else (0, spp or DEFAULT_SPP)
+    if noise is not None:
+        wanted = (0, _ceiling(noise, spp, samples))
     if samples and spp is not None and wanted[1] > spp:
         raise UsageError(f"--samples {samples}: wanted at most --spp {spp}")
     if samples and ".exr" not in formats:
@@ -88,11 +92,24 @@ def make_plan(
         resolution,
         _crop(crop, resolution),
         wanted,
+        noise,
         samples is not None,
         _aov_groups(aov, all_aovs),
         denoise,
         q.time_s("--checkpoint", checkpoint),
     )
+
+
+def _ceiling(noise: float, spp: int | None, samples: str | None) -> int:
+    """Most samples of a pixel on the way to a noise."""
+    from daguerre.adaptive import check_noise
+
+    if samples:
+        raise UsageError(
+            "--noise and --samples: what is drawn for a noise depends on what was drawn before, "
+            "so it has no passes; wanted one of the two"
+        )
+    return check_noise(noise, spp, "--noise")[1]
 
 
 def _crop(text: str | None, resolution: tuple[int, int]) -> tuple[int, int, int, int] | None:

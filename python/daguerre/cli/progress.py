@@ -24,15 +24,19 @@ class Status:
         rays_per_s: Rays of all kinds per second.
         elapsed_s: Since this run began to draw.
         left_s: Estimated time left; None until there is a rate.
+        noise: Relative error reached, of adaptive sampling; None until it is known.
+        noise_wanted: The one to reach; None: a number of samples is wanted.
     """
 
     fraction: float
-    samples: int
-    samples_wanted: int
+    samples: float
+    samples_wanted: float
     samples_per_s: float
     rays_per_s: float
     elapsed_s: float
     left_s: float | None
+    noise: float | None = None
+    noise_wanted: float | None = None
 
 
 class Silent:
@@ -148,13 +152,19 @@ def describe(status: Status, *, percent: bool = True) -> str:
     """One line: samples, rates, elapsed and left."""
     left = "?" if status.left_s is None else duration(status.left_s)
     words = [
-        f"{status.samples}/{status.samples_wanted} spp",
+        *([_noise(status)] if status.noise_wanted else []),
+        f"{round(status.samples, 1):g}/{round(status.samples_wanted, 1):g} spp",
         f"{quantity(status.samples_per_s)} samples/s",
         f"{quantity(status.rays_per_s)} rays/s",
         f"elapsed {duration(status.elapsed_s)}",
         f"left {left}",
     ]
     return ", ".join([f"{100 * status.fraction:.1f}%", *words] if percent else words)
+
+
+def _noise(status: Status) -> str:
+    reached = "?" if status.noise is None else f"{status.noise:.3g}"
+    return f"noise {reached} (wanted {status.noise_wanted:g})"
 
 
 def quantity(value: float) -> str:

@@ -63,6 +63,16 @@ def render(
     spp: Annotated[
         int | None, option("--spp", metavar="N", help="Samples per pixel [64].", panel=_SAMPLING)
     ] = None,
+    noise: Annotated[
+        float | None,
+        option(
+            "--noise",
+            metavar="X",
+            help="Draw until the relative error is X, say 0.02; more samples where they are "
+            "needed, --spp of a pixel at most [16384].",
+            panel=_SAMPLING,
+        ),
+    ] = None,
     samples: Annotated[
         str | None,
         option("--samples", metavar="A:B", help="A pass of samples, for `merge`.", panel=_SAMPLING),
@@ -105,7 +115,8 @@ def render(
     from daguerre.info import lit
 
     console.quiet = quiet
-    plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, spp, samples, checkpoint)
+    sampling = (spp, samples, noise)
+    plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
     _check_numbers(seed, threads, max_depth)
     changes = camera_flags.changes()
     check_outputs(plan)
@@ -176,6 +187,7 @@ def _describe(plan: Plan, session: Session, scene_path: Path) -> None:
         "resolution": list(plan.resolution),
         "crop": list(session.crop),
         "samples": list(plan.wanted),
+        "noise": plan.noise,
         "aovs": plan.aovs,
         "camera": session.metadata.get("camera"),
         "key": session.key,

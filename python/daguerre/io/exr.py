@@ -37,7 +37,9 @@ VECTORS = (
 )  # fmt: skip
 MATRICES = ("worldToCamera", "worldToNDC")
 RATIONALS = ("captureRate",)
-OWN_NUMBERS = ("samples", "seed", "h0", "time", "bad_samples")
+OWN_NUMBERS = (
+    "samples", "samples_min", "samples_max", "noise", "seed", "h0", "time", "bad_samples",
+)  # fmt: skip
 OWN_STRINGS = ("version", "scene_hash", "filter", "denoised")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]

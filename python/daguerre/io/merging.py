@@ -29,7 +29,8 @@ def merge(
 
     Raises:
         InputError: A file cannot be read.
-        MismatchError: Passes of different pictures, or samples drawn twice; the message names them.
+        MismatchError: Passes of different pictures, samples drawn twice, or adaptive sampling; the
+            message names them.
     """
     total: Any = None
     first: Pass | None = None
@@ -40,6 +41,11 @@ def merge(
         if first is None:
             first = replace(one, state={})
         check_key(first, one)
+        if one.round is not None:
+            raise MismatchError(
+                f"{one.path or 'pass'}: drawn with --noise, each pixel to its own count; "
+                "wanted passes of --samples"
+            )
         _check_overlap(ranges, one)
         ranges += [(r, one.path) for r in one.ranges]
         film = film_of(one)

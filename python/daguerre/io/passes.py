@@ -6,6 +6,8 @@ per pixel, in a picture of four channels that is seven times as wide. Its header
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
 which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
 channels in the same way. The sums are integers, so adding them in any order gives the same bits.
+The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
+``round``, and how far it is (``daguerre:round``).
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.adaptive import Round
 from daguerre.errors import InputError, MismatchError
 
 from .exr import Channels, attributes, channels, jsonable, write_parts
@@ -31,7 +34,9 @@ if TYPE_CHECKING:
 
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
-STATE_PARTS = (SUMS, "aovs")
+ROUND = "round"
+STATE_PARTS = (SUMS, "aovs", ROUND)
+ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
@@ -50,6 +55,7 @@ class Pass:
         key: What must agree with another pass, by name.
         metadata: Facts of the frame.
         path: Where it was read, for messages.
+        round: Of adaptive sampling, else None.
     """
 
     state: State
@@ -57,6 +63,7 @@ class Pass:
     key: dict[str, str]
     metadata: dict[str, Any] = field(default_factory=dict)
     path: Path | None = None
+    round: Round | None = None
 
 
 def pass_of(session: Session) -> Pass:
@@ -66,6 +73,7 @@ def pass_of(session: Session) -> Pass:
         list(session.ranges),
         dict(session.key),
         {**session.metadata, "resolution": (session.width, session.height), "crop": session.crop},
+        round=session.round,
     )
 
 
@@ -76,9 +84,15 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
         "daguerre:ranges": json.dumps(drawn.ranges),
         "daguerre:metadata": json.dumps(drawn.metadata, sort_keys=True, default=jsonable),
     }
+    planes = dict(drawn.state)
+    if drawn.round is not None:
+        facts = {name: getattr(drawn.round, name) for name in ROUND_FACTS}
+        header["daguerre:round"] = json.dumps(facts)
+        begin, count = drawn.round.begin, drawn.round.count
+        planes[ROUND] = np.stack([begin, count, 0 * begin, 0 * begin], axis=2)
     parts: list[tuple[str, dict[str, Any], Channels]] = [
         ("beauty", attributes(frame.metadata), channels(frame)),
-        *(_words_part(frame, name, header, words) for name, words in drawn.state.items()),
+        *(_words_part(frame, name, header, words) for name, words in planes.items()),
     ]
     write_parts(path, parts, frame)
 
@@ -110,7 +124,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
         raise InputError(f"{path}: not a readable EXR: {oiio.geterror()}")
     try:
         state: State = {}
-        facts = None
+        facts = found = None
         for index in _state_parts(source):
             spec = source.spec()
             words = source.read_image(index, 0, 0, spec.nchannels, oiio.UINT)
@@ -119,12 +133,14 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
             facts = facts or _header(path, spec)
             name = spec.get_string_attribute("oiio:subimagename")
             state[name] = _unfolded(path, words, spec.get_int_attribute("daguerre:words", 0))
+            if name == ROUND:
+                found = _round(path, spec, state.pop(ROUND))
         if facts is None:
             raise InputError(
                 f"{path}: holds no sums, only a picture; "
                 "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
             )
-        return replace(facts, state=state, path=path)
+        return replace(facts, state=state, path=path, round=found)
     finally:
         source.close()
 
@@ -162,17 +178,30 @@ def _unfolded(path: Path, words: NDArray[np.uint32], count: int) -> NDArray[np.u
     return words.reshape(height, size // count, count)
 
 
-def _header(path: Path, spec: Any) -> Pass:
-    def field_of(name: str, check: Callable[[Any], bool]) -> Any:
-        text = spec.get_string_attribute(f"daguerre:{name}")
-        try:
-            value = json.loads(text)
-        except ValueError:
-            value = None
-        if not check(value):
-            raise InputError(f"{path}: damaged pass file: daguerre:{name} is {text[:40]!r}")
-        return value
+def _field(path: Path, spec: Any, name: str, check: Callable[[Any], bool]) -> Any:
+    """A JSON attribute of the sums."""
+    text = spec.get_string_attribute(f"daguerre:{name}")
+    try:
+        value = json.loads(text)
+    except ValueError:
+        value = None
+    if not check(value):
+        raise InputError(f"{path}: damaged pass file: daguerre:{name} is {text[:40]!r}")
+    return value
 
+
+def _round(path: Path, spec: Any, words: NDArray[np.uint32]) -> Round:
+    def is_facts(value: Any) -> bool:
+        return isinstance(value, dict) and all(
+            isinstance(value.get(name), int | float) for name in ROUND_FACTS
+        )
+
+    facts = _field(path, spec, "round", is_facts)
+    begin, count = (np.ascontiguousarray(words[:, :, i]) for i in range(2))
+    return Round(begin, count, int(facts["drawn"]), float(facts["noise"]), float(facts["expected"]))
+
+
+def _header(path: Path, spec: Any) -> Pass:
     def is_ranges(value: Any) -> bool:
         return isinstance(value, list) and all(
             isinstance(r, list)
@@ -184,9 +213,9 @@ def _header(path: Path, spec: Any) -> Pass:
 
     return Pass(
         {},
-        [(r[0], r[1]) for r in field_of("ranges", is_ranges)],
-        field_of("key", lambda v: isinstance(v, dict) and bool(v)),
-        field_of("metadata", lambda v: isinstance(v, dict)),
+        [(r[0], r[1]) for r in _field(path, spec, "ranges", is_ranges)],
+        _field(path, spec, "key", lambda v: isinstance(v, dict) and bool(v)),
+        _field(path, spec, "metadata", lambda v: isinstance(v, dict)),
     )
 
 

@@ -1,0 +1,216 @@
+"""Adaptive sampling: a picture is drawn in rounds, each giving samples where they are needed.
+
+The error of a frame is relative: sqrt(mean(variance / (value^2 + 0.01))) over pixels and channels,
+with the variance that the film estimates. To reach it at least cost, pixel p needs n(p) samples in
+proportion to sqrt(V(p)), V the relative variance of one sample. A round decides from the sums of
+complete rounds alone, so neither threads nor interruptions change a bit.
+
+Where a sample count depends on the very values that it divides, the mean suffers: a pixel that by
+chance missed its bright paths looks clean and is left so. So pixels have three colours, and V of a
+pixel is taken from neighbours of the next colour, whose own counts come from those of the next:
+what a pixel has drawn comes back to its count after three rounds at the earliest, and faintly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .checks import number, whole
+from .errors import MismatchError
+
+if TYPE_CHECKING:
+    from .session import Session
+
+#: Samples of every pixel before anything is decided, and step of all counts: aligned powers of two
+#: keep the sampler's points stratified.
+START = 16
+STEP = 8
+#: A round at most doubles the samples drawn, as the variances that it relies on are estimates, and
+#: adds this share at least, so that the last ones are not many.
+GROWTH = 1.06, 2.0
+#: No pixel gets less than this share of the mean: it may not have met its brightest light yet.
+FLOOR = 0.25
+#: Pixels to each side of one whose variances speak for it.
+REACH = 3
+MAX_SPP = 16384
+#: Added to the square of a value: what is darker than 0.1 need not be known as well.
+DARK = 0.01
+PARTS: int = _core.ROUND_PARTS
+
+Counts = NDArray[np.uint32]
+Plane = NDArray[np.float64]
+Picture = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Round:
+    """Samples to be drawn, different for each pixel.
+
+    Attributes:
+        begin: First sample index of each pixel, shape (H, W).
+        count: How many it gets, shape (H, W).
+        drawn: Parts of the round, of ``PARTS``, that are drawn.
+        noise: Relative error of the frame before this round.
+        expected: Mean samples per pixel that the wanted noise will probably take.
+    """
+
+    begin: Counts
+    count: Counts
+    drawn: int = 0
+    noise: float = 1.0
+    expected: float = 0.0
+
+    @property
+    def complete(self) -> bool:
+        """Whether all of it is drawn."""
+        return self.drawn >= PARTS
+
+    def samples(self) -> float:
+        """Mean samples per pixel that are drawn."""
+        return float(self.begin.mean() + self.count.mean() * self.drawn / PARTS)
+
+
+def check_noise(noise: object, spp: object, where: str = "noise") -> tuple[float, int]:
+    """The wanted relative error, and the most samples that a pixel may get.
+
+    Raises:
+        UsageError: Out of range.
+    """
+    ceiling = MAX_SPP if spp is None else whole(spp, "spp", 2, 1 << 31, "2 .. 2^31")
+    return number(noise, where, high=1.0, above=0.0), ceiling
+
+
+def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[Round]:
+    """Draws round after round, and yields each, until the noise or ``spp`` is reached."""
+    noise, ceiling = check_noise(noise, spp)
+    while plan_round(session, noise, ceiling):
+        session.draw_round(PARTS)
+        assert session.round is not None
+        yield session.round
+
+
+def plan_round(session: Session, noise: float, ceiling: int) -> bool:
+    """Decides what is drawn next, unless a round is under way.
+
+    Returns:
+        False if nothing: the noise is reached, or no pixel may have more.
+    """
+    if session.round is not None and not session.round.complete:
+        return True
+    counts = session.sample_counts()
+    if session.round is None and session.ranges not in ([], [(0, int(counts.min()))]):
+        raise MismatchError(f"noise: wanted samples from 0 on, got {session.ranges}")
+    if counts.max() == 0:
+        first = np.full_like(counts, min(START, ceiling))
+        session.round = Round(counts, first, expected=float(first[0, 0]))
+        return True
+    rgb, variance = session.estimate()
+    reached = noise_of(rgb, variance)
+    more, expected = np.zeros_like(counts), float(counts.mean())
+    if reached > noise:
+        spread = spread_around(rgb, variance, counts)
+        more, expected = next_counts(spread, counts, (noise / reached) ** 2, ceiling)
+    session.round = Round(counts, more, 0 if more.any() else PARTS, reached, expected)
+    return bool(more.any())
+
+
+def noise_of(rgb: Picture, variance: Picture) -> float:
+    """Relative error of a frame: means and their variance, (H, W, 3) each."""
+    relative = variance / (rgb**2 + np.float32(DARK))
+    return float(np.sqrt(relative.mean(dtype=np.float64)))
+
+
+def spread_around(rgb: Picture, variance: Picture, counts: Counts) -> Plane:
+    """Relative variance of one sample of each pixel, as its neighbours tell, (H, W)."""
+    relative = variance / (rgb**2 + np.float32(DARK))
+    return around(relative.mean(axis=2, dtype=np.float64) * counts)
+
+
+def next_counts(spread: Plane, counts: Counts, factor: float, ceiling: int) -> tuple[Counts, float]:
+    """Samples that each pixel gets in the next round, and what all have in the end, on average.
+
+    Args:
+        spread: Relative variance of one sample, (H, W).
+        counts: Samples drawn, (H, W).
+        factor: Wanted relative variance of the frame over that of now.
+        ceiling: Most samples of a pixel.
+    """
+    wanted = factor * float((spread / counts).mean())
+    # A subset of the pixels says how many are needed as well as all of them, and sooner.
+    some = slice(None, None, max(1, spread.size >> 18))
+    need, have, one = np.sqrt(spread).ravel()[some], counts.ravel()[some], spread.ravel()[some]
+
+    def reaches(scale: float) -> bool:
+        return bool((one / share(need, have, scale, ceiling)).mean() <= wanted)
+
+    def grows(by: float) -> Callable[[float], bool]:
+        return lambda s: bool(share(need, have, s, ceiling).mean() >= by * have.mean())
+
+    enough = first_scale(reaches)
+    least, most = (first_scale(grows(by)) for by in GROWTH)
+    expected = share(np.sqrt(spread), counts, enough, ceiling)
+    goal = share(np.sqrt(spread), counts, min(max(enough, least), most), ceiling)
+    more = np.floor((goal - counts) / STEP + dither(counts.shape)) * STEP
+    return np.minimum(more, ceiling - counts).astype(np.uint32), float(expected.mean())
+
+
+def share(
+    need: Plane, have: NDArray[np.generic], scale: float, ceiling: int
+) -> NDArray[np.float64]:
+    """Counts in proportion to need, but never fewer than there are, nor below the floor."""
+    wanted = np.minimum(np.maximum(scale * need, have), ceiling)
+    return np.asarray(np.clip(wanted, FLOOR * wanted.mean(), ceiling))
+
+
+def dither(shape: tuple[int, ...]) -> Plane:
+    """Evenly spread over [0, 1) in every neighbourhood: added before rounding down, it keeps means.
+
+    Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences (R2).
+    """
+    y, x = np.ogrid[: shape[0], : shape[1]]
+    return np.asarray((x * 0.7548776662466927 + y * 0.5698402909980532) % 1.0)
+
+
+def first_scale(holds: Callable[[float], bool]) -> float:
+    """The smallest scale, to 1 part in 1000, at which something holds from there on."""
+    low, high = 1e-6, 1e12
+    if not holds(high):
+        return high
+    while high > 1.001 * low:
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
+
+
+def around(values: Plane) -> Plane:
+    """Mean of the pixels of the next colour within REACH; diagonals have one of three colours."""
+    y, x = np.ogrid[: values.shape[0], : values.shape[1]]
+    colour = (x + 2 * y) % 3
+    out = np.full_like(values, values.mean())
+    for own in range(3):
+        asked = (colour == (own + 1) % 3).astype(np.float64)
+        number = np.rint(box_sum(asked))
+        means = box_sum(values * asked) / np.maximum(number, 1)
+        # Differences of sums leave rounding errors, also below 0.
+        np.copyto(out, np.maximum(means, 0), where=(colour == own) & (number > 0))
+    return out
+
+
+def box_sum(values: Plane) -> Plane:
+    """Sums over squares of REACH elements to each side, cut off at the borders."""
+    size = 2 * REACH + 1
+    for axis in (0, 1):
+        edges = [(0, 0), (0, 0)]
+        edges[axis] = (REACH + 1, REACH)
+        sums = np.cumsum(np.pad(values, edges), axis=axis)
+        length = sums.shape[axis]
+        after, before = np.arange(size, length), np.arange(length - size)
+        values = np.take(sums, after, axis) - np.take(sums, before, axis)
+    return values

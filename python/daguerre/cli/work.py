@@ -1,0 +1,158 @@
+"""What a render draws, pass by pass: a range of samples, or rounds until a noise is reached.
+
+Sizes are mean samples per pixel, so that both are timed and shown alike.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from daguerre.errors import MismatchError
+from daguerre.io.ranges import missing_ranges
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from daguerre.adaptive import Round
+    from daguerre.io.passes import Pass
+    from daguerre.session import Session
+
+
+class Work(Protocol):
+    """Something to draw."""
+
+    def check(self, saved: Pass) -> None:
+        """Refuses a checkpoint from which this cannot go on."""
+
+    def prepare(self, limit: float) -> float:
+        """Chooses the next pass, of about ``limit`` samples at most; its size; 0: all is drawn."""
+
+    def draw(self, progress: Callable[[float], bool]) -> bool:
+        """Draws the pass that was prepared; False: stopped, and nothing added."""
+
+    def done(self) -> float:
+        """Samples that are drawn."""
+
+    def total(self) -> float:
+        """Samples that there will be in the end, as far as is known."""
+
+    def facts(self) -> dict[str, Any]:
+        """What else a status says."""
+
+
+class Range:
+    """Samples [begin, end) of every pixel."""
+
+    def __init__(self, session: Session, wanted: tuple[int, int]) -> None:
+        self.session, self.wanted = session, wanted
+        self._next = (0, 0)
+
+    def check(self, saved: Pass) -> None:
+        """Refuses samples that are not wanted."""
+        if saved.round is not None:
+            raise MismatchError(
+                f"{saved.path}: drawn with --noise; go on with --noise, or remove the file"
+            )
+        begin, end = self.wanted
+        for a, b in saved.ranges:
+            if a < begin or b > end:
+                raise MismatchError(
+                    f"{saved.path}: holds samples {a}:{b}, wanted only {begin}:{end}; "
+                    f"ask for {min(a, begin)}:{max(b, end)} or remove the file"
+                )
+
+    def prepare(self, limit: float) -> float:
+        """The next aligned power of two."""
+        missing = self._missing()
+        if not missing:
+            return 0.0
+        begin = missing[0][0]
+        self._next = begin, begin + pass_size(missing[0], limit)
+        return self._next[1] - begin
+
+    def draw(self, progress: Callable[[float], bool]) -> bool:
+        """Draws that."""
+        return self.session.draw(*self._next, progress)
+
+    def done(self) -> int:
+        """Samples of the range that are drawn."""
+        return self.total() - sum(b - a for a, b in self._missing())
+
+    def total(self) -> int:
+        """Samples of the range."""
+        return self.wanted[1] - self.wanted[0]
+
+    def facts(self) -> dict[str, Any]:
+        """Nothing more."""
+        return {}
+
+    def _missing(self) -> list[tuple[int, int]]:
+        return missing_ranges(self.session.ranges, self.wanted)
+
+
+class Rounds:
+    """Adaptive sampling down to a noise, with at most ``ceiling`` samples of any pixel."""
+
+    def __init__(self, session: Session, noise: float, ceiling: int) -> None:
+        self.session, self.noise, self.ceiling = session, noise, ceiling
+        self._until = 0
+
+    def check(self, saved: Pass) -> None:
+        """Goes on from rounds, and from samples 0:n of every pixel."""
+        if saved.round is None and saved.ranges and (len(saved.ranges) > 1 or saved.ranges[0][0]):
+            raise MismatchError(
+                f"{saved.path}: holds samples {saved.ranges}; --noise can go on from 0:N alone"
+            )
+
+    def prepare(self, limit: float) -> float:
+        """A part of the round under way, or of the next one."""
+        from daguerre import adaptive
+
+        if not adaptive.plan_round(self.session, self.noise, self.ceiling):
+            return 0.0
+        now = self._round
+        part = float(now.count.mean()) / adaptive.PARTS
+        parts = max(1, min(int(limit / part), adaptive.PARTS - now.drawn))
+        self._until = now.drawn + parts
+        return parts * part
+
+    def draw(self, progress: Callable[[float], bool]) -> bool:
+        """Draws that."""
+        return self.session.draw_round(self._until, progress)
+
+    def done(self) -> float:
+        """Mean samples per pixel."""
+        if self.session.round is None:
+            return float(sum(b - a for a, b in self.session.ranges))
+        return self._round.samples()
+
+    def total(self) -> float:
+        """As estimated before the round."""
+        if self.session.round is None:
+            return max(1.0, self.done())
+        end = float(self._round.begin.mean() + self._round.count.mean())
+        return max(end, self._round.expected)
+
+    def facts(self) -> dict[str, Any]:
+        """The noise before this round, and the one that is wanted."""
+        known = self.session.round is not None and bool(self._round.begin.any())
+        return {"noise": self._round.noise if known else None, "noise_wanted": self.noise}
+
+    @property
+    def _round(self) -> Round:
+        assert self.session.round is not None
+        return self.session.round
+
+
+def pass_size(missing: tuple[int, int], limit: float) -> int:
+    """How many samples the next pass draws: a power of two, on its multiples.
+
+    Args:
+        missing: The first range that is missing, [begin, end).
+        limit: Most samples, but one at least.
+    """
+    begin, end = missing
+    size = 1
+    while size * 2 <= limit and begin % (size * 2) == 0:
+        size *= 2
+    return min(size, end - begin)
