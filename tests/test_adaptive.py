@@ -73,6 +73,22 @@ def test_a_ceiling_ends_it() -> None:
     assert frame.metadata["noise"] > 0.001
 
 
+def test_what_is_drawn_already_counts() -> None:
+    """Samples of another plan: too few to estimate from, or more than may be drawn now."""
+    one = session()
+    one.draw(0, 1)
+    assert next(adaptive.rounds(one, 0.5)).begin.max() == 1
+    assert one.sample_counts().min() == one.sample_counts().max() == adaptive.START
+    for _ in adaptive.rounds(one, 0.04, 200):
+        pass
+    before = one.sample_counts()
+    for _ in adaptive.rounds(one, 0.01, 100):
+        pass
+    after = one.sample_counts()
+    assert before.max() > 100
+    assert after[after > before].max() == 100
+
+
 def test_a_black_world_needs_no_more() -> None:
     frame = dg.render(dg.Scene(), dg.Camera(), resolution=(16, 8), noise=0.001)
     assert frame.metadata["samples"] == adaptive.START

@@ -107,9 +107,10 @@ def plan_round(session: Session, noise: float, ceiling: int) -> bool:
     counts = session.sample_counts()
     if session.round is None and session.ranges not in ([], [(0, int(counts.min()))]):
         raise MismatchError(f"noise: wanted samples from 0 on, got {session.ranges}")
-    if counts.max() == 0:
-        first = np.full_like(counts, min(START, ceiling))
-        session.round = Round(counts, first, expected=float(first[0, 0]))
+    start = min(START, ceiling)
+    if counts.min() < start:
+        first = np.maximum(counts, np.uint32(start)) - counts
+        session.round = Round(counts, first, expected=float(min(4 * START, ceiling)))  # a guess
         return True
     rgb, variance = session.estimate()
     reached = noise_of(rgb, variance)
@@ -144,7 +145,7 @@ def next_counts(spread: Plane, counts: Counts, factor: float, ceiling: int) -> t
     """
     wanted = factor * float((spread / counts).mean())
     # A subset of the pixels says how many are needed as well as all of them, and sooner.
-    some = slice(None, None, max(1, spread.size >> 18))
+    some = slice(None, None, (spread.size >> 18) | 1)
     need, have, one = np.sqrt(spread).ravel()[some], counts.ravel()[some], spread.ravel()[some]
 
     def reaches(scale: float) -> bool:
@@ -158,7 +159,8 @@ def next_counts(spread: Plane, counts: Counts, factor: float, ceiling: int) -> t
     expected = share(np.sqrt(spread), counts, enough, ceiling)
     goal = share(np.sqrt(spread), counts, min(max(enough, least), most), ceiling)
     more = np.floor((goal - counts) / STEP + dither(counts.shape)) * STEP
-    return np.minimum(more, ceiling - counts).astype(np.uint32), float(expected.mean())
+    room = np.maximum(counts, ceiling) - counts.astype(np.int64)  # 0 if another ceiling was higher
+    return np.clip(more, 0, room).astype(np.uint32), float(expected.mean())
 
 
 def share(
