@@ -124,7 +124,9 @@ class FakeSession:
         self.ranges = list(ranges)
 
 
-def load(path: object, *, time: float = 0.0, allow_dirs: object = ()) -> Scene:
+def load(
+    path: object, *, time: float = 0.0, variant: str | None = None, allow_dirs: object = ()
+) -> Scene:
     scene = Scene()
     scene.add_camera("Camera", Camera())
     return scene
