@@ -99,6 +99,14 @@ GltfMaterial to_gltf(const nb::dict& d) {
     m.attenuation_color = rgb("attenuation_color");
     m.dispersion = number("dispersion");
     set_layers(d, m);
+    m.diffuse_transmission = number("diffuse_transmission");
+    m.diffuse_transmission_texture = slot("diffuse_transmission_texture");
+    m.diffuse_transmission_color = rgb("diffuse_transmission_color");
+    m.diffuse_transmission_color_texture = slot("diffuse_transmission_color_texture");
+    m.specular_glossiness = nb::cast<bool>(d["specular_glossiness"]);
+    m.glossiness = number("glossiness");
+    m.specular_glossiness_texture = slot("specular_glossiness_texture");
+    m.unlit = nb::cast<bool>(d["unlit"]);
     return m;
 }
 

@@ -92,7 +92,21 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     diffuse = s.base * (entering > 1e-4f ? dielectric - clear_weight : 0.f);
     diffuse_albedo = diffuse.average();
     if (diffuse_albedo > 0) diffuse = diffuse / entering;
-    if (clear == Clear::volume) inside = s.interior;
+    if (s.diffuse_transmission > 0 && entering > 1e-4f)
+        set_through(s, dielectric - clear_weight, entering);
+    bends = clear == Clear::volume || (through_share > 0 && s.volume);
+    if (bends) inside = s.interior;
+}
+
+void GltfBsdf::set_through(const GltfSurface& s, float weight, float entering) {
+    const Spectrum color =
+        s.diffuse_transmission_color * (weight * s.diffuse_transmission);
+    const float albedo = color.average();
+    diffuse = diffuse * (1 - s.diffuse_transmission);
+    diffuse_albedo = diffuse_albedo * (1 - s.diffuse_transmission) + albedo;
+    if (albedo <= 0) return;
+    through = color / entering;
+    through_share = albedo / diffuse_albedo;
 }
 
 void GltfBsdf::disperse(const GltfSurface& s) {
@@ -219,7 +233,16 @@ Evaluation GltfBsdf::evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const
     if (m.diffuse_probability == 0) return {};
     const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;
     return {diffuse * ((1 - m.interface) * (1 - e_i) * cos_i / kPi),
-            m.diffuse_probability * cos_i / kPi};
+            m.diffuse_probability * (1 - through_share) * cos_i / kPi};
+}
+
+/// cos_i > 0 is that of wi with the normal of its own side.
+Evaluation GltfBsdf::evaluate_through(const Mix& m, Vec3f wi, float cos_i,
+                                      float eta) const {
+    const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;
+    const float f = (1 - m.interface) * (1 - e_i) * cos_i / (kPi * eta * eta);
+    return {through * (disperses ? hero_alone() * f : Spectrum(f)),
+            m.diffuse_probability * through_share * cos_i / kPi, disperses};
 }
 
 Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
@@ -238,13 +261,17 @@ Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
         e.pdf += specular * p.reflect_probability * f.pdf;
         return e;
     }
-    if (cos_i >= 0 || smooth || clear == Clear::none) return {};
+    if (cos_i >= 0) return {};
+    const float n = eta(side.front);
+    const Evaluation diffused =
+        through_share > 0 ? evaluate_through(m, wi, -cos_i, n) : Evaluation{};
+    if (smooth || clear == Clear::none) return diffused;
     const Vec3f mirrored = wi - side.ns * (2 * cos_i);
     const Facet f = clear == Clear::thin ? reflecting(side, wo, mirrored, -cos_i)
                                          : refracting(side, wo, wi, cos_i);
-    const Split p = split(f.cos_h, eta(side.front));
-    return {p.transmitted * f.f_cos, specular * (1 - p.reflect_probability) * f.pdf,
-            disperses};
+    const Split p = split(f.cos_h, n);
+    return {diffused.f_cos + p.transmitted * f.f_cos,
+            diffused.pdf + specular * (1 - p.reflect_probability) * f.pdf, disperses};
 }
 
 std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) const {
@@ -254,6 +281,12 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
     BsdfSample s;
     if (u_lobe < m.diffuse_probability) {
         s.wi = sample_cosine(side.ns, u);
+        s.transmitted = u_lobe < m.diffuse_probability * through_share;
+        if (s.transmitted) {
+            s.wi = -s.wi;
+            s.eta = eta(side.front);
+            s.hero_only = disperses;
+        }
     } else {
         if (!has_specular) return std::nullopt;  // black
         const float specular = 1 - m.diffuse_probability, n = eta(side.front);

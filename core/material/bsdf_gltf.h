@@ -20,6 +20,11 @@
 // - Volumes: Walter 2007 with 1 / eta^2 (see bsdf_dielectric.h), and Schlick's s replaced
 // by the exact
 //   Fresnel curve rescaled to [0,1], which also knows total internal reflection.
+// - KHR_materials_dispersion: see dispersive.h; F0 follows the index of each wavelength.
+// - KHR_materials_diffuse_transmission takes its share of the diffuse lobe, behind the same
+//   interface. Into a volume it does not bend, but carries 1 / eta^2 as refraction does, so
+//   that light which enters by one lobe and leaves by the other keeps its energy. (So it is
+//   not reciprocal there: of light that is diffuse inside, a real surface lets less out.)
 // KHR_materials_anisotropy stretches the facets of every specular lobe: alpha along the
 // direction is mix(alpha, 1, strength^2). KHR_materials_iridescence puts a film on them:
 // F = mix(F, F_film, factor) with thin_film.h in place of the extension's fit to RGB; the
@@ -45,6 +50,8 @@ struct GltfSurface {
     Spectrum iors{1.5f};             // of the four, if it disperses
     Spectrum specular_color{1.f};
     float transmission = 0;
+    float diffuse_transmission = 0;  // share of the diffuse lobe
+    Spectrum diffuse_transmission_color{1.f};
     bool volume = false;  // thickness > 0
     Interior interior;
     float anisotropy = 0;  // strength
@@ -80,6 +87,9 @@ struct GltfBsdf {
     Clear clear;
     Spectrum diffuse;      // base colour of the diffuse lobe, Kelemen's mean included
     float diffuse_albedo;  // mean over wavelengths, mean not included; 0: no diffuse lobe
+    Spectrum through{0.f};    // as `diffuse`, of the diffuse lobe on the far side
+    float through_share = 0;  // of the two diffuse lobes together
+    bool bends = false;       // a volume that light enters
     Spectrum r0, r90_r0;   // reflection that follows Schlick: r0 + r90_r0 s
     Spectrum f0;           // dielectric F0, of the clear part
     float f90, f0_max;
@@ -108,7 +118,7 @@ struct GltfBsdf {
     /// Estimate of the share of light from wo that is scattered, for choosing lobes.
     float albedo_estimate(Vec3f wo) const;
     Interior interior() const { return inside; }
-    bool bounds_volume() const { return clear == Clear::volume; }
+    bool bounds_volume() const { return bends; }
     Spectrum straight(Vec3f wo) const;
 
   private:
@@ -126,7 +136,7 @@ struct GltfBsdf {
     Vec3f sample_facet(Vec3f n, Vec3f wo, Vec2f u) const;
     void stretch(const GltfSurface& surface);
     float eta(bool front) const {
-        return clear != Clear::volume ? 1.f : front ? ior : 1 / ior;
+        return !bends ? 1.f : front ? ior : 1 / ior;
     }
     struct Mix {
         float diffuse_probability, interface;  // E_c(wo)
@@ -137,6 +147,8 @@ struct GltfBsdf {
         return stretched ? stretched_row(w).at(cos_w) : row.at(cos_w);
     }
     GgxAlbedo::Row stretched_row(Vec3f w) const;
+    Evaluation evaluate_through(const Mix& m, Vec3f wi, float cos_i, float eta) const;
+    void set_through(const GltfSurface& surface, float weight, float entering);
 };
 
 }  // namespace dg

@@ -68,11 +68,13 @@ GltfSurface surface(float metallic, float roughness, float transmission = 0,
 void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
     const auto add = [&](const std::string& name, const GltfSurface& s,
                          bool lossless = false) {
-        const bool clear = s.transmission > 0;
+        const bool clear = s.transmission + s.diffuse_transmission > 0;
         // Index 0 is a special case of KHR_materials_ior and bends as good as nothing.
         const float ior = !s.volume ? 1 : s.ior > 0 ? s.ior : 1 + kSmoothAlpha;
+        // Diffuse on both sides of a change of index: see bsdf_gltf.h.
+        const bool reciprocal = !s.volume || s.diffuse_transmission == 0;
         cases.push_back({name, GltfBsdf(s, ns, kNg), ior, lossless && straight, clear,
-                         s.disperses});
+                         s.disperses, reciprocal});
     };
     for (float roughness : {0.f, 0.4f, 1.f}) {
         std::string r = std::to_string(roughness);
@@ -91,6 +93,12 @@ void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
         s.specular = 0;
         s.base = 1.f;
         add("gltf Lambert" + r, s, true);
+        for (const bool volume : {false, true}) {
+            s = surface(0.1f, roughness, volume ? 0.4f : 0, volume);
+            s.diffuse_transmission = 0.6f;
+            s.diffuse_transmission_color = {0.9f, 0.1f, 0.5f, 0.7f};
+            add((volume ? "gltf wax" : "gltf leaf") + r, s);
+        }
         s = surface(0.1f, roughness, 0.7f, true);
         s.disperses = true;
         s.iors = kIndices;

@@ -102,8 +102,58 @@ void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface
     s.disperses = !wavelengths.secondary_ended;
 }
 
+struct SpecularGlossiness {
+    Rgb diffuse, f0;
+    float glossiness;
+};
+
+/// KHR_materials_pbrSpecularGlossiness: c_diff = diffuse (1 - max(specular)).
+SpecularGlossiness read_specular_glossiness(const GltfMaterial& m,
+                                            const Textures& textures,
+                                            const SurfaceHit& hit) {
+    SpecularGlossiness s{base_color(m, textures, hit), m.specular_color, m.glossiness};
+    if (m.specular_glossiness_texture.used()) {
+        const Texture::Texel t = read(m.specular_glossiness_texture, textures, hit.uv);
+        s.f0 = s.f0 * rgb(t);
+        s.glossiness = clamped(s.glossiness * t.a);
+    }
+    s.f0 = clamped(s.f0);
+    s.diffuse = s.diffuse * (1 - max_component(s.f0));
+    return s;
+}
+
+/// An index of 0 has a reflectance of 1, which specular_color scales to any F0; F90 is 1.
+GltfSurface specular_glossiness(const GltfMaterial& m, const Textures& textures,
+                                const SurfaceHit& hit, const Wavelengths& wavelengths) {
+    const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);
+    return {.base = wavelengths.reflectance(s.diffuse),
+            .metallic = 0,
+            .roughness = 1 - s.glossiness,
+            .ior = 0,
+            .specular_color = wavelengths.reflectance(s.f0),
+            .interior = {}};
+}
+
+struct DiffuseTransmission {
+    float share;
+    Rgb color;
+};
+DiffuseTransmission read_diffuse_transmission(const GltfMaterial& m,
+                                              const Textures& textures,
+                                              const SurfaceHit& hit) {
+    DiffuseTransmission d{m.diffuse_transmission, m.diffuse_transmission_color};
+    if (m.diffuse_transmission_texture.used())
+        d.share *=
+            clamped(read(m.diffuse_transmission_texture, textures, hit.uv).a);
+    if (m.diffuse_transmission_color_texture.used())
+        d.color =
+            d.color * rgb(read(m.diffuse_transmission_color_texture, textures, hit.uv));
+    return {d.share, clamped(d.color)};
+}
+
 GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
                          const SurfaceHit& hit, const Wavelengths& wavelengths) {
+    if (m.specular_glossiness) return specular_glossiness(m, textures, hit, wavelengths);
     GltfSurface s;
     s.base = wavelengths.reflectance(base_color(m, textures, hit));
     read_metallic_roughness(m, textures, hit, s);
@@ -112,6 +162,11 @@ GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
     if (m.transmission_texture.used())
         s.transmission *=
             clamped({read(m.transmission_texture, textures, hit.uv).r, 0, 0}).x;
+    if (m.diffuse_transmission > 0) {
+        const auto d = read_diffuse_transmission(m, textures, hit);
+        s.diffuse_transmission = d.share;
+        s.diffuse_transmission_color = wavelengths.reflectance(d.color);
+    }
     s.volume = m.thickness > 0;
     if (s.volume && std::isfinite(m.attenuation_distance))
         s.interior = {true, wavelengths.reflectance(m.attenuation_color),
@@ -123,6 +178,7 @@ GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
 /// The coat follows the mesh and not the normal map of the base, so it is read first.
 Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
+    if (m.unlit) return DiffuseBsdf{hit.ns, hit.ng, 0.f};
     Coat coat;
     if (m.clearcoat.used()) coat = read_coat(m.clearcoat, textures, hit);
     if (m.normal_texture.used())
@@ -174,6 +230,7 @@ Rgb emitted_below_coat(const Material& material, const Textures& textures,
     Rgb sum{0, 0, 0};
     if (hit.front || material.two_sided_emission) sum = material.emission;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (m && m->unlit) return sum + base_color(*m, textures, hit);
     if (!m || !(hit.front || m->double_sided) || m->emissive == Rgb{0, 0, 0}) return sum;
     if (!m->emissive_texture.used()) return sum + m->emissive;
     return sum + m->emissive * rgb(read(m->emissive_texture, textures, hit.uv));
@@ -194,10 +251,17 @@ Rgb emitted(const Material& material, const Textures& textures, const SurfaceHit
     return sum * (1 - coat_share(coat_factor(m->clearcoat, textures, hit), cos_o));
 }
 
+Rgb emission_factor(const GltfMaterial& m) {
+    return m.unlit ? m.base_color : m.emissive;
+}
+const TextureSlot& emission_texture(const GltfMaterial& m) {
+    return m.unlit ? m.base_color_texture : m.emissive_texture;
+}
+
 bool emits(const Material& material) {
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     const Rgb none{0, 0, 0};
-    return material.emission != none || (m && m->emissive != none);
+    return material.emission != none || (m && emission_factor(*m) != none);
 }
 
 float opacity(const Material& material, const Textures& textures, const Vec2f uv[2],
@@ -256,13 +320,23 @@ Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit&
         return m->reflectance;
     if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return m->tint;
     const auto& m = std::get<GltfMaterial>(material.kind);
-    const Rgb base = base_color(m, textures, hit);
+    if (m.unlit) return base_color(m, textures, hit);
+    if (m.specular_glossiness) {
+        const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);
+        return s.diffuse + s.f0;
+    }
+    Rgb base = base_color(m, textures, hit);
     GltfSurface s;
     read_metallic_roughness(m, textures, hit, s);
     const Rgb colour = read_specular(m, textures, hit, s);
     const Rgb f0 = clamped(colour * normal_reflectance(s.ior)) * s.specular;
+    const Rgb metal = base;
+    if (m.diffuse_transmission > 0) {
+        const auto d = read_diffuse_transmission(m, textures, hit);
+        base = base * (1 - d.share) + d.color * d.share;
+    }
     const Rgb dielectric = base * (1 - max_component(f0)) + f0;
-    const Rgb bare = dielectric * (1 - s.metallic) + base * s.metallic;
+    const Rgb bare = dielectric * (1 - s.metallic) + metal * s.metallic;
     return clamped(layered_albedo(m, textures, hit, bare));
 }
 

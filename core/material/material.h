@@ -67,6 +67,18 @@ struct GltfMaterial {
     SheenLayer sheen;
     Anisotropy anisotropy;
     Iridescence iridescence;
+    float diffuse_transmission = 0;
+    TextureSlot diffuse_transmission_texture;  // A
+    Rgb diffuse_transmission_color{1, 1, 1};
+    TextureSlot diffuse_transmission_color_texture;  // RGB
+    /// KHR_materials_pbrSpecularGlossiness instead of all of the above that reflects:
+    /// base_color is its diffuse colour, specular_color its F0.
+    bool specular_glossiness = false;
+    float glossiness = 1;
+    TextureSlot specular_glossiness_texture;  // RGB F0, A glossiness
+    /// KHR_materials_unlit: shines with its base colour in cd/m2 and reflects nothing. From
+    /// both sides, as surfaces are shaded from behind too.
+    bool unlit = false;
 };
 
 struct Material {
@@ -98,6 +110,10 @@ Rgb emitted(const Material& material, const std::vector<Texture>& textures,
 
 /// True when emission changes with the direction it is seen from.
 bool emission_is_coated(const Material& material);
+/// What a glTF material's emission is made of: that of KHR_materials_unlit is its base
+/// colour, and vertex colours count there too.
+Rgb emission_factor(const GltfMaterial& material);
+const TextureSlot& emission_texture(const GltfMaterial& material);
 
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);

@@ -94,6 +94,10 @@ void check(const Checker& c, const GltfMaterial& m) {
         throw input_error(c.where, "attenuation_distance", "more than 0 m",
                           Checker::text(m.attenuation_distance));
     c.color("attenuation_color", m.attenuation_color, 1);
+    c.number("diffuse_transmission", m.diffuse_transmission, 0, 1);
+    c.color("diffuse_transmission_color", m.diffuse_transmission_color, 1);
+    if (m.specular_glossiness) c.color("specular_color", m.specular_color, 1);
+    c.number("glossiness", m.glossiness, 0, 1);
     c.number("dispersion", m.dispersion, 0, Checker::kLargest);
     c.slot("base_color_texture", m.base_color_texture);
     c.slot("metallic_roughness_texture", m.metallic_roughness_texture);
@@ -103,6 +107,9 @@ void check(const Checker& c, const GltfMaterial& m) {
     c.slot("specular_texture", m.specular_texture);
     c.slot("specular_color_texture", m.specular_color_texture);
     c.slot("transmission_texture", m.transmission_texture);
+    c.slot("diffuse_transmission_texture", m.diffuse_transmission_texture);
+    c.slot("diffuse_transmission_color_texture", m.diffuse_transmission_color_texture);
+    c.slot("specular_glossiness_texture", m.specular_glossiness_texture);
     check_layers(c, m);
 }
 

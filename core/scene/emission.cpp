@@ -13,7 +13,7 @@ constexpr float kUnseenShare = 1e-3f;
 /// Steps along an edge that make neighbouring lattice points at most one texel apart.
 int texel_steps(const InstanceRecord& r, const GltfMaterial& m,
                 const std::vector<Texture>& textures, std::uint32_t primitive) {
-    const TextureSlot& slot = m.emissive_texture;
+    const TextureSlot& slot = emission_texture(m);
     const Texture& texture = textures[slot.index];
     const Vec2f* uv = r.uv[slot.uv_set];
     if (!uv) return 1;
@@ -38,7 +38,8 @@ bool same_everywhere(const InstanceRecord& record, const Material& material) {
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     if (!m) return true;
     const bool opaque = m->alpha_mode == GltfMaterial::AlphaMode::opaque;
-    return !m->emissive_texture.used() && !emission_is_coated(material) &&
+    if (m->unlit && record.colors) return false;
+    return !emission_texture(*m).used() && !emission_is_coated(material) &&
            (opaque || (!m->base_color_texture.used() && !record.colors));
 }
 
@@ -56,7 +57,7 @@ Measured measure(const InstanceRecord& record, const Material& material,
         return m;
     }
     const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
-    const bool textured = gltf && gltf->emissive_texture.used();
+    const bool textured = gltf && emission_texture(*gltf).used();
     const int wanted = textured ? texel_steps(record, *gltf, textures, primitive) : 2;
     const int n = std::min(wanted, kLargestLattice);
     Rgb sums[2]{};
@@ -75,13 +76,13 @@ Measured measure(const InstanceRecord& record, const Material& material,
     m.back = max_component(sums[1]) > 0;
     const bool resolved = wanted <= n;
     if (!resolved) {
-        const Rgb least = (material.emission + gltf->emissive) * kUnseenShare;
+        const Rgb least = (material.emission + emission_factor(*gltf)) * kUnseenShare;
         for (Rgb& s : sums) {
             s = {std::max(s.x, least.x * count), std::max(s.y, least.y * count),
                  std::max(s.z, least.z * count)};
         }
         m.front = true;
-        m.back = m.back || gltf->double_sided || material.two_sided_emission;
+        m.back = m.back || gltf->double_sided || gltf->unlit || material.two_sided_emission;
     }
     const bool brighter_back = m.back && max_component(sums[1]) > max_component(sums[0]);
     m.mean = sums[brighter_back ? 1 : 0] / float(count);

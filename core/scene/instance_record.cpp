@@ -49,7 +49,9 @@ bool uses_textures(const GltfMaterial& m) {
     return m.base_color_texture.used() || m.metallic_roughness_texture.used() ||
            m.normal_texture.used() || m.emissive_texture.used() ||
            m.specular_texture.used() || m.specular_color_texture.used() ||
-           m.transmission_texture.used() || layers_use_textures(m);
+           m.transmission_texture.used() || m.diffuse_transmission_texture.used() ||
+           m.diffuse_transmission_color_texture.used() ||
+           m.specular_glossiness_texture.used() || layers_use_textures(m);
 }
 
 /// The texture set whose +u is the tangent, for a material that has need of one: that of

@@ -211,6 +211,8 @@ def lit(scene: Scene) -> bool:
 def _emits(scene: Scene, instance: Instance) -> bool:
     material = scene.materials[instance.material]
     own = getattr(material.kind, "emissive", (0, 0, 0))
+    if getattr(material.kind, "unlit", False):
+        own = getattr(material.kind, "base_color", own)
     return any(material.emission) or any(own)
 
 

@@ -62,10 +62,14 @@ class Dielectric:
 class Gltf:
     """glTF metallic-roughness and its extensions, by the names of the glTF properties.
 
-    Those are KHR anisotropy, clearcoat, dispersion (20 / Abbe number), emissive_strength, ior,
-    iridescence, sheen, specular, transmission and volume. ``anisotropy_rotation`` is in degrees
-    counter-clockwise from the tangent; the thickness of the iridescent film is in nm, the maximum
-    where no texture varies it.
+    Those are KHR anisotropy, clearcoat, diffuse_transmission, dispersion (20 / Abbe number),
+    emissive_strength, ior, iridescence, sheen, specular, transmission and volume.
+    ``anisotropy_rotation`` is in degrees counter-clockwise from the tangent; the thickness of the
+    iridescent film is in nm, the maximum where no texture varies it.
+
+    With ``specular_glossiness`` the base colour is the diffuse colour, the specular colour the
+    reflectance at normal incidence. With ``unlit`` the base colour is a luminance in cd/m2, to
+    both sides, and nothing is reflected.
     """
 
     base_color: Color = (1.0, 1.0, 1.0)
@@ -112,6 +116,14 @@ class Gltf:
     iridescence_thickness_min_nm: float = 100.0
     iridescence_thickness_max_nm: float = 400.0
     iridescence_thickness_texture: TextureSlot | None = None
+    diffuse_transmission: float = 0.0
+    diffuse_transmission_texture: TextureSlot | None = None
+    diffuse_transmission_color: Color = (1.0, 1.0, 1.0)
+    diffuse_transmission_color_texture: TextureSlot | None = None
+    specular_glossiness: bool = False
+    glossiness: float = 1.0
+    specular_glossiness_texture: TextureSlot | None = None
+    unlit: bool = False
 
 
 Kind = Diffuse | Conductor | Dielectric | Gltf

@@ -1,7 +1,8 @@
 """Materials of glTF: metallic-roughness and the KHR extensions that Daguerre knows.
 
 Source: glTF 2.0 specification, chapters 3.9 and 5.19; KHR_materials_{emissive_strength, ior,
-transmission, volume, specular, dispersion}; those of gltf_layers.py.
+transmission, volume, specular, dispersion}; those of gltf_layers.py and
+gltf_material_models.py.
 """
 
 from __future__ import annotations
@@ -11,8 +12,14 @@ from typing import Any
 
 from daguerre.materials import Gltf, Material
 
-from .gltf_factors import SLACK, color_of, fraction, unit_color
+from .gltf_factors import color_of, fraction, unit_color
 from .gltf_layers import read_layers
+from .gltf_material_models import (
+    is_unlit,
+    read_base_color,
+    read_diffuse_transmission,
+    read_specular_glossiness,
+)
 from .gltf_textures import Textures
 from .json_item import Item
 from .notes import Notes
@@ -28,26 +35,42 @@ def read_materials(root: Item, textures: Textures, notes: Notes) -> list[Materia
 
 def _material(item: Item, textures: Textures, notes: Notes) -> Material:
     values: dict[str, Any] = {}
-    _metallic_roughness(item.get("pbrMetallicRoughness"), textures, values)
-    _surface(item, textures, values)
-    _specular(item, textures, values)
-    _transmission(item, textures, notes, values)
-    _dispersion(item, values)
-    read_layers(item, textures, values)
+    _coverage(item, values)
+    if is_unlit(item):  # what else there is are fallbacks for readers that know no unlit
+        values["unlit"] = True
+        _base_color(item, textures, values)
+    else:
+        glossy = read_specular_glossiness(item, textures, notes, values)
+        if not glossy:
+            _metallic_roughness(item, textures, values)
+        _surface(item, textures, values)
+        if not glossy:
+            _extensions(item, textures, notes, values)
     return Material(Gltf(**values), name=item.name() or f"material{item.key}")
 
 
-def _metallic_roughness(pbr: Item | None, textures: Textures, values: dict[str, Any]) -> None:
-    if pbr is not None:
-        factor = pbr.numbers_of("baseColorFactor", (1.0,) * 4, 0, 1 + SLACK)
-        r, g, b, values["base_alpha"] = (min(f, 1.0) for f in factor)
-        values["base_color"] = (r, g, b)
-    values["base_color_texture"] = textures.slot(pbr, "baseColorTexture", srgb=True)
+def _metallic_roughness(item: Item, textures: Textures, values: dict[str, Any]) -> None:
+    _base_color(item, textures, values)
+    pbr = item.get("pbrMetallicRoughness")
     values["metallic"] = fraction(pbr, "metallicFactor", 1.0)
     values["roughness"] = fraction(pbr, "roughnessFactor", 1.0)
     values["metallic_roughness_texture"] = textures.slot(
         pbr, "metallicRoughnessTexture", srgb=False
     )
+
+
+def _extensions(item: Item, textures: Textures, notes: Notes, values: dict[str, Any]) -> None:
+    """What adds to metallic-roughness, and to nothing else."""
+    _specular(item, textures, values)
+    _transmission(item, textures, notes, values)
+    read_diffuse_transmission(item, textures, values)
+    _dispersion(item, values)
+    read_layers(item, textures, values)
+
+
+def _base_color(item: Item, textures: Textures, values: dict[str, Any]) -> None:
+    pbr = item.get("pbrMetallicRoughness")
+    read_base_color(pbr, "baseColorFactor", "baseColorTexture", textures, values)
 
 
 def _surface(item: Item, textures: Textures, values: dict[str, Any]) -> None:
@@ -62,6 +85,9 @@ def _surface(item: Item, textures: Textures, values: dict[str, Any]) -> None:
     r, g, b = color_of(item, "emissiveFactor", 0.0, math.inf)
     values["emissive"] = (r * strength, g * strength, b * strength)
     values["emissive_texture"] = textures.slot(item, "emissiveTexture", srgb=True)
+
+
+def _coverage(item: Item, values: dict[str, Any]) -> None:
     mode, double = item.get("alphaMode"), item.get("doubleSided")
     if mode is not None:
         values["alpha_mode"] = mode.choice(("OPAQUE", "MASK", "BLEND")).lower()
