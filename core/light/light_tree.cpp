@@ -4,11 +4,15 @@
 #include <cstring>
 #include <numeric>
 
+#include "light/light_split.h"
+
 namespace dg {
 namespace {
 
 // Rounding must not turn a light off at the very edge of its cone.
 constexpr float kCosineSlack = 1e-3f;
+// Normals this close (rad) are one.
+constexpr float kFlatSpread = 1e-3f;
 
 float larger(float a, float b) {  // by value, so that loops over it become SIMD
     return a > b ? a : b;
@@ -18,43 +22,9 @@ float sine(float cosine) {
     return std::sqrt(std::max(0.f, 1 - cosine * cosine));
 }
 
-Vec3f component_min(Vec3f a, Vec3f b) {
-    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-}
-Vec3f component_max(Vec3f a, Vec3f b) {
-    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
-
-/// Smallest cone around two cones of directions; sets axis and spread of `out`.
-void merge_cones(const LightBounds& a, const LightBounds& b, LightBounds& out) {
-    const LightBounds& wide = a.spread >= b.spread ? a : b;
-    const LightBounds& narrow = a.spread >= b.spread ? b : a;
-    out.axis = wide.axis;
-    const float between = std::acos(std::clamp(dot(wide.axis, narrow.axis), -1.f, 1.f));
-    if (std::min(between + narrow.spread, kPi) <= wide.spread) {
-        out.spread = wide.spread;
-        return;
-    }
-    out.spread = (wide.spread + between + narrow.spread) / 2;
-    const Vec3f side = narrow.axis - wide.axis * dot(narrow.axis, wide.axis);
-    if (out.spread >= kPi || length(side) < 1e-6f) {
-        out.spread = kPi;
-        return;
-    }
-    const float turn = out.spread - wide.spread;
-    out.axis = normalize(wide.axis * std::cos(turn) + normalize(side) * std::sin(turn));
-}
-
-LightBounds merge(const LightBounds& a, const LightBounds& b) {
-    LightBounds r;
-    r.min = component_min(a.min, b.min);
-    r.max = component_max(a.max, b.max);
-    merge_cones(a, b, r);
-    r.falloff = std::max(a.falloff, b.falloff);
-    r.intensity = a.intensity + b.intensity;
-    r.two_sided = a.two_sided || b.two_sided;
-    return r;
-}
+// Beyond this depth lights are halved by number, so that no arrangement of them makes the
+// tree so deep that its recursion is in danger.
+constexpr int kDeepest = 48;
 
 }  // namespace
 
@@ -64,7 +34,7 @@ LightTree::LightTree(std::span<const LightBounds> lights) : leaf_of_(lights.size
     std::iota(order.begin(), order.end(), 0);
     nodes_.reserve(2 * lights.size());
     LightBounds all;
-    build(lights, order, all);
+    build(lights, order, 0, all);
     choose_cut();
     pack_cut();
 }
@@ -80,13 +50,19 @@ LightTree::Node LightTree::make_node(const LightBounds& b) {
     n.cos_falloff = std::cos(b.falloff);
     n.intensity = b.intensity;
     n.back = b.two_sided ? -1.f : 1.f;
+    // Where all normals are one, the planes of the lights bound what they shine at: signs
+    // on a wall, panels of a ceiling.
+    const bool flat = b.spread <= kFlatSpread && b.falloff <= kPi / 2 && !b.two_sided;
+    const Vec3f half = (b.max - b.min) * (0.5f + kCosineSlack);
+    const Vec3f a{std::abs(b.axis.x), std::abs(b.axis.y), std::abs(b.axis.z)};
+    n.reach = flat ? dot(a, half) + kFlatSpread * n.radius
+                   : std::numeric_limits<float>::infinity();
     return n;
 }
 
-/// Halves at the median of the longer side of the box of centres; returns the node's
-/// index.
 std::int32_t LightTree::build(std::span<const LightBounds> lights,
-                              std::span<std::int32_t> order, LightBounds& bounds) {
+                              std::span<std::int32_t> order, int depth,
+                              LightBounds& bounds) {
     const auto index = static_cast<std::int32_t>(nodes_.size());
     nodes_.emplace_back();
     if (order.size() == 1) {
@@ -96,23 +72,11 @@ std::int32_t LightTree::build(std::span<const LightBounds> lights,
         leaf_of_[order[0]] = index;
         return index;
     }
-    auto center = [&](std::int32_t i) { return lights[i].min + lights[i].max; };
-    Vec3f low = center(order[0]), high = low;
-    for (std::int32_t i : order) {
-        low = component_min(low, center(i));
-        high = component_max(high, center(i));
-    }
-    const Vec3f size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t half = order.size() / 2;
-    std::nth_element(order.begin(), order.begin() + half, order.end(),
-                     [&](std::int32_t a, std::int32_t b) {
-                         const float ca = center(a)[axis], cb = center(b)[axis];
-                         return ca != cb ? ca < cb : a < b;  // one order on every machine
-                     });
+    const std::size_t first = split_lights(lights, order, depth > kDeepest);
     LightBounds left_bounds, right_bounds;
-    const std::int32_t left = build(lights, order.first(half), left_bounds);
-    const std::int32_t right = build(lights, order.subspan(half), right_bounds);
+    const std::int32_t left = build(lights, order.first(first), depth + 1, left_bounds);
+    const std::int32_t right =
+        build(lights, order.subspan(first), depth + 1, right_bounds);
     bounds = merge(left_bounds, right_bounds);
     nodes_[index] = make_node(bounds);
     nodes_[index].left = left;
@@ -176,7 +140,8 @@ inline float LightTree::estimate(const Emission& e, Vec3f position) {
     const float dimmed = strength * larger(cos_final, kCosineSlack);
     const float facing = cos_final < e.cos_falloff - kCosineSlack ? 0.f : dimmed;
     const bool anywhere = (e.cos_spread <= -1) | (d2 <= e.radius2);
-    return anywhere ? strength : facing;
+    const float some = anywhere ? strength : facing;
+    return along + e.reach < 0 ? 0.f : some;
 }
 
 float LightTree::Node::importance(Vec3f position) const {
@@ -196,7 +161,8 @@ LightTree::Weights LightTree::weigh(Vec3f position) const {
                                                   n[9][i],
                                                   n[10][i],
                                                   n[11][i],
-                                                  n[12][i]},
+                                                  n[12][i],
+                                                  n[13][i]},
                                                  position);
         }
     }

@@ -9,21 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "math/vec.h"
+#include "light/light_bounds.h"
 
 namespace dg {
-
-/// Where a light (or a group) is and where it may shine: a box, and directions within
-/// `spread` of the axis, from which emission goes on for `falloff` (weakened by the
-/// cosine) and is 0 beyond.
-struct LightBounds {
-    Vec3f min, max;           // m
-    Vec3f axis{0, 0, 1};      // unit
-    float spread = kPi;       // rad; pi: all around
-    float falloff = kPi / 2;  // rad
-    float intensity = 0;      // cd, largest over the directions
-    bool two_sided = false;   // shines along -axis as well
-};
 
 class LightTree {
   public:
@@ -63,6 +51,7 @@ class LightTree {
         float back;  // -1: shines along -axis as well; else 1
         float cos_spread, sin_spread, cos_falloff;
         float intensity;
+        float reach;  // m; what lies farther behind the centre along the axis is dark
     };
     struct Node : Emission {
         std::int32_t parent = -1, left = -1, right = -1;  // left < 0: a leaf
@@ -77,8 +66,9 @@ class LightTree {
     };
     static float estimate(const Emission& e, Vec3f position);
     static Node make_node(const LightBounds& b);
+    /// Appends the tree of the lights in `order`; returns the index of its root.
     std::int32_t build(std::span<const LightBounds> lights, std::span<std::int32_t> order,
-                       LightBounds& bounds);
+                       int depth, LightBounds& bounds);
     void choose_cut();
     void pack_cut();
 

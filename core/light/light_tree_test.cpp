@@ -124,3 +124,44 @@ TEST_CASE("importance: the formula in angles; a cut adds up its nodes") {
     }
     CHECK(compared > 200);
 }
+
+TEST_CASE("signs on a wall: dark behind their planes, none forgotten before them") {
+    // Facing one way, in two rows; the sphere around a group reaches far behind the wall.
+    std::vector<LightBounds> signs(200);
+    for (int i = 0; i < 200; ++i) {
+        const float x = i % 2 ? 0.f : 0.5f;
+        const Vec3f p{x, random_vector(1, i).y * 4, random_vector(1, i).z * 40};
+        signs[i].min = p - Vec3f{0, 0.1f, 0.1f};
+        signs[i].max = p + Vec3f{0, 0.1f, 0.1f};
+        signs[i].axis = {1, 0, 0};
+        signs[i].spread = 0;
+        signs[i].intensity = 1;
+    }
+    const LightTree tree(signs);
+    for (int k = 0; k < 200; ++k) {
+        const Vec3f v = random_vector(4, k);
+        CHECK(tree.importance({-0.01f - std::abs(v.x), v.y * 4, v.z * 40}) == 0);
+        const Vec3f between{0.25f, v.y * 4, v.z * 40};
+        double sum = 0;
+        for (int i = 0; i < 200; ++i) {
+            const float probability = tree.probability(between, i);
+            CHECK((probability > 0) == (i % 2 == 1));
+            sum += probability;
+        }
+        CHECK(sum > 0.9);  // the rest would be wasted on signs that face away
+    }
+}
+
+TEST_CASE("lights that crowd ever closer to a point make no endless tree") {
+    std::vector<LightBounds> lights(3000);
+    float x = 1;
+    for (LightBounds& b : lights) {
+        b.min = b.max = {x, 0, 0};
+        b.intensity = 1;
+        x *= 0.97f;
+    }
+    const LightTree tree(lights);
+    double sum = 0;
+    for (int i = 0; i < 3000; ++i) sum += tree.probability({0, 1, 0}, i);
+    CHECK(sum == doctest::Approx(1).epsilon(1e-3));
+}
