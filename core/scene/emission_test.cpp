@@ -110,6 +110,28 @@ TEST_CASE("textured emission: both ways of looking see the same energy") {
     CHECK(mean == doctest::Approx(expected).epsilon(0.05));
 }
 
+TEST_CASE("a sign in two colours: each half by its own form factor; vertex colours tint nothing") {
+    SceneDescription d = lamp({2, 2, 2});
+    d.textures.push_back({"halves", 2, 1, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 0, 255}});
+    d.textures[0].filter = TextureFilter::nearest;
+    std::get<GltfMaterial>(d.materials[0].kind).emissive_texture.index = 0;
+    const std::array<float, 4> dark{0.1f, 0.2f, 0.3f, 1};
+    d.meshes[0].colors = {dark, dark, dark, dark};
+    // Rectangle a x 1 with a corner above the facet, at distance 1: Howell B-3.
+    auto corner = [](double a) {
+        const double x = std::sqrt(1 + a * a), y = std::sqrt(2.0);
+        return (a / x * std::atan(1 / x) + 1 / y * std::atan(a / y)) / (2 * kPiD);
+    };
+    const double left = 2 * (corner(1.5) - corner(0.5)), right = 2 * 2 * corner(0.5);
+    const Wavelengths wl = test_wavelengths();
+    const double unit = wl.emission({1, 1, 1})[0];
+    const double expected = kPiD / unit * (left * wl.emission({2, 0, 0})[0] +
+                                           right * wl.emission({0, 0, 2})[0]);
+    const Pair e = irradiance(*Scene::build(d), {0.5f, 0, 0}, {0, 1, 0}, 200000);
+    CHECK(e.lights == doctest::Approx(expected).epsilon(0.01));
+    CHECK(e.directions == doctest::Approx(expected).epsilon(0.02));
+}
+
 TEST_CASE("dark triangles of a textured emitter are no lights, dots are never missed") {
     for (int size : {16, 512}) {
         SceneDescription d = lamp({1, 1, 1});
