@@ -116,8 +116,9 @@ def street(lamps: int) -> tuple[dg.Scene, dg.Camera]:
         matrix = place((0, 7, -15), (1, 0, 0), (0, 0, 1), 0.6)
         if lamps > 1:
             side = 1 if i % 2 else -1
-            x_at, y_at, z_at = side * 3.95, rng.uniform(1, 6), rng.uniform(-55, 3)
-            matrix = place((x_at, y_at, z_at), (0, 0, side), (0, 1, 0), 0.3)
+            # No two in one plane: where they overlap both would shine.
+            x_at, y_at, z_at = rng.uniform((3.5, 1, -55), (3.95, 6, 3))
+            matrix = place((side * x_at, y_at, z_at), (0, 0, side), (0, 1, 0), 0.3)
         scene.add_instance(quad, dg.Material(kind), matrix)
     return scene, look((0, 1.7, 4), (0, 2, -10), 35)
 
