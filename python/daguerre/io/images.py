@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
@@ -127,6 +126,8 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
 
 def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], Any, str]:
     """Pixels in their own type, the specification, and the name of the format; straight alpha."""
+    import OpenImageIO as oiio  # 30 MB that a scene without pictures does without
+
     config = oiio.ImageSpec()
     config.attribute("oiio:UnassociatedAlpha", 1)
     source = oiio.ImageInput.open(name, config)
