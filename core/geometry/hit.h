@@ -6,6 +6,12 @@
 
 namespace dg {
 
+/// What a ray's cone covers of a surface, in texture coordinates: the two axes (whole, not
+/// half) of an ellipse. 0: a point.
+struct Footprint {
+    Vec2f across, along;
+};
+
 struct SurfaceHit {
     Vec3f position;  // m
     Vec3f ng;        // unit geometric normal, as the winding gives it (front side)
@@ -15,6 +21,7 @@ struct SurfaceHit {
     Vec3f tangent;
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
+    Footprint footprint[2];         // of either uv set
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA
     Vec3f wo;                       // unit, toward where the ray came from
     float t = 0;                    // m along the ray

@@ -2,6 +2,7 @@
 #pragma once
 #include <limits>
 
+#include "geometry/ray_cone.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -12,6 +13,7 @@ struct Ray {
     float time = 0;   // s; every ray that descends from a camera ray keeps it
     float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
+    RayCone cone = {};  // about the ray; empty: no texture is averaged
 };
 
 }  // namespace dg

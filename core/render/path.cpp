@@ -47,7 +47,10 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
                           const Wavelengths& wl, PathSettings::Strategy strategy) {
     const Material& material = scene.material(hit);
     if (!emits(material)) return 0.f;
-    const Rgb luminance = emitted(material, scene.textures(), hit);
+    SurfaceHit seen = hit;
+    // Where light sampling could have come from, both must find the same light: that of a point.
+    if (!walk.from_delta) seen.footprint[0] = seen.footprint[1] = {};
+    const Rgb luminance = emitted(material, scene.textures(), seen);
     if (max_component(luminance) <= 0) return 0.f;
     const float pdf = walk.from_delta
                           ? 0
@@ -55,6 +58,15 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
                                 hit.instance, hit.primitive, walk.straight + hit.t,
                                 std::abs(dot(hit.ng, hit.wo)), walk.previous);
     return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
+}
+
+/// The cone that leaves a hit. Curvature is asked for only where it matters.
+RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit, const BsdfSample& sample) {
+    if (cone.empty()) return cone;
+    const RayCone here = cone.after(hit.t);
+    if (!sample.specular) return here.scattered(sample.pdf);
+    if (!sample.transmitted) return here.reflected(scene.curvature(hit));
+    return sample.eta == 1 ? here : here.refracted(scene.curvature(hit), sample.eta);
 }
 
 /// The numbers of one vertex.
@@ -221,7 +233,9 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
                     wavelengths.secondary_ended = true;
                     gathered = &light.hero;
                 }
+                const RayCone cone = next_cone(scene, walk.ray.cone, hit, *sample);
                 walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);
+                walk.ray.cone = cone;
                 return true;
             },
             bsdf);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "camera/pixel_cone.h"
 #include "render/dispersion.h"
 
 namespace dg {
@@ -50,7 +51,9 @@ class Renderer {
                      : nullptr),
           end_secondary_(settings.dispersion == Dispersion::end_secondary &&
                          std::holds_alternative<ExactLens>(camera.lens)),
-          density_(settings.filter, film.layout(), uneven(settings.round.count)) {}
+          density_(settings.filter, film.layout(), uneven(settings.round.count)) {
+        if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
+    }
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
         for (int y = y0; y < y1; ++y)
@@ -128,7 +131,8 @@ class Renderer {
     void draw_sample(Workspace& work, std::size_t i, std::size_t passed) const {
         Sample& sample = work.samples[i];
         const CameraRay& camera_ray = work.rays[i];
-        const Ray ray = to_world(camera_, camera_ray.ray);
+        Ray ray = to_world(camera_, camera_ray.ray);
+        ray.cone = cone_.at(work.camera_samples[i].film_mm, camera_ray.ray);
         if (end_secondary_) sample.wavelengths.end_secondary();
         AovSample aov;
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
@@ -179,6 +183,7 @@ class Renderer {
     const ExactLens* exact_;   // the lens whose wavelengths are reprojected, else null
     bool end_secondary_;
     FilmDensity density_;
+    PixelCone cone_;           // none where the scene has no textures
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "math/hash.h"
 #include "scene/emission.h"
+#include "scene/footprint.h"
 #include "scene/validate.h"
 
 namespace dg {
@@ -153,6 +154,8 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     }
     if (raw->instance != RawHit::kSphere) {
         find_surface(ray, *raw, result->surface);
+        if (!ray.cone.empty())
+            set_footprint(records_[raw->instance], ray.cone.after(raw->t).width, result->surface);
         return result;
     }
     SurfaceHit& hit = result->surface;
@@ -163,6 +166,11 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     hit.primitive = raw->primitive;
     result->sphere_light = raw->primitive;
     return result;
+}
+
+float Scene::curvature(const SurfaceHit& hit) const {
+    const float c = mean_curvature(records_[hit.instance], hit.primitive);
+    return hit.front ? c : -c;
 }
 
 std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,

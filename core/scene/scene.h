@@ -65,6 +65,9 @@ class Scene {
     const Material& material(const SurfaceHit& hit) const {
         return description_.materials[records_[hit.instance].material];
     }
+    /// Mean curvature (1/m) of the interpolated normals over the hit's triangle as seen from
+    /// wo: positive where the surface bulges toward it. 0 without vertex normals.
+    float curvature(const SurfaceHit& hit) const;
     const std::vector<Texture>& textures() const { return description_.textures; }
     const LightSet& lights() const { return lights_; }
     /// Light sampling with textured emission resolved (see LightSample::uneven).

@@ -1,0 +1,64 @@
+// footprint.cpp -- a circle across the ray, laid on the surface and taken to uv.
+#include "scene/footprint.h"
+
+namespace dg {
+namespace {
+
+// A cone cannot be longer on the surface than this many times its width.
+constexpr float kSmallestCosine = 1e-3f;
+
+Vec3f world_edge(const InstanceRecord& r, std::uint32_t from, std::uint32_t to) {
+    const Vec3d edge = to_double(r.positions[to]) - to_double(r.positions[from]);
+    return to_float(r.world_from_local.vector(edge));
+}
+
+}  // namespace
+
+// The cone meets the plane in an ellipse: as wide as the cone across the plane of incidence,
+// 1 / cos longer along it. Each axis is resolved into the triangle's edges, whose uv are
+// known. Source: Akenine-Moller et al. 2021, Improved Shader and Texture Level of Detail
+// Using Ray Cones, JCGT 10(1).
+void set_footprint(const InstanceRecord& r, float width, SurfaceHit& hit) {
+    if (!r.uv[0] && !r.uv[1]) return;
+    const auto& t = r.triangles[hit.primitive];
+    const Vec3f e1 = world_edge(r, t[0], t[1]), e2 = world_edge(r, t[0], t[2]);
+    const float area = dot(cross(e1, e2), hit.ng);
+    if (!(std::abs(area) > 0)) return;
+    const float cosine = dot(hit.ng, hit.wo);
+    const Vec3f tilt = hit.wo - hit.ng * cosine;
+    const float sine = length(tilt);
+    const Vec3f forward = sine > 1e-4f ? tilt / sine : Frame::from_normal(hit.ng).x;
+    const Vec3f along = forward * (width / std::max(std::abs(cosine), kSmallestCosine));
+    const Vec3f across = cross(hit.ng, forward) * width;
+    for (int set = 0; set < 2; ++set) {
+        if (!r.uv[set]) continue;
+        const Vec2f d1 = r.uv[set][t[1]] - r.uv[set][t[0]];
+        const Vec2f d2 = r.uv[set][t[2]] - r.uv[set][t[0]];
+        const auto in_uv = [&](Vec3f axis) {
+            const float u = dot(cross(axis, e2), hit.ng), v = dot(cross(e1, axis), hit.ng);
+            return (d1 * u + d2 * v) * (1 / area);
+        };
+        hit.footprint[set] = {in_uv(across), in_uv(along)};
+    }
+}
+
+// On a sphere of radius R the normals at two points differ by their distance / R, along the
+// line between them.
+float mean_curvature(const InstanceRecord& r, std::uint32_t primitive) {
+    if (!r.normals) return 0;
+    const auto& t = r.triangles[primitive];
+    float bend = 0, lengths = 0;
+    for (int i = 0; i < 3; ++i) {
+        const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+        const auto normal = [&](std::uint32_t k) {
+            return to_float(normalize(r.normal_matrix.vector(to_double(r.normals[k]))));
+        };
+        const Vec3f edge = world_edge(r, a, b);
+        bend += dot(normal(b) - normal(a), edge);
+        lengths += length_squared(edge);
+    }
+    const float c = bend / lengths;
+    return std::isfinite(c) ? c : 0;
+}
+
+}  // namespace dg
