@@ -113,6 +113,19 @@ GltfMaterial to_gltf(const nb::dict& d) {
 using Pixels8 = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using PixelsF = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
+MinFilter to_min_filter(const std::string& name) {
+    constexpr auto kNearest = TextureFilter::nearest;
+    constexpr auto kLinear = TextureFilter::linear;
+    using Mip = MinFilter::Mip;
+    return choose<MinFilter>("min_filter", name,
+                             {{"nearest", {kNearest, Mip::none}},
+                              {"linear", {kLinear, Mip::none}},
+                              {"nearest_mipmap_nearest", {kNearest, Mip::nearest}},
+                              {"linear_mipmap_nearest", {kLinear, Mip::nearest}},
+                              {"nearest_mipmap_linear", {kNearest, Mip::linear}},
+                              {"linear_mipmap_linear", {kLinear, Mip::linear}}});
+}
+
 /// Collects the parts; Scene::build checks them.
 struct Builder {
     SceneDescription description;
@@ -136,7 +149,7 @@ struct Builder {
 
     int add_texture(const std::string& name, std::variant<Pixels8, PixelsF> pixels, bool srgb,
                     const std::string& wrap_u, const std::string& wrap_v,
-                    const std::string& filter) {
+                    const std::string& filter, const std::string& min_filter) {
         Texture t;
         t.name = name;
         std::visit(
@@ -156,6 +169,7 @@ struct Builder {
         t.wrap_v = wrap(wrap_v);
         t.filter = choose<TextureFilter>("filter", filter,
                                          {{"linear", TextureFilter::linear}, {"nearest", TextureFilter::nearest}});
+        t.min_filter = to_min_filter(min_filter);
         description.textures.push_back(std::move(t));
         return int(description.textures.size()) - 1;
     }
@@ -211,7 +225,7 @@ void bind_scene(nb::module_& m) {
              "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
              "colors"_a.none())
         .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
-             "wrap_v"_a, "filter"_a)
+             "wrap_v"_a, "filter"_a, "min_filter"_a)
         .def("add_diffuse",
              [](Builder& b, const std::string& name, const Triple& reflectance,
                 const Triple& emission, bool two_sided) {

@@ -6,7 +6,7 @@ namespace dg {
 float coat_factor(const ClearcoatLayer& layer, const Textures& textures,
                   const SurfaceHit& hit) {
     if (!layer.texture.used()) return layer.factor;
-    return layer.factor * clamped(read(layer.texture, textures, hit.uv).r);
+    return layer.factor * clamped(read(layer.texture, textures, hit).r);
 }
 
 Vec3f coat_normal(const ClearcoatLayer& layer, const Textures& textures,
@@ -22,7 +22,7 @@ Coat read_coat(const ClearcoatLayer& layer, const Textures& textures,
                const SurfaceHit& hit) {
     float roughness = layer.roughness;
     if (layer.roughness_texture.used())
-        roughness *= clamped(read(layer.roughness_texture, textures, hit.uv).g);
+        roughness *= clamped(read(layer.roughness_texture, textures, hit).g);
     return {coat_normal(layer, textures, hit), coat_factor(layer, textures, hit),
             roughness * roughness};
 }
@@ -30,13 +30,13 @@ Coat read_coat(const ClearcoatLayer& layer, const Textures& textures,
 Rgb sheen_color(const SheenLayer& layer, const Textures& textures,
                 const SurfaceHit& hit) {
     if (!layer.color_texture.used()) return layer.color;
-    return layer.color * clamped(rgb(read(layer.color_texture, textures, hit.uv)));
+    return layer.color * clamped(rgb(read(layer.color_texture, textures, hit)));
 }
 
 float sheen_roughness(const SheenLayer& layer, const Textures& textures,
                       const SurfaceHit& hit) {
     if (!layer.roughness_texture.used()) return layer.roughness;
-    return layer.roughness * clamped(read(layer.roughness_texture, textures, hit.uv).a);
+    return layer.roughness * clamped(read(layer.roughness_texture, textures, hit).a);
 }
 
 void read_anisotropy(const Anisotropy& a, const Textures& textures, const SurfaceHit& hit,
@@ -44,7 +44,7 @@ void read_anisotropy(const Anisotropy& a, const Textures& textures, const Surfac
     Vec2f direction{1, 0};
     s.anisotropy = a.strength;
     if (a.texture.used()) {
-        const Texture::Texel t = read(a.texture, textures, hit.uv);
+        const Texture::Texel t = read(a.texture, textures, hit);
         s.anisotropy *= clamped(t.b);
         const Vec2f d{2 * t.r - 1, 2 * t.g - 1};
         const float l2 = length_squared(d);
@@ -66,10 +66,10 @@ void read_iridescence(const Iridescence& i, const Textures& textures,
                       GltfSurface& s) {
     s.iridescence = i.factor;
     if (i.texture.used())
-        s.iridescence *= clamped(read(i.texture, textures, hit.uv).r);
+        s.iridescence *= clamped(read(i.texture, textures, hit).r);
     float share = 1;
     if (i.thickness_texture.used())
-        share = clamped(read(i.thickness_texture, textures, hit.uv).g);
+        share = clamped(read(i.thickness_texture, textures, hit).g);
     const float thickness =
         i.thickness_min + share * (i.thickness_max - i.thickness_min);
     s.film = {i.ior, thickness, outside, wavelengths_nm};

@@ -7,7 +7,7 @@ namespace dg {
 
 Vec3f mapped_normal(const TextureSlot& slot, float scale, const Textures& textures,
                     const SurfaceHit& hit) {
-    const Texture::Texel t = read(slot, textures, hit.uv);
+    const Texture::Texel t = read(slot, textures, hit);
     const Vec3f bitangent = cross(hit.ns, hit.tangent) * hit.tangent_sign;
     const Vec3f n = hit.tangent * ((2 * t.r - 1) * scale) +
                     bitangent * ((2 * t.g - 1) * scale) + hit.ns * (2 * t.b - 1);
@@ -42,7 +42,7 @@ namespace {
 Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     Rgb c = m.base_color * Rgb{hit.color[0], hit.color[1], hit.color[2]};
     if (m.base_color_texture.used())
-        c = c * rgb(read(m.base_color_texture, textures, hit.uv));
+        c = c * rgb(read(m.base_color_texture, textures, hit));
     return clamped(c);
 }
 
@@ -51,7 +51,7 @@ void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
     s.metallic = m.metallic;
     s.roughness = m.roughness;
     if (!m.metallic_roughness_texture.used()) return;
-    const Texture::Texel t = read(m.metallic_roughness_texture, textures, hit.uv);
+    const Texture::Texel t = read(m.metallic_roughness_texture, textures, hit);
     s.metallic = clamped({m.metallic * t.b, 0, 0}).x;
     s.roughness = clamped({m.roughness * t.g, 0, 0}).x;
 }
@@ -61,9 +61,9 @@ Rgb read_specular(const GltfMaterial& m, const Textures& textures, const Surface
     s.ior = m.ior;
     s.specular = m.specular;
     if (m.specular_texture.used())
-        s.specular *= clamped({read(m.specular_texture, textures, hit.uv).a, 0, 0}).x;
+        s.specular *= clamped({read(m.specular_texture, textures, hit).a, 0, 0}).x;
     if (!m.specular_color_texture.used()) return m.specular_color;
-    return m.specular_color * rgb(read(m.specular_color_texture, textures, hit.uv));
+    return m.specular_color * rgb(read(m.specular_color_texture, textures, hit));
 }
 
 /// More than 1 is allowed here: KHR_materials_specular clamps F0 later.
@@ -113,7 +113,7 @@ SpecularGlossiness read_specular_glossiness(const GltfMaterial& m,
                                             const SurfaceHit& hit) {
     SpecularGlossiness s{base_color(m, textures, hit), m.specular_color, m.glossiness};
     if (m.specular_glossiness_texture.used()) {
-        const Texture::Texel t = read(m.specular_glossiness_texture, textures, hit.uv);
+        const Texture::Texel t = read(m.specular_glossiness_texture, textures, hit);
         s.f0 = s.f0 * rgb(t);
         s.glossiness = clamped(s.glossiness * t.a);
     }
@@ -144,10 +144,10 @@ DiffuseTransmission read_diffuse_transmission(const GltfMaterial& m,
     DiffuseTransmission d{m.diffuse_transmission, m.diffuse_transmission_color};
     if (m.diffuse_transmission_texture.used())
         d.share *=
-            clamped(read(m.diffuse_transmission_texture, textures, hit.uv).a);
+            clamped(read(m.diffuse_transmission_texture, textures, hit).a);
     if (m.diffuse_transmission_color_texture.used())
         d.color =
-            d.color * rgb(read(m.diffuse_transmission_color_texture, textures, hit.uv));
+            d.color * rgb(read(m.diffuse_transmission_color_texture, textures, hit));
     return {d.share, clamped(d.color)};
 }
 
@@ -161,7 +161,7 @@ GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
     s.transmission = m.transmission;
     if (m.transmission_texture.used())
         s.transmission *=
-            clamped({read(m.transmission_texture, textures, hit.uv).r, 0, 0}).x;
+            clamped({read(m.transmission_texture, textures, hit).r, 0, 0}).x;
     if (m.diffuse_transmission > 0) {
         const auto d = read_diffuse_transmission(m, textures, hit);
         s.diffuse_transmission = d.share;
@@ -233,7 +233,7 @@ Rgb emitted_below_coat(const Material& material, const Textures& textures,
     if (m && m->unlit) return sum + base_color(*m, textures, hit);
     if (!m || !(hit.front || m->double_sided) || m->emissive == Rgb{0, 0, 0}) return sum;
     if (!m->emissive_texture.used()) return sum + m->emissive;
-    return sum + m->emissive * rgb(read(m->emissive_texture, textures, hit.uv));
+    return sum + m->emissive * rgb(read(m->emissive_texture, textures, hit));
 }
 
 }  // namespace
@@ -270,7 +270,11 @@ float opacity(const Material& material, const Textures& textures, const Vec2f uv
     if (!m || m->alpha_mode == GltfMaterial::AlphaMode::opaque) return 1;
     const float alpha = m->base_alpha * vertex_alpha;
     if (!m->base_color_texture.used()) return masked(*m, alpha);
-    return masked(*m, alpha * read(m->base_color_texture, textures, uv).a);
+    // At a point: the mean of what passes or not is the coverage, which a mean that is then
+    // held against the cutoff would lose.
+    const TextureSlot& slot = m->base_color_texture;
+    const Vec2f at = slot.transform(uv[slot.uv_set]);
+    return masked(*m, alpha * textures[slot.index].lookup(at).a);
 }
 
 Clear clearness(const Material& material) {

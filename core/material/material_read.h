@@ -6,9 +6,11 @@ namespace dg {
 
 using Textures = std::vector<Texture>;
 
+/// The mean over what the ray's cone covers.
 inline Texture::Texel read(const TextureSlot& slot, const Textures& textures,
-                           const Vec2f uv[2]) {
-    return textures[slot.index].lookup(slot.transform(uv[slot.uv_set]));
+                           const SurfaceHit& hit) {
+    return textures[slot.index].lookup(slot.transform(hit.uv[slot.uv_set]),
+                                       slot.turned(hit.footprint[slot.uv_set]));
 }
 inline Rgb rgb(const Texture::Texel& t) {
     return {t.r, t.g, t.b};

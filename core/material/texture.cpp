@@ -1,27 +1,13 @@
-// texture.cpp -- lookups: wrapping, bilinear weights, sRGB decoding.
+// texture.cpp -- lookups: level, wrapping, bilinear weights, sRGB decoding.
 #include "material/texture.h"
 
-#include <array>
 #include <cmath>
 
+#include "material/srgb.h"
 #include "math/error.h"
 
 namespace dg {
 namespace {
-
-/// IEC 61966-2-1 for the 256 codes, and the linear codes beside it.
-struct Decode {
-    std::array<float, 256> srgb, linear;
-    Decode() {
-        for (int i = 0; i < 256; ++i) {
-            const double v = i / 255.0;
-            srgb[i] = static_cast<float>(
-                v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-            linear[i] = static_cast<float>(v);
-        }
-    }
-};
-const Decode kDecode;
 
 /// One axis: two neighbours and the weight of the second.
 struct Tap {
@@ -64,6 +50,9 @@ Tap tap(float coordinate, int size, Wrap wrap, TextureFilter filter) {
             t};
 }
 
+// How much longer than wide a footprint may be: docs/textures.md.
+constexpr float kAnisotropy = 4;
+
 using Lanes = float __attribute__((vector_size(16)));  // r, g, b, a
 
 float value(float v, const float*) {
@@ -99,32 +88,94 @@ Texture::Texel interpolate(const T* pixels, int width, Tap u, Tap v,
     return {t[0], t[1], t[2], t[3]};
 }
 
+/// One level of a texture.
 template <typename T>
-Texture::Texel interpolate(const Texture& texture, const SharedArray<T>& pixels,
-                           Vec2f uv) {
-    if (pixels.empty()) return {1, 1, 1, 1};
-    const Tap u = tap(uv.x, texture.width, texture.wrap_u, texture.filter);
-    const Tap v = tap(uv.y, texture.height, texture.wrap_v, texture.filter);
+struct Level {
+    const T* pixels;
+    int width, height;
+};
+
+template <typename T>
+Texture::Texel interpolate(const Texture& texture, Level<T> l, Vec2f uv,
+                           TextureFilter filter) {
+    const Tap u = tap(uv.x, l.width, texture.wrap_u, filter);
+    const Tap v = tap(uv.y, l.height, texture.wrap_v, filter);
     const float* colour = texture.srgb ? kDecode.srgb.data() : kDecode.linear.data();
-    const T* p = pixels.data();
     switch (texture.channels) {
         case 1:
-            return interpolate<1>(p, texture.width, u, v, colour);
+            return interpolate<1>(l.pixels, l.width, u, v, colour);
         case 2:
-            return interpolate<2>(p, texture.width, u, v, colour);
+            return interpolate<2>(l.pixels, l.width, u, v, colour);
         case 3:
-            return interpolate<3>(p, texture.width, u, v, colour);
+            return interpolate<3>(l.pixels, l.width, u, v, colour);
         default:
-            return interpolate<4>(p, texture.width, u, v, colour);
+            return interpolate<4>(l.pixels, l.width, u, v, colour);
     }
+}
+
+template <typename T>
+Level<T> full(const Texture& t, const SharedArray<T>& pixels) {
+    return {pixels.data(), t.width, t.height};
+}
+
+/// Level 0 is the texture itself.
+template <typename T>
+Level<T> choose(const Texture& t, const SharedArray<T>& pixels, int i) {
+    if (i == 0) return full(t, pixels);
+    const Pyramid::Level& level = t.pyramid->levels[i - 1];
+    const auto& values = *std::get_if<std::vector<T>>(&t.pyramid->values);
+    return {values.data() + level.offset, level.width, level.height};
+}
+
+Texture::Texel mix(const Texture::Texel& a, const Texture::Texel& b, float t) {
+    return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t,
+            a.a + (b.a - a.a) * t};
+}
+
+template <typename T>
+Texture::Texel minified(const Texture& t, const SharedArray<T>& pixels, Vec2f uv, float level) {
+    const TextureFilter filter = t.min_filter.within;
+    const int top = t.pyramid ? static_cast<int>(t.pyramid->levels.size()) : 0;
+    const float l = std::min(level, float(top));
+    if (t.min_filter.between != MinFilter::Mip::linear)
+        return interpolate(t, choose(t, pixels, static_cast<int>(l + 0.5f)), uv, filter);
+    const int low = static_cast<int>(l);
+    const Texture::Texel sharp = interpolate(t, choose(t, pixels, low), uv, filter);
+    if (low == top) return sharp;
+    return mix(sharp, interpolate(t, choose(t, pixels, low + 1), uv, filter), l - float(low));
+}
+
+template <typename F>
+Texture::Texel read(const Texture& t, F f) {
+    const auto guarded = [&](const auto& pixels) {
+        return pixels.empty() ? Texture::Texel{1, 1, 1, 1} : f(pixels);
+    };
+    if (const auto* bytes = std::get_if<SharedArray<std::uint8_t>>(&t.pixels))
+        return guarded(*bytes);
+    return guarded(*std::get_if<SharedArray<float>>(&t.pixels));
 }
 
 }  // namespace
 
 Texture::Texel Texture::lookup(Vec2f uv) const {
-    if (const auto* bytes = std::get_if<SharedArray<std::uint8_t>>(&pixels))
-        return interpolate(*this, *bytes, uv);
-    return interpolate(*this, *std::get_if<SharedArray<float>>(&pixels), uv);
+    return read(*this, [&](const auto& p) { return interpolate(*this, full(*this, p), uv, filter); });
+}
+
+Texture::Texel Texture::lookup(Vec2f uv, const Footprint& footprint) const {
+    const float l = level(footprint);
+    if (!(l > 0)) return lookup(uv);  // NaN too
+    return read(*this, [&](const auto& p) { return minified(*this, p, uv, l); });
+}
+
+// The shorter axis decides, so that nothing is blurred along it; but a footprint longer than
+// kAnisotropy times its width is widened, as the samples of a pixel could not fill it.
+float Texture::level(const Footprint& f) const {
+    const auto squared = [&](Vec2f axis) {
+        return length_squared(Vec2f{axis.x * float(width), axis.y * float(height)});
+    };
+    const float a = squared(f.across), b = squared(f.along);
+    const float w2 = std::max(std::min(a, b), std::max(a, b) / (kAnisotropy * kAnisotropy));
+    return w2 > 1 ? 0.5f * std::log2(w2) : 0;
 }
 
 void Texture::validate() const {

@@ -4,6 +4,8 @@
 #include <string>
 #include <variant>
 
+#include "geometry/hit.h"
+#include "material/mipmap.h"
 #include "math/shared_array.h"
 #include "math/vec.h"
 
@@ -11,6 +13,13 @@ namespace dg {
 
 enum class Wrap { repeat, mirror, clamp };
 enum class TextureFilter { linear, nearest };
+
+/// Where a texel is smaller than the footprint (the minFilter of glTF): how one level of the
+/// pyramid is read, and which levels are.
+struct MinFilter {
+    TextureFilter within = TextureFilter::linear;
+    enum class Mip { none, nearest, linear } between = Mip::linear;
+};
 
 /// 8-bit (srgb or linear) or float pixels; row 0 is the top row, as in glTF: uv (0,0) is
 /// its left corner.
@@ -20,13 +29,19 @@ struct Texture {
     std::variant<SharedArray<std::uint8_t>, SharedArray<float>> pixels;
     bool srgb = false;  // decode the first three channels on lookup (8-bit only)
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    TextureFilter filter = TextureFilter::linear;
+    TextureFilter filter = TextureFilter::linear;  // of magnified texels
+    MinFilter min_filter = {};
+    std::shared_ptr<const Pyramid> pyramid = {};  // null: every footprint reads full resolution
 
     struct Texel {
         float r, g, b, a;
     };  // missing channels: grey r=g=b for 1 and 2, a = 1
     /// Any uv, also NaN or infinite (those read as 0). An empty texture is white.
     Texel lookup(Vec2f uv) const;
+    /// The mean over a footprint, by level of the pyramid.
+    Texel lookup(Vec2f uv, const Footprint& footprint) const;
+    /// log2 of the texels that the footprint is wide; 0 or less: magnified.
+    float level(const Footprint& footprint) const;
 
     /// Throws Error if the pixels are not width x height x channels, or not finite.
     void validate() const;
@@ -39,8 +54,10 @@ struct TextureSlot {
     // uv' = (m[0] u + m[1] v + m[2], m[3] u + m[4] v + m[5])
     float m[6] = {1, 0, 0, 0, 1, 0};
     bool used() const { return index >= 0; }
-    Vec2f transform(Vec2f uv) const {
-        return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+    Vec2f transform(Vec2f uv) const { return turned(uv) + Vec2f{m[2], m[5]}; }
+    Footprint turned(const Footprint& f) const { return {turned(f.across), turned(f.along)}; }
+    Vec2f turned(Vec2f d) const {
+        return {m[0] * d.x + m[1] * d.y, m[3] * d.x + m[4] * d.y};
     }
 };
 

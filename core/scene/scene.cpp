@@ -7,6 +7,7 @@
 #include "math/hash.h"
 #include "scene/emission.h"
 #include "scene/footprint.h"
+#include "scene/pyramids.h"
 #include "scene/validate.h"
 
 namespace dg {
@@ -49,6 +50,7 @@ Scene::~Scene() = default;
 
 std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     validate(description);
+    build_pyramids(description.textures, description.materials);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
     scene->build_intersector();
     scene->build_records();

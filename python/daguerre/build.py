@@ -39,7 +39,8 @@ def build(scene: Scene) -> _core.Scene:
 def _add_all(builder: _core.SceneBuilder, scene: Scene) -> None:
     for texture in scene.textures:
         pixels = frozen(texture.pixels)
-        builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, texture.filter)
+        filters = (texture.filter, texture.min_filter)
+        builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, *filters)
     for mesh in scene.meshes:
         optional = (mesh.normals, mesh.uv, mesh.uv1, mesh.tangents, mesh.colors)
         builder.add_mesh(

@@ -39,13 +39,18 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Texture:
-    """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels."""
+    """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels.
+
+    ``filter`` is for magnified texels ("linear" or "nearest"), ``min_filter`` for minified ones,
+    with the names of glTF: "linear_mipmap_linear", ..., or "linear" and "nearest" for no mip-maps.
+    """
 
     pixels: NDArray[np.uint8] | NDArray[np.float32]
     srgb: bool = False
     wrap: tuple[str, str] = ("repeat", "repeat")
     filter: str = "linear"
     name: str = ""
+    min_filter: str = "linear_mipmap_linear"
 
 
 @dataclass(frozen=True)
@@ -103,6 +108,7 @@ class Scene:
         srgb: bool = False,
         wrap: tuple[str, str] = ("repeat", "repeat"),
         filter: str = "linear",
+        min_filter: str = "linear_mipmap_linear",
         name: str = "",
     ) -> int:
         """Adds an image (H, W) or (H, W, 1..4), uint8 or float; returns its index."""
@@ -114,7 +120,7 @@ class Scene:
                 f"texture {name!r}: pixels: wanted shape (H, W, 1..4), got {array.shape}"
             )
         array = frozen(array, np.uint8 if array.dtype == np.uint8 else np.float32)
-        self.textures.append(Texture(array, srgb, wrap, filter, name))
+        self.textures.append(Texture(array, srgb, wrap, filter, name, min_filter))
         return len(self.textures) - 1
 
     def add_material(self, material: Material | Kind | None = None, **fields: Any) -> int:

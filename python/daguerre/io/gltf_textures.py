@@ -31,9 +31,23 @@ _WRAP = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _MAG = {9728: "nearest", 9729: "linear"}
 #: Extensions that name another image of a texture; the first that can be decoded is taken.
 _COMPRESSED = ("KHR_texture_basisu", "EXT_texture_webp")
-_MIN = (9728, 9729, 9984, 9985, 9986, 9987)
+_MIN = {
+    9728: "nearest",
+    9729: "linear",
+    9984: "nearest_mipmap_nearest",
+    9985: "linear_mipmap_nearest",
+    9986: "nearest_mipmap_linear",
+    9987: "linear_mipmap_linear",
+}
 #: All images of a file together, decoded; a few kB of JSON could ask for any number of them.
 _MAX_TOTAL_BYTES = 8 << 30
+
+
+@dataclass(frozen=True)
+class _Sampler:
+    wrap: tuple[str, str] = ("repeat", "repeat")
+    filter: str = "linear"
+    min_filter: str = "linear_mipmap_linear"
 
 
 @dataclass(frozen=True)
@@ -42,8 +56,7 @@ class _Plan:
 
     image: int
     srgb: bool
-    wrap: tuple[str, str]
-    filter: str
+    sampler: _Sampler
 
 
 class Textures:
@@ -77,10 +90,9 @@ class Textures:
         texture = self._textures[info.need("index").index(len(self._textures), "textures")]
         source = self._image_of(texture)
         sampler = texture.get("sampler")
-        wrap, filter_name = ("repeat", "repeat"), "linear"
+        seen_through = _Sampler()
         if sampler is not None:
-            chosen = sampler.index(len(self._samplers), "samplers")
-            wrap, filter_name = self._samplers[chosen]
+            seen_through = self._samplers[sampler.index(len(self._samplers), "samplers")]
         if source is None:
             self._notes.add("a texture without an image that is understood is left out")
             return None
@@ -89,7 +101,7 @@ class Textures:
         if uv_set > 1:
             self._notes.add("a texture that asks for texture coordinates beyond set 1 is left out")
             return None
-        plan = _Plan(self._same[image], srgb, wrap, filter_name)
+        plan = _Plan(self._same[image], srgb, seen_through)
         return TextureSlot(self._plans.setdefault(plan, len(self._plans)), uv_set, transform)
 
     def _image_of(self, texture: Item) -> Item | None:
@@ -133,8 +145,9 @@ class Textures:
             scene.add_texture(
                 given_up(pixels),
                 srgb=srgb,
-                wrap=plan.wrap,
-                filter=plan.filter,
+                wrap=plan.sampler.wrap,
+                filter=plan.sampler.filter,
+                min_filter=plan.sampler.min_filter,
                 name=self._name(plan.image),
             )
 
@@ -177,15 +190,17 @@ class Textures:
         return f"{item.file}: {item.path}" + (f" ({clean(name)[:60]!r})" if name else "")
 
 
-def _sampler(item: Item) -> tuple[tuple[str, str], str]:
+def _sampler(item: Item) -> _Sampler:
     wraps = []
     for key in ("wrapS", "wrapT"):
         member = item.get(key)
         wraps.append("repeat" if member is None else _WRAP[member.choice(_WRAP)])
     magnify, minify = item.get("magFilter"), item.get("minFilter")
-    if minify is not None:
-        minify.choice(_MIN)
-    return (wraps[0], wraps[1]), "linear" if magnify is None else _MAG[magnify.choice(_MAG)]
+    return _Sampler(
+        (wraps[0], wraps[1]),
+        "linear" if magnify is None else _MAG[magnify.choice(_MAG)],
+        "linear_mipmap_linear" if minify is None else _MIN[minify.choice(_MIN)],
+    )
 
 
 def _coordinates(info: Item) -> tuple[int, tuple[float, float, float, float, float, float]]:
