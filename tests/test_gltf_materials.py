@@ -301,3 +301,21 @@ def test_missing_texture_coordinates_are_told(tmp_path):
 def test_unused_broken_image_does_not_stop_the_scene(tmp_path):
     b = with_material({}, b"not an image")
     assert read(b, tmp_path).textures == []
+
+
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [
+        (None, "linear_mipmap_linear"),
+        (9728, "nearest"),
+        (9729, "linear"),
+        (9984, "nearest_mipmap_nearest"),
+        (9985, "linear_mipmap_nearest"),
+        (9986, "nearest_mipmap_linear"),
+        (9987, "linear_mipmap_linear"),
+    ],
+)
+def test_min_filters(tmp_path, code, name):
+    b = with_material({"normalTexture": {"index": 0}}, png(RED))
+    b.json["textures"][0]["sampler"] = b.add("samplers", {} if code is None else {"minFilter": code})
+    assert read(b, tmp_path).textures[0].min_filter == name

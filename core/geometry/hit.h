@@ -22,6 +22,7 @@ struct SurfaceHit {
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
     Footprint footprint[2];         // of either uv set
+    float slope_variance = 0;       // of a normal map under the footprint; shade() sets it
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA
     Vec3f wo;                       // unit, toward where the ray came from
     float t = 0;                    // m along the ray

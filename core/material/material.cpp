@@ -39,6 +39,20 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
 
 namespace {
 
+// 8-bit normals are this far from unit length already (twice over, pyramids round again).
+constexpr float kNormalRounding = 0.01f;
+
+/// Variance of the slopes, per axis, under the footprint: the more the normals differ the
+/// shorter is their mean. Source: Toksvig 2005, Mipmapping Normal Maps, Journal of Graphics
+/// Tools.
+float slope_variance(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
+    const TextureSlot& slot = m.normal_texture;
+    if (!(textures[slot.index].level(slot.turned(hit.footprint[slot.uv_set])) > 0)) return 0;
+    const Texture::Texel t = read(slot, textures, hit);
+    const float l = std::max(length(Vec3f{2 * t.r - 1, 2 * t.g - 1, 2 * t.b - 1}), 0.1f);
+    return std::max(0.f, (1 - l) / l - kNormalRounding) * m.normal_scale * m.normal_scale;
+}
+
 Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     Rgb c = m.base_color * Rgb{hit.color[0], hit.color[1], hit.color[2]};
     if (m.base_color_texture.used())
@@ -46,14 +60,22 @@ Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit
     return clamped(c);
 }
 
+/// Bumps too small to be seen act as roughness: a Gaussian of slopes of variance v has
+/// alpha^2 = 2 v (Beckmann), and variances add.
+float roughened(float roughness, float slope_variance) {
+    if (slope_variance == 0) return roughness;
+    const float alpha = roughness * roughness;
+    return std::sqrt(std::min(1.f, std::sqrt(alpha * alpha + 2 * slope_variance)));
+}
+
 void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
                              const SurfaceHit& hit, GltfSurface& s) {
     s.metallic = m.metallic;
-    s.roughness = m.roughness;
+    s.roughness = roughened(m.roughness, hit.slope_variance);
     if (!m.metallic_roughness_texture.used()) return;
     const Texture::Texel t = read(m.metallic_roughness_texture, textures, hit);
     s.metallic = clamped({m.metallic * t.b, 0, 0}).x;
-    s.roughness = clamped({m.roughness * t.g, 0, 0}).x;
+    s.roughness = roughened(clamped({m.roughness * t.g, 0, 0}).x, hit.slope_variance);
 }
 
 Rgb read_specular(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,
@@ -181,8 +203,10 @@ Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit
     if (m.unlit) return DiffuseBsdf{hit.ns, hit.ng, 0.f};
     Coat coat;
     if (m.clearcoat.used()) coat = read_coat(m.clearcoat, textures, hit);
-    if (m.normal_texture.used())
+    if (m.normal_texture.used()) {
+        hit.slope_variance = slope_variance(m, textures, hit);
         hit.ns = mapped_normal(m.normal_texture, m.normal_scale, textures, hit);
+    }
     hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
     GltfSurface s = gltf_surface(m, textures, hit, wavelengths);
     if (m.anisotropy.used()) read_anisotropy(m.anisotropy, textures, hit, s);

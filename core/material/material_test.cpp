@@ -241,6 +241,25 @@ TEST_CASE("normal map: tangent frame, scale, handedness") {
     CHECK(length(h.ns - h.ng) < 1e-6f);
 }
 
+TEST_CASE("bumps under the footprint become roughness, and do not shorten the normal") {
+    // Slopes of 0.6 to either side: their mean is 0.8 long.
+    std::vector<Texture> textures{pair({204, 128, 230}, {51, 128, 230})};
+    textures[0].pyramid = build_pyramid(textures[0], false);
+    GltfMaterial m;
+    m.roughness = 0.5f;
+    m.normal_texture = slot(0);
+    SurfaceHit near = hit_from({0, 0, 1});
+    CHECK(shaded(m, textures, near).alpha == doctest::Approx(0.25));
+    SurfaceHit far = hit_from({0, 0, 1});
+    far.footprint[0] = {{9, 0}, {0, 9}};
+    const GltfBsdf b = shaded(m, textures, far);
+    const double variance = 0.2 / 0.8 - 0.01;
+    CHECK(b.alpha == doctest::Approx(std::sqrt(0.0625 + 2 * variance)).epsilon(0.02));
+    CHECK(length(b.ns - Vec3f{0, 0, 1}) < 0.01f);
+    m.normal_scale = 0;
+    CHECK(shaded(m, textures, far).alpha == doctest::Approx(0.25));
+}
+
 TEST_CASE("no normal turns a surface black: wo and its mirror image stay above") {
     check::Random random{5};
     const Wavelengths w = wavelengths();

@@ -135,7 +135,8 @@ Texture::Texel mix(const Texture::Texel& a, const Texture::Texel& b, float t) {
 template <typename T>
 Texture::Texel minified(const Texture& t, const SharedArray<T>& pixels, Vec2f uv, float level) {
     const TextureFilter filter = t.min_filter.within;
-    const int top = t.pyramid ? static_cast<int>(t.pyramid->levels.size()) : 0;
+    const bool levels = t.pyramid && t.min_filter.between != MinFilter::Mip::none;
+    const int top = levels ? static_cast<int>(t.pyramid->levels.size()) : 0;
     const float l = std::min(level, float(top));
     if (t.min_filter.between != MinFilter::Mip::linear)
         return interpolate(t, choose(t, pixels, static_cast<int>(l + 0.5f)), uv, filter);
