@@ -317,5 +317,7 @@ def test_unused_broken_image_does_not_stop_the_scene(tmp_path):
 )
 def test_min_filters(tmp_path, code, name):
     b = with_material({"normalTexture": {"index": 0}}, png(RED))
-    b.json["textures"][0]["sampler"] = b.add("samplers", {} if code is None else {"minFilter": code})
+    b.json["textures"][0]["sampler"] = b.add(
+        "samplers", {} if code is None else {"minFilter": code}
+    )
     assert read(b, tmp_path).textures[0].min_filter == name
