@@ -8,7 +8,7 @@ namespace dg {
 
 /// What a ray's cone covers of a surface, in texture coordinates: the two axes (whole, not
 /// half) of an ellipse. 0: a point.
-struct Footprint {
+struct UvFootprint {
     Vec2f across, along;
 };
 
@@ -21,7 +21,7 @@ struct SurfaceHit {
     Vec3f tangent;
     float tangent_sign = 1;  // bitangent = tangent_sign * cross(ns, tangent)
     Vec2f uv[2];
-    Footprint footprint[2];         // of either uv set
+    UvFootprint footprint[2];         // of either uv set
     float slope_variance = 0;       // of a normal map under the footprint; shade() sets it
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA
     Vec3f wo;                       // unit, toward where the ray came from

@@ -25,7 +25,7 @@ Texture image(int width, int height, int channels, std::vector<T> values, bool s
 }
 
 /// As wide as `texels` of the texture, both ways.
-Footprint wide(const Texture& t, float texels) {
+UvFootprint wide(const Texture& t, float texels) {
     return {{texels / float(t.width), 0}, {0, texels / float(t.height)}};
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("the six filters of glTF for minified texels") {
 
 TEST_CASE("wraps hold at every level") {
     Texture t = image(4, 1, 1, std::vector<float>{0, 0, 8, 8});  // level 1: 0 8
-    const Footprint two = wide(t, 2);
+    const UvFootprint two = wide(t, 2);
     CHECK(t.lookup({0, 0}, two).r == doctest::Approx(4));
     t.wrap_u = Wrap::clamp;
     CHECK(t.lookup({0, 0}, two).r == 0);

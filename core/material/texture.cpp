@@ -162,7 +162,7 @@ Texture::Texel Texture::lookup(Vec2f uv) const {
     return read(*this, [&](const auto& p) { return interpolate(*this, full(*this, p), uv, filter); });
 }
 
-Texture::Texel Texture::lookup(Vec2f uv, const Footprint& footprint) const {
+Texture::Texel Texture::lookup(Vec2f uv, const UvFootprint& footprint) const {
     const float l = level(footprint);
     if (!(l > 0)) return lookup(uv);  // NaN too
     return read(*this, [&](const auto& p) { return minified(*this, p, uv, l); });
@@ -170,7 +170,7 @@ Texture::Texel Texture::lookup(Vec2f uv, const Footprint& footprint) const {
 
 // The shorter axis decides, so that nothing is blurred along it; but a footprint longer than
 // kAnisotropy times its width is widened, as the samples of a pixel could not fill it.
-float Texture::level(const Footprint& f) const {
+float Texture::level(const UvFootprint& f) const {
     const auto squared = [&](Vec2f axis) {
         return length_squared(Vec2f{axis.x * float(width), axis.y * float(height)});
     };

@@ -39,9 +39,9 @@ struct Texture {
     /// Any uv, also NaN or infinite (those read as 0). An empty texture is white.
     Texel lookup(Vec2f uv) const;
     /// The mean over a footprint, by level of the pyramid.
-    Texel lookup(Vec2f uv, const Footprint& footprint) const;
+    Texel lookup(Vec2f uv, const UvFootprint& footprint) const;
     /// log2 of the texels that the footprint is wide; 0 or less: magnified.
-    float level(const Footprint& footprint) const;
+    float level(const UvFootprint& footprint) const;
 
     /// Throws Error if the pixels are not width x height x channels, or not finite.
     void validate() const;
@@ -55,7 +55,7 @@ struct TextureSlot {
     float m[6] = {1, 0, 0, 0, 1, 0};
     bool used() const { return index >= 0; }
     Vec2f transform(Vec2f uv) const { return turned(uv) + Vec2f{m[2], m[5]}; }
-    Footprint turned(const Footprint& f) const { return {turned(f.across), turned(f.along)}; }
+    UvFootprint turned(const UvFootprint& f) const { return {turned(f.across), turned(f.along)}; }
     Vec2f turned(Vec2f d) const {
         return {m[0] * d.x + m[1] * d.y, m[3] * d.x + m[4] * d.y};
     }

@@ -30,7 +30,7 @@ TEST_CASE("the footprint on a plane: the cone's width across, 1 / cos of it alon
     const auto hit = scene->intersect(ray);
     REQUIRE(hit);
     const float width = 0.01f + 0.002f * 5;
-    const Footprint f = hit->surface.footprint[0];
+    const UvFootprint f = hit->surface.footprint[0];
     CHECK(length(f.across) == doctest::Approx(width / 2));
     CHECK(std::abs(f.across.x) < 1e-6f);
     CHECK(length(f.along) == doctest::Approx(width / 0.8 / 6));
