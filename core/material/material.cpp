@@ -150,7 +150,7 @@ GltfSurface specular_glossiness(const GltfMaterial& m, const Textures& textures,
     const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);
     return {.base = wavelengths.reflectance(s.diffuse),
             .metallic = 0,
-            .roughness = 1 - s.glossiness,
+            .roughness = roughened(1 - s.glossiness, hit.slope_variance),
             .ior = 0,
             .specular_color = wavelengths.reflectance(s.f0),
             .interior = {}};
