@@ -51,7 +51,7 @@ float PixelCone::angle(Vec2f film_mm) const {
     return angles_[i] + (angles_[i + 1] - angles_[i]) * (x - float(i));
 }
 
-RayCone PixelCone::at(Vec2f film_mm, const Ray& ray) const {
+RayCone PixelCone::cone(Vec2f film_mm, const Ray& ray) const {
     const float spread = kConeShare * angle(film_mm);
     // Rays of an exact lens start on its front, some way before the pupil.
     const float from_pupil = ray.direction.z < 0 ? ray.origin.z / ray.direction.z : 0.f;

@@ -19,9 +19,13 @@ class PixelCone {
     /// Angle (rad) that a pixel covers there: geometric mean of its width and height.
     float angle(Vec2f film_mm) const;
     /// The cone of a ray (camera frame) of that film point, kConeShare of a pixel wide.
-    RayCone at(Vec2f film_mm, const Ray& ray) const;
+    RayCone at(Vec2f film_mm, const Ray& ray) const {
+        return steps_per_mm_ > 0 ? cone(film_mm, ray) : RayCone{};
+    }
 
   private:
+    RayCone cone(Vec2f film_mm, const Ray& ray) const;
+
     static constexpr int kSteps = 32;
     float steps_per_mm_ = 0;
     std::array<float, kSteps + 1> angles_{};  // by distance from the axis
