@@ -12,8 +12,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-FLOAT, U16, U32 = 5126, 5123, 5125
+I8, U8, I16, U16, U32, FLOAT = 5120, 5121, 5122, 5123, 5125, 5126
+DTYPES = {I8: "i1", U8: "u1", I16: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
+FORMATS = (
+    (b"\x89PNG", "image/png", None),
+    (b"\xff\xd8", "image/jpeg", None),
+    (b"RIFF", "image/webp", "EXT_texture_webp"),
+    (b"\xabKTX 20", "image/ktx2", "KHR_texture_basisu"),
+)
 
 
 @dataclass
@@ -27,6 +34,22 @@ class Shape:
     tangents: NDArray[np.float32] | None = None  # (N, 4), glTF's convention
 
 
+@dataclass
+class Track:
+    """An animated value: glTF's target, key times in s, and one row of numbers per key."""
+
+    target: dict[str, Any]
+    times: ArrayLike
+    keys: ArrayLike
+    interpolation: str = "LINEAR"
+
+    @classmethod
+    def to(cls, pointer: str, times: ArrayLike, keys: ArrayLike, kind: str = "LINEAR") -> Track:
+        """A track to any value of the file, by its JSON pointer."""
+        extensions = {"KHR_animation_pointer": {"pointer": pointer}}
+        return cls({"path": "pointer", "extensions": extensions}, times, keys, kind)
+
+
 class Glb:
     """Collects a scene and writes it. Every add_* returns the index that others refer to."""
 
@@ -34,23 +57,26 @@ class Glb:
         self.json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
         self.binary = bytearray()
         self.roots: list[int] = []
+        self.fallbacks: list[dict[str, Any]] = []  # buffers without bytes
 
-    def _add(self, key: str, item: dict[str, Any]) -> int:
+    def add(self, key: str, item: dict[str, Any]) -> int:
+        """Adds to one of the lists of the file."""
         items = self.json.setdefault(key, [])
         items.append(item)
         return len(items) - 1
 
-    def _view(self, data: bytes, **extra: Any) -> int:
+    def add_view(self, data: bytes, **extra: Any) -> int:
+        """Adds bytes as a bufferView."""
         self.binary += b"\0" * (-len(self.binary) % 4)
         view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data), **extra}
         self.binary += data
-        return self._add("bufferViews", view)
+        return self.add("bufferViews", view)
 
-    def _accessor(self, array: ArrayLike, kind: str, component: int, **view: Any) -> int:
-        dtype = {FLOAT: "<f4", U16: "<u2", U32: "<u4"}[component]
-        data = np.ascontiguousarray(array, dtype=dtype)
+    def add_accessor(self, array: ArrayLike, kind: str, component: int, **view: Any) -> int:
+        """Adds an array, one row per element; `view` goes to its bufferView."""
+        data = np.ascontiguousarray(array, dtype=DTYPES[component])
         item = {
-            "bufferView": self._view(data.tobytes(), **view),
+            "bufferView": self.add_view(data.tobytes(), **view),
             "componentType": component,
             "count": len(data),
             "type": kind,
@@ -58,49 +84,69 @@ class Glb:
         if kind == "VEC3" or "target" not in view:  # positions and key times need bounds
             flat = data.reshape(len(data), -1)
             item |= {"min": flat.min(0).tolist(), "max": flat.max(0).tolist()}
-        return self._add("accessors", item)
+        return self.add("accessors", item)
 
-    def use(self, *extensions: str) -> None:
-        """Names glTF extensions that the file uses (none is required to read it)."""
-        used = set(self.json.get("extensionsUsed", [])) | set(extensions)
-        self.json["extensionsUsed"] = sorted(used)
+    def use(self, *extensions: str, required: bool = False) -> None:
+        """Names glTF extensions that the file uses, or cannot be read without."""
+        for key in ("extensionsUsed", "extensionsRequired")[: 1 + required]:
+            named = sorted({*self.json.get(key, []), *extensions})
+            if named:
+                self.json[key] = named
 
     def add_picture(self, name: str, data: bytes) -> dict[str, int]:
-        """Embeds PNG or JPEG bytes; returns a texture reference for a material."""
-        mime = "image/png" if data.startswith(b"\x89PNG") else "image/jpeg"
+        """Embeds PNG, JPEG, WebP or KTX2 bytes; returns a texture reference for a material."""
+        mime, extension = next(form for magic, *form in FORMATS if data.startswith(magic))
         if "samplers" not in self.json:  # linear with mipmaps, repeat
-            self._add("samplers", {"magFilter": 9729, "minFilter": 9987})
-        image = {"bufferView": self._view(data), "mimeType": mime, "name": name}
-        source = self._add("images", image)
-        return {"index": self._add("textures", {"source": source, "sampler": 0})}
+            self.add("samplers", {"magFilter": 9729, "minFilter": 9987})
+        image = {"bufferView": self.add_view(data), "mimeType": mime, "name": name}
+        source = self.add("images", image)
+        texture: dict[str, Any] = {"source": source}
+        if extension:
+            self.use(extension, required=True)
+            texture = {"extensions": {extension: texture}}
+        return {"index": self.add("textures", {**texture, "sampler": 0})}
 
     def add_material(self, name: str, **properties: Any) -> int:
         """Adds a material in glTF's own terms; extensions are noted as used."""
         self.use(*properties.get("extensions", {}))
-        return self._add("materials", {"name": name, **properties})
+        return self.add("materials", {"name": name, **properties})
 
-    def add_mesh(self, name: str, shape: Shape, material: int) -> int:
-        """Adds a mesh of one primitive."""
+    def add_mesh(
+        self,
+        name: str,
+        shape: Shape,
+        material: int,
+        more: dict[str, int] | None = None,
+        **primitive: Any,
+    ) -> int:
+        """Adds a mesh of one primitive, with `more` attributes by their accessors."""
         attributes = {
-            "POSITION": self._accessor(shape.positions, "VEC3", FLOAT, target=ARRAY_BUFFER),
-            "NORMAL": self._accessor(shape.normals, "VEC3", FLOAT, target=ARRAY_BUFFER),
-            "TEXCOORD_0": self._accessor(shape.uv, "VEC2", FLOAT, target=ARRAY_BUFFER),
+            "POSITION": self.add_accessor(shape.positions, "VEC3", FLOAT, target=ARRAY_BUFFER),
+            "NORMAL": self.add_accessor(shape.normals, "VEC3", FLOAT, target=ARRAY_BUFFER),
+            "TEXCOORD_0": self.add_accessor(shape.uv, "VEC2", FLOAT, target=ARRAY_BUFFER),
         }
         if shape.tangents is not None:
-            tangents = self._accessor(shape.tangents, "VEC4", FLOAT, target=ARRAY_BUFFER)
+            tangents = self.add_accessor(shape.tangents, "VEC4", FLOAT, target=ARRAY_BUFFER)
             attributes["TANGENT"] = tangents
         component = U16 if len(shape.positions) < 65535 else U32
         flat = shape.indices.reshape(-1)
-        indices = self._accessor(flat, "SCALAR", component, target=ELEMENT_ARRAY_BUFFER)
-        primitive = {"attributes": attributes, "indices": indices, "material": material}
-        return self._add("meshes", {"name": name, "primitives": [primitive]})
+        indices = self.add_accessor(flat, "SCALAR", component, target=ELEMENT_ARRAY_BUFFER)
+        attributes |= more or {}
+        return self.add_primitive(
+            name, attributes=attributes, indices=indices, material=material, **primitive
+        )
+
+    def add_primitive(self, name: str, **primitive: Any) -> int:
+        """Adds a mesh of one primitive in glTF's own terms; extensions are noted as used."""
+        self.use(*primitive.get("extensions", {}))
+        return self.add("meshes", {"name": name, "primitives": [primitive]})
 
     def add_node(self, name: str, parent: int | None = None, **properties: Any) -> int:
         """Adds a node below `parent`, or at the root: translation, rotation (xyzw), scale, mesh."""
         for key in ("translation", "rotation", "scale"):
             if key in properties:
                 properties[key] = [float(x) for x in properties[key]]
-        node = self._add("nodes", {"name": name, **properties})
+        node = self.add("nodes", {"name": name, **properties})
         if parent is None:
             self.roots.append(node)
         else:
@@ -123,32 +169,45 @@ class Glb:
             "perspective": {"aspectRatio": 1.5, "yfov": yfov, "znear": 0.01},
             "extensions": {"EXT_camera_physical": physical},
         }
-        return self._add("cameras", camera)
+        return self.add("cameras", camera)
 
     def add_turns(self, name: str, turns: dict[int, int], duration_s: float) -> None:
         """Animates nodes: each makes a whole number of turns about its y axis, evenly."""
-        samplers: list[dict[str, Any]] = []
-        channels: list[dict[str, Any]] = []
+        tracks = []
         for node, count in turns.items():
             angles = np.linspace(0, 2 * math.pi * count, 3 * abs(count) + 1)  # 120 deg per key
             times = np.linspace(0, duration_s, len(angles))
             zero = np.zeros_like(angles)
             keys = np.stack([zero, np.sin(angles / 2), zero, np.cos(angles / 2)], 1)
-            sampler = {
-                "input": self._accessor(times, "SCALAR", FLOAT),
-                "output": self._accessor(keys, "VEC4", FLOAT),
-                "interpolation": "LINEAR",
-            }
             target = {"node": node, "path": "rotation"}
-            channels.append({"sampler": len(samplers), "target": target})
+            tracks.append(Track(target, times, keys))
+        self.add_animation(name, tracks)
+
+    def add_animation(self, name: str, tracks: list[Track]) -> None:
+        """Animates what each track names; all play at once."""
+        samplers: list[dict[str, Any]] = []
+        channels: list[dict[str, Any]] = []
+        for track in tracks:
+            keys = np.asarray(track.keys, np.float32)
+            if track.target["path"] == "weights" or keys.ndim == 1:
+                keys, kind = keys.reshape(-1), "SCALAR"
+            else:
+                kind = f"VEC{keys.shape[1]}"
+            sampler = {
+                "input": self.add_accessor(track.times, "SCALAR", FLOAT),
+                "output": self.add_accessor(keys, kind, FLOAT),
+                "interpolation": track.interpolation,
+            }
+            self.use(*track.target.get("extensions", {}))
+            channels.append({"sampler": len(samplers), "target": track.target})
             samplers.append(sampler)
-        self._add("animations", {"name": name, "samplers": samplers, "channels": channels})
+        self.add("animations", {"name": name, "samplers": samplers, "channels": channels})
 
     def write(self, path: Path) -> None:
         """Writes the .glb: a header, the JSON chunk, the binary chunk (glTF 2.0, section 4.4)."""
         self.json |= {"scene": 0, "scenes": [{"nodes": self.roots}]}
         self.binary += b"\0" * (-len(self.binary) % 4)
-        self.json["buffers"] = [{"byteLength": len(self.binary)}]
+        self.json["buffers"] = [{"byteLength": len(self.binary)}, *self.fallbacks]
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self.binary)

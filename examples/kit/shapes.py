@@ -198,3 +198,65 @@ def disc(radius: float, sides: int = 10) -> Shape:
     p = radius * np.stack([np.cos(a), np.sin(a), 0 * a], 1)
     fan = [(0, k, k + 1) for k in range(1, sides - 1)]
     return _shape(p, np.tile((0, 0, 1), (sides, 1)), p[:, :2] / (2 * radius) + 0.5, fan)
+
+
+def square(width: float, height: float, uv: Sequence[float] = (0, 0, 1, 1)) -> Shape:
+    """A rectangle in the xy plane about the origin that faces +z; uv runs from its upper left."""
+    x, y = width / 2, height / 2
+    p = [(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)]
+    u0, v0, u1, v1 = uv
+    corners = [(u0, v1), (u1, v1), (u1, v0), (u0, v0)]
+    return _shape(p, np.tile((0, 0, 1), (4, 1)), corners, [(0, 1, 2), (0, 2, 3)])
+
+
+def surface(points: ArrayLike, tiles: Sequence[float] = (1, 1)) -> Shape:
+    """A curved sheet through a grid of points (R, C, 3), seen from where columns x rows points.
+
+    uv: u along the columns, v along the rows, each from 0 to `tiles`. Rows or columns that end
+    where they began are smooth across that seam.
+    """
+    p = np.asarray(points, float)
+    slopes = []
+    for axis in (0, 1):
+        d = np.gradient(p, axis=axis)
+        ends = np.moveaxis(d, axis, 0)
+        first, last = np.moveaxis(p, axis, 0)[[0, -1]]
+        if np.allclose(first, last):
+            ends[0] = ends[-1] = ends[0] + ends[-1]
+        slopes.append(d)
+    n = np.cross(slopes[1], slopes[0])
+    n /= np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-20)
+    rows, columns = p.shape[:2]
+    v, u = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
+    uv = np.stack([u * tiles[0], v * tiles[1]], -1)
+    return _without_slivers(_shape(p, n, uv, _grid_indices(rows, columns)))
+
+
+def turned(shape: Shape, rotation: ArrayLike) -> Shape:
+    """The same shape turned by a rotation matrix (3, 3)."""
+    r = np.asarray(rotation, np.float32).T
+    return Shape(shape.positions @ r, shape.normals @ r, shape.uv, shape.indices)
+
+
+def swept(path: ArrayLike, radii: ArrayLike, sides: int = 24, closed: bool = False) -> Shape:
+    """A tube along points (N, 3) with a radius at each, and uv: u around, v along.
+
+    Its frame is carried from point to point without twist; a closed one spreads the rest.
+    """
+    p, r = np.asarray(path, float), np.asarray(radii, float)
+    t = np.gradient(p, axis=0)
+    if closed:  # the last point is the first again
+        t[0] = t[-1] = p[1] - p[-2]
+    t /= np.linalg.norm(t, axis=1, keepdims=True)
+    a = np.empty_like(p)
+    helper = (1.0, 0, 0) if abs(t[0, 1]) > 0.9 else (0, 1.0, 0)
+    a[0] = np.cross(helper, t[0])
+    for k in range(len(p)):
+        a[k] = a[max(k - 1, 0)] if k else a[0]
+        a[k] -= t[k] * (a[k] @ t[k])
+        a[k] /= np.linalg.norm(a[k])
+    b = np.cross(t, a)
+    rest = math.atan2(a[-1] @ b[0], a[-1] @ a[0]) if closed else 0.0
+    turn = np.linspace(0, 2 * math.pi, sides + 1) - rest * np.linspace(0, 1, len(p))[:, None]
+    ring = a[:, None] * np.cos(turn)[..., None] + b[:, None] * np.sin(turn)[..., None]
+    return surface(p[:, None] + r[:, None, None] * ring)

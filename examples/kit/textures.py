@@ -39,13 +39,23 @@ def png(picture: Picture) -> bytes:
 
 def jpeg(picture: Picture, quality: int = 90) -> bytes:
     """JPEG bytes of an 8-bit RGB picture."""
+    return _encoded(picture, "jpg", f"jpeg:{quality}")
+
+
+def webp(picture: Picture, quality: int = 90) -> bytes:
+    """WebP bytes of an 8-bit RGB or RGBA picture."""
+    return _encoded(picture, "webp", f"webp:{quality}")
+
+
+def _encoded(picture: Picture, suffix: str, compression: str) -> bytes:
     pixels = (np.clip(picture, 0, 1) * 255 + 0.5).astype(np.uint8)
     buffer = oiio.ImageBuf(np.ascontiguousarray(pixels))
-    buffer.specmod().attribute("Compression", f"jpeg:{quality}")
+    buffer.specmod().attribute("Compression", compression)
+    buffer.specmod().attribute("oiio:UnassociatedAlpha", 1)
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "picture.jpg"
+        file = Path(folder) / f"picture.{suffix}"
         if not buffer.write(str(file)):
-            raise OSError(f"cannot write a JPEG: {buffer.geterror()}")
+            raise OSError(f"cannot write {suffix}: {buffer.geterror()}")
         return file.read_bytes()
 
 

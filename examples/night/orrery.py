@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from kit import shapes, textures
-from night.stage import Stage, turn_y
+from kit.pose import turn_y
+from night.stage import Stage
 
 
 def add_orrery(stage: Stage) -> dict[int, int]:

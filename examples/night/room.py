@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from kit import shapes, textures
-from night.stage import COOL, PALETTE, WARM, Stage, look, turn_y
+from kit.pose import look, turn_y
+from night.stage import COOL, PALETTE, WARM, Stage
 
 
 def add_table(stage: Stage) -> None:

@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from kit import shapes, textures
 from kit.glb import Glb, Shape
+from kit.pose import Point
 
-Point = Sequence[float]
 WARM, CANDLE, COOL = (1.0, 0.60, 0.26), (1.0, 0.55, 0.18), (0.55, 0.75, 1.0)
 PALETTE = [WARM, (1.0, 0.78, 0.50), (1.0, 0.40, 0.14), COOL, (1.0, 0.20, 0.16), (0.30, 0.90, 0.75)]
-
-
-def turn_y(degrees: float) -> list[float]:
-    """Quaternion (x, y, z, w) of a turn about the vertical."""
-    half = math.radians(degrees) / 2
-    return [0, math.sin(half), 0, math.cos(half)]
-
-
-def look(eye: Point, target: Point) -> list[float]:
-    """Quaternion of a node at `eye` whose -z axis points at `target`, upright."""
-    back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
-    right = np.cross((0, 1, 0), back)
-    right /= np.linalg.norm(right)
-    up = np.cross(back, right)
-    w = math.sqrt(max(0.0, 1 + right[0] + up[1] + back[2])) / 2
-    q = [up[2] - back[1], back[0] - right[2], right[1] - up[0]]
-    return [float(x) / (4 * w) for x in q] + [w]
 
 
 class Stage:
