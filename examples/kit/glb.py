@@ -188,14 +188,15 @@ class Glb:
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []
         for track in tracks:
-            keys = np.asarray(track.keys, np.float32)
+            keys = np.asarray(track.keys)
+            component = U8 if keys.dtype == bool else FLOAT
             if track.target["path"] == "weights" or keys.ndim == 1:
                 keys, kind = keys.reshape(-1), "SCALAR"
             else:
                 kind = f"VEC{keys.shape[1]}"
             sampler = {
                 "input": self.add_accessor(track.times, "SCALAR", FLOAT),
-                "output": self.add_accessor(keys, kind, FLOAT),
+                "output": self.add_accessor(keys, kind, component),
                 "interpolation": track.interpolation,
             }
             self.use(*track.target.get("extensions", {}))

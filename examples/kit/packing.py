@@ -50,8 +50,8 @@ def add_draco(glb: Glb, name: str, shape: Shape, material: int) -> int:
     stream = draco.encode(
         shape.positions,
         shape.indices,
-        normals=shape.normals,
-        tex_coord=shape.uv,
+        normals=shape.normals.astype(float),
+        tex_coord=shape.uv.astype(float),
         tex_coord_quantization_bits=12,
         **bits,
     )

@@ -37,6 +37,11 @@ def moved(shape: Shape, offset: Sequence[float]) -> Shape:
     return Shape(p, shape.normals, shape.uv, shape.indices)
 
 
+def standing(shape: Shape) -> Shape:
+    """The same shape with its lowest point at y = 0."""
+    return moved(shape, (0, -float(shape.positions[:, 1].min()), 0))
+
+
 def _grid_indices(rows: int, columns: int) -> NDArray[np.uint32]:
     r, c = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
     a = (r * columns + c).reshape(-1)
@@ -225,7 +230,10 @@ def surface(points: ArrayLike, tiles: Sequence[float] = (1, 1)) -> Shape:
             ends[0] = ends[-1] = ends[0] + ends[-1]
         slopes.append(d)
     n = np.cross(slopes[1], slopes[0])
-    n /= np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-20)
+    length = np.linalg.norm(n, axis=-1, keepdims=True)
+    n /= np.maximum(length, 1e-20)
+    for end, beside in ((0, 1), (-1, -2)):  # a row that has shrunk to a point
+        n[end] = np.where(length[end] < 1e-12, n[beside], n[end])
     rows, columns = p.shape[:2]
     v, u = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
     uv = np.stack([u * tiles[0], v * tiles[1]], -1)
@@ -260,3 +268,12 @@ def swept(path: ArrayLike, radii: ArrayLike, sides: int = 24, closed: bool = Fal
     turn = np.linspace(0, 2 * math.pi, sides + 1) - rest * np.linspace(0, 1, len(p))[:, None]
     ring = a[:, None] * np.cos(turn)[..., None] + b[:, None] * np.sin(turn)[..., None]
     return surface(p[:, None] + r[:, None, None] * ring)
+
+
+def faceted(shape: Shape) -> Shape:
+    """The same triangles, each flat: what is cut rather than turned."""
+    p = shape.positions[shape.indices]
+    n = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    corners = np.arange(3 * len(p)).reshape(-1, 3)
+    return _shape(p, np.repeat(n, 3, axis=0), shape.uv[shape.indices], corners)

@@ -1,0 +1,1 @@
+"""Six small scenes that together use every glTF extension that Daguerre reads."""
