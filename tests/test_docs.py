@@ -59,6 +59,16 @@ def test_lens_in_the_format_page_is_a_lens(tmp_path):
     assert order.efl == pytest.approx(data["nominal"]["efl_mm"], rel=2e-3)
 
 
+def test_gltf_page_names_every_extension_that_is_read():
+    from daguerre.io.gltf_extensions import KNOWN
+
+    text = (DOCS / "gltf.md").read_text()
+    read = text.split("## Extensions that are read")[1].split("## ")[0]
+    cells = [row.split("|")[1] for row in read.splitlines() if row.startswith("|")]
+    named = {name for cell in cells for name in re.findall(r"`(\w+)`", cell)}
+    assert named == KNOWN
+
+
 def test_links_between_pages_lead_somewhere():
     pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS.glob("**/*.md")]
     for page in pages:

@@ -111,3 +111,16 @@ def test_the_shelf_has_its_variants(folder: Path) -> None:
     ]
     assert vases[0][0] > vases[0][2]
     assert vases[1][0] < vases[1][2]
+
+
+def test_mosaics_have_a_stone_for_every_block(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "examples"))
+    from extensions import plants
+
+    scene = dg.load(folder / "garden.glb")
+    pixels = next(t.pixels for t in scene.textures if t.name == "mosaic3")
+    wanted = np.rint(np.clip(plants.stones(3), 0, 1) * 255)
+    for corner in (0, 3):
+        np.testing.assert_allclose(pixels[corner::4, corner::4, :3], wanted, atol=1)

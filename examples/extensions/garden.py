@@ -39,15 +39,15 @@ def make() -> Glb:
 
 def _sky_and_sun(studio: Studio) -> None:
     height = np.linspace(0, 1, 64)[:, None] ** 0.4 * np.ones((1, 8))
-    glow = textures.ramp(height, [(0.98, 0.78, 0.55), (0.8, 0.8, 0.82), (0.5, 0.66, 0.9)])
+    glow = textures.ramp(height, [(0.98, 0.8, 0.6), (0.6, 0.7, 0.84), (0.4, 0.58, 0.88)])
     picture = studio.glb.add_picture("sky", textures.png(glow))
     sky = studio.shining("sky", (1, 1, 1), 0.8, emissiveTexture=picture)
     angle = np.linspace(math.pi / 2, 0, 9)  # downward, so that it faces inward
     dome = shapes.lathe(np.stack([np.cos(angle).clip(0), np.sin(angle)], 1), 24, 180)
     studio.put("sky", dome, sky, scale=(12, 12, 12))
-    # A disc inside of the dome, 2.6 degrees wide; 9 lux where nothing is in its way.
+    # A disc inside of the dome, 2.6 degrees wide; 7 lux where nothing is in its way.
     at, radius = np.multiply(SUN_FROM, 11 / np.linalg.norm(SUN_FROM)), 0.25
-    glare = studio.shining("sun", (1, 0.8, 0.55), 9 * 11**2 / (math.pi * radius**2))
+    glare = studio.shining("sun", (1, 0.8, 0.55), 7 * 11**2 / (math.pi * radius**2))
     turn = look((0, 0, 0), at.tolist())
     studio.put("sun", shapes.disc(radius, 16), glare, at.tolist(), rotation=turn)
 

@@ -44,7 +44,7 @@ def make() -> Glb:
         glb.add_node("mesh", top, mesh=mesh, **unpacked)
     studio.softbox((-1.5, 2.0, 1.3), (0, 0.6, 0), (1.1, 1.1), 11, (1, 0.96, 0.9))
     studio.softbox((1.9, 1.2, 0.4), (0, 0.6, 0), (0.5, 1.4), 8, (0.84, 0.92, 1))
-    studio.camera((0.0, 0.85, 2.5), (0, 0.6, 0), 58, 5.6, (0, 0.6, 0.1))
+    studio.camera((0.0, 0.85, 2.7), (0, 0.6, 0), 58, 5.6, (0, 0.6, 0.1))
     return glb
 
 

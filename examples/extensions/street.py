@@ -97,9 +97,9 @@ def _signs(studio: Studio) -> None:
     for word, color, at, height, upright in [
         ("HOTEL", RED, (-2.2, 2.75, -2.6), 0.5, True),
         ("CAFE", AMBER, (1.95, 2.35, -0.2), 0.42, False),
-        ("LENS", TEAL, (2.1, 4.1, -4.5), 0.42, True),
-        ("KINO", WARM, (-1.95, 2.6, -6.5), 0.55, False),
-        ("F/2", BLUE, (1.95, 2.9, -10), 0.6, False),
+        ("LENS", TEAL, (2.1, 4.45, -4.5), 0.4, True),
+        ("KINO", WARM, (-1.95, 2.25, -6.5), 0.55, False),
+        ("F/2", BLUE, (1.45, 2.5, -10), 0.6, False),
         ("BAR", PINK, (-2.0, 4.6, -10.5), 0.6, True),
     ]:
         lamps = written(word, upright)
