@@ -100,12 +100,43 @@ PICTURES = [
     ),
 ]
 
+EXTENSIONS = "out/extensions"
+SMALL = "--res 600x400 --spp 48 --denoise"
+PICTURES += [
+    Picture(
+        "octopus",
+        "Skins, morph targets and colours 2.6 s into their round, through the double Gauss.",
+        f"{EXTENSIONS}/octopus.glb",
+        f"{GAUSS} --time 2.6 {SMALL}",
+    ),
+    Picture(
+        "garden",
+        "Thousands of instances: grass, poppies and a hedge whose leaves let the low sun through.",
+        f"{EXTENSIONS}/garden.glb",
+        SMALL,
+    ),
+    Picture(
+        "street",
+        "Signs and neon tubes of thousands of emissive triangles, through a wide angle at f/2.",
+        f"{EXTENSIONS}/street.glb",
+        f"--lens wide-angle-35mm-f2 {SMALL}",
+    ),
+    Picture(
+        "glass",
+        "Cut stones and a prism that disperse, coloured glass, a lantern of paper around a bulb.",
+        f"{EXTENSIONS}/glass.glb",
+        SMALL,
+    ),
+]
+
 CREDITS = """
-The night table is made by [examples/night_table.py](../../examples/night_table.py). The chess set
-is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
+The night table is made by [examples/night_table.py](../../examples/night_table.py), what lies in
+`out/extensions` by [examples/extensions.py](../../examples/extensions.py). The chess set is "Open
+Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
 The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
 holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
-`--denoise` needs the extra of that name: `pip install ".[denoise]"`.
+`--denoise` needs the extra of that name: `pip install ".[denoise]"`; the garden's mosaics need
+`".[compression]"`.
 """
 
 
@@ -150,6 +181,7 @@ def main() -> None:
     given = parser.parse_args()
     if not given.page:
         subprocess.run([sys.executable, "examples/night_table.py", NIGHT], check=True, cwd=ROOT)
+        subprocess.run([sys.executable, "examples/extensions.py"], check=True, cwd=ROOT)
         for picture in PICTURES:
             wanted = not given.only or picture.name in given.only
             if wanted and (given.data or not picture.needs_data):
