@@ -1,7 +1,7 @@
 """The dof-field scene through Daguerre and, where installed, its peers, in one run.
 
-    python bench/peers.py --json [--mode thin] [--spp 64] [--noise 0.1] [--only daguerre]
-                          [--scene-dir DIR] [--blender-python PYTHON]
+    python bench/peers.py --json [--mode thin] [--w 640] [--h 360] [--spp 64] [--noise 0.1]
+                          [--only daguerre] [--scene-dir DIR] [--blender-python PYTHON]
 
 Two seeds give the error without a reference:
 relMSE = mean((A - B)^2 / 2 / (((A + B) / 2)^2 + 0.01)).
@@ -67,8 +67,9 @@ def measure(
     with tempfile.TemporaryDirectory() as folder:
         for seed in (1, 2):
             out = str(Path(folder) / f"{name}{seed}")
-            arguments = ["--mode", options.mode, "--spp", str(options.spp), "--seed", str(seed)]
-            arguments += ["--threads", str(options.threads), "--out", out]
+            arguments = ["--mode", options.mode, "--seed", str(seed), "--out", out]
+            for option in ("w", "h", "spp", "threads"):
+                arguments += [f"--{option}", str(getattr(options, option))]
             results.append(run([*command, *arguments], environment, folder))
             pictures.append(np.load(out + ".npy").astype(np.float64))
     cpu = float(np.mean([r["cpu_s"] for r in results]))
@@ -116,6 +117,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--json", action="store_true", help="accepted for symmetry; always JSON")
     parser.add_argument("--mode", choices=("pinhole", "thin"), default="thin")
+    parser.add_argument("--w", type=int, default=640, help="px")
+    parser.add_argument("--h", type=int, default=360, help="px")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--noise", type=float, help="adaptive sampling too, to this error")
@@ -129,6 +132,7 @@ def main() -> None:
     out: dict[str, Any] = {
         "benchmark": "dof-field",
         "mode": options.mode,
+        "resolution": [options.w, options.h],
         "spp": options.spp,
         "threads": options.threads,
         "machine": f"{platform.machine()}, {os.cpu_count()} cores",
