@@ -7,6 +7,7 @@
 #include "bind/arrays.h"
 #include "film/film.h"
 #include "film/filter.h"
+#include "film/neighbours.h"
 #include "spectrum/wavelengths.h"
 
 namespace nb = nanobind;
@@ -38,6 +39,14 @@ std::vector<float> mean_rgb(const dg::Film& film) {
     return values;
 }
 
+using Plane = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+auto next_colour(const Plane& plane, int reach) {
+    return dg::bind::to_numpy(
+        dg::mean_of_next_colour({plane.data(), plane.size()}, int(plane.shape(1)), reach),
+        {plane.shape(0), plane.shape(1)});
+}
+
 using Words = nb::ndarray<const std::uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using WordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<3>>;
 
@@ -65,6 +74,8 @@ void bind_film(nb::module_& m) {
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
         .def("mean_rgb", [](const Film& f) { return triples(f, mean_rgb(f)); })
         .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
+        .def("relative_variance",
+             [](const Film& f, float dark) { return plane(f, f.relative_variance(dark)); }, "dark"_a)
         .def("sample_counts", [](const Film& f) { return plane(f, f.sample_counts()); })
         .def("aov", [](const Film& f, const std::string& name) { return plane(f, f.aov(name)); })
         .def("object_ids", [](const Film& f) { return plane(f, f.object_ids()); })
@@ -80,4 +91,6 @@ void bind_film(nb::module_& m) {
         .def("set_state", [](Film& f, const std::string& part, const Words& words) {
             f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
         });
+    m.def("mean_of_next_colour", &next_colour, "plane"_a, "reach"_a,
+          "For each pixel the mean of those near it that have the next of three colours.");
 }

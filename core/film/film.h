@@ -68,6 +68,9 @@ class Film {
     /// Variance of the mean of linear Rec.709 R, G, B (see film_read.cpp); 0 for less
     /// than two samples.
     std::vector<float> variance_rgb() const;
+    /// Relative variance of one sample, at least of two, as far as the n drawn tell: n times the variance
+    /// of the mean over (mean^2 + dark), the mean of R, G and B.
+    std::vector<float> relative_variance(float dark) const;
     std::vector<std::uint32_t> sample_counts() const;
     /// Mean over the samples that brought one, 0 where none did. Names: aov_names(); else
     /// Error.
@@ -110,6 +113,11 @@ class Film {
     /// Index of a full-frame pixel, or -1 outside the region.
     std::int64_t find(int x, int y) const;
     void add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// Sums of linear Rec.709 R, G, B, and the variances of their means.
+    struct Estimate {
+        double sum[3], variance[3];
+    };
+    Estimate estimate(const Pixel& pixel) const;
     static void mark_bad(Pixel& pixel, std::uint32_t sample);
     const std::vector<AovPixel>& require_aovs() const;
 

@@ -23,20 +23,40 @@ std::vector<float> Film::mean_xyz() const {
     return mean;
 }
 
+Film::Estimate Film::estimate(const Pixel& p) const {
+    const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()};
+    const double n = p.count;
+    Estimate e;
+    for (int k = 0; k < 3; ++k) {
+        e.sum[k] = dot(to_double(rgb_from_xyz_[k]), xyz);
+        const double scatter = p.rgb_squares[k].value() - e.sum[k] * e.sum[k] / n;
+        e.variance[k] = n < 2 ? 0 : std::max(0.0, scatter / (n * (n - 1)));
+    }
+    return e;
+}
+
 std::vector<float> Film::variance_rgb() const {
     std::vector<float> variance;
     variance.reserve(3 * pixels_.size());
     for (const Pixel& p : pixels_) {
-        const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()};
-        const double n = p.count;
-        for (int k = 0; k < 3; ++k) {
-            const double sum = dot(to_double(rgb_from_xyz_[k]), xyz);
-            const double scatter = p.rgb_squares[k].value() - sum * sum / n;
-            variance.push_back(n < 2 ? 0.f
-                                     : float(std::max(0.0, scatter / (n * (n - 1)))));
-        }
+        const Estimate e = estimate(p);
+        for (double v : e.variance) variance.push_back(float(v));
     }
     return variance;
+}
+
+std::vector<float> Film::relative_variance(float dark) const {
+    std::vector<float> relative;
+    relative.reserve(pixels_.size());
+    for (const Pixel& p : pixels_) {
+        const Estimate e = estimate(p);
+        const double n = std::max(1u, p.count);
+        double sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum += e.variance[k] / (e.sum[k] * e.sum[k] / (n * n) + dark);
+        relative.push_back(float(sum * n / 3));
+    }
+    return relative;
 }
 
 std::vector<std::uint32_t> Film::sample_counts() const {

@@ -267,3 +267,23 @@ TEST_CASE("films of different layout do not merge") {
     CHECK_THROWS_AS(Film(FilmLayout{0, 5, 0, 0, false}), Error);
     CHECK_THROWS_AS(Film(FilmLayout{100000, 100000, 0, 0, false}), Error);
 }
+
+TEST_CASE("the relative variance of one sample, from the variance of the mean") {
+    Film film({2, 1, 0, 0, false});
+    const float dark = 0.01f;
+    const int n = 50;
+    for (int i = 0; i < n; ++i) {
+        const float y = float(hash_uniform(8, i));
+        film.add(0, 0, i, {y, y, y});
+        film.count(0, 0);
+    }
+    film.count(1, 0);   // one sample tells nothing
+    const auto relative = film.relative_variance(dark);
+    const auto mean = film.mean_xyz(), variance = film.variance_rgb();
+    const Rgb rgb = rgb_from_xyz({mean[0], mean[1], mean[2]});
+    double expected = 0;
+    for (int k = 0; k < 3; ++k) expected += variance[k] * n / (rgb[k] * rgb[k] + dark) / 3;
+    CHECK(expected > 0.1);
+    CHECK(relative[0] == doctest::Approx(expected).epsilon(1e-5));
+    CHECK(relative[1] == 0);
+}

@@ -29,7 +29,7 @@ class FixedSum {
     void add(const FixedSum& other) { bits_ += other.bits_; }
 
     /// Nearest double.
-    double value() const { return std::ldexp(double(bits_), -kFractionBits); }
+    double value() const { return double(bits_) * (1.0 / double(1ull << kFractionBits)); }
     friend bool operator==(const FixedSum& a, const FixedSum& b) = default;
 
   private:

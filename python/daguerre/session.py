@@ -205,10 +205,9 @@ class Session:
         """Samples drawn of each pixel, shape (H, W)."""
         return np.asarray(self._whole_film().sample_counts())
 
-    def estimate(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Mean R, G, B and the variance of that mean, shape (H, W, 3) each."""
-        film = self._whole_film()
-        return film.mean_rgb(), film.variance_rgb()
+    def relative_variance(self, dark: float) -> NDArray[np.float32]:
+        """Variance of one sample of each pixel over (its mean^2 + dark), shape (H, W)."""
+        return np.asarray(self._whole_film().relative_variance(dark))
 
     def state(self) -> dict[str, NDArray[np.uint32]]:
         """The film's exact sums as 32-bit words, (H, W, words) of the crop, by part.
