@@ -44,7 +44,8 @@ void read_anisotropy(const Anisotropy& a, const Textures& textures, const Surfac
     Vec2f direction{1, 0};
     s.anisotropy = a.strength;
     if (a.texture.used()) {
-        const Texture::Texel t = read(a.texture, textures, hit);
+        const Texture::Texel t = s.transmission > 0 ? read_point(a.texture, textures, hit)
+                                                    : read(a.texture, textures, hit);
         s.anisotropy *= clamped(t.b);
         const Vec2f d{2 * t.r - 1, 2 * t.g - 1};
         const float l2 = length_squared(d);

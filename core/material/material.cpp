@@ -68,14 +68,21 @@ float roughened(float roughness, float slope_variance) {
     return std::sqrt(std::min(1.f, std::sqrt(alpha * alpha + 2 * slope_variance)));
 }
 
+/// Windows stay smooth: bumps turn no light that goes straight on through a sheet.
 void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
                              const SurfaceHit& hit, GltfSurface& s) {
+    const bool clear = m.transmission > 0;
     s.metallic = m.metallic;
-    s.roughness = roughened(m.roughness, hit.slope_variance);
-    if (!m.metallic_roughness_texture.used()) return;
-    const Texture::Texel t = read(m.metallic_roughness_texture, textures, hit);
-    s.metallic = clamped({m.metallic * t.b, 0, 0}).x;
-    s.roughness = roughened(clamped({m.roughness * t.g, 0, 0}).x, hit.slope_variance);
+    s.roughness = m.roughness;
+    if (m.metallic_roughness_texture.used()) {
+        const Texture::Texel t =
+            clear ? read_point(m.metallic_roughness_texture, textures, hit)
+                  : read(m.metallic_roughness_texture, textures, hit);
+        s.metallic = clamped(m.metallic * t.b);
+        s.roughness = clamped(m.roughness * t.g);
+    }
+    if (clear && s.roughness * s.roughness < kSmoothAlpha) return;
+    s.roughness = roughened(s.roughness, hit.slope_variance);
 }
 
 Rgb read_specular(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,

@@ -12,6 +12,13 @@ inline Texture::Texel read(const TextureSlot& slot, const Textures& textures,
     return textures[slot.index].lookup(slot.transform(hit.uv[slot.uv_set]),
                                        slot.turned(hit.footprint[slot.uv_set]));
 }
+/// At the point itself. So is read what decides whether glass is clear there: shadow rays
+/// have no cone, and a path must not scatter at glass that they went straight through, or
+/// the light behind it counts twice.
+inline Texture::Texel read_point(const TextureSlot& slot, const Textures& textures,
+                                 const SurfaceHit& hit) {
+    return textures[slot.index].lookup(slot.transform(hit.uv[slot.uv_set]));
+}
 inline Rgb rgb(const Texture::Texel& t) {
     return {t.r, t.g, t.b};
 }

@@ -260,6 +260,30 @@ TEST_CASE("bumps under the footprint become roughness, and do not shorten the no
     CHECK(shaded(m, textures, far).alpha == doctest::Approx(0.25));
 }
 
+TEST_CASE("glass is as clear to paths, which have a footprint, as to shadow rays") {
+    std::vector<Texture> textures{pair({204, 128, 230}, {51, 128, 230}),
+                                  pair({0, 0, 0}, {0, 255, 0}),
+                                  pair({255, 128, 0}, {255, 128, 255})};
+    for (Texture& t : textures) t.pyramid = build_pyramid(t, false);
+    GltfMaterial bumps, frost, brushed;
+    bumps.normal_texture = slot(0);
+    frost.metallic_roughness_texture = slot(1);
+    bumps.roughness = brushed.roughness = 0;
+    brushed.anisotropy.strength = 1;
+    brushed.anisotropy.texture = slot(2);
+    for (GltfMaterial m : {bumps, frost, brushed}) {
+        m.metallic = 0;
+        m.transmission = 1;
+        for (const float u : {0.25f, 0.75f}) {
+            SurfaceHit shadow = hit_from({0, 0, 1});
+            shadow.uv[0].x = u;
+            SurfaceHit path = shadow;
+            path.footprint[0] = {{9, 0}, {0, 9}};
+            CHECK(shaded(m, textures, path).smooth == shaded(m, textures, shadow).smooth);
+        }
+    }
+}
+
 TEST_CASE("no normal turns a surface black: wo and its mirror image stay above") {
     check::Random random{5};
     const Wavelengths w = wavelengths();
