@@ -29,8 +29,8 @@ def make() -> Glb:
     _stones(studio)
     _vessels(studio)
     _lantern(studio)
-    studio.softbox((-1.1, 1.3, 0.6), (0, 0, 0), (1.3, 1.1), 5, (1, 0.96, 0.9))
-    studio.softbox((1.2, 0.7, -0.1), (0, 0.1, 0), (0.5, 1.0), 5, (0.85, 0.93, 1))
+    studio.softbox((-1.1, 1.3, 0.6), (0, 0, 0), (1.3, 1.1), 8, (1, 0.96, 0.9))
+    studio.softbox((1.2, 0.7, -0.1), (0, 0.1, 0), (0.5, 1.0), 8, (0.85, 0.93, 1))
     studio.camera((0.06, 0.3, 1.15), (0.02, 0.105, 0), 50, 8, (0, 0.1, 0.06))
     return studio.glb
 
@@ -70,8 +70,8 @@ def _stones(studio: Studio) -> None:
     ruby = clear(studio, "ruby", 1.77, color=(0.75, 0.04, 0.08), distance=0.03, dispersion=0.3)
     flint = clear(studio, "flint", 1.72, dispersion=1.2)
     for name, stone, at, size, turn in [
-        ("diamond", diamond, (-0.045, 0, 0.2), 0.13, 12),
-        ("ruby", ruby, (0.1, 0, 0.26), 0.1, 40),
+        ("diamond", diamond, (-0.04, 0, 0.3), 0.13, 12),
+        ("ruby", ruby, (0.12, 0, 0.24), 0.1, 40),
     ]:
         cut = shapes.faceted(shapes.lathe(size * np.array(BRILLIANT), 12, 180))
         tilt = math.radians(-38)  # it lies on its girdle and its tip
@@ -92,7 +92,7 @@ def _vessels(studio: Studio) -> None:
     profile = [*shapes.smooth_profile(OUTSIDE, 6).tolist(), *NECK, *INSIDE]
     studio.put("bottle", shapes.lathe(profile, 96, 60), green, (0.05, 0, -0.06))
     amber = clear(studio, "amber", 1.54, color=(0.95, 0.5, 0.08), distance=0.06)
-    studio.put("amber", shapes.ball(0.05, 48, 96), amber, (-0.075, 0.05, 0.03))
+    studio.put("amber", shapes.ball(0.05, 48, 96), amber, (-0.085, 0.05, 0.03))
     frosted = clear(studio, "frosted", 1.45, 0.25, color=(0.6, 0.8, 0.95), distance=0.1)
     cube = shapes.box((0.075, 0.075, 0.075))
     studio.put("frosted", cube, frosted, (-0.29, 0, 0.17), rotation=turn_y(30))
@@ -116,5 +116,5 @@ def _lantern(studio: Studio) -> None:
     radius = 0.1 * (1 - 0.06 * np.abs(np.cos(12 * angle)))
     profile = np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)
     studio.put("lantern", shapes.lathe(profile, 96, 60), paper, (0.25, 0.1, 0.02))
-    bulb = studio.shining("bulb", warm, 3.5)
+    bulb = studio.shining("bulb", warm, 4.5)
     studio.put("bulb", shapes.ico_ball(0.045, 2), bulb, (0.25, 0.1, 0.02))
