@@ -1,6 +1,7 @@
 // material.cpp -- from a material and a hit to a BSDF, an emission, an opacity.
 #include "material/material.h"
 
+#include "material/gltf_surface.h"
 #include "material/material_read.h"
 
 namespace dg {
@@ -39,68 +40,6 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
 
 namespace {
 
-// 8-bit normals are this far from unit length already (twice over, pyramids round again).
-constexpr float kNormalRounding = 0.01f;
-
-/// Variance of the slopes, per axis, under the footprint: the more the normals differ the
-/// shorter is their mean. Source: Toksvig 2005, Mipmapping Normal Maps, Journal of Graphics
-/// Tools.
-float slope_variance(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
-    const TextureSlot& slot = m.normal_texture;
-    if (!(textures[slot.index].level(slot.turned(hit.footprint[slot.uv_set])) > 0)) return 0;
-    const Texture::Texel t = read(slot, textures, hit);
-    const float l = std::max(length(Vec3f{2 * t.r - 1, 2 * t.g - 1, 2 * t.b - 1}), 0.1f);
-    return std::max(0.f, (1 - l) / l - kNormalRounding) * m.normal_scale * m.normal_scale;
-}
-
-Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
-    Rgb c = m.base_color * Rgb{hit.color[0], hit.color[1], hit.color[2]};
-    if (m.base_color_texture.used())
-        c = c * rgb(read(m.base_color_texture, textures, hit));
-    return clamped(c);
-}
-
-/// Bumps too small to be seen act as roughness: a Gaussian of slopes of variance v has
-/// alpha^2 = 2 v (Beckmann), and variances add.
-float roughened(float roughness, float slope_variance) {
-    if (slope_variance == 0) return roughness;
-    const float alpha = roughness * roughness;
-    return std::sqrt(std::min(1.f, std::sqrt(alpha * alpha + 2 * slope_variance)));
-}
-
-/// Windows stay smooth: bumps turn no light that goes straight on through a sheet.
-void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
-                             const SurfaceHit& hit, GltfSurface& s) {
-    const bool clear = m.transmission > 0;
-    s.metallic = m.metallic;
-    s.roughness = m.roughness;
-    if (m.metallic_roughness_texture.used()) {
-        const Texture::Texel t =
-            clear ? read_point(m.metallic_roughness_texture, textures, hit)
-                  : read(m.metallic_roughness_texture, textures, hit);
-        s.metallic = clamped(m.metallic * t.b);
-        s.roughness = clamped(m.roughness * t.g);
-    }
-    if (clear && s.roughness * s.roughness < kSmoothAlpha) return;
-    s.roughness = roughened(s.roughness, hit.slope_variance);
-}
-
-Rgb read_specular(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,
-                  GltfSurface& s) {
-    s.ior = m.ior;
-    s.specular = m.specular;
-    if (m.specular_texture.used())
-        s.specular *= clamped({read(m.specular_texture, textures, hit).a, 0, 0}).x;
-    if (!m.specular_color_texture.used()) return m.specular_color;
-    return m.specular_color * rgb(read(m.specular_color_texture, textures, hit));
-}
-
-/// More than 1 is allowed here: KHR_materials_specular clamps F0 later.
-Spectrum specular_spectrum(Rgb c, const Wavelengths& wavelengths) {
-    if (c == Rgb{1, 1, 1}) return 1.f;
-    return wavelengths.reflectance(c);
-}
-
 Bsdf shade_kind(const DiffuseMaterial& m, const Textures&, SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
     const Rgb c = m.reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]};
@@ -122,86 +61,6 @@ Bsdf shade_kind(const DielectricMaterial& m, const Textures&, SurfaceHit& hit,
     b.ior = b.iors[0];
     b.disperses = !wavelengths.secondary_ended;
     return b;
-}
-
-void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface& s) {
-    if (s.ior <= 0) return;  // bends nothing
-    s.iors = dispersed_ior(s.ior, m.dispersion, wavelengths.nm);
-    s.ior = s.iors[0];
-    s.disperses = !wavelengths.secondary_ended;
-}
-
-struct SpecularGlossiness {
-    Rgb diffuse, f0;
-    float glossiness;
-};
-
-/// KHR_materials_pbrSpecularGlossiness: c_diff = diffuse (1 - max(specular)).
-SpecularGlossiness read_specular_glossiness(const GltfMaterial& m,
-                                            const Textures& textures,
-                                            const SurfaceHit& hit) {
-    SpecularGlossiness s{base_color(m, textures, hit), m.specular_color, m.glossiness};
-    if (m.specular_glossiness_texture.used()) {
-        const Texture::Texel t = read(m.specular_glossiness_texture, textures, hit);
-        s.f0 = s.f0 * rgb(t);
-        s.glossiness = clamped(s.glossiness * t.a);
-    }
-    s.f0 = clamped(s.f0);
-    s.diffuse = s.diffuse * (1 - max_component(s.f0));
-    return s;
-}
-
-/// An index of 0 has a reflectance of 1, which specular_color scales to any F0; F90 is 1.
-GltfSurface specular_glossiness(const GltfMaterial& m, const Textures& textures,
-                                const SurfaceHit& hit, const Wavelengths& wavelengths) {
-    const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);
-    return {.base = wavelengths.reflectance(s.diffuse),
-            .metallic = 0,
-            .roughness = roughened(1 - s.glossiness, hit.slope_variance),
-            .ior = 0,
-            .specular_color = wavelengths.reflectance(s.f0),
-            .interior = {}};
-}
-
-struct DiffuseTransmission {
-    float share;
-    Rgb color;
-};
-DiffuseTransmission read_diffuse_transmission(const GltfMaterial& m,
-                                              const Textures& textures,
-                                              const SurfaceHit& hit) {
-    DiffuseTransmission d{m.diffuse_transmission, m.diffuse_transmission_color};
-    if (m.diffuse_transmission_texture.used())
-        d.share *=
-            clamped(read(m.diffuse_transmission_texture, textures, hit).a);
-    if (m.diffuse_transmission_color_texture.used())
-        d.color =
-            d.color * rgb(read(m.diffuse_transmission_color_texture, textures, hit));
-    return {d.share, clamped(d.color)};
-}
-
-GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
-                         const SurfaceHit& hit, const Wavelengths& wavelengths) {
-    if (m.specular_glossiness) return specular_glossiness(m, textures, hit, wavelengths);
-    GltfSurface s;
-    s.base = wavelengths.reflectance(base_color(m, textures, hit));
-    read_metallic_roughness(m, textures, hit, s);
-    s.specular_color = specular_spectrum(read_specular(m, textures, hit, s), wavelengths);
-    s.transmission = m.transmission;
-    if (m.transmission_texture.used())
-        s.transmission *=
-            clamped({read(m.transmission_texture, textures, hit).r, 0, 0}).x;
-    if (m.diffuse_transmission > 0) {
-        const auto d = read_diffuse_transmission(m, textures, hit);
-        s.diffuse_transmission = d.share;
-        s.diffuse_transmission_color = wavelengths.reflectance(d.color);
-    }
-    s.volume = m.thickness > 0;
-    if (s.volume && std::isfinite(m.attenuation_distance))
-        s.interior = {true, wavelengths.reflectance(m.attenuation_color),
-                      m.attenuation_distance};
-    if (s.volume && m.dispersion > 0 && s.transmission > 0) disperse(m, wavelengths, s);
-    return s;
 }
 
 /// The coat follows the mesh and not the normal map of the base, so it is read first.
@@ -356,23 +215,7 @@ Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit&
     if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return m->tint;
     const auto& m = std::get<GltfMaterial>(material.kind);
     if (m.unlit) return base_color(m, textures, hit);
-    if (m.specular_glossiness) {
-        const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);
-        return s.diffuse + s.f0;
-    }
-    Rgb base = base_color(m, textures, hit);
-    GltfSurface s;
-    read_metallic_roughness(m, textures, hit, s);
-    const Rgb colour = read_specular(m, textures, hit, s);
-    const Rgb f0 = clamped(colour * normal_reflectance(s.ior)) * s.specular;
-    const Rgb metal = base;
-    if (m.diffuse_transmission > 0) {
-        const auto d = read_diffuse_transmission(m, textures, hit);
-        base = base * (1 - d.share) + d.color * d.share;
-    }
-    const Rgb dielectric = base * (1 - max_component(f0)) + f0;
-    const Rgb bare = dielectric * (1 - s.metallic) + metal * s.metallic;
-    return clamped(layered_albedo(m, textures, hit, bare));
+    return clamped(layered_albedo(m, textures, hit, surface_albedo(m, textures, hit)));
 }
 
 }  // namespace dg
