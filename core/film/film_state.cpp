@@ -30,6 +30,8 @@ void Film::set_state(const std::string& part, std::span<const std::byte> bytes) 
                           std::to_string(bytes.size()));
     void* to = part == "sums" ? static_cast<void*>(pixels_.data()) : aovs_.data();
     std::memcpy(to, bytes.data(), wanted);
+    // Nobody holds a lock of this film: one that a damaged file brings would never open.
+    for (Pixel& pixel : pixels_) pixel.lock = 0;
 }
 
 }  // namespace dg

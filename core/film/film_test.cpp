@@ -287,3 +287,16 @@ TEST_CASE("the relative variance of one sample, from the variance of the mean") 
     CHECK(relative[0] == doctest::Approx(expected).epsilon(1e-5));
     CHECK(relative[1] == 0);
 }
+
+TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and added") {
+    dg::Film film({2, 1, 0, 0, true}), other = film;
+    for (const std::string& part : film.state_parts()) {
+        const std::vector<std::byte> ones(film.state(part).size(), std::byte{0xff});
+        film.set_state(part, ones);
+        other.set_state(part, ones);
+    }
+    film.add_shared(1, 0, 0, {1, 1, 1});  // would wait for ever
+    film.merge(other);
+    CHECK(film.sample_counts()[0] == 0xfffffffeu);
+    CHECK(std::isfinite(film.mean_xyz()[0]));
+}

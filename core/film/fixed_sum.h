@@ -9,6 +9,7 @@
 namespace dg {
 
 __extension__ typedef __int128 Int128;
+__extension__ typedef unsigned __int128 UInt128;
 
 /// A sum in steps of 2^-kFractionBits. Each term is rounded toward 0 to whole steps by
 /// itself, then added as an integer: exact, associative and commutative. A float of
@@ -24,9 +25,9 @@ class FixedSum {
         const double whole = std::trunc(scaled);
         const auto high = std::int64_t(whole);
         const auto low = std::int64_t((scaled - whole) * 0x1p63);
-        bits_ += (Int128(high) << 63) + low;
+        add_bits((Int128(high) << 63) + low);
     }
-    void add(const FixedSum& other) { bits_ += other.bits_; }
+    void add(const FixedSum& other) { add_bits(other.bits_); }
 
     /// Nearest double.
     double value() const { return double(bits_) * (1.0 / double(1ull << kFractionBits)); }
@@ -36,6 +37,9 @@ class FixedSum {
     static constexpr double kScale =
         kFractionBits <= 63 ? 1.0 / double(1ull << (63 - kFractionBits)) : 0;
     static_assert(kFractionBits > 0 && kFractionBits <= 63);
+
+    /// Sums out of a damaged file may run over: they wrap around, as anything does there.
+    void add_bits(Int128 bits) { bits_ = Int128(UInt128(bits_) + UInt128(bits)); }
 
     Int128 bits_ = 0;
 };

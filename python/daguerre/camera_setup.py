@@ -278,6 +278,9 @@ class Focus:
             self.notes.append(f"autofocus: {what} meets nothing; focus at infinity")
             return math.inf
         depth = float(hit[0]) * -float(direction[2])
+        if not depth > 0:  # the camera stands in a surface
+            self.notes.append(f"autofocus: {what} begins on a surface; focus at infinity")
+            return math.inf
         self.notes.append(f"autofocus: {what} meets a surface {depth:.4g} m away")
         return depth
 
@@ -488,7 +491,7 @@ def _exact_lens(
             lens.prescription, f_stop, iris_of(camera), distance, from_sensor, half_diagonal
         )
     except ValueError as error:
-        raise InputError(str(error)) from None
+        raise InputError(f"{lens.source}: {error}") from None
 
 
 def _hash_lens(lens: lenses.Lens) -> str:

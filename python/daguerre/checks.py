@@ -11,6 +11,12 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import DaguerreError, InputError, UsageError
 
+#: A side of a picture (px), and the samples of a pixel.
+MAX_RESOLUTION = 65536
+MAX_SAMPLES = 1 << 31
+#: Deflate cannot shrink data more than this (zlib's "Technical details").
+DEFLATE_LIMIT = 1032
+
 
 def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.float32]:
     """Finite numbers of shape (N, columns), float32."""

@@ -22,7 +22,7 @@ from .adaptive import Round, check_noise, rounds
 from .build import build, content_hash
 from .camera import Camera
 from .camera_setup import set_up
-from .checks import short, whole
+from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import MismatchError, UsageError, suggest
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
@@ -31,8 +31,6 @@ from .scene import Scene
 Progress = Callable[[float], bool]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
 DEFAULT_SPP = 64
-MAX_RESOLUTION = 65536
-MAX_SAMPLES = 1 << 31
 
 
 class Session:

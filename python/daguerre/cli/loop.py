@@ -101,7 +101,7 @@ class Loop:
         if not self.checkpoint.exists():
             return False
         saved = pass_files.read_pass(self.checkpoint)
-        pass_files.check_key(saved, pass_files.pass_of(self.session))
+        pass_files.check_key(pass_files.pass_of(self.session), saved)
         self.work.check(saved)
         self.session.set_state(saved.state, saved.ranges, saved.round)
         return True

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera import IDEAL, LIMITS, Camera
+from daguerre.lenses import library
 
 from .json_item import Item, clean, short
 from .notes import Notes
@@ -55,9 +56,9 @@ def _f_stop(item: Item) -> float:
 
 
 def _lens(item: Item) -> str:
-    # A file from strangers may name a lens of the library, but no path.
+    # A file from strangers may name a lens of the library, but no file, not even a near one.
     name = item.text()
-    if not name or "/" in name or "\\" in name or name.startswith("."):
+    if name not in (*IDEAL, *library.names()):
         item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}")
     return clean(name)
 

@@ -8,20 +8,24 @@ Source: glTF 2.0 specification, chapters 3.6 (buffers) and 4 (GLB).
 
 from __future__ import annotations
 
-import json
 import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from daguerre.errors import InputError
 
+from .gltf_budget import Budget
 from .gltf_meshopt import placeholders
 from .json_item import Item, short
+from .json_text import parse
 from .uris import Folder, data_bytes, is_data
 
 _JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
+#: Of a .gltf, and of all buffers of a file together.
+MAX_TEXT_BYTES = 1 << 30
+MAX_BUFFER_BYTES = 1 << 34
 
 
 @dataclass(frozen=True)
@@ -50,24 +54,39 @@ def open_document(path: Path, folder: Folder) -> Document:
     try:
         if path.exists() and not path.is_file():
             raise InputError(f"{path}: wanted a glTF file, got something that is no ordinary file")
-        data = path.read_bytes()
+        data, trailing = _read(path)
     except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"{path}: cannot be read: {reason}") from None
     if data[:4] == b"glTF":
-        text, binary, trailing = _split_chunks(path, data)
+        text, binary = _split_chunks(path, data)
     elif path.suffix.lower() == ".glb" or data.lstrip()[:1] not in (b"{", b"\xef"):
         wanted = "b'glTF'" if path.suffix.lower() == ".glb" else "b'glTF' or a JSON object"
         raise InputError(f"{path}: header.magic: wanted {wanted}, got {short(data[:4])}")
     else:
-        text, binary, trailing = memoryview(data), None, 0
-    root = Item(_parse(path, bytes(text)), str(path))
+        text, binary = memoryview(data), None
+    root = parse(bytes(text), str(path))
     root.members()
     _check_asset(root)
     return Document(root, binary, folder, trailing)
 
 
-def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None, int]:
+def _read(path: Path) -> tuple[bytes, int]:
+    """The bytes of a file, of a .glb as many as its header says, and how many are left."""
+    with path.open("rb") as stream:
+        size = path.stat().st_size
+        start = stream.read(12)
+        wanted = size
+        if start[:4] == b"glTF" and len(start) == 12:
+            wanted = min(size, int.from_bytes(start[8:], "little"))
+        elif size > MAX_TEXT_BYTES:
+            raise InputError(f"{path}: wanted at most {MAX_TEXT_BYTES} bytes of JSON, got {size}")
+        return start + stream.read(max(wanted - 12, 0)), max(size - max(wanted, 12), 0)
+
+
+def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     def fail(where: str, message: str) -> NoReturn:
         raise InputError(f"{path}: {where}: {message}")
 
@@ -95,45 +114,7 @@ def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | Non
     if chunks[0][0] != _JSON_CHUNK:
         fail("chunk 0.type", f"wanted 0x{_JSON_CHUNK:08x} (JSON), got 0x{chunks[0][0]:08x}")
     binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == _BIN_CHUNK else None
-    return chunks[0][1], binary, len(data) - length
-
-
-class _NotJson(Exception):
-    """A constant that JSON does not have."""
-
-
-def _refuse_constant(name: str) -> NoReturn:
-    raise _NotJson(name)
-
-
-def _parse(path: Path, data: bytes) -> Any:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}: JSON: wanted UTF-8, got byte 0x{data[error.start]:02x} at byte {error.start}"
-        ) from None
-    try:
-        return json.loads(text, parse_constant=_refuse_constant)
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"{path}: JSON: line {error.lineno}, column {error.colno}: {error.msg}"
-        ) from None
-    except _NotJson as error:
-        # The parser does not say where: find the first such word outside of strings.
-        line = column = 1
-        for match in re.finditer(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity', text):
-            if match[0][0] != '"':
-                line = text.count("\n", 0, match.start()) + 1
-                column = match.start() - text.rfind("\n", 0, match.start())
-                break
-        raise InputError(
-            f"{path}: JSON: line {line}, column {column}: wanted a finite number, got {error}"
-        ) from None
-    except RecursionError:
-        raise InputError(f"{path}: JSON: nested too deeply to be a scene") from None
-    except ValueError as error:  # an integer of thousands of digits
-        raise InputError(f"{path}: JSON: {error}") from None
+    return chunks[0][1], binary
 
 
 def _check_asset(root: Item) -> None:
@@ -156,15 +137,17 @@ def load_buffers(document: Document) -> list[memoryview]:
         InputError: A file is missing, outside of the folder, or shorter than ``byteLength``.
     """
     unread = placeholders(document.root)
+    budget = Budget(MAX_BUFFER_BYTES, "bytes of buffers")
     return [
-        memoryview(b"") if index in unread else _load_buffer(document, item)
+        memoryview(b"") if index in unread else _load_buffer(document, item, budget)
         for index, item in enumerate(document.root.list_of("buffers"))
     ]
 
 
-def _load_buffer(document: Document, item: Item) -> memoryview:
+def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
     length_item = item.need("byteLength")
     length = length_item.integer(1)
+    budget.spend(length, length_item)
     uri = item.get("uri")
     if uri is None:
         if item.key != 0 or document.binary is None:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError
 
 from . import ktx2
@@ -26,9 +27,11 @@ MAX_PIXELS = 16384 * 16384
 #: Decoded, of one texture and of one environment (16384 x 8192 in float is 1.5 GiB).
 MAX_BYTES = 1 << 30
 MAX_ENVIRONMENT_BYTES = 2 << 30
+#: A colour of an environment: three of them still add up in float.
+MAX_LIGHT = 1e38
 _PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
-# Deflate cannot shrink data more than this (zlib's "Technical details").
-_DEFLATE_LIMIT = 1032
+# Bits by colour type (PNG specification, 11.2.1).
+_PNG_DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
 
 
 def srgb_to_linear(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -113,7 +116,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     if kind == "hdr":
         rgb /= np.float32(_radiance_exposure(file))
     rgb = _upright(rgb, spec.get_int_attribute("Orientation", 1))
-    for name, bad in (("finite", ~np.isfinite(rgb)), ("non-negative", rgb < 0)):
+    for name, bad in (("finite", ~(np.abs(rgb) <= MAX_LIGHT)), ("non-negative", rgb < 0)):
         count = int(bad.any(axis=2).sum())
         if count:
             y, x = np.argwhere(bad.any(axis=2))[0]
@@ -165,7 +168,7 @@ def _check_size(
 
 def _check_png(data: bytes, where: str) -> None:
     """Chunks complete and their checksums right (PNG specification, chapters 5 and 11)."""
-    offset, packed, header = len(_PNG_MAGIC), 0, b""
+    offset, packed, header, start = len(_PNG_MAGIC), 0, b"", b""
     while True:
         if offset + 12 > len(data):
             raise InputError(f"{where}: truncated PNG: wanted an IEND chunk, got none")
@@ -180,17 +183,26 @@ def _check_png(data: bytes, where: str) -> None:
             raise InputError(f"{where}: corrupt PNG: wrong checksum of chunk {short(kind)}")
         if kind == b"IHDR":
             header = data[offset + 8 : end - 4]
-        packed += length if kind == b"IDAT" else 0
+        if kind == b"IDAT":
+            start += data[offset + 8 : offset + 8 + min(length, 2 - len(start))]
+            packed += length
         if kind == b"IEND":
             break
         offset = end
     if len(header) != 13:
         raise InputError(f"{where}: corrupt PNG: wanted 13 bytes of IHDR, got {len(header)}")
     width, height, depth, color = struct.unpack_from(">IIBB", header)
-    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}.get(color, 1)
+    if depth not in _PNG_DEPTHS.get(color, ()):
+        raise InputError(
+            f"{where}: corrupt PNG: wanted a known kind of pixels, got colour type {color} "
+            f"of {depth} bits"
+        )
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color]
     _check_size(width, height, channels, max(depth // 8, 1), where)
+    if len(start) < 2 or start[0] & 15 != 8 or int.from_bytes(start, "big") % 31:  # RFC 1950, 2.2
+        raise InputError(f"{where}: corrupt PNG: wanted a deflate stream, got {short(start)}")
     unpacked = height * ((width * depth * channels + 7) // 8)
-    if unpacked > packed * _DEFLATE_LIMIT + 64:
+    if unpacked > packed * DEFLATE_LIMIT + 64:
         raise InputError(
             f"{where}: truncated PNG: {packed} bytes cannot hold {width}x{height} pixels"
         )
@@ -232,8 +244,8 @@ def _radiance_exposure(file: Path) -> float:
                 exposure *= float(line[9:])
             except ValueError:
                 exposure = -1.0
-    if not 0 < exposure < float("inf"):
-        raise InputError(f"{file}: EXPOSURE: wanted a positive number, got a broken line")
+    if not 1e-30 < exposure < 1e30:
+        raise InputError(f"{file}: EXPOSURE: wanted a positive number below 1e30, got another")
     return exposure
 
 

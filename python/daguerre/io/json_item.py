@@ -8,6 +8,9 @@ from typing import Any, NoReturn
 
 from daguerre.errors import InputError
 
+#: Numbers end up in single precision.
+MAX_NUMBER = 3.4e38
+
 
 def short(value: object, limit: int = 60) -> str:
     """``repr`` of something from a file, at most ``limit`` characters long."""
@@ -104,8 +107,9 @@ class Item:
             number = float(self.value)
         except OverflowError:
             number = math.inf
-        if not math.isfinite(number):
-            self.fail(f"not finite: wanted a finite number, got {short(self.value)}")
+        if not abs(number) <= MAX_NUMBER:  # nor is NaN
+            wanted = f"a finite number below {MAX_NUMBER:.3g}"
+            self.fail(f"not finite: wanted {wanted}, got {short(self.value)}")
         if above is not None and number <= above:
             self.fail(f"out of range: wanted a number above {above:g}, got {number:g}")
         if not low <= number <= high:

@@ -13,6 +13,7 @@ The checkpoint of an adaptive render also has its round: begin and count of each
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -23,9 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.adaptive import Round
+from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
 
 from .exr import Channels, attributes, channels, jsonable, write_parts
+from .json_item import short
+from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 
 if TYPE_CHECKING:
@@ -121,18 +125,21 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
         raise InputError(f"{path}: no such pass file")
     source = oiio.ImageInput.open(str(path))
     if source is None:
-        raise InputError(f"{path}: not a readable EXR: {oiio.geterror()}")
+        reason = (oiio.geterror().splitlines() or ["no reason given"])[0]
+        raise InputError(f"{path}: not a readable EXR: {reason[:300]}")
     try:
         state: State = {}
         facts = found = None
         for index in _state_parts(source):
             spec = source.spec()
+            _check_size(path, spec)
             words = source.read_image(index, 0, 0, spec.nchannels, oiio.UINT)
             if words is None:
                 raise InputError(f"{path}: damaged pass file: {source.geterror()}")
             facts = facts or _header(path, spec)
             name = spec.get_string_attribute("oiio:subimagename")
             state[name] = _unfolded(path, words, spec.get_int_attribute("daguerre:words", 0))
+            _check_crop(path, facts, state[name])
             if name == ROUND:
                 found = _round(path, spec, state.pop(ROUND))
         if facts is None:
@@ -170,6 +177,16 @@ def _state_parts(source: Any) -> Iterator[int]:
         index += 1
 
 
+def _check_size(path: Path, spec: Any) -> None:
+    """Refuses sums that the file is too short for, before memory is taken for them."""
+    size = spec.width * spec.height * spec.nchannels * 4
+    if size > path.stat().st_size * DEFLATE_LIMIT:
+        raise InputError(
+            f"{path}: damaged pass file: {spec.width}x{spec.height} words cannot be in "
+            f"{path.stat().st_size} bytes"
+        )
+
+
 def _unfolded(path: Path, words: NDArray[np.uint32], count: int) -> NDArray[np.uint32]:
     """Undoes :func:`_words_part`."""
     height, size = words.shape[0], words.shape[1] * words.shape[2]
@@ -183,7 +200,7 @@ def _field(path: Path, spec: Any, name: str, check: Callable[[Any], bool]) -> An
     text = spec.get_string_attribute(f"daguerre:{name}")
     try:
         value = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         value = None
     if not check(value):
         raise InputError(f"{path}: damaged pass file: daguerre:{name} is {text[:40]!r}")
@@ -192,30 +209,47 @@ def _field(path: Path, spec: Any, name: str, check: Callable[[Any], bool]) -> An
 
 def _round(path: Path, spec: Any, words: NDArray[np.uint32]) -> Round:
     def is_facts(value: Any) -> bool:
-        return isinstance(value, dict) and all(
-            isinstance(value.get(name), int | float) for name in ROUND_FACTS
+        return (
+            isinstance(value, dict)
+            and all(isinstance(value.get(name), int | float) for name in ROUND_FACTS)
+            and math.isfinite(value["drawn"])
         )
 
     facts = _field(path, spec, "round", is_facts)
+    if words.shape[2] < 2:
+        raise InputError(f"{path}: damaged pass file: wanted 2 words of a round, got 1")
     begin, count = (np.ascontiguousarray(words[:, :, i]) for i in range(2))
     return Round(begin, count, int(facts["drawn"]), float(facts["noise"]), float(facts["expected"]))
 
 
-def _header(path: Path, spec: Any) -> Pass:
-    def is_ranges(value: Any) -> bool:
-        return isinstance(value, list) and all(
-            isinstance(r, list)
-            and len(r) == 2
-            and all(isinstance(v, int) for v in r)
-            and 0 <= r[0] < r[1]
-            for r in value
+def _check_crop(path: Path, facts: Pass, words: NDArray[np.uint32]) -> None:
+    """The crop is what is there."""
+    x0, y0, x1, y1 = facts.metadata.get("crop") or (0, 0, *words.shape[1::-1])
+    if (y1 - y0, x1 - x0) != words.shape[:2]:
+        raise InputError(
+            f"{path}: damaged pass file: daguerre:metadata: crop is {x1 - x0}x{y1 - y0}, "
+            f"wanted {words.shape[1]}x{words.shape[0]}"
         )
 
+
+def _header(path: Path, spec: Any) -> Pass:
+    def are_strings(value: Any) -> bool:
+        return isinstance(value, dict) and bool(value) and all(map(is_text, value.values()))
+
+    def is_text(value: Any) -> bool:
+        return isinstance(value, str)
+
+    metadata = _field(path, spec, "metadata", lambda value: isinstance(value, dict))
+    wrong = bad_fact(metadata)
+    if wrong is not None:
+        raise InputError(
+            f"{path}: damaged pass file: daguerre:metadata: {wrong} is {short(metadata[wrong])}"
+        )
     return Pass(
         {},
-        [(r[0], r[1]) for r in _field(path, spec, "ranges", is_ranges)],
-        _field(path, spec, "key", lambda v: isinstance(v, dict) and bool(v)),
-        _field(path, spec, "metadata", lambda v: isinstance(v, dict)),
+        [(r[0], r[1]) for r in _field(path, spec, "ranges", are_ranges)],
+        _field(path, spec, "key", are_strings),
+        metadata,
     )
 
 

@@ -57,7 +57,10 @@ class Folder:
         name = unquote(text)
         scheme = re.match(r"([A-Za-z][A-Za-z0-9+.-]*):", text)
         if scheme and scheme[1].lower() == "file":
-            parts = urlsplit(text)
+            try:
+                parts = urlsplit(text)
+            except ValueError as error:  # half an IPv6 address
+                uri.fail(f"refused: wanted a local file, got {short(text)} ({error})")
             if parts.netloc not in ("", "localhost"):
                 uri.fail(f"refused: wanted a local file, got {short(text)}")
             name = unquote(parts.path)

@@ -127,7 +127,7 @@ class Lens:
         try:
             f = self.prescription.first_order(float(wavelength_nm))
         except ValueError as error:
-            raise InputError(str(error)) from None
+            raise InputError(f"{self.source}: {error}") from None
         return FirstOrder(
             wavelength_nm=f.wavelength_nm,
             efl=f.efl,

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import json
 from pathlib import Path
-from typing import Any, NoReturn
 
 import daguerre._core as _core
 from daguerre.errors import InputError, suggest
 from daguerre.io.json_item import Item, clean
+from daguerre.io.json_text import parse
 
 from .lens import Lens, LensSurface, Nominal
 
@@ -30,7 +29,7 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
     Raises:
         InputError: With file and JSON path of what cannot be used.
     """
-    root = Item(_parse(Path(path)), str(path))
+    root = _parse(Path(path))
     try:
         return _lens(root, Path(path), configuration)
     except InputError:
@@ -39,31 +38,20 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         raise InputError(f"{path}: {error}") from None
 
 
-def _parse(path: Path) -> Any:
+def _parse(path: Path) -> Item:
     if path.suffix.lower() != ".json":
         raise InputError(
             f"{path}: lens file: wanted .json ({SCHEMA}), got {path.suffix or 'no suffix'}"
         )
     try:
+        if path.exists() and not path.is_file():  # a pipe or a device would never end
+            raise InputError(f"{path}: lens file: wanted an ordinary file")
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path}: lens file: wanted at most {MAX_BYTES} bytes")
-        text = path.read_text("utf-8")
+        data = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file in UTF-8") from None
-
-    def refuse(constant: str) -> NoReturn:
-        raise InputError(f"{path}: wanted JSON without NaN and Infinity, got {constant}")
-
-    try:
-        return json.loads(text, parse_constant=refuse)
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"{path}: not valid JSON: line {error.lineno}, column {error.colno}: {error.msg}"
-        ) from None
-    except RecursionError:
-        raise InputError(f"{path}: not valid JSON: nested too deeply") from None
+    return parse(data, str(path))
 
 
 def _lens(root: Item, path: Path, configuration: str | None) -> Lens:

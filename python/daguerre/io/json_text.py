@@ -1,0 +1,102 @@
+"""JSON text into values that know where they stand; what JSON forbids is refused with its place.
+
+Python's parser is more forgiving: it takes NaN, and the last of two members of one name.
+Source: RFC 8259, chapters 4 (names should be unique), 6 and 8.1.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any, NoReturn
+
+from daguerre.errors import InputError
+
+from .json_item import Item
+
+
+def parse(data: bytes, file: str) -> Item:
+    """The value that a file's bytes spell.
+
+    Raises:
+        InputError: It is no JSON, is nested too deeply, or an object has a member twice.
+    """
+    return Item(_value(_text(data, file), file), file)
+
+
+class _NotJson(Exception):
+    """A constant that JSON does not have."""
+
+
+class _Twice:
+    """Stands where an object has two members of one name."""
+
+
+def _text(data: bytes, file: str) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{file}: JSON: wanted UTF-8, got byte 0x{data[error.start]:02x} at byte {error.start}"
+        ) from None
+
+
+def _value(text: str, file: str) -> Any:
+    doubled = False
+
+    def members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        nonlocal doubled
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            doubled = True
+            names: set[str] = set()
+            for name, _ in pairs:
+                if name in names:
+                    found[name] = _Twice()
+                names.add(name)
+        return found
+
+    try:
+        value = json.loads(text, parse_constant=_refuse, object_pairs_hook=members)
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{file}: JSON: line {error.lineno}, column {error.colno}: {error.msg}"
+        ) from None
+    except _NotJson as error:
+        line, column = _place(text)
+        raise InputError(
+            f"{file}: JSON: line {line}, column {column}: wanted a finite number, got {error}"
+        ) from None
+    except RecursionError:
+        raise InputError(f"{file}: JSON: nested too deeply") from None
+    except ValueError as error:  # an integer of thousands of digits
+        raise InputError(f"{file}: JSON: {error}") from None
+    if doubled:
+        _complain(Item(value, file))
+    return value
+
+
+def _refuse(name: str) -> NoReturn:
+    raise _NotJson(name)
+
+
+def _place(text: str) -> tuple[int, int]:
+    """Line and column of the first NaN or Infinity outside of strings: the parser does not say."""
+    for match in re.finditer(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity', text):
+        if match[0][0] != '"':
+            line = text.count("\n", 0, match.start()) + 1
+            return line, match.start() - text.rfind("\n", 0, match.start())
+    return 1, 1
+
+
+def _complain(root: Item) -> None:
+    """Names the first member that stands twice; without recursion."""
+    stack = [root]
+    while stack:
+        item = stack.pop()
+        if isinstance(item.value, _Twice):
+            item.fail("wanted each member of an object once, got this one twice")
+        if isinstance(item.value, dict):
+            stack.extend(reversed(item.members()))
+        elif isinstance(item.value, list):
+            stack.extend(reversed(list(item)))

@@ -1,0 +1,89 @@
+"""What a pass file says of its picture, checked before anything is made of it.
+
+Such a file may come from another machine, or be damaged: each fact has the type that those have
+which :mod:`daguerre.io.exr` writes as attributes, or the file is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
+
+from . import exr
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _are_numbers(value: Any, count: int) -> bool:
+    return isinstance(value, list) and len(value) == count and all(map(_is_number, value))
+
+
+def _is_whole(value: Any, low: int, high: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and low <= value <= high
+
+
+def _is_pair(value: Any) -> bool:
+    return _is_number(value) or _are_numbers(value, 2)
+
+
+def _is_matrix(value: Any) -> bool:
+    return (
+        isinstance(value, list) and len(value) == 4 and all(_are_numbers(row, 4) for row in value)
+    )
+
+
+def _is_size(value: Any) -> bool:
+    return _are_numbers(value, 2) and all(_is_whole(v, 1, MAX_RESOLUTION) for v in value)
+
+
+def _is_crop(value: Any) -> bool:
+    if not (_are_numbers(value, 4) and all(_is_whole(v, 0, MAX_RESOLUTION) for v in value)):
+        return False
+    x0, y0, x1, y1 = value
+    return bool(x0 < x1 and y0 < y1)
+
+
+def _are_names(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(name, str) for name in value)
+
+
+_CHECKS: dict[str, Callable[[Any], bool]] = {
+    **dict.fromkeys((*exr.FLOATS, *exr.OWN_NUMBERS), _is_number),
+    **dict.fromkeys((*exr.STRINGS, *exr.OWN_STRINGS), lambda value: isinstance(value, str)),
+    **dict.fromkeys((*exr.VECTORS, *exr.RATIONALS), _is_pair),
+    **dict.fromkeys(exr.MATRICES, _is_matrix),
+    "camera": lambda value: isinstance(value, dict),
+    "resolution": _is_size,
+    "crop": _is_crop,
+    "aovs": _are_names,
+}
+
+
+def bad_fact(metadata: Mapping[str, Any]) -> str | None:
+    """The name of a fact that is of another type or size than it can be; None if all are good."""
+    for name, check in _CHECKS.items():
+        value = metadata.get(name)
+        if value is not None and not check(value):
+            return name
+    size, crop = metadata.get("resolution"), metadata.get("crop")
+    if size and crop and (crop[2] > size[0] or crop[3] > size[1]):
+        return "crop"
+    return None
+
+
+def are_ranges(value: Any) -> bool:
+    """Whether this is a list of [begin, end) that rise and do not overlap."""
+    if not isinstance(value, list) or not value:
+        return False
+    last = 0
+    for pair in value:
+        if not (_are_numbers(pair, 2) and all(_is_whole(v, 0, MAX_SAMPLES) for v in pair)):
+            return False
+        if not last <= pair[0] < pair[1]:
+            return False
+        last = pair[1]
+    return True

@@ -1,0 +1,92 @@
+// fuzz_lens.cpp -- any prescription: an Error, or a lens through which rays can be drawn.
+#include "camera/exact.h"
+#include "math/error.h"
+#include "input.h"
+
+namespace dg {
+namespace {
+
+double length(FuzzInput& in) {
+    return 10 * double(in.number());
+}
+
+Glass any_glass(FuzzInput& in) {
+    Glass glass;
+    switch (in.below(5)) {
+        case 0: break;
+        case 1: glass.formula = ConstantIndex{1 + double(in.factor())}; break;
+        case 2: glass.formula = AbbeGlass{1.3 + in.factor(), 10 + 60 * double(in.factor())}; break;
+        case 3: {
+            TableGlass table;
+            double nm = 300;
+            for (int n = in.below(5); n > 0; --n) {
+                table.nm.push_back(nm += 100 * in.number());
+                table.n.push_back(1 + double(in.factor()));
+            }
+            glass.formula = table;
+            break;
+        }
+        default: {
+            SellmeierGlass s;
+            for (int i = 0; i < 3; ++i) {
+                s.b[i] = in.factor();
+                s.c[i] = in.factor();
+            }
+            glass.formula = s;
+        }
+    }
+    return glass;
+}
+
+Prescription any_lens(FuzzInput& in) {
+    Prescription lens;
+    lens.name = "lens";
+    const int count = in.below(9);
+    const int stop = in.below(count + 1);
+    for (int i = 0; i < count; ++i) {
+        Surface s;
+        const double radius = length(in);
+        s.curvature = in.below(4) == 0 || i == stop ? 0 : 1 / radius;
+        s.thickness = length(in);
+        if (in.below(4) != 0) s.semi_diameter = length(in);
+        s.glass = any_glass(in);
+        s.stop = i == stop;
+        if (i == stop) s.kind = "stop";
+        lens.surfaces.push_back(s);
+    }
+    lens.nominal_f_number = in.number();
+    return lens;
+}
+
+void draw(const ExactLens& lens, FuzzInput& in) {
+    std::vector<CameraSample> samples(4);
+    std::vector<CameraRay> rays(4);
+    for (CameraSample& s : samples) {
+        s.film_mm = {10 * in.number(), 10 * in.number()};
+        s.u_lens = {in.factor() * 0.99f, 0.5f};
+        s.time_s = 0;
+        s.wavelength_nm = 550;
+    }
+    lens.generate(samples, rays);
+    std::vector<float> nm(4, 450.f);
+    std::vector<Reprojection> back(4);
+    lens.reproject(rays, nm, back);
+    lens.chief_direction({5, 5});
+}
+
+}  // namespace
+}  // namespace dg
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    dg::FuzzInput in(data, size);
+    try {
+        dg::ExactLensSettings settings;
+        settings.f_stop = in.flag() ? in.number() : 0;
+        if (in.flag()) settings.focus_distance_m = in.number();
+        settings.only_slope_boxes = in.below(16) != 0;  // the fit takes seconds here
+        const dg::Prescription lens = dg::any_lens(in);
+        dg::draw(dg::ExactLens(lens, settings), in);
+    } catch (const dg::Error&) {
+    }
+    return 0;
+}

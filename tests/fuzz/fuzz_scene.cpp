@@ -1,0 +1,208 @@
+// fuzz_scene.cpp -- any scene description: an Error, or finite light along some rays.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "input.h"
+#include "math/error.h"
+#include "render/path.h"
+
+namespace dg {
+namespace {
+
+Mesh any_mesh(FuzzInput& in) {
+    Mesh mesh;
+    mesh.name = "mesh";
+    const int vertices = in.below(8), triangles = in.below(8), extra = in.below(64);
+    std::vector<Vec3f> positions, normals;
+    std::vector<Vec2f> uv[2];
+    std::vector<std::array<float, 4>> tangents, colors;
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    for (int i = 0; i < vertices; ++i) positions.push_back(in.vec3());
+    for (int i = 0; i < triangles; ++i) {
+        std::array<std::uint32_t, 3> corner;
+        for (auto& c : corner) c = vertices ? in.raw<std::uint8_t>() % (vertices + (extra == 63)) : 0;
+        corners.push_back(corner);
+    }
+    const auto four = [&] {
+        const Vec3f v = in.vec3();
+        return std::array<float, 4>{v.x, v.y, v.z, in.number()};
+    };
+    for (int i = 0; i < vertices; ++i) {
+        if (extra & 1) normals.push_back(in.vec3());
+        for (int set = 0; set < 2; ++set)
+            if (extra & (2 << set)) {
+                const float u = in.number();
+                uv[set].push_back({u, in.number()});
+            }
+        if (extra & 8) tangents.push_back(four());
+        if (extra & 16) colors.push_back(four());
+    }
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(corners);
+    mesh.normals = std::move(normals);
+    for (int set = 0; set < 2; ++set) mesh.uv[set] = std::move(uv[set]);
+    mesh.tangents = std::move(tangents);
+    mesh.colors = std::move(colors);
+    return mesh;
+}
+
+Texture any_texture(FuzzInput& in) {
+    Texture t;
+    t.name = "texture";
+    t.width = in.below(4);
+    t.height = in.below(4);
+    t.channels = 1 + in.below(4);
+    t.srgb = in.flag();
+    t.wrap_u = Wrap(in.below(3));
+    t.wrap_v = Wrap(in.below(3));
+    t.filter = TextureFilter(in.below(2));
+    const int count = t.width * t.height * t.channels + (in.below(32) == 31);
+    if (in.flag()) {
+        std::vector<float> pixels;
+        for (int i = 0; i < count; ++i) pixels.push_back(in.factor());
+        t.pixels = std::move(pixels);
+    } else {
+        std::vector<std::uint8_t> pixels;
+        for (int i = 0; i < count; ++i) pixels.push_back(in.raw<std::uint8_t>());
+        t.pixels = std::move(pixels);
+    }
+    return t;
+}
+
+Rgb color(FuzzInput& in) {
+    const float r = in.factor(), g = in.factor();
+    return {r, g, in.factor()};
+}
+
+void any_slot(FuzzInput& in, TextureSlot& slot) {
+    if (in.below(4) != 0) return;
+    slot.index = in.below(4) - 1;
+    slot.uv_set = in.below(2);
+    if (in.flag())
+        for (float& m : slot.m) m = in.number();
+}
+
+GltfMaterial any_gltf(FuzzInput& in) {
+    GltfMaterial m;
+    m.base_color = color(in);
+    m.base_alpha = in.factor();
+    m.metallic = in.factor();
+    m.roughness = in.factor();
+    m.normal_scale = in.number();
+    m.emissive = in.flag() ? color(in) : Rgb{0, 0, 0};
+    m.alpha_mode = GltfMaterial::AlphaMode(in.below(3));
+    m.double_sided = in.flag();
+    m.ior = 1 + in.number();
+    m.specular = in.factor();
+    m.specular_color = color(in);
+    m.transmission = in.flag() ? in.factor() : 0;
+    m.thickness = in.flag() ? in.factor() : 0;
+    if (in.flag()) m.attenuation_distance = in.number();
+    m.attenuation_color = color(in);
+    m.dispersion = in.flag() ? in.factor() : 0;
+    if (in.flag()) {
+        m.clearcoat.factor = in.factor();
+        m.clearcoat.roughness = in.factor();
+        m.sheen.color = color(in);
+        m.sheen.roughness = in.factor();
+        m.anisotropy.strength = in.factor();
+        m.anisotropy.rotation = in.number();
+        m.iridescence.factor = in.factor();
+        m.iridescence.ior = 1 + in.factor();
+        m.iridescence.thickness_min = 400 * in.factor();
+        m.iridescence.thickness_max = 400 * in.factor();
+    }
+    for (TextureSlot* slot :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+          &m.emissive_texture, &m.specular_texture, &m.specular_color_texture,
+          &m.transmission_texture, &m.clearcoat.texture, &m.clearcoat.normal_texture,
+          &m.sheen.color_texture, &m.anisotropy.texture, &m.iridescence.texture})
+        any_slot(in, *slot);
+    return m;
+}
+
+Material any_material(FuzzInput& in) {
+    Material m;
+    m.name = "material";
+    switch (in.below(6)) {
+        case 0: m.kind = DiffuseMaterial{color(in)}; break;
+        case 1: m.kind = ConductorMaterial{color(in), in.factor()}; break;
+        case 2: m.kind = DielectricMaterial{1 + in.factor(), in.factor(), color(in), in.factor()}; break;
+        default: m.kind = any_gltf(in);
+    }
+    if (in.flag()) m.emission = color(in);
+    m.two_sided_emission = in.flag();
+    return m;
+}
+
+Light any_light(FuzzInput& in) {
+    const Vec3f position = in.vec3();
+    switch (in.below(4)) {
+        case 0: return PointLight{position, color(in), in.number()};
+        case 1: {
+            const float outer = in.factor();
+            return SpotLight{position, {0, 0, -1}, color(in), outer * in.factor(), outer, in.number()};
+        }
+        case 2: return DirectionalLight{{0, 0, -1}, color(in)};
+        default: return SphereLight{{position, in.number()}, color(in)};
+    }
+}
+
+Affine3f any_transform(FuzzInput& in) {
+    Affine3f m;
+    if (in.flag()) m.origin = in.vec3();
+    if (in.flag()) {
+        m.x = in.vec3();
+        m.y = in.vec3();
+        m.z = in.vec3();
+    }
+    return m;
+}
+
+SceneDescription any_scene(FuzzInput& in) {
+    SceneDescription d;
+    for (int n = in.below(4); n > 0; --n) d.textures.push_back(any_texture(in));
+    for (int n = 1 + in.below(3); n > 0; --n) d.materials.push_back(any_material(in));
+    for (int n = 1 + in.below(3); n > 0; --n) d.meshes.push_back(any_mesh(in));
+    for (int n = in.below(5); n > 0; --n) {
+        const auto mesh = std::uint32_t(in.below(int(d.meshes.size()) + (in.below(64) == 63)));
+        const auto material = std::uint32_t(in.below(int(d.materials.size())));
+        d.instances.push_back({"it", mesh, material, any_transform(in)});
+    }
+    for (int n = in.below(3); n > 0; --n) d.lights.push_back(any_light(in));
+    if (in.flag()) d.environment = Environment::constant(color(in));
+    return d;
+}
+
+/// Light from any point in any direction: a number that the film can take or drop.
+void look(const Scene& scene, FuzzInput& in) {
+    for (int i = 0; i < 4; ++i) {
+        PathSampler sampler(i, in.below(16), i, 7);
+        Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
+        Ray ray;
+        ray.origin = i == 0 ? Vec3f{0, 0, 3} : in.vec3();
+        const Vec3f towards = i == 0 ? Vec3f{0, 0, -1} : in.vec3();
+        const float length2 = dot(towards, towards);
+        if (!(length2 > 1e-12f && length2 < 1e12f)) continue;
+        if (!std::isfinite(dot(ray.origin, ray.origin))) continue;
+        ray.direction = normalize(towards);
+        PathSettings settings;
+        settings.max_depth = 8;
+        AovSample aov;
+        radiance(scene, ray, wavelengths, sampler, settings, &aov, nullptr);
+    }
+}
+
+}  // namespace
+}  // namespace dg
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    dg::FuzzInput in(data, size);
+    try {
+        const auto scene = dg::Scene::build(dg::any_scene(in));
+        dg::look(*scene, in);
+    } catch (const dg::Error&) {
+    }
+    return 0;
+}
