@@ -258,6 +258,14 @@ TEST_CASE("bumps under the footprint become roughness, and do not shorten the no
     CHECK(length(b.ns - Vec3f{0, 0, 1}) < 0.01f);
     m.normal_scale = 0;
     CHECK(shaded(m, textures, far).alpha == doctest::Approx(0.25));
+    m.normal_scale = 1;  // the same where the roughness comes from elsewhere
+    textures.push_back(pair({255, 255, 255}, {255, 255, 255}));
+    m.metallic_roughness_texture = slot(1);
+    CHECK(shaded(m, textures, far).alpha == b.alpha);
+    m.metallic_roughness_texture = {};
+    m.specular_glossiness = true;
+    m.glossiness = 0.5f;
+    CHECK(shaded(m, textures, far).alpha == b.alpha);
 }
 
 TEST_CASE("glass is as clear to paths, which have a footprint, as to shadow rays") {
