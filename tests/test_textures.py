@@ -12,6 +12,7 @@ import daguerre as dg
 from daguerre.io import images
 from daguerre.materials import Gltf, TextureSlot
 
+from . import scenes
 from .make_gltf import png
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -50,16 +51,22 @@ def test_mip_maps_remove_most_of_the_noise_and_keep_the_converged_picture():
     assert converged.mean() == pytest.approx(reference.mean(), rel=2e-3)
 
 
-def test_samples_of_two_ranges_make_the_bits_of_one():
-    session = dg.Session(
-        ground("linear_mipmap_linear"), dg.Camera(lens="pinhole"), resolution=PIXELS
+@pytest.mark.parametrize("lens", ["pinhole", "double-gauss-50mm-f2"])
+def test_neither_ranges_nor_threads_change_a_bit(lens):
+    camera = dg.Camera(
+        lens=lens, **({} if lens == "pinhole" else {"f_stop": 2, "focus_distance": 3})
     )
-    session.draw(0, 3)
-    session.draw(3, 8)
-    whole = dg.render(
-        ground("linear_mipmap_linear"), dg.Camera(lens="pinhole"), resolution=PIXELS, spp=8
-    )
-    assert np.array_equal(session.frame().rgb, whole.rgb)
+    pictures = []
+    for threads, ranges in ((1, [(0, 8)]), (2, [(0, 3), (3, 8)]), (3, [(3, 8), (0, 3)])):
+        session = dg.Session(
+            ground("linear_mipmap_linear"), camera, resolution=PIXELS, threads=threads
+        )
+        for begin, end in ranges:
+            session.draw(begin, end)
+        pictures.append(session.frame().rgb)
+    assert pictures[0].max() > 0
+    assert np.array_equal(pictures[0], pictures[1])
+    assert np.array_equal(pictures[0], pictures[2])
 
 
 def wall(scene: dg.Scene, kind: Gltf, size: float = 30) -> dg.Scene:
@@ -68,6 +75,29 @@ def wall(scene: dg.Scene, kind: Gltf, size: float = 30) -> dg.Scene:
     uv = np.array([[0, 1], [1, 1], [1, 0], [0, 0]])
     scene.add_instance(scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], uv=uv), kind)
     return scene
+
+
+def test_a_lamp_from_an_atlas_is_as_bright_by_every_strategy():
+    """A corner of a dark image is lit, and the lamp shows that corner alone: its mean over a wide
+    cone would bring in what is not on the lamp, and no light sample could find that."""
+    scene = dg.Scene()
+    wall(scene, Gltf(base_color=(0.8, 0.8, 0.8), metallic=0.0))
+    texels = np.zeros((64, 64, 3), np.uint8)
+    texels[:16, :16] = 255
+    corner = TextureSlot(scene.add_texture(texels, srgb=True), transform=(0.25, 0, 0, 0, 0.25, 0))
+    points, triangles = scenes.quad(3)
+    uv = points[:, :2] / 6 + 0.5
+    lamp = Gltf(base_color=(0, 0, 0), emissive=(5, 5, 5), emissive_texture=corner)
+    toward_wall = np.array([[-1, 0, 0, 5], [0, 1, 0, 0], [0, 0, -1, -5], [0, 0, 0, 1]])
+    scene.add_instance(scene.add_mesh(points, triangles, uv=uv), lamp, toward_wall)
+    camera = dg.Camera(lens="pinhole", focal_length=150)
+    light, bsdf, mis = (
+        dg.render(scene, camera, resolution=PIXELS, spp=256, max_depth=1, strategy=s).rgb.mean()
+        for s in ("light", "bsdf", "mis")
+    )
+    assert light > 0.05
+    assert bsdf == pytest.approx(light, rel=0.02)
+    assert mis == pytest.approx(light, rel=0.01)
 
 
 def test_cutouts_keep_their_coverage_and_no_dark_rim():
