@@ -5,9 +5,9 @@
 // takes samples as independent; stratified ones scatter less, so it errs on the safe
 // side. A splat adds its value and its square but no count: the pixel then is a sum of
 // independent arrivals (compound Poisson), whose variance is the expected sum of squares.
-// The formula takes the square of the mean off those too: it is too low by at most mean^2 / n,
-// which is little where samples scatter by more than their mean. Splats of one camera sample
-// in one pixel would be correlated: the caller adds them up first.
+// The formula takes the square of the mean off those too: it is too low by at most
+// mean^2 / n, little where samples scatter by more than their mean. Splats of one camera
+// sample in one pixel would be correlated: the caller adds them up first.
 #include <algorithm>
 
 #include "film/film.h"
