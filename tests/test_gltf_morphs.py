@@ -224,7 +224,7 @@ BAD = {
         r"nodes\[0\]\.weights: wrong type: wanted a list",
     ),
     "huge weight": (
-        lambda b: b.json["meshes"][0].update(weights=[1e300, 1]),
+        lambda b: b.json["meshes"][0].update(weights=[1e30, 1]),
         r"attributes\.POSITION: vertex 0: wanted coordinates below 1e\+18",
     ),
     "targets is an object": (
