@@ -4,46 +4,16 @@
 
 #include "material/bsdf_check.h"
 #include "material/material.h"
+#include "material/test_hits.h"
 #include "math/error.h"
 
 namespace dg {
 namespace {
 
 using namespace check;
+using namespace test;
 
 const Vec3f kN{0, 0, 1};
-
-Wavelengths wavelengths() {
-    Wavelengths w = Wavelengths::sample(0.4f);
-    w.red = {0, 0, 1, 0.25f};
-    w.green = {0, 1, 0, 0.5f};
-    w.blue = {1, 0, 0, 0.25f};
-    return w;
-}
-
-SurfaceHit hit_from(Vec3f wo) {
-    SurfaceHit h;
-    h.ng = h.ns = kN;
-    h.tangent = {1, 0, 0};
-    h.uv[0] = {0.25f, 0.5f};
-    h.wo = normalize(wo);
-    h.front = h.wo.z > 0;
-    return h;
-}
-
-Texture texel(std::initializer_list<std::uint8_t> values) {
-    Texture t;
-    t.width = t.height = 1;
-    t.channels = static_cast<int>(values.size());
-    t.pixels = std::vector<std::uint8_t>(values);
-    return t;
-}
-
-TextureSlot slot(int index) {
-    TextureSlot s;
-    s.index = index;
-    return s;
-}
 
 template <typename B>
 B shaded(const GltfMaterial& m, const std::vector<Texture>& textures, SurfaceHit hit) {

@@ -7,30 +7,13 @@
 #include <cmath>
 
 #include "material/bsdf_check.h"
+#include "material/test_hits.h"
 #include "math/error.h"
 
 namespace dg {
 namespace {
 
-/// A basis whose parts can be told apart; it sums to 1 as the real one does.
-Wavelengths wavelengths() {
-    Wavelengths w;
-    w.red = {0, 0, 1, 0.25f};
-    w.green = {0, 1, 0, 0.5f};
-    w.blue = {1, 0, 0, 0.25f};
-    return w;
-}
-
-SurfaceHit hit_from(Vec3f wo) {
-    SurfaceHit h;
-    h.ng = h.ns = {0, 0, 1};
-    h.tangent = {1, 0, 0};
-    h.uv[0] = {0.25f, 0.5f};
-    h.uv[1] = {0.75f, 0.5f};
-    h.wo = normalize(wo);
-    h.front = h.wo.z > 0;
-    return h;
-}
+using namespace test;
 
 /// Two texels side by side, linear bytes.
 Texture pair(std::initializer_list<std::uint8_t> left,
@@ -44,13 +27,6 @@ Texture pair(std::initializer_list<std::uint8_t> left,
     t.pixels = p;
     t.filter = TextureFilter::nearest;
     return t;
-}
-
-TextureSlot slot(int index, int uv_set = 0) {
-    TextureSlot s;
-    s.index = index;
-    s.uv_set = uv_set;
-    return s;
 }
 
 GltfBsdf shaded(const GltfMaterial& m, const std::vector<Texture>& textures,

@@ -6,9 +6,14 @@
 
 #include "material/bsdf_check.h"
 #include "material/material.h"
+#include "material/test_hits.h"
 
 namespace dg {
 namespace {
+
+using test::hit_from;
+using test::slot;
+using test::texel;
 
 const Vec3f kUp{0, 0, 1};
 
@@ -19,28 +24,6 @@ Wavelengths wavelengths() {
     w.green = {0, 1, 0, 1 / 3.f};
     w.blue = {0, 0, 1, 1 / 3.f};
     return w;
-}
-
-SurfaceHit hit_from(Vec3f wo) {
-    SurfaceHit h;
-    h.ng = h.ns = kUp;
-    h.tangent = {1, 0, 0};
-    h.wo = normalize(wo);
-    h.front = wo.z > 0;
-    return h;
-}
-
-Texture texel(std::initializer_list<std::uint8_t> rgba) {
-    Texture t;
-    t.width = t.height = 1;
-    t.channels = 4;
-    t.pixels = std::vector<std::uint8_t>(rgba);
-    return t;
-}
-TextureSlot slot(int index) {
-    TextureSlot s;
-    s.index = index;
-    return s;
 }
 
 Bsdf shaded(const GltfMaterial& m, const std::vector<Texture>& textures, Vec3f wo) {

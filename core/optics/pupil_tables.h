@@ -47,8 +47,8 @@ struct LensTables {
 
 inline constexpr int kRadialSegments = 64;
 
-/// Columns that cover what is visible of the iris (pupil_region.h). Measured with the double Gauss at f/2:
-/// 32 of them cover 3 % more than needed, 64 half of that.
+/// Columns that cover what is visible of the iris (pupil_region.h); what they cover in vain falls as one
+/// over their number.
 inline constexpr int kColumns = 64;
 
 /// What is drawn at a film radius: points of the iris shape, of the visible part of the iris, or slopes.

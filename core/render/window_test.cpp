@@ -47,10 +47,10 @@ GltfMaterial glass(Rgb colour, float thickness = 0) {
     return m;
 }
 
-/// Radiance of the floor at the origin, seen from below the lowest glass (y = 0.1), in
-/// units of emission(1, 1, 1) at each wavelength: mean and variance of the hero's.
-SampleMoments floor_radiance(const SceneDescription& d, Strategy strategy, int n,
-                             int max_depth = 16) {
+/// Radiance along a ray, in units of emission(1, 1, 1) at each wavelength: mean and
+/// variance of the hero's.
+SampleMoments radiance_along(const Ray& ray, const SceneDescription& d, Strategy strategy,
+                             int n, int max_depth) {
     const auto scene = Scene::build(d);
     PathSettings settings;
     settings.strategy = strategy;
@@ -59,13 +59,19 @@ SampleMoments floor_radiance(const SceneDescription& d, Strategy strategy, int n
     for (int i = 0; i < n; ++i) {
         PathSampler sampler(i % 64, i / 64, 0, 7);
         Wavelengths wl = Wavelengths::sample(0.4f);
-        Ray ray;
-        ray.origin = {0.05f, 0.08f, 0.02f};
-        ray.direction = normalize(Vec3f{} - ray.origin);
         const Spectrum l = radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr).sum();
         values.push_back(l[0] / wl.emission({1, 1, 1})[0]);
     }
     return moments(values);
+}
+
+/// That of the floor at the origin, seen from below the lowest glass (y = 0.1).
+SampleMoments floor_radiance(const SceneDescription& d, Strategy strategy, int n,
+                             int max_depth = 16) {
+    Ray ray;
+    ray.origin = {0.05f, 0.08f, 0.02f};
+    ray.direction = normalize(Vec3f{} - ray.origin);
+    return radiance_along(ray, d, strategy, n, max_depth);
 }
 
 float green() {
@@ -244,22 +250,10 @@ TEST_CASE("a lamp inside coloured glass: light sampling knows the absorption") {
     d.lights.push_back(SphereLight{{{0, 1, 0}, 0.6f}, {9, 9, 9}});
     // The camera stands above, so that its path knows that it is inside.
     auto look = [&](Strategy strategy, int n) {
-        const auto scene = Scene::build(d);
-        PathSettings settings;
-        settings.strategy = strategy;
-        settings.max_depth = 2;
-        std::vector<double> values;
-        for (int i = 0; i < n; ++i) {
-            PathSampler sampler(i % 64, i / 64, 0, 7);
-            Wavelengths wl = Wavelengths::sample(0.4f);
-            Ray ray;
-            ray.origin = {0.8f, 5, 0};
-            ray.direction = {0, -1, 0};
-            values.push_back(
-                radiance(*scene, ray, wl, sampler, settings, nullptr, nullptr).shared[0] /
-                wl.emission({1, 1, 1})[0]);
-        }
-        return moments(values);
+        Ray ray;
+        ray.origin = {0.8f, 5, 0};
+        ray.direction = {0, -1, 0};
+        return radiance_along(ray, d, strategy, n, 2);
     };
     // Directions over the lamp's cone, seen from below the camera, and the way to the
     // lamp.

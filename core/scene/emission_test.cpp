@@ -35,7 +35,7 @@ Pair irradiance(const Scene& scene, Vec3f position, Vec3f normal, int n = 40000)
     for (int i = 0; i < n; ++i) {
         const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
         const auto s = scene.sample_light(float(hash_uniform(3, i)), u, position, wl);
-        if (s && !scene.occluded(position, s->wi, s->distance, 0)) {
+        if (s && !occluded(scene, position, s->wi, s->distance)) {
             sum.lights +=
                 s->radiance[0] * std::max(0.f, dot(normal, s->wi)) / s->pdf / unit / n;
         }
@@ -172,7 +172,7 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
         const Vec3f p = test_direction(i);
         const auto s =
             scene->sample_light(float(hash_uniform(3, i)), u, p, test_wavelengths());
-        if (!s || s->triangle_light < 0 || scene->occluded(p, s->wi, s->distance, 0))
+        if (!s || s->triangle_light < 0 || occluded(*scene, p, s->wi, s->distance))
             continue;
         const auto hit = scene->intersect(test_ray(p, s->wi));
         REQUIRE(hit.has_value());

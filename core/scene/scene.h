@@ -48,7 +48,8 @@ class Scene {
         Hit() {}  // written, so that nothing is cleared first and then set (measured)
     };
     std::optional<Hit> intersect(const Ray& ray) const;
-    /// What is left of light that comes to `ray` from `distance` metres along it: 0 or 1,
+    /// What is left of light that comes to `ray` (origin as spawn_ray moved it) from
+    /// `distance` metres along it, not counting what lies there: 0 or 1,
     /// and between them where it passes clear surfaces. It goes through smooth sheets,
     /// which bend nothing, as a path does. The boundaries of volumes are passed only by the
     /// light of delta lights, which no path could find behind them, and as if they did not
@@ -56,9 +57,6 @@ class Scene {
     /// begins in `medium`.
     Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
                         const Wavelengths& wavelengths) const;
-    /// Is anything between `from` (as spawn_ray moved it) and the point at `distance`
-    /// along the unit direction? What lies at the point itself does not count.
-    bool occluded(Vec3f from, Vec3f to_direction, float distance, float time) const;
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
 

@@ -28,7 +28,7 @@ SceneDescription one_quad() {
 TEST_CASE("an empty scene can be built and is never hit") {
     const auto scene = Scene::build({});
     CHECK_FALSE(scene->intersect(test_ray({0, 0, 0}, {0, 0, 1})).has_value());
-    CHECK_FALSE(scene->occluded({0, 0, 0}, {0, 0, 1}, 1, 0));
+    CHECK_FALSE(occluded(*scene, {0, 0, 0}, {0, 0, 1}, 1));
     CHECK(scene->lights().empty());
     CHECK(scene->triangle_count() == 0);
     CHECK(scene->bounds().max == Vec3f{0, 0, 0});
@@ -190,11 +190,11 @@ TEST_CASE("shadow rays end before what they aim at") {
     SceneDescription d = one_quad();
     d.lights.push_back(SphereLight{{{0, 0, 3}, 0.5f}, {1, 1, 1}});
     const auto scene = Scene::build(d);
-    CHECK_FALSE(scene->occluded({0, 0, 2}, {0, 0, -1}, 2, 0));
-    CHECK(scene->occluded({0, 0, 2}, {0, 0, -1}, 2.01f, 0));
-    CHECK_FALSE(scene->occluded({0, 0, 2}, {0, 0, 1}, 0.5f, 0));
+    CHECK_FALSE(occluded(*scene, {0, 0, 2}, {0, 0, -1}, 2));
+    CHECK(occluded(*scene, {0, 0, 2}, {0, 0, -1}, 2.01f));
+    CHECK_FALSE(occluded(*scene, {0, 0, 2}, {0, 0, 1}, 0.5f));
     CHECK(
-        scene->occluded({0, 0, 2}, {0, 0, 1}, std::numeric_limits<float>::infinity(), 0));
+        occluded(*scene, {0, 0, 2}, {0, 0, 1}, std::numeric_limits<float>::infinity()));
     const auto hit = scene->intersect(test_ray({0, 0, 5}, {0, 0, -1}));
     REQUIRE(hit.has_value());
     CHECK(hit->sphere_light == 0);
@@ -209,13 +209,12 @@ TEST_CASE("cutout: mask by texture, blend by chance that depends on the ray alon
     d.textures = {alpha};
     auto& m = std::get<GltfMaterial>(d.materials[0].kind);
     m.base_color_texture.index = 0;
-    CHECK(Scene::build(d)->occluded({-0.5f, 0, 1}, {0, 0, -1}, 2,
-                                    0));  // opaque: alpha unused
+    CHECK(occluded(*Scene::build(d), {-0.5f, 0, 1}, {0, 0, -1}, 2));  // opaque: alpha unused
     m.alpha_mode = GltfMaterial::AlphaMode::mask;
     auto scene = Scene::build(d);
-    CHECK_FALSE(scene->occluded({-0.5f, 0, 1}, {0, 0, -1}, 2, 0));
+    CHECK_FALSE(occluded(*scene, {-0.5f, 0, 1}, {0, 0, -1}, 2));
     CHECK_FALSE(scene->intersect(test_ray({-0.5f, 0, 1}, {0, 0, -1})).has_value());
-    CHECK(scene->occluded({0.5f, 0, 1}, {0, 0, -1}, 2, 0));
+    CHECK(occluded(*scene, {0.5f, 0, 1}, {0, 0, -1}, 2));
 
     m.alpha_mode = GltfMaterial::AlphaMode::blend;
     m.base_color_texture.index = -1;
@@ -227,7 +226,7 @@ TEST_CASE("cutout: mask by texture, blend by chance that depends on the ray alon
         const Vec3f from{float(hash_uniform(1, i)), float(hash_uniform(2, i)), 1};
         const bool hit = scene->intersect(test_ray(from, {0, 0, -1})).has_value();
         hits += hit;
-        CHECK(hit == scene->occluded(from, {0, 0, -1}, 2, 0));
+        CHECK(hit == occluded(*scene, from, {0, 0, -1}, 2));
     }
     CHECK(std::abs(hits - 0.3 * n) < 5 * std::sqrt(n * 0.21));
 }

@@ -21,6 +21,12 @@ inline Ray test_ray(Vec3f origin, Vec3f direction) {
     return ray;
 }
 
+/// Whether anything lies between, as the light of a lamp of some size finds it.
+inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float distance) {
+    const Wavelengths wavelengths = Wavelengths::sample(0.5f);
+    return scene.visibility(test_ray(from, direction), distance, false, {}, wavelengths).is_black();
+}
+
 /// [-1,1]^2 at z = 0, facing +z; u along +x, v along -y, as a picture hangs.
 inline Mesh quad_mesh() {
     Mesh mesh;

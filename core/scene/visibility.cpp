@@ -19,15 +19,6 @@ void stop_before(Ray& ray, float distance) {
 
 }  // namespace
 
-bool Scene::occluded(Vec3f from, Vec3f to_direction, float distance, float time) const {
-    Ray ray;
-    ray.origin = from;
-    ray.direction = to_direction;
-    ray.time = time;
-    stop_before(ray, distance);
-    return ray.t_max > 0 && intersector_->occluded(ray);
-}
-
 Spectrum Scene::visibility(Ray ray, float distance, bool delta, const Interior& medium,
                            const Wavelengths& wavelengths) const {
     stop_before(ray, distance);

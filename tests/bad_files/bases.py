@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import struct
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
@@ -102,3 +105,21 @@ def seen() -> Builder:
     b.add("cameras", {"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}})
     b.node(camera=0, name="camera")
     return b
+
+
+def beside_scene(name: str, put: Callable[[Path], object]) -> Callable[[Path], Path]:
+    """A good scene, and a file beside it that ``put`` makes at its path."""
+
+    def make(folder: Path) -> Path:
+        seen().glb(folder / "scene.glb")
+        put(folder / name)
+        return folder / name
+
+    return make
+
+
+#: Files that never end, for ``beside_scene``.
+ENDLESS: dict[str, Callable[[Path], object]] = {
+    "pipe": os.mkfifo,
+    "device": lambda path: path.symlink_to("/dev/zero"),
+}

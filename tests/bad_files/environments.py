@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
-from .bases import seen
+from .bases import ENDLESS, beside_scene
 from .case import DRAW, Case
 
 COMMAND = ("render", "{folder}/scene.glb", "--env", "{bad}", *DRAW)
@@ -114,29 +113,10 @@ BAD: dict[str, tuple[str, bytes | Callable[[Path], bytes], str]] = {
 
 
 def _make(name: str, data: bytes | Callable[[Path], bytes]) -> Callable[[Path], Path]:
-    def make(folder: Path) -> Path:
-        seen().glb(folder / "scene.glb")
-        (folder / name).write_bytes(data if isinstance(data, bytes) else data(folder))
-        return folder / name
+    def put(path: Path) -> None:
+        path.write_bytes(data if isinstance(data, bytes) else data(path.parent))
 
-    return make
-
-
-def _pipe(folder: Path) -> Path:
-    seen().glb(folder / "scene.glb")
-    os.mkfifo(folder / "e.hdr")
-    return folder / "e.hdr"
-
-
-def _device(folder: Path) -> Path:
-    seen().glb(folder / "scene.glb")
-    (folder / "e.hdr").symlink_to("/dev/zero")
-    return folder / "e.hdr"
-
-
-def _missing(folder: Path) -> Path:
-    seen().glb(folder / "scene.glb")
-    return folder / "none.hdr"
+    return beside_scene(name, put)
 
 
 ODD: dict[str, tuple[str, Callable[[Path], bytes]]] = {
@@ -151,8 +131,15 @@ CASES = [
         Case(f"env-{key}", _make(name, data), error, command=COMMAND)
         for key, (name, data, error) in BAD.items()
     ),
-    Case("env-pipe", _pipe, "wanted an image file", command=COMMAND),
-    Case("env-device", _device, "wanted an image file", command=COMMAND),
-    Case("env-missing", _missing, "wanted an image file, got no such file", command=COMMAND),
+    *(
+        Case(f"env-{key}", beside_scene("e.hdr", put), "wanted an image file", command=COMMAND)
+        for key, put in ENDLESS.items()
+    ),
+    Case(
+        "env-missing",
+        beside_scene("none.hdr", lambda _: None),
+        "wanted an image file, got no such file",
+        command=COMMAND,
+    ),
     *(Case(f"env-{key}", _make(name, data), command=COMMAND) for key, (name, data) in ODD.items()),
 ]

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import copy
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from daguerre import lenses
 
-from .bases import seen
+from .bases import ENDLESS, beside_scene
 from .case import DRAW, Case, keys_of
 
 COMMAND = ("render", "{folder}/scene.glb", "--lens", "{bad}", *DRAW, "--sky", "1,1,1")
@@ -122,24 +121,7 @@ TEXTS: dict[str, tuple[str, bytes, str]] = {
 
 
 def _make(name: str, data: bytes) -> Callable[[Path], Path]:
-    def make(folder: Path) -> Path:
-        seen().glb(folder / "scene.glb")
-        (folder / name).write_bytes(data)
-        return folder / name
-
-    return make
-
-
-def _pipe(folder: Path) -> Path:
-    seen().glb(folder / "scene.glb")
-    os.mkfifo(folder / "lens.json")
-    return folder / "lens.json"
-
-
-def _device(folder: Path) -> Path:
-    seen().glb(folder / "scene.glb")
-    (folder / "lens.json").symlink_to("/dev/zero")
-    return folder / "lens.json"
+    return beside_scene(name, lambda path: path.write_bytes(data))
 
 
 CASES = [
@@ -151,6 +133,8 @@ CASES = [
         Case(f"lens-{key}", _make(name, data), error, command=COMMAND)
         for key, (name, data, error) in TEXTS.items()
     ),
-    Case("lens-pipe", _pipe, "wanted", command=COMMAND),
-    Case("lens-device", _device, "wanted", command=COMMAND),
+    *(
+        Case(f"lens-{key}", beside_scene("lens.json", put), "wanted", command=COMMAND)
+        for key, put in ENDLESS.items()
+    ),
 ]

@@ -28,7 +28,7 @@ class Work(Protocol):
         """Chooses the next pass, of about ``limit`` samples at most; its size; 0: all is drawn."""
 
     def draw(self, progress: Callable[[float], bool]) -> bool:
-        """Draws the pass that was prepared; False: stopped, and nothing added."""
+        """Draws the pass that was prepared; False: stopped midway."""
 
     def done(self) -> float:
         """Samples that are drawn."""
