@@ -32,10 +32,12 @@ auto shared(const Array& array) {
                                 std::make_shared<const Array>(array));
 }
 
-inline Affine3d to_affine(const Matrix4& m) {
-    const double* p = m.data();
+/// 16 numbers, row by row.
+inline Affine3d to_affine(const double* p) {
     return {{p[0], p[4], p[8]}, {p[1], p[5], p[9]}, {p[2], p[6], p[10]}, {p[3], p[7], p[11]}};
 }
+
+inline Affine3d to_affine(const Matrix4& m) { return to_affine(m.data()); }
 
 /// A numpy array that owns a vector; shape must multiply to its size.
 template <typename T>

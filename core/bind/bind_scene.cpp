@@ -186,6 +186,13 @@ struct Builder {
         return int(description.instances.size()) - 1;
     }
 
+    int add_moving_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
+                            const Motion& motion) {
+        description.instances.push_back(
+            {name, mesh, material, {}, std::make_shared<const Motion>(motion)});
+        return int(description.instances.size()) - 1;
+    }
+
     void add_light(Light light) { description.lights.push_back(std::move(light)); }
 };
 
@@ -248,7 +255,14 @@ void bind_scene(nb::module_& m) {
                 const Triple& emission, bool two_sided) {
                  return b.add_material(name, to_gltf(values), emission, two_sided);
              })
+        .def("set_interval",
+             [](Builder& b, double open_s, double close_s) {
+                 b.description.interval = {open_s, close_s};
+             },
+             "open_s"_a, "close_s"_a, "What the picture exposes; keys of time are in s as well.")
         .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a)
+        .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
+             "motion"_a)
         .def("add_point_light",
              [](Builder& b, const Triple& position, const Triple& intensity, float range) {
                  b.add_light(PointLight{vec(position), to_rgb(intensity), range});

@@ -26,6 +26,7 @@ struct SurfaceHit {
     float color[4] = {1, 1, 1, 1};  // vertex colour, linear RGBA
     Vec3f wo;                       // unit, toward where the ray came from
     float t = 0;                    // m along the ray
+    float time = 0;                 // that of the ray
     std::uint32_t instance = 0, primitive = 0;
     bool front = true;  // dot(ng, wo) > 0
     float error =

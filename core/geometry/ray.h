@@ -10,7 +10,7 @@ namespace dg {
 struct Ray {
     Vec3f origin;     // m
     Vec3f direction;  // unit
-    float time = 0;   // s; every ray that descends from a camera ray keeps it
+    float time = 0;   // fraction of the scene's interval; kept by all that descend from a camera ray
     float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
     RayCone cone = {};  // about the ray; empty: no texture is averaged

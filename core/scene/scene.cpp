@@ -43,12 +43,21 @@ float cutout_random(const Ray& ray, const RawHit& hit) {
     return static_cast<float>(h >> 40) * 0x1p-24f;
 }
 
+/// The wall between seconds and fractions of the interval.
+void place_in(Instance& instance, const TimeInterval& interval) {
+    if (!instance.motion) return;
+    const Motion motion = instance.motion->over(interval.open, interval.close);
+    instance.world_from_local = to_float(motion.at(0));
+    instance.motion = motion.moves() ? std::make_shared<const Motion>(motion) : nullptr;
+}
+
 }  // namespace
 
 Scene::Scene(SceneDescription description) : description_(std::move(description)) {}
 Scene::~Scene() = default;
 
 std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
+    for (Instance& instance : description.instances) place_in(instance, description.interval);
     validate(description);
     build_pyramids(description.textures, description.materials);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
@@ -141,6 +150,7 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
 void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const {
     hit.wo = -ray.direction;
     hit.t = raw.t;
+    hit.time = ray.time;
     hit.primitive = raw.primitive;
     hit.instance = raw.instance;
     surface_at(records_[raw.instance], raw.primitive, raw.u, raw.v, hit);
@@ -163,6 +173,7 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     SurfaceHit& hit = result->surface;
     hit.wo = -ray.direction;
     hit.t = raw->t;
+    hit.time = ray.time;
     hit.position = ray.origin + ray.direction * raw->t;
     hit.instance = RawHit::kSphere;
     hit.primitive = raw->primitive;

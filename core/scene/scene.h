@@ -9,6 +9,7 @@
 #include "geometry/intersector.h"
 #include "light/light.h"
 #include "material/material.h"
+#include "motion/motion.h"
 #include "scene/instance_record.h"
 
 namespace dg {
@@ -16,7 +17,14 @@ namespace dg {
 struct Instance {
     std::string name;
     std::uint32_t mesh, material;
-    Affine3f world_from_local;
+    Affine3f world_from_local;                      // where it does not move
+    std::shared_ptr<const Motion> motion = nullptr; // of time in s; null: it stands still
+};
+
+/// What one picture exposes, in seconds of the scene's time: the first moment of any row of the film to
+/// the last. Inside the scene time is the fraction of it, 0 .. 1.
+struct TimeInterval {
+    double open = 0, close = 0;
 };
 
 /// What a scene is built from. Lights made of meshes are found by Scene::build from the
@@ -29,6 +37,7 @@ struct SceneDescription {
     std::vector<Light> lights;  // punctual and sphere lights
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
+    TimeInterval interval;  // what moves is wanted there
 };
 
 class Scene {
