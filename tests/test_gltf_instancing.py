@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import daguerre
-from daguerre import camera_setup
+from daguerre import camera_setup, focusing
 from daguerre.errors import InputError
 from daguerre.io import gltf, gltf_placing
 
@@ -172,7 +172,7 @@ def test_a_column_of_zeros_without_bytes_has_an_end(tmp_path, monkeypatch):
 
 
 def test_focus_on_one_of_many_instances_and_on_a_skin(tmp_path, monkeypatch):
-    monkeypatch.setattr(camera_setup, "_VERTICES_AT_ONCE", 7)
+    monkeypatch.setattr(focusing, "_VERTICES_AT_ONCE", 7)
     b = triangle()
     instanced(b, TRANSLATION=b.accessor([[0, 0, -z] for z in (9, 3, 5, 4, 8, 7)]))
     attributes = {"POSITION": b.accessor(np.array(CORNERS) - (9, 9, 2))}

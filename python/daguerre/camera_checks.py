@@ -1,0 +1,83 @@
+"""Refuses camera parameters that no lens has, or that the chosen kind of lens cannot honour."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from . import lenses
+from .camera import IDEAL, LIMITS, Camera
+from .checks import number, numbers, short, whole
+from .errors import UsageError, suggest
+
+MODELS = ("exact", "thin", "pinhole")
+
+
+def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
+    """The prescription, if any, and exact, thin or pinhole."""
+    model = camera.lens_model
+    if model is not None and model not in MODELS:
+        raise UsageError(
+            f"camera: lens_model: wanted {', '.join(MODELS)}, got {model!r}"
+            f"{suggest(str(model), MODELS)}"
+        )
+    if not isinstance(camera.lens, lenses.Lens | str | Path | None):
+        raise UsageError(
+            f"camera: lens: wanted a name, a file, a Lens or None, got {short(camera.lens)}"
+        )
+    if camera.lens is None or camera.lens in IDEAL:
+        kind = str(camera.lens or "thin")
+        if model == "exact":
+            raise UsageError(
+                "camera: lens_model exact: wanted the name or file of a lens, got none"
+            )
+        return None, model or kind
+    lens = camera.lens if isinstance(camera.lens, lenses.Lens) else lenses.load(camera.lens)
+    return lens, model or "exact"
+
+
+def check(camera: Camera, model: str, *, prescription: bool) -> None:
+    """Values that no lens has, and values that this kind cannot honour."""
+    for name in ("focal_length", "f_stop", "aperture_diameter", "iso"):
+        value = getattr(camera, name)
+        if value is not None:
+            hint = name in ("f_stop", "aperture_diameter") and value == 0
+            _positive(name, value, "; a pinhole is its own kind: lens='pinhole'" if hint else "")
+    if camera.focus_distance is not None:
+        _positive("focus_distance", camera.focus_distance, infinite=True)
+    if camera.shutter_time is not None:
+        number(camera.shutter_time, "camera: shutter_time", 0)
+    number(camera.exposure_compensation, "camera: exposure_compensation")
+    for shift in numbers(camera.shift, "camera: shift", 2, "two finite numbers (mm)"):
+        number(shift, "camera: shift", *LIMITS["shift"])
+    whole(camera.blades, "camera: blades", 0, 64, "0 (round) or 3 .. 64")
+    number(camera.blade_rotation, "camera: blade_rotation")
+    number(camera.blade_curvature, "camera: blade_curvature", -1)
+    if camera.focus_at is not None:
+        numbers(camera.focus_at, "camera: focus_at", 2, "a pixel (x, y)")
+    if prescription and camera.focal_length is not None:
+        raise UsageError(
+            "camera: focal_length: a lens with a prescription has its own; "
+            "wanted none with it, or an ideal lens (lens='thin' or 'pinhole')"
+        )
+    if (model != "thin" or prescription) and camera.aperture_diameter is not None:
+        raise UsageError(f"camera: aperture_diameter: this {model} lens takes f_stop instead")
+    if camera.aperture_diameter is not None and camera.f_stop is not None:
+        raise UsageError("camera: wanted either f_stop or aperture_diameter, got both")
+    if camera.focus_from not in ("pupil", "sensor"):
+        raise UsageError(f"camera: focus_from: wanted pupil or sensor, got {camera.focus_from!r}")
+    if camera.blades and camera.aperture_image is not None:
+        raise UsageError("camera: wanted either blades or aperture_image, got both")
+    if model == "exact" and camera.natural_vignetting:
+        raise UsageError("camera: natural_vignetting: the exact lens has its own vignetting")
+
+
+def _positive(name: str, value: Any, hint: str = "", *, infinite: bool = False) -> None:
+    low, high = LIMITS.get(name, (0.0, math.inf))
+    where = f"camera: {name}"
+    try:
+        number(value, where, above=0, infinite=infinite)
+        number(value, where, low, high, infinite=infinite)
+    except UsageError as error:
+        raise UsageError(f"{error}{hint}") from None
