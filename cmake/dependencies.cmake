@@ -12,7 +12,7 @@ if(NOT TARGET hwy::hwy)
     string(APPEND DG_MISSING "\n  Highway 1.0.3 or newer     libhwy-dev")
 endif()
 
-# Embree 4 where the system has it, else 3.13. Only core/geometry/embree.cpp sees the difference.
+# Embree 4 where the system has it, else 3.13. Only core/geometry/embree_api.h sees the difference.
 # Embree's own CMake file stops with an error of its own where oneTBB is missing, so that comes first.
 if(TARGET TBB::tbb)
     find_package(embree 4 QUIET)

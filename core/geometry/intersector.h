@@ -1,5 +1,5 @@
 // intersector.h -- what the scene asks of a ray tracer. The only implementation is
-// embree.cpp, the only file that includes Embree (3.13 or 4).
+// embree.cpp; only the files embree* of this room include Embree (3.13 or 4).
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -1,0 +1,71 @@
+// embree_api.h -- Embree 3.13 or 4 under one set of names: single rays, the context that travels
+// with them, and owners of handles. For the files embree*.cpp of this room only.
+#pragma once
+#include <memory>
+#include <type_traits>
+
+#include "geometry/crossings.h"
+#include "geometry/ray.h"
+
+#if DG_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace dg::embree {
+
+#if DG_EMBREE_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+inline void init_context(QueryContext& c) {
+    rtcInitRayQueryContext(&c);
+}
+inline void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context;
+    rtcIntersect1(scene, &ray_hit, &arguments);
+}
+inline void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context;
+    rtcOccluded1(scene, &ray, &arguments);
+}
+#else
+using QueryContext = RTCIntersectContext;
+inline void init_context(QueryContext& c) {
+    rtcInitIntersectContext(&c);
+}
+inline void query(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit) {
+    rtcIntersect1(scene, &context, &ray_hit);
+}
+inline void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
+    rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+/// Embree hands its context to the filter; the world-space ray travels behind it, because
+/// inside an instance the filter sees the transformed one.
+struct Context {
+    QueryContext embree;
+    const Ray* ray;
+    Crossings* crossings = nullptr;
+};
+
+/// Owners of Embree's handles.
+struct ReleaseDevice {
+    void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+};
+struct ReleaseScene {
+    void operator()(RTCScene s) const { rtcReleaseScene(s); }
+};
+struct ReleaseGeometry {
+    void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); }
+};
+using DeviceOwner = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using SceneOwner = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+using GeometryOwner =
+    std::unique_ptr<std::remove_pointer_t<RTCGeometry>, ReleaseGeometry>;
+
+}  // namespace dg::embree

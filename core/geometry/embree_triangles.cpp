@@ -1,0 +1,62 @@
+// embree_triangles.cpp -- the arrays of a mesh, read in place where that is safe.
+#include "geometry/embree_triangles.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "geometry/layout.h"
+
+namespace dg::embree {
+namespace {
+
+/// Whether the bytes behind an array can be read: memory comes in pages (of 4096 bytes or a
+/// multiple), and a page that holds the end of an array is readable as a whole.
+bool readable_behind(const void* end, std::size_t bytes) {
+    constexpr std::uintptr_t kPage = 4096;
+    const std::uintptr_t used = reinterpret_cast<std::uintptr_t>(end) % kPage;
+    return used != 0 && used + bytes <= kPage;
+}
+
+GeometryOwner without_vertices(Device& device, const Mesh& mesh) {
+    GeometryOwner geometry =
+        device.new_geometry(RTC_GEOMETRY_TYPE_TRIANGLE, "mesh '" + mesh.name + "'");
+    rtcSetGeometryBuildQuality(geometry.get(), kBuildQuality);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
+                               mesh.triangles.size());
+    return geometry;
+}
+
+/// Room for the vertices in memory of Embree's own.
+Vec3f* new_vertices(Device& device, RTCGeometry geometry, const Mesh& mesh) {
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                         RTC_FORMAT_FLOAT3, sizeof(Vec3f),
+                                         mesh.positions.size());
+    device.check("vertices of mesh '" + mesh.name + "'");
+    return static_cast<Vec3f*>(copy);
+}
+
+}  // namespace
+
+GeometryOwner triangles_of(Device& device, const Mesh& mesh) {
+    GeometryOwner geometry = without_vertices(device, mesh);
+    const SharedArray<Vec3f>& p = mesh.positions;
+    if (readable_behind(p.end(), 4)) {  // 16 bytes are read at the last vertex
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                   RTC_FORMAT_FLOAT3, p.data(), 0, sizeof(Vec3f), p.size());
+    } else {
+        std::copy(p.begin(), p.end(), new_vertices(device, geometry.get(), mesh));
+    }
+    return geometry;
+}
+
+GeometryOwner world_triangles_of(Device& device, const Mesh& mesh,
+                                 const Affine3f& world_from_local) {
+    if (is_identity(world_from_local)) return triangles_of(device, mesh);
+    GeometryOwner geometry = without_vertices(device, mesh);
+    Vec3f* world = new_vertices(device, geometry.get(), mesh);
+    for (Vec3f p : mesh.positions) *world++ = world_from_local.point(p);
+    return geometry;
+}
+
+}  // namespace dg::embree
