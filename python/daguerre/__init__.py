@@ -12,6 +12,7 @@ from .camera import Camera
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from .motion import Keys, Spin, keys, spin
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ __all__ = [
     "Frame",
     "Gltf",
     "InputError",
+    "Keys",
     "Material",
     "MismatchError",
     "OutputError",
@@ -36,14 +38,17 @@ __all__ = [
     "Scene",
     "Session",
     "SphereLight",
+    "Spin",
     "SpotLight",
     "TextureSlot",
     "UsageError",
     "__version__",
     "iter_render",
+    "keys",
     "lenses",
     "load",
     "render",
+    "spin",
 ]
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.

@@ -1,0 +1,317 @@
+"""Values that change over time: keys, spins, and whatever else says what it is at a moment.
+
+Times are seconds of scene time. Outside of its keys a value is held. Matrices are interpolated by
+the core (``core/motion``), so that a picture and ``at`` agree.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+
+from .checks import frozen, matrix, number, short, to_numbers
+from .errors import InputError, suggest
+
+FloatArray = NDArray[np.float64]
+#: Ways between two matrices; the first is the default. Each is explained in docs/motion.md.
+OF_MATRICES = ("decomposed", "linear", "twist", "slerp")
+OF_NUMBERS = ("linear", "step")
+MAX_KEYS = 1_000_000
+
+
+class Dynamic(Protocol):
+    """A value that changes over time."""
+
+    def at(self, time_s: float) -> Any:
+        """The value at a time, s."""
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        """Rising times inside of (begin, end), between which the value changes smoothly, s."""
+
+
+@dataclass(frozen=True, eq=False)
+class Keys:
+    """A value given at some times; made by :func:`keys`.
+
+    Attributes:
+        times: Rising, shape (K,), s.
+        values: K numbers, tuples or arrays of one shape, names or flags.
+        interpolation: Of matrices (4, 4) one of ``OF_MATRICES``, of all else of ``OF_NUMBERS``.
+        pivot: Point in local space about which decomposed matrices turn, m.
+    """
+
+    times: FloatArray
+    values: tuple[Any, ...]
+    interpolation: str
+    pivot: tuple[float, float, float] | None = None
+
+    @cached_property
+    def moves_matrices(self) -> bool:
+        """Whether the values are transforms."""
+        return np.shape(self.values[0]) == (4, 4)
+
+    @cached_property
+    def motion(self) -> _core.Motion:
+        """The same in the core; of matrices only."""
+        matrices = np.array(self.values, np.float64)
+        return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot)
+
+    def at(self, time_s: float) -> Any:
+        """The value at a time, s: held before the first key and behind the last."""
+        if self.moves_matrices and len(self.times) > 1:
+            return np.asarray(self.motion.at(time_s))
+        i = int(np.searchsorted(self.times, time_s, side="right")) - 1
+        if i < 0 or i == len(self.times) - 1:
+            return self.values[max(i, 0)]
+        a, b = self.values[i], self.values[i + 1]
+        if self.interpolation == "step" or time_s == self.times[i]:
+            return a
+        return _lerp(a, b, float((time_s - self.times[i]) / (self.times[i + 1] - self.times[i])))
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """The times of the keys inside of (begin, end), s."""
+        first, last = np.searchsorted(self.times, (begin, end), side="right")
+        inside = self.times[first:last]
+        return inside[inside < end]
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """A transform that turns evenly, by any number of turns; made by :func:`spin`.
+
+    Attributes:
+        axis: Direction in local space, counter-clockwise as seen from its tip; any length.
+        revolutions_per_second: May be negative.
+        center: Point on the axis in local space, m.
+        transform: World from local at the angle 0: a matrix (4, 4), or keys of matrices.
+        time: When the angle is 0, s.
+    """
+
+    axis: tuple[float, float, float]
+    revolutions_per_second: float
+    center: tuple[float, float, float]
+    transform: NDArray[np.float64] | Keys
+    time: float
+
+    @cached_property
+    def motion(self) -> _core.Motion:
+        """The same in the core."""
+        still = not isinstance(self.transform, Keys)
+        base = _core.Motion.still(self.transform) if still else self.transform.motion
+        return base.spinning(self.axis, self.revolutions_per_second, self.center, self.time)
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        """World from local at a time, s, shape (4, 4)."""
+        return np.asarray(self.motion.at(time_s))
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        """Those of its transform."""
+        return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else ()
+
+
+@dataclass(frozen=True, eq=False)
+class Composite:
+    """A dataclass, tuple or list with dynamic values somewhere inside."""
+
+    value: Any
+
+    def at(self, time_s: float) -> Any:
+        """The same with plain values, at a time, s."""
+        return at(self.value, time_s)
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        """Those of all that is inside."""
+        return sorted({float(t) for part in _dynamics(self.value) for t in part.breaks(begin, end)})
+
+
+def keys(
+    pairs: Iterable[tuple[float, Any]],
+    interpolation: str | None = None,
+    pivot: ArrayLike | None = None,
+) -> Keys:
+    """A value at some times, for any parameter that may change.
+
+    Args:
+        pairs: (time in s, value), times rising strictly. Values are numbers, tuples or arrays of
+            numbers of one shape, or names and flags, which step.
+        interpolation: Of matrices (4, 4): decomposed (default), linear, twist or slerp. Of other
+            numbers: linear (default) or step.
+        pivot: Point in local space, m, about which decomposed matrices turn; absent: the origin.
+
+    Raises:
+        InputError: Something else was given; the message names the key.
+    """
+    listed = _pairs(pairs)
+    times = np.array([number(t, f"keys[{i}]: time", error=InputError) for i, (t, _) in listed])
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if late.size:
+        i = int(late[0])
+        raise InputError(
+            f"keys[{i + 1}]: time: wanted times that rise strictly, "
+            f"got {times[i]:g} s then {times[i + 1]:g} s"
+        )
+    values = [_value(value, f"keys[{i}]") for i, (_, value) in listed]
+    shapes = [np.shape(value) for value in values]
+    odd = next((i for i, shape in enumerate(shapes) if shape != shapes[0]), None)
+    if odd is not None:
+        raise InputError(
+            f"keys[{odd}]: wanted shape {shapes[0]} like keys[0], got {shapes[odd] or 'one value'}"
+        )
+    steps = any(isinstance(value, str | bool | None) for value in values)
+    allowed = OF_MATRICES if shapes[0] == (4, 4) else OF_NUMBERS[steps:]
+    if interpolation is not None and interpolation not in allowed:
+        raise InputError(
+            f"keys: interpolation: wanted {', '.join(allowed)} for such values, "
+            f"got {interpolation!r}{suggest(str(interpolation), allowed)}"
+        )
+    made = Keys(times, tuple(values), interpolation or allowed[0], _pivot(pivot, shapes[0]))
+    if made.moves_matrices:
+        _in_core(made, "keys")
+    return made
+
+
+def spin(
+    axis: ArrayLike,
+    revolutions_per_second: float,
+    center: ArrayLike = (0.0, 0.0, 0.0),
+    transform: ArrayLike | Keys | None = None,
+    time: float = 0.0,
+) -> Spin:
+    """A transform that turns evenly about an axis: a wheel, a propeller.
+
+    Args:
+        axis: Direction in local space; it turns counter-clockwise as seen from its tip.
+        revolutions_per_second: May be negative.
+        center: Point on the axis in local space, m.
+        transform: World from local at the angle 0, (4, 4) or keys of such; absent: identity.
+        time: When the angle is 0, s.
+
+    Raises:
+        InputError: A number is not finite, or the axis has no length.
+    """
+    direction = _point(axis, "spin: axis")
+    if not math.hypot(*direction) > 0:
+        raise InputError(f"spin: axis: wanted a length above 0, got {short(axis)}")
+    base = transform if isinstance(transform, Keys) else matrix(transform, "spin")
+    if isinstance(base, Keys) and not base.moves_matrices:
+        raise InputError("spin: transform: wanted keys of matrices (4, 4), got keys of others")
+    rate = number(revolutions_per_second, "spin: revolutions_per_second", error=InputError)
+    zero = number(time, "spin: time", error=InputError)
+    made = Spin(direction, rate, _point(center, "spin: center"), base, zero)
+    _in_core(made, "spin")
+    return made
+
+
+def at(value: Any, time: float) -> Any:
+    """A value as it is at a time in s; what does not move comes back as it is.
+
+    Args:
+        value: Anything: a dynamic value, or a dataclass, tuple or list with some inside.
+        time: s.
+    """
+    if is_dynamic(value):
+        return value.at(time)
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        parts = vars(value)
+        changed = {name: at(part, time) for name, part in parts.items()}
+        same = all(changed[name] is part for name, part in parts.items())
+        return value if same else dataclasses.replace(value, **changed)
+    if isinstance(value, tuple | list):
+        items = [at(item, time) for item in value]
+        same = all(a is b for a, b in zip(items, value, strict=True))
+        return value if same else type(value)(items)
+    return value
+
+
+def moves(value: Any) -> bool:
+    """Whether a value is dynamic, or has something dynamic inside."""
+    return next(iter(_dynamics(value)), None) is not None
+
+
+def is_dynamic(value: Any) -> bool:
+    """Whether a value itself is dynamic."""
+    kind = type(value)
+    return hasattr(kind, "at") and hasattr(kind, "breaks")
+
+
+def _dynamics(value: Any) -> Iterable[Dynamic]:
+    if is_dynamic(value):
+        yield value
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for part in vars(value).values():
+            yield from _dynamics(part)
+    elif isinstance(value, tuple | list):
+        for item in value:
+            yield from _dynamics(item)
+
+
+def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
+    try:
+        listed = list(pairs)
+    except TypeError:
+        raise InputError(f"keys: wanted [(time in s, value), ...], got {short(pairs)}") from None
+    if not 1 <= len(listed) <= MAX_KEYS:
+        raise InputError(f"keys: wanted 1 .. {MAX_KEYS} keys, got {len(listed)}")
+    for i, pair in enumerate(listed):
+        if not isinstance(pair, tuple | list) or len(pair) != 2:
+            raise InputError(f"keys[{i}]: wanted (time in s, value), got {short(pair)}")
+    return list(enumerate(listed))
+
+
+def _value(value: Any, where: str) -> Any:
+    """A float, a tuple of floats, a read-only array, a name or a flag; finite."""
+    if isinstance(value, str | bool | np.bool_ | None):
+        return bool(value) if isinstance(value, np.bool_) else value
+    if isinstance(value, int | float):
+        return number(value, where, error=InputError)
+    numbers = to_numbers(value, where, "value", "numbers, a name or a flag")
+    if numbers.dtype.kind != "f":
+        numbers = numbers.astype(np.float64)
+    if not numbers.size or not np.isfinite(numbers).all():
+        raise InputError(f"{where}: wanted finite numbers, got {short(value)}")
+    if numbers.ndim == 0:
+        return float(numbers)
+    if isinstance(value, tuple | list) and numbers.ndim == 1:
+        return tuple(numbers.tolist())
+    return matrix(value, where) if numbers.shape == (4, 4) else frozen(numbers)
+
+
+def _point(values: ArrayLike, where: str) -> tuple[float, float, float]:
+    numbers = to_numbers(values, where, "value", "three numbers")
+    if numbers.shape != (3,) or not np.isfinite(numbers).all():
+        raise InputError(f"{where}: wanted three finite numbers, got {short(values)}")
+    x, y, z = (float(v) for v in numbers)
+    return x, y, z
+
+
+def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, float, float] | None:
+    if pivot is None:
+        return None
+    if shape != (4, 4):
+        raise InputError("keys: pivot: wanted one with matrices (4, 4) only, got other values")
+    return _point(pivot, "keys: pivot")
+
+
+def _in_core(made: Keys | Spin, where: str) -> None:
+    """What the core cannot interpolate is refused where it is written down."""
+    try:
+        _ = made.motion
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _lerp(a: Any, b: Any, s: float) -> Any:
+    if isinstance(a, tuple):
+        return tuple(x + s * (y - x) for x, y in zip(a, b, strict=True))
+    if isinstance(a, np.ndarray):
+        return (a + a.dtype.type(s) * (b - a)).astype(a.dtype, copy=False)
+    return a + s * (b - a)
