@@ -57,13 +57,13 @@ class Keys:
     @cached_property
     def moves_matrices(self) -> bool:
         """Whether the values are transforms."""
-        return np.shape(self.values[0]) == (4, 4)
+        return _shape(self.values[0]) == (4, 4)
 
     @cached_property
     def motion(self) -> _core.Motion:
         """The same in the core; of matrices only."""
         matrices = np.array(self.values, np.float64)
-        return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot)
+        return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot or (0, 0, 0))
 
     def at(self, time_s: float) -> Any:
         """The value at a time, s: held before the first key and behind the last."""
@@ -77,11 +77,11 @@ class Keys:
             return a
         return _lerp(a, b, float((time_s - self.times[i]) / (self.times[i + 1] - self.times[i])))
 
-    def breaks(self, begin: float, end: float) -> FloatArray:
+    def breaks(self, begin: float, end: float) -> list[float]:
         """The times of the keys inside of (begin, end), s."""
-        first, last = np.searchsorted(self.times, (begin, end), side="right")
-        inside = self.times[first:last]
-        return inside[inside < end]
+        first = np.searchsorted(self.times, begin, side="right")
+        last = np.searchsorted(self.times, end, side="left")
+        return [float(t) for t in self.times[first:last]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,17 +105,17 @@ class Spin:
     @cached_property
     def motion(self) -> _core.Motion:
         """The same in the core."""
-        still = not isinstance(self.transform, Keys)
-        base = _core.Motion.still(self.transform) if still else self.transform.motion
+        base = self.transform
+        base = base.motion if isinstance(base, Keys) else _core.Motion.still(base)
         return base.spinning(self.axis, self.revolutions_per_second, self.center, self.time)
 
     def at(self, time_s: float) -> NDArray[np.float64]:
         """World from local at a time, s, shape (4, 4)."""
         return np.asarray(self.motion.at(time_s))
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> list[float]:
         """Those of its transform."""
-        return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else ()
+        return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else []
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +128,7 @@ class Composite:
         """The same with plain values, at a time, s."""
         return at(self.value, time_s)
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> list[float]:
         """Those of all that is inside."""
         return sorted({float(t) for part in _dynamics(self.value) for t in part.breaks(begin, end)})
 
@@ -160,12 +160,10 @@ def keys(
             f"got {times[i]:g} s then {times[i + 1]:g} s"
         )
     values = [_value(value, f"keys[{i}]") for i, (_, value) in listed]
-    shapes = [np.shape(value) for value in values]
+    shapes = [_shape(value) for value in values]
     odd = next((i for i, shape in enumerate(shapes) if shape != shapes[0]), None)
     if odd is not None:
-        raise InputError(
-            f"keys[{odd}]: wanted shape {shapes[0]} like keys[0], got {shapes[odd] or 'one value'}"
-        )
+        raise InputError(f"keys[{odd}]: wanted shape {shapes[0]} like keys[0], got {shapes[odd]}")
     steps = any(isinstance(value, str | bool | None) for value in values)
     allowed = OF_MATRICES if shapes[0] == (4, 4) else OF_NUMBERS[steps:]
     if interpolation is not None and interpolation not in allowed:
@@ -283,6 +281,12 @@ def _value(value: Any, where: str) -> Any:
     if isinstance(value, tuple | list) and numbers.ndim == 1:
         return tuple(numbers.tolist())
     return matrix(value, where) if numbers.shape == (4, 4) else frozen(numbers)
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    if isinstance(value, np.ndarray):
+        return tuple(int(n) for n in value.shape)
+    return (len(value),) if isinstance(value, tuple) else ()
 
 
 def _point(values: ArrayLike, where: str) -> tuple[float, float, float]:
