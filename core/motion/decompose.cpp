@@ -60,4 +60,18 @@ std::optional<RotationStretch> scaled_rotation(const Affine3d& m) {
                            {{side * x, 0, 0}, {0, y, 0}, {0, 0, z}, {}}};
 }
 
+// The largest eigenvalue of M^T M, in closed form. Source: Smith 1961, Eigenvalues of a symmetric 3x3
+// matrix, Comm. ACM 4(4).
+double spectral_norm(const Affine3d& m) {
+    const double xx = dot(m.x, m.x), yy = dot(m.y, m.y), zz = dot(m.z, m.z);
+    const double xy = dot(m.x, m.y), yz = dot(m.y, m.z), zx = dot(m.z, m.x);
+    const double mean = (xx + yy + zz) / 3;
+    const Vec3d d{xx - mean, yy - mean, zz - mean};
+    const double p = std::sqrt((dot(d, d) + 2 * (xy * xy + yz * yz + zx * zx)) / 6);
+    if (!(p > 1e-12 * mean)) return std::sqrt(std::max(mean, 0.0));
+    const Affine3d b{{d.x / p, xy / p, zx / p}, {xy / p, d.y / p, yz / p}, {zx / p, yz / p, d.z / p}, {}};
+    const double angle = std::acos(std::clamp(b.determinant() / 2, -1.0, 1.0)) / 3;
+    return std::sqrt(mean + 2 * p * std::cos(angle));
+}
+
 }  // namespace dg

@@ -22,4 +22,7 @@ std::optional<RotationStretch> polar(const Affine3d& m);
 /// columns are not at right angles, or one is 0.
 std::optional<RotationStretch> scaled_rotation(const Affine3d& m);
 
+/// Most that the map makes any vector longer.
+double spectral_norm(const Affine3d& m);
+
 }  // namespace dg

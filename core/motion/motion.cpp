@@ -86,8 +86,17 @@ Affine3d Motion::Segment::at(double s, Vec3d pivot) const {
     return m;
 }
 
-Motion::Motion(const Affine3d& still) : times_{0}, segments_(1) {
-    segments_[0].first = still;
+Motion::Motion(Track track) {
+    const bool moves = track.segments.size() > 1 || track.spins();
+    still_ = track.segments.front().first;
+    if (moves) track_ = std::make_shared<const Track>(std::move(track));
+}
+
+Motion::Track Motion::track_or_still() const {
+    if (track_) return *track_;
+    Track track{{0}, std::vector<Segment>(1), {}, {}};
+    track.segments[0].first = still_;
+    return track;
 }
 
 Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> keys,
@@ -96,10 +105,7 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
         throw input_error("motion", "keys", "one matrix for each time",
                           std::to_string(times.size()) + " times, " + std::to_string(keys.size()) +
                               " matrices");
-    Motion motion;
-    motion.times_.assign(times.begin(), times.end());
-    motion.segments_.assign(keys.size(), {});
-    motion.pivot_ = pivot;
+    Track track{{times.begin(), times.end()}, std::vector<Segment>(keys.size()), pivot, {}};
     for (std::size_t i = 0; i < keys.size(); ++i) {
         if (!std::isfinite(times[i]) || !is_finite(keys[i]))
             throw input_error("motion key " + std::to_string(i), "numbers", "finite ones",
@@ -107,7 +113,7 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
         if (i > 0 && !(times[i] >= times[i - 1]))
             throw input_error("motion key " + std::to_string(i), "time", "times that rise",
                               std::to_string(times[i - 1]) + " then " + std::to_string(times[i]));
-        Segment& segment = motion.segments_[i];
+        Segment& segment = track.segments[i];
         segment.first = keys[i];
         if (const auto parts = split(keys[i], how, i)) {
             segment.turns = true;
@@ -117,8 +123,8 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
         }
     }
     for (std::size_t i = 0; i + 1 < keys.size(); ++i)
-        lead_to(motion.segments_[i], motion.segments_[i + 1]);
-    return motion;
+        lead_to(track.segments[i], track.segments[i + 1]);
+    return Motion(std::move(track));
 }
 
 Motion Motion::spinning(const Spin& spin) const {
@@ -127,44 +133,46 @@ Motion Motion::spinning(const Spin& spin) const {
         !std::isfinite(size + length(spin.center) + spin.revolutions_per_second + spin.time))
         throw input_error("spin", "axis, center, speed", "finite numbers and an axis that is not 0",
                           "axis length " + std::to_string(size));
-    Motion motion = *this;
-    motion.spin_ = spin;
-    motion.spin_.axis = spin.axis / size;
-    return motion;
+    Track track = track_or_still();
+    track.spin = spin;
+    track.spin.axis = spin.axis / size;
+    return Motion(std::move(track));
 }
 
-Affine3d Motion::at(double time) const {
-    const KeyPlace place = place_among(times_, time);
-    const Affine3d base = segments_[place.left].at(place.share, pivot_);
-    if (spin_.revolutions_per_second == 0) return base;
+Affine3d Motion::Track::at(double time) const {
+    const KeyPlace place = place_among(times, time);
+    const Affine3d base = segments[place.left].at(place.share, pivot);
+    return spins() ? base * spun(time) : base;
+}
+
+Affine3d Motion::Track::spun(double time) const {
     // Whole turns are taken off first: the sine of a large angle has lost its digits.
-    const double turns = spin_.revolutions_per_second * (time - spin_.time);
+    const double turns = spin.revolutions_per_second * (time - spin.time);
     const double angle = 2 * kPiD * (turns - std::floor(turns));
-    Affine3d turn = to_matrix(Quaterniond::from_axis_angle(spin_.axis, angle));
-    turn.origin = spin_.center - turn.vector(spin_.center);
-    return base * turn;
+    Affine3d turn = to_matrix(Quaterniond::from_axis_angle(spin.axis, angle));
+    turn.origin = spin.center - turn.vector(spin.center);
+    return turn;
 }
 
 Motion Motion::over(double open, double close) const {
     const double span = close - open;
-    if (!(span > 0)) return Motion(at(open));
-    Motion part = *this;
-    const std::size_t first = place_among(times_, open).left, last = place_among(times_, close).left;
-    const bool on_key = last > first && times_[last] == close;
-    const std::size_t end = std::min(last + (on_key ? 1 : 2), times_.size());   // the key behind too
-    part.times_.assign(times_.begin() + first, times_.begin() + end);
-    part.segments_.assign(segments_.begin() + first, segments_.begin() + end);
-    for (double& t : part.times_) t = (t - open) / span;
-    const auto rests = [&](const Segment& s) { return same(s.first, part.segments_[0].first); };
-    if (times_[first] >= close || std::ranges::all_of(part.segments_, rests)) {
-        part.times_ = {0};
-        part.segments_.resize(1);
+    if (!track_ || !(span > 0)) return Motion(at(open));
+    Track part = *track_;
+    const std::vector<double>& times = track_->times;
+    const std::size_t first = place_among(times, open).left, last = place_among(times, close).left;
+    const bool on_key = last > first && times[last] == close;
+    const std::size_t end = std::min(last + (on_key ? 1 : 2), times.size());   // the key behind too
+    part.times.assign(times.begin() + first, times.begin() + end);
+    part.segments.assign(track_->segments.begin() + first, track_->segments.begin() + end);
+    for (double& t : part.times) t = (t - open) / span;
+    const auto rests = [&](const Segment& s) { return same(s.first, part.segments[0].first); };
+    if (times[first] >= close || std::ranges::all_of(part.segments, rests)) {
+        part.times = {0};
+        part.segments.resize(1);
     }
-    if (spin_.revolutions_per_second != 0) {
-        part.spin_.revolutions_per_second = spin_.revolutions_per_second * span;
-        part.spin_.time = (spin_.time - open) / span;
-    }
-    return part;
+    part.spin.revolutions_per_second *= span;
+    part.spin.time = (part.spin.time - open) / span;
+    return Motion(std::move(part));
 }
 
 }  // namespace dg

@@ -9,6 +9,7 @@
 // Sources: the UCSD lecture on cameras (linear, twist); Shoemake and Duff 1992, Matrix Animation and
 // Polar Decomposition, Graphics Interface.
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct Spin {
 class Motion {
   public:
     /// Stands still.
-    Motion(const Affine3d& still = {});  // NOLINT: a transform is a motion
+    Motion(const Affine3d& still = {}) : still_(still) {}  // NOLINT: a transform is a motion
 
     /// Keys at `times` (s) that do not fall; two of one time are a jump. `pivot`, in the space that is
     /// transformed from, is the point whose path is straight between keys (without one: the origin).
@@ -43,8 +44,8 @@ class Motion {
     /// The same, after turning as `spin` says.
     Motion spinning(const Spin& spin) const;
 
-    bool moves() const { return segments_.size() > 1 || spin_.revolutions_per_second != 0; }
-    Affine3d at(double time) const;
+    bool moves() const { return track_ != nullptr; }
+    Affine3d at(double time) const { return track_ ? track_->at(time) : still_; }
 
     /// This motion with `open` as time 0 and `close` as time 1; it stands still if it does not move in
     /// between.
@@ -63,17 +64,24 @@ class Motion {
 
         Affine3d at(double s, Vec3d pivot) const;
     };
-    /// One per key: the last one is held. Its time is that of the same index in times().
-    const std::vector<Segment>& segments() const { return segments_; }
-    const std::vector<double>& times() const { return times_; }
-    const Spin& spin() const { return spin_; }
-    Vec3d pivot() const { return pivot_; }
+    struct Track {
+        std::vector<double> times;
+        std::vector<Segment> segments;  // one per time; the last one is held
+        Vec3d pivot{};
+        Spin spin;
+
+        Affine3d at(double time) const;
+        bool spins() const { return spin.revolutions_per_second != 0; }
+        Affine3d spun(double time) const;  // the spin alone
+    };
+    const Track* track() const { return track_.get(); }  // null: stands still
 
   private:
-    std::vector<double> times_;
-    std::vector<Segment> segments_;
-    Vec3d pivot_{};
-    Spin spin_;
+    explicit Motion(Track track);
+    Track track_or_still() const;
+
+    Affine3d still_;
+    std::shared_ptr<const Track> track_;  // copies share it
 };
 
 }  // namespace dg
