@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError, suggest
+from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
     from .lenses import Lens
@@ -32,11 +33,19 @@ LIMITS = {
     "focus_distance": (1e-6, 1e12),  # m, or infinite
     "shift": (-1e5, 1e5),  # mm
 }
+#: what may change while the shutter is open
+MOVABLE = (
+    *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
+    *("blades", "blade_rotation", "blade_curvature", "shift"),
+)
 
 
 @dataclass(frozen=True)
 class Camera:
     """A camera; ``with_`` makes changed copies.
+
+    Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
+    kept in ``motion``, and the parameter itself has the value of one moment; ``at`` chooses it.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
@@ -62,6 +71,7 @@ class Camera:
         shift: Film shift, mm.
         shutter_time: s; None: the file's.
         iso, exposure_compensation: For development; they never change ``frame.rgb``.
+        motion: Parameters that change over time.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -86,6 +96,31 @@ class Camera:
     shutter_time: float | None = None
     iso: float = 100.0
     exposure_compensation: float = 0.0
+    motion: dict[str, Dynamic] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        found: dict[str, Dynamic] = {}
+        for name, value in vars(self).items():
+            if is_dynamic(value):
+                found[name] = value
+            elif name in MOVABLE and moves(value):  # such as a shift of two numbers
+                found[name] = Composite(value)
+        for name in {**self.motion, **found}:
+            if name not in MOVABLE:
+                raise UsageError(f"camera: {name}: wanted a value that stays, got one over time")
+        for name, value in found.items():
+            object.__setattr__(self, name, value.at(0.0))
+        object.__setattr__(self, "motion", {**self.motion, **found})
+
+    def at(self, time: float) -> Camera:
+        """The camera as it is at a time in s; nothing in it moves."""
+        return replace(self.moved_to(time), motion={}) if self.motion else self
+
+    def moved_to(self, time: float) -> Camera:
+        """The same camera, whose parameters show their values of another time, s."""
+        if not self.motion:
+            return self
+        return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
 
     def with_(self, **changes: Any) -> Camera:
         """A copy with some parameters changed.
@@ -114,4 +149,6 @@ class Camera:
             replaced |= dict.fromkeys(rivals) if both else {}
         if changes.get("lens") not in (None, *IDEAL):
             replaced |= {"focal_length": None, "aperture_diameter": None}
-        return replace(self, **(replaced | changes))
+        values: dict[str, Any] = replaced | changes
+        left = {name: value for name, value in self.motion.items() if name not in values}
+        return replace(self, **({"motion": left} | values))

@@ -159,7 +159,7 @@ def keys(
             f"keys[{i + 1}]: time: wanted times that rise strictly, "
             f"got {times[i]:g} s then {times[i + 1]:g} s"
         )
-    values = [_value(value, f"keys[{i}]") for i, (_, value) in listed]
+    values = [_value(value, f"keys[{i}]", interpolation) for i, (_, value) in listed]
     shapes = [_shape(value) for value in values]
     odd = next((i for i, shape in enumerate(shapes) if shape != shapes[0]), None)
     if odd is not None:
@@ -265,12 +265,13 @@ def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
     return list(enumerate(listed))
 
 
-def _value(value: Any, where: str) -> Any:
-    """A float, a tuple of floats, a read-only array, a name or a flag; finite."""
+def _value(value: Any, where: str, interpolation: str | None) -> Any:
+    """A number, a tuple of floats, a read-only array, a name or a flag; finite."""
     if isinstance(value, str | bool | np.bool_ | None):
         return bool(value) if isinstance(value, np.bool_) else value
     if isinstance(value, int | float):
-        return number(value, where, error=InputError)
+        finite = number(value, where, error=InputError)
+        return value if interpolation == "step" else finite  # whole numbers stay whole
     numbers = to_numbers(value, where, "value", "numbers, a name or a flag")
     if numbers.dtype.kind != "f":
         numbers = numbers.astype(np.float64)
