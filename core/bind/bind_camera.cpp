@@ -5,6 +5,7 @@
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
+#include "camera/chief.h"
 #include "math/error.h"
 
 namespace nb = nanobind;
@@ -40,6 +41,33 @@ auto rays(const dg::Camera& camera, const dg::bind::Rows2f& film_mm, const dg::b
                       dg::bind::to_numpy(std::move(weights), {n})};
 }
 
+using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+
+/// Chief rays of film points, in the camera's frame.
+auto chief_rays(const dg::ChiefRays& chief, const Rows2d& film_mm) {
+    const std::size_t n = film_mm.shape(0);
+    std::vector<double> origins, directions;
+    for (std::size_t i = 0; i < n; ++i) {
+        const dg::ChiefRay ray = chief.at({film_mm(i, 0), film_mm(i, 1)});
+        for (int k = 0; k < 3; ++k) origins.push_back(ray.origin[k]), directions.push_back(ray.direction[k]);
+    }
+    return std::tuple{dg::bind::to_numpy(std::move(origins), {n, std::size_t(3)}),
+                      dg::bind::to_numpy(std::move(directions), {n, std::size_t(3)})};
+}
+
+/// Film points of points of the camera's frame, or of directions; NaN where there is none.
+auto film_points(const dg::ChiefRays& chief, const Rows3d& points, bool at_infinity) {
+    const std::size_t n = points.shape(0);
+    std::vector<double> film(2 * n, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto mm =
+            chief.film_point({points(i, 0), points(i, 1), points(i, 2)}, at_infinity ? 0 : 1);
+        if (mm) film[2 * i] = mm->x, film[2 * i + 1] = mm->y;
+    }
+    return dg::bind::to_numpy(std::move(film), {n, std::size_t(2)});
+}
+
 }  // namespace
 
 void bind_camera(nb::module_& m) {
@@ -52,6 +80,11 @@ void bind_camera(nb::module_& m) {
             return Iris::image(int(p.shape(1)), int(p.shape(0)),
                                std::vector<float>(p.data(), p.data() + p.size()));
         });
+    nb::class_<ChiefRays>(m, "ChiefRays")
+        .def("rays", &chief_rays, "film_mm"_a,
+             "(origins, directions), m, of the chief rays of film points (N, 2) (mm, upright).")
+        .def("film_points", &film_points, "points"_a, "at_infinity"_a = false,
+             "Where the chief rays of points (N, 3) meet the film (mm, upright); NaN: behind the camera.");
     nb::class_<Camera>(m, "Camera")
         .def_static("pinhole",
                     [](const Matrix4& world, double film_distance_mm, bool natural_vignetting) {
@@ -74,5 +107,7 @@ void bind_camera(nb::module_& m) {
                     },
                     "world_from_camera"_a, "lens"_a)
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
-             "(origins, directions, weights) in the world for explicit film points (mm, upright).");
+             "(origins, directions, weights) in the world for explicit film points (mm, upright).")
+        .def("chief_rays", [](const Camera& camera) { return ChiefRays(camera.lens); },
+             "Of the lens, in the camera's frame.");
 }

@@ -1,0 +1,53 @@
+// chief.h -- the chief rays of a camera and their inverse: which film point sees a point
+// of the scene.
+//
+// The chief ray of a film point is the mean of the rays that pass: it meets every plane
+// across it in the middle of what the film point sees of that plane. So it goes through
+// the point in focus exactly, and through the middle of the blur elsewhere; mounts that
+// cut the pupil move it, but never darken it. Ideal lenses: through the centre of the
+// lens. Exact lenses: the mean at the design wavelength, with the iris turned to all
+// sides, so that it depends on the distance from the axis alone.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "camera/camera.h"
+
+namespace dg {
+
+struct ChiefRay {
+    Vec3d origin,
+        direction;  // camera frame, m; unit; from where the lens's own rays start
+};
+
+class ChiefRays {
+  public:
+    /// Throws Error if no light passes an exact lens on its axis.
+    explicit ChiefRays(const LensKind& lens);
+
+    /// Of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
+    /// are continued linearly in the film radius, for points that leave the frame.
+    ChiefRay at(Vec2d film_mm) const;
+
+    /// The film point (mm, upright) whose chief ray meets a point of the camera frame;
+    /// nothing if it lies behind. Homogeneous: (p, 1) is a point in m, (d, 0) lies in
+    /// direction d at infinity.
+    std::optional<Vec2d> film_point(Vec3d p, double w = 1) const;
+
+    /// In the plane of the axis: the line n . x = offset with the normal n = (cos angle,
+    /// sin angle) in (outward, z), followed along (sin angle, -cos angle) from `start` m
+    /// past its foot point.
+    struct Meridional {
+        double angle = 0, offset = 0, start = 0;
+    };
+
+  private:
+    Meridional at_radius(double mm) const;
+    std::optional<double> solve(double outward, double z, double w) const;
+
+    double film_distance_mm_ = 0;    // of an ideal lens, else 0
+    std::vector<Meridional> table_;  // of an exact one, by film radius
+    double step_mm_ = 0;
+};
+
+}  // namespace dg
