@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,9 @@ from .checks import number as check_number
 from .errors import InputError, UsageError, suggest
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
+from .motion import Composite, Dynamic, at, is_dynamic, moves
+from .point_cache import PointCache, steps_of
+from .scene_motion import SceneMotion, Vertices, scene_at
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,7 @@ class Instance:
     material: int
     transform: NDArray[np.float64]
     name: str = ""
+    shown: bool = True
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,10 @@ class Scene:
     """What the camera looks at.
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
+
+    Its lists show the moment ``time`` (s); ``motion`` has what changes, and ``at`` goes to another
+    moment. Transforms, vertices and the parameters of materials, lights and environment may be
+    values over time, such as :func:`daguerre.keys` makes.
     """
 
     path: Path | None = None
@@ -92,6 +100,10 @@ class Scene:
     #: other names by which ``camera`` finds one, such as that of the camera in its node
     camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
+    #: what of all that changes over time
+    motion: SceneMotion = field(default_factory=SceneMotion)
+    #: length of the animations of a file, s
+    duration: float | None = None
     #: node name -> indices of its instances (its own and its descendants'), for ``focus_on``
     nodes: dict[str, list[int]] = field(default_factory=dict)
     #: node name -> world position (m), also of nodes without a mesh
@@ -100,6 +112,10 @@ class Scene:
     variants: list[str] = field(default_factory=list)
     #: what the reader met and did not understand, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
+
+    def at(self, time: float) -> Scene:
+        """The same scene at another time, s; what does not change is shared."""
+        return scene_at(self, check_number(time, "scene: time"))
 
     def add_texture(
         self,
@@ -138,46 +154,48 @@ class Scene:
             material = Material(**fields)
         elif isinstance(material, Kind):
             material = Material(material)
-        check_material(
-            material, f"material {getattr(material, 'name', '') or len(self.materials)!r}"
-        )
-        self.materials.append(material)
+        shown = at(material, self.time)
+        check_material(shown, f"material {getattr(shown, 'name', '') or len(self.materials)!r}")
+        if (motion := _motion_of(material)) is not None:
+            self.motion.materials[len(self.materials)] = motion
+        self.materials.append(shown)
         return len(self.materials) - 1
 
     def add_mesh(
         self,
-        positions: ArrayLike,
+        positions: ArrayLike | Dynamic,
         indices: ArrayLike,
-        normals: ArrayLike | None = None,
+        normals: ArrayLike | Dynamic | None = None,
         uv: ArrayLike | None = None,
         *,
         uv1: ArrayLike | None = None,
         tangents: ArrayLike | None = None,
         colors: ArrayLike | None = None,
-        steps: ArrayLike | None = None,
+        steps: Dynamic | tuple[ArrayLike, ArrayLike] | None = None,
         name: str = "",
     ) -> int:
         """Adds triangles; returns the index of the mesh.
 
         Args:
-            positions: Vertices, shape (N, 3), m.
+            positions: Vertices, shape (N, 3), m; they may be over time.
             indices: Triangles, shape (M, 3) or (3 M,).
-            normals: Unit normals, shape (N, 3); absent: flat shading.
+            normals: Unit normals, shape (N, 3); absent: flat shading. Those that are not over time
+                belong to ``positions`` at the scene's time, and turn with the surface.
             uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
             uv1: The same, set 1.
             tangents: Shape (N, 4), w is the handedness.
             colors: Linear RGB or RGBA, shape (N, 3) or (N, 4).
-            steps: Vertices per time step; not supported yet.
+            steps: Vertices over time, as (times (S,) in s, positions (S, N, 3)) or over time;
+                ``positions`` then are those to which the normals belong.
             name: For messages.
 
         Raises:
             InputError: A shape, an index or a number is wrong; the message names it.
-            UsageError: ``steps`` were given.
         """
         where = f"mesh {name or len(self.meshes)!r}"
-        if steps is not None:
-            raise UsageError(f"{where}: steps: vertices per time step are not supported yet")
-        points = array(positions, where, "positions", 3)
+        moving = _dynamic(positions) if steps is None else steps_of(steps, where)
+        moving_normals = _dynamic(normals)
+        points = array(self._now(positions), where, "positions", 3)
         triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
         if triangles.dtype.kind not in "iu":
             raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
@@ -195,60 +213,80 @@ class Scene:
             rgb = array(colors, where, "colors", 3)
             colors = given_up(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))
         n = len(points)
-        self.meshes.append(
-            Mesh(
-                points,
-                frozen(triangles, np.uint32),
-                optional_array(normals, where, "normals", 3, n),
-                optional_array(uv, where, "uv", 2, n),
-                optional_array(uv1, where, "uv1", 2, n),
-                optional_array(tangents, where, "tangents", 4, n),
-                optional_array(colors, where, "colors", 4, n),
-                name,
-            )
+        mesh = Mesh(
+            points,
+            frozen(triangles, np.uint32),
+            optional_array(self._now(normals), where, "normals", 3, n),
+            optional_array(uv, where, "uv", 2, n),
+            optional_array(uv1, where, "uv1", 2, n),
+            optional_array(tangents, where, "tangents", 4, n),
+            optional_array(colors, where, "colors", 4, n),
+            name,
         )
+        if moving is not None or moving_normals is not None:
+            rest = Vertices(mesh.positions, mesh.normals, mesh.tangents)
+            path = moving or Composite(points)
+            cache = PointCache(path, moving_normals, rest, mesh.indices, where)
+            mesh = replace(mesh, **vars(cache.at(self.time)))
+            self.motion.meshes[len(self.meshes)] = cache
+        self.meshes.append(mesh)
         return len(self.meshes) - 1
+
+    def _now(self, value: Any) -> Any:
+        """A value, or what it is at the time of the scene."""
+        return value.at(self.time) if is_dynamic(value) else value
 
     def add_instance(
         self,
         mesh: int,
         material: int | Material | Kind | None = None,
-        transform: ArrayLike | None = None,
+        transform: ArrayLike | Dynamic | None = None,
         *,
         name: str = "",
+        shown: bool | Dynamic = True,
     ) -> int:
         """Puts a mesh into the world; returns the index of the instance.
 
         Args:
             mesh: Index from ``add_mesh``.
             material: Index from ``add_material`` or a material; absent: grey diffuse.
-            transform: World from local, shape (4, 4); absent: identity.
+            transform: World from local, shape (4, 4), which may be over time; absent: identity.
             name: For messages, ids and ``focus_on``.
+            shown: Whether it is there, which may be over time.
 
         Raises:
             InputError: There is no such mesh or material, or the transform is no finite matrix.
-            UsageError: The transform is a list of keys over time, which is not supported yet.
+            UsageError: The transform is a list of keys over time, as it is before ``dg.keys``.
         """
         where = f"instance {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
         if _are_keys(transform):
-            raise UsageError(f"{where}: transform: keys over time are not supported yet")
-        world = matrix(transform, where)
+            raise UsageError(f"{where}: transform: keys over time: wanted dg.keys(...), got a list")
+        world = matrix(self._now(transform), where)
         if material is None:
             material = Material(Diffuse())
         if isinstance(material, Material | Kind):
             material = self.add_material(material)
         material = self._index(material, len(self.materials), f"{where}: material")
-        self.instances.append(Instance(mesh, material, world, name))
-        index = len(self.instances) - 1
+        index = len(self.instances)
+        if (motion := _dynamic(transform)) is not None:
+            self.motion.instances[index] = motion
+        if (presence := _dynamic(shown)) is not None:
+            self.motion.shown[index] = presence
+        self.instances.append(Instance(mesh, material, world, name, bool(self._now(shown))))
         if name:
             self.nodes.setdefault(name, []).append(index)
         return index
 
-    def add_light(self, light: Light, transform: ArrayLike | None = None) -> int:
+    def add_light(self, light: Light, transform: ArrayLike | Dynamic | None = None) -> int:
         """Adds a light at the origin of ``transform`` (4, 4), shining along its -z."""
-        check_light(light)
-        self.lights.append((light, matrix(transform, f"light {light.name!r}")))
+        shown = at(light, self.time)
+        check_light(shown)
+        world = matrix(self._now(transform), f"light {shown.name!r}")
+        motion = _motion_of((light, _dynamic(transform) or world))
+        if motion is not None:
+            self.motion.lights[len(self.lights)] = motion
+        self.lights.append((shown, world))
         return len(self.lights) - 1
 
     def add_camera(self, name: str, camera: Camera) -> None:
@@ -264,11 +302,13 @@ class Scene:
         self,
         image: ArrayLike | str | Path | None = None,
         *,
-        color: Sequence[float] | None = None,
-        scale: float = 1.0,
-        rotation: float = 0.0,
+        color: Sequence[float] | Dynamic | None = None,
+        scale: float | Dynamic = 1.0,
+        rotation: float | Dynamic = 0.0,
     ) -> None:
         """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
+
+        All but the picture may be over time.
 
         Args:
             image: Equirectangular, row 0 at the zenith (+y), centre column along -z; or its file.
@@ -285,10 +325,13 @@ class Scene:
             pixels = read_environment(image)
         elif image is not None:
             pixels = _panorama(image)
-        rgb = None if color is None else check_color(color, "environment: color")
-        scale = check_number(scale, "environment: scale", 0)
-        rotation = check_number(rotation, "environment: rotation")
-        self.environment = Environment(pixels, rgb, scale, rotation)
+        given = Environment(pixels, cast("Any", color), cast("Any", scale), cast("Any", rotation))
+        now = at(given, self.time)
+        rgb = None if color is None else check_color(now.color, "environment: color")
+        now_scale = check_number(now.scale, "environment: scale", 0)
+        now_rotation = check_number(now.rotation, "environment: rotation")
+        self.environment = Environment(pixels, rgb, now_scale, now_rotation)
+        self.motion.environment = _motion_of(given)
 
     @staticmethod
     def _index(value: Any, count: int, where: str) -> int:
@@ -318,6 +361,15 @@ class Scene:
                 f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"
             )
         return self.cameras[name]
+
+
+def _dynamic(value: Any) -> Dynamic | None:
+    return value if is_dynamic(value) else None
+
+
+def _motion_of(value: Any) -> Dynamic | None:
+    """The value over time, or None if nothing in it changes."""
+    return _dynamic(value) or (Composite(value) if moves(value) else None)
 
 
 def _are_keys(transform: Any) -> bool:

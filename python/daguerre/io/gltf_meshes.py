@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,7 +180,7 @@ class Meshes:
             )
         if normals is not None:
             normals = unit_normals(normals, positions, triangles, self._notes)
-        optional = {
+        optional: dict[str, Any] = {
             "normals": normals,
             "uv": arrays.get("TEXCOORD_0"),
             "uv1": arrays.get("TEXCOORD_1"),
@@ -189,7 +190,7 @@ class Meshes:
         self._scene.add_mesh(
             given_up(positions),
             given_up(triangles),
-            **{key: given_up(values) for key, values in optional.items() if values is not None},
+            **{key: cast("Any", given_up(v)) for key, v in optional.items() if v is not None},
             name=name,
         )
         return len(self._scene.meshes) - 1
