@@ -8,8 +8,10 @@
 #include <cstring>
 #include <deque>
 #include <map>
+#include <span>
 #include <tuple>
 
+#include "geometry/embree_moving.h"
 #include "geometry/embree_placed.h"
 #include "geometry/embree_triangles.h"
 #include "geometry/intersector.h"
@@ -38,6 +40,7 @@ class EmbreeIntersector final : public Intersector {
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
     void attach_spheres(const std::vector<Sphere>& spheres);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
+    const Hull& hull_of(std::uint32_t index, const Mesh& mesh);
     RawHit raw_hit(float t, const RTCHit& hit) const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
     static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
@@ -47,8 +50,10 @@ class EmbreeIntersector final : public Intersector {
     std::vector<bool> flattened_, has_cutout_;
     std::vector<Clear> clear_;
     std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
+    std::deque<MovingMesh> moving_;
     std::map<std::tuple<std::uint32_t, bool, bool>, SceneOwner>
         mesh_scenes_;  // by mesh, and whether it is cut out, and clear
+    std::map<std::uint32_t, Hull> hulls_;  // of meshes that move; for building only
     SceneOwner top_;
     unsigned sphere_geometry_;
     std::string name_;
@@ -75,6 +80,7 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
         if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
     }
     if (!spheres.empty()) attach_spheres(spheres);
+    hulls_.clear();
     rtcCommitScene(top_.get());
     device_.check("building the acceleration structure of the scene");
 }
@@ -117,6 +123,13 @@ RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
     return scene.get();
 }
 
+const Hull& EmbreeIntersector::hull_of(std::uint32_t index, const Mesh& mesh) {
+    const auto known = hulls_.find(index);
+    if (known != hulls_.end()) return known->second;
+    return hulls_.try_emplace(index, std::span(mesh.positions.begin(), mesh.positions.end()))
+        .first->second;
+}
+
 void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& instance,
                                         const Mesh& mesh) {
     if (flattened_[id]) {
@@ -126,8 +139,14 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
         attach(top_.get(), std::move(geometry), id);
         return;
     }
+    RTCScene local_scene = mesh_scene(instance, mesh);
+    if (!instance.still()) {
+        moving_.emplace_back(local_scene, id, hull_of(instance.mesh, mesh), instance);
+        attach(top_.get(), geometry_of(device_, moving_.back()), id);
+        return;
+    }
     const Affine3f local = to_float(inverse(to_double(instance.world_from_local)));
-    placed_.push_back({mesh_scene(instance, mesh), id, local,
+    placed_.push_back({local_scene, id, local,
                        world_bounds(mesh, instance.world_from_local)});
     attach(top_.get(), geometry_of(device_, placed_.back()), id);
 }
@@ -184,7 +203,7 @@ RTCRay embree_ray(const Ray& ray) {
             ray.direction.x,
             ray.direction.y,
             ray.direction.z,
-            0,
+            ray.time,
             ray.t_max,
             0xffffffffu,
             0,

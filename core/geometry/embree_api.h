@@ -6,6 +6,7 @@
 
 #include "geometry/crossings.h"
 #include "geometry/ray.h"
+#include "math/transform.h"
 
 #if DG_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>

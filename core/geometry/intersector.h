@@ -11,6 +11,8 @@
 #include "geometry/mesh.h"
 #include "geometry/ray.h"
 #include "math/transform.h"
+#include "motion/motion.h"
+#include "motion/shown.h"
 
 namespace dg {
 
@@ -20,6 +22,10 @@ struct InstanceGeometry {
     bool cutout =
         false;  // some texel may be transparent: the cutout function decides each hit
     Clear clear = Clear::no;  // shadow rays that collect crossings pass it
+    // Over the scene's interval (0 .. 1); both outlive the intersector.
+    const Motion* motion = nullptr;  // in the place of world_from_local; null: stands still
+    const Shown* shown = nullptr;    // null: always
+    bool still() const { return !motion && !shown; }
 };
 
 /// Returns true when the surface lets the ray pass there (alpha). Must be thread safe and

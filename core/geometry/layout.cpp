@@ -8,7 +8,7 @@ std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
                                    const std::vector<InstanceGeometry>& instances,
                                    std::size_t limit) {
     std::vector<std::size_t> uses(meshes.size(), 0);
-    for (const InstanceGeometry& i : instances) ++uses[i.mesh];
+    for (const InstanceGeometry& i : instances) uses[i.mesh] += i.still();
 
     std::size_t shared = 0;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
@@ -21,7 +21,8 @@ std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
         const std::uint32_t m = instances[i].mesh;
         const bool copied_large = meshes[m].triangles.size() > kCompactLimit &&
                                   !is_identity(instances[i].world_from_local);
-        flattened[i] = uses[m] == 1 ? !copied_large : shared <= limit;
+        const bool fits = uses[m] == 1 ? !copied_large : shared <= limit;
+        flattened[i] = fits && instances[i].still();
     }
     return flattened;
 }

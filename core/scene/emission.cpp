@@ -97,7 +97,7 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
     SurfaceHit hit;
     hit.front = front;
     if (emission_is_coated(material)) {
-        surface_at(record, primitive, barycentric.x, barycentric.y, hit);
+        surface_at(record, record.still, primitive, barycentric.x, barycentric.y, hit);
         hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
     } else {
         interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
@@ -116,10 +116,10 @@ void append_emissive_triangles(const InstanceRecord& record, std::uint32_t insta
         const auto& t = record.triangles[i];
         auto world = [&](int k) {
             return to_float(
-                record.world_from_local.point(to_double(record.positions[t[k]])));
+                record.still.world_from_local.point(to_double(record.positions[t[k]])));
         };
         TriangleLight light{world(0), world(1), world(2), {},
-                            instance, i,        false,    record.mirrored};
+                            instance, i,        false,    record.still.mirrored};
         if (!(length(cross(light.b - light.a, light.c - light.a)) > 0)) continue;
         const Measured m = measure(record, material, textures, i);
         if (!m.front && !m.back) continue;

@@ -7,9 +7,10 @@ namespace {
 // A cone cannot be longer on the surface than this many times its width.
 constexpr float kSmallestCosine = 1e-3f;
 
-Vec3f world_edge(const InstanceRecord& r, std::uint32_t from, std::uint32_t to) {
+Vec3f world_edge(const InstanceRecord& r, const Placement& place, std::uint32_t from,
+                 std::uint32_t to) {
     const Vec3d edge = to_double(r.positions[to]) - to_double(r.positions[from]);
-    return to_float(r.world_from_local.vector(edge));
+    return to_float(place.world_from_local.vector(edge));
 }
 
 }  // namespace
@@ -18,10 +19,11 @@ Vec3f world_edge(const InstanceRecord& r, std::uint32_t from, std::uint32_t to) 
 // 1 / cos longer along it. Each axis is resolved into the triangle's edges, whose uv are
 // known. Source: Akenine-Moller et al. 2021, Improved Shader and Texture Level of Detail
 // Using Ray Cones, JCGT 10(1).
-void set_footprint(const InstanceRecord& r, float width, SurfaceHit& hit) {
+void set_footprint(const InstanceRecord& r, const Placement& place, float width,
+                   SurfaceHit& hit) {
     if (!r.uv[0] && !r.uv[1]) return;
     const auto& t = r.triangles[hit.primitive];
-    const Vec3f e1 = world_edge(r, t[0], t[1]), e2 = world_edge(r, t[0], t[2]);
+    const Vec3f e1 = world_edge(r, place, t[0], t[1]), e2 = world_edge(r, place, t[0], t[2]);
     const float area = dot(cross(e1, e2), hit.ng);
     if (!(std::abs(area) > 0)) return;
     const float cosine = dot(hit.ng, hit.wo);
@@ -44,16 +46,16 @@ void set_footprint(const InstanceRecord& r, float width, SurfaceHit& hit) {
 
 // On a sphere of radius R the normals at two points differ by their distance / R, along the
 // line between them.
-float mean_curvature(const InstanceRecord& r, std::uint32_t primitive) {
+float mean_curvature(const InstanceRecord& r, const Placement& place, std::uint32_t primitive) {
     if (!r.normals) return 0;
     const auto& t = r.triangles[primitive];
     float bend = 0, lengths = 0;
     for (int i = 0; i < 3; ++i) {
         const std::uint32_t a = t[i], b = t[(i + 1) % 3];
         const auto normal = [&](std::uint32_t k) {
-            return to_float(normalize(r.normal_matrix.vector(to_double(r.normals[k]))));
+            return to_float(normalize(place.normal_matrix.vector(to_double(r.normals[k]))));
         };
-        const Vec3f edge = world_edge(r, a, b);
+        const Vec3f edge = world_edge(r, place, a, b);
         bend += dot(normal(b) - normal(a), edge);
         lengths += length_squared(edge);
     }

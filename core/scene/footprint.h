@@ -6,10 +6,12 @@ namespace dg {
 
 /// Sets hit.footprint from the width (m) of the cone across the ray at the hit; needs ng, wo.
 /// Nothing happens where the instance has no texture coordinates that are looked at.
-void set_footprint(const InstanceRecord& record, float width, SurfaceHit& hit);
+void set_footprint(const InstanceRecord& record, const Placement& placement, float width,
+                   SurfaceHit& hit);
 
 /// Mean curvature (1/m) that the vertex normals of a triangle tell of; positive: bulges
 /// toward the front.
-float mean_curvature(const InstanceRecord& record, std::uint32_t primitive);
+float mean_curvature(const InstanceRecord& record, const Placement& placement,
+                     std::uint32_t primitive);
 
 }  // namespace dg

@@ -70,7 +70,7 @@ struct UvFrame {
     Vec3f along_u, along_minus_v;
     bool good;
 };
-UvFrame uv_frame(const InstanceRecord& r, Corners t) {
+UvFrame uv_frame(const InstanceRecord& r, const Placement& place, Corners t) {
     const Vec2f uv_b = r.tangent_uv[t.b] - r.tangent_uv[t.a];
     const Vec2f uv_c = r.tangent_uv[t.c] - r.tangent_uv[t.a];
     const float det = uv_b.x * uv_c.y - uv_b.y * uv_c.x;
@@ -81,24 +81,24 @@ UvFrame uv_frame(const InstanceRecord& r, Corners t) {
     const Vec3f du = (e1 * uv_c.y - e2 * uv_b.y) * sign;
     const Vec3f dv = (e2 * uv_b.x - e1 * uv_c.x) * sign;
     auto world = [&](Vec3f v) {
-        return to_float(r.world_from_local.vector(to_double(v)));
+        return to_float(place.world_from_local.vector(to_double(v)));
     };
     return {world(du), -world(dv), true};
 }
 
-void set_tangent(const InstanceRecord& r, Corners t, float w, float u, float v,
-                 SurfaceHit& hit) {
+void set_tangent(const InstanceRecord& r, const Placement& place, Corners t, float w, float u,
+                 float v, SurfaceHit& hit) {
     Vec3f tangent{};
     hit.tangent_sign = 1;
     if (r.tangents) {
         const auto &a = r.tangents[t.a], &b = r.tangents[t.b], &c = r.tangents[t.c];
         const Vec3d local{a[0] * w + b[0] * u + c[0] * v, a[1] * w + b[1] * u + c[1] * v,
                           a[2] * w + b[2] * u + c[2] * v};
-        tangent = to_float(r.world_from_local.vector(local));
+        tangent = to_float(place.world_from_local.vector(local));
         // Mirroring turns the cross product of normal and tangent around.
-        hit.tangent_sign = (a[3] < 0) != r.mirrored ? -1.f : 1.f;
+        hit.tangent_sign = (a[3] < 0) != place.mirrored ? -1.f : 1.f;
     } else if (r.tangent_uv) {
-        const UvFrame frame = uv_frame(r, t);
+        const UvFrame frame = uv_frame(r, place, t);
         tangent = frame.along_u;
         if (frame.good && dot(cross(hit.ns, frame.along_u), frame.along_minus_v) < 0) {
             hit.tangent_sign = -1;
@@ -110,10 +110,30 @@ void set_tangent(const InstanceRecord& r, Corners t, float w, float u, float v,
                                                      : Frame::from_normal(hit.ns).x;
 }
 
+Placement place(const Affine3d& m, bool flattened) {
+    Placement p{};
+    p.world_from_local = m;
+    p.mirrored = m.determinant() < 0;
+    const double side = p.mirrored ? -1 : 1;  // cofactors, as Affine::normal
+    p.normal_matrix = {
+        cross(m.y, m.z) * side, cross(m.z, m.x) * side, cross(m.x, m.y) * side, {}};
+
+    // A ray that is taken into the mesh's space suffers the rounding of that transform
+    // too.
+    const Affine3d inv = inverse(m);
+    const double there = row_norm(m.x, m.y, m.z), back = row_norm(inv.x, inv.y, inv.z);
+    const double growth = flattened ? 1 : 1 + there * back;
+    p.error_scale = static_cast<float>(kUlps * growth * there);
+    p.error_base = static_cast<float>(kUlps * growth * largest(to_float(m.origin)));
+    return p;
+}
+
 }  // namespace
 
+Placement InstanceRecord::at(float time) const { return place(motion->at(time), false); }
+
 InstanceRecord make_record(const Mesh& mesh, const Material& material,
-                           std::uint32_t material_index, const Affine3f& world_from_local,
+                           std::uint32_t material_index, const InstanceGeometry& geometry,
                            bool flattened) {
     const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
     const bool textured = gltf && uses_textures(*gltf);
@@ -132,21 +152,20 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     }
     r.colors = mesh.colors.empty() ? nullptr : mesh.colors.data();
     r.material = material_index;
-
-    const Affine3d m = r.world_from_local = to_double(world_from_local);
-    r.mirrored = m.determinant() < 0;
-    const double side = r.mirrored ? -1 : 1;  // cofactors, as Affine::normal
-    r.normal_matrix = {
-        cross(m.y, m.z) * side, cross(m.z, m.x) * side, cross(m.x, m.y) * side, {}};
-
-    // A ray that is taken into the mesh's space suffers the rounding of that transform
-    // too.
-    const Affine3d inv = inverse(m);
-    const double there = row_norm(m.x, m.y, m.z), back = row_norm(inv.x, inv.y, inv.z);
-    const double growth = flattened ? 1 : 1 + there * back;
-    r.error_scale = static_cast<float>(kUlps * growth * there);
-    r.error_base = static_cast<float>(kUlps * growth * largest(world_from_local.origin));
+    r.motion = geometry.motion;
+    r.shown = geometry.shown;
+    r.still = place(to_double(geometry.world_from_local), flattened);
     return r;
+}
+
+std::array<Vec3f, 3> corners_at(const InstanceRecord& r, std::uint32_t primitive, float time) {
+    const Corners t = corners_of(r, primitive);
+    return r.with_placement(time, [&](const Placement& place) -> std::array<Vec3f, 3> {
+        const auto world = [&](std::uint32_t i) {
+            return to_float(place.world_from_local.point(to_double(r.positions[i])));
+        };
+        return {world(t.a), world(t.b), world(t.c)};
+    });
 }
 
 void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, float u,
@@ -163,28 +182,28 @@ void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, fl
     }
 }
 
-void surface_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v,
-                SurfaceHit& hit) {
+void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t primitive, float u,
+                float v, SurfaceHit& hit) {
     const Corners t = corners_of(r, primitive);
     const Vec3f fa = r.positions[t.a], fb = r.positions[t.b], fc = r.positions[t.c];
     const Vec3d a = to_double(fa), e1 = to_double(fb) - a, e2 = to_double(fc) - a;
     hit.position =
-        to_float(r.world_from_local.point(a + e1 * double(u) + e2 * double(v)));
+        to_float(place.world_from_local.point(a + e1 * double(u) + e2 * double(v)));
     hit.error =
-        r.error_scale * std::max(largest(fa), std::max(largest(fb), largest(fc))) +
-        r.error_base;
-    hit.ng = to_float(normalize(r.normal_matrix.vector(cross(e1, e2))));
+        place.error_scale * std::max(largest(fa), std::max(largest(fb), largest(fc))) +
+        place.error_base;
+    hit.ng = to_float(normalize(place.normal_matrix.vector(cross(e1, e2))));
 
     const float w = 1 - u - v;
     hit.ns = hit.ng;
     if (r.normals) {
         const Vec3f n = r.normals[t.a] * w + r.normals[t.b] * u + r.normals[t.c] * v;
         hit.ns =
-            unit_or(to_float(r.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
+            unit_or(to_float(place.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
         if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;
     }
     if (r.uv[0] || r.uv[1] || r.colors) interpolate_attributes(r, primitive, u, v, hit);
-    if (r.needs_frame) set_tangent(r, t, w, u, v, hit);
+    if (r.needs_frame) set_tangent(r, place, t, w, u, v, hit);
 }
 
 }  // namespace dg

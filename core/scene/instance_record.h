@@ -7,6 +7,16 @@
 
 namespace dg {
 
+/// Where an instance is at one time, and how exact points on it are.
+struct Placement {
+    Affine3d world_from_local;
+    Affine3d normal_matrix;  // linear part only; keeps the side also when mirrored
+    bool mirrored;           // determinant < 0
+    // Error bound of positions: error_scale * largest |coordinate| in the mesh's space of
+    // the triangle + error_base.
+    float error_scale, error_base;
+};
+
 struct InstanceRecord {
     const Vec3f* positions;
     const std::array<std::uint32_t, 3>* triangles;
@@ -17,26 +27,36 @@ struct InstanceRecord {
     const std::array<float, 4>* tangents;
     const std::array<float, 4>* colors;
     std::uint32_t material;
-    bool mirrored;     // determinant < 0
     bool needs_frame;  // a normal map or anisotropy wants a tangent
-    Affine3d world_from_local;
-    Affine3d normal_matrix;  // linear part only; keeps the side also when mirrored
-    // Error bound of positions: error_scale * largest |coordinate| in the mesh's space of
-    // the triangle + error_base.
-    float error_scale, error_base;
+    Placement still;   // of what moves: at time 0
+    const Motion* motion = nullptr;  // over the scene's interval; null: stands still
+    const Shown* shown = nullptr;    // null: always
+
+    bool is_shown(float time) const { return !shown || shown->at(time); }
+    Placement at(float time) const;  // of what moves
+
+    /// Calls use(placement) with that of `time`; what stands still pays nothing.
+    template <typename Use>
+    decltype(auto) with_placement(float time, const Use& use) const {
+        if (!motion) return use(still);
+        return use(at(time));
+    }
 };
 
-/// `flattened`: see Intersector::is_flattened.
+/// `flattened`: see Intersector::is_flattened. Keeps pointers into all but `geometry`.
 InstanceRecord make_record(const Mesh& mesh, const Material& material,
-                           std::uint32_t material_index, const Affine3f& world_from_local,
+                           std::uint32_t material_index, const InstanceGeometry& geometry,
                            bool flattened);
+
+/// The corners of a triangle in the world, as light sampling wants them.
+std::array<Vec3f, 3> corners_at(const InstanceRecord& record, std::uint32_t primitive, float time);
 
 /// Texture coordinates and colour at barycentrics (u, v) of a triangle.
 void interpolate_attributes(const InstanceRecord& record, std::uint32_t primitive,
                             float u, float v, SurfaceHit& hit);
 
-/// Everything of the hit but wo, t, instance and front.
-void surface_at(const InstanceRecord& record, std::uint32_t primitive, float u, float v,
-                SurfaceHit& hit);
+/// Everything of the hit but wo, t, time, instance and front.
+void surface_at(const InstanceRecord& record, const Placement& placement,
+                std::uint32_t primitive, float u, float v, SurfaceHit& hit);
 
 }  // namespace dg

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <map>
+#include <span>
 
 #include "math/hash.h"
+#include "motion/moving_bounds.h"
 #include "scene/emission.h"
 #include "scene/footprint.h"
 #include "scene/pyramids.h"
@@ -43,12 +47,26 @@ float cutout_random(const Ray& ray, const RawHit& hit) {
     return static_cast<float>(h >> 40) * 0x1p-24f;
 }
 
-/// The wall between seconds and fractions of the interval.
+/// Whether a transform can be inverted well enough to trace rays through it.
+bool is_singular(const Affine3d& m) {
+    const double volume = length(m.x) * length(m.y) * length(m.z);
+    return !(volume > 0) || std::abs(m.determinant()) < 1e-12 * volume;
+}
+
+/// The wall between seconds and fractions of the interval. What has no extent all the while, as
+/// files hide things, is not there.
 void place_in(Instance& instance, const TimeInterval& interval) {
+    if (instance.shown) {
+        const Shown shown = instance.shown->over(interval);
+        instance.shown = shown.always() ? nullptr : std::make_shared<const Shown>(shown);
+    }
     if (!instance.motion) return;
     const Motion motion = instance.motion->over(interval.open, interval.close);
-    instance.world_from_local = to_float(motion.at(0));
     instance.motion = motion.moves() ? std::make_shared<const Motion>(motion) : nullptr;
+    instance.world_from_local = to_float(motion.at(0));
+    if (motion.moves() || !is_singular(motion.at(0))) return;
+    instance.world_from_local = {};
+    instance.shown = std::make_shared<const Shown>();
 }
 
 }  // namespace
@@ -61,14 +79,15 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     validate(description);
     build_pyramids(description.textures, description.materials);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
-    scene->build_intersector();
-    scene->build_records();
+    const auto geometry = scene->geometry_of_instances();
+    scene->build_intersector(geometry);
+    scene->build_records(geometry);
     scene->build_lights();
     scene->measure();
     return scene;
 }
 
-void Scene::build_intersector() {
+std::vector<InstanceGeometry> Scene::geometry_of_instances() {
     const bool delta_lights =
         std::ranges::any_of(description_.lights, [](const Light& light) {
             return !std::holds_alternative<SphereLight>(light);
@@ -80,8 +99,13 @@ void Scene::build_intersector() {
                                description_.meshes[i.mesh], description_.textures);
         const Clear clear = clear_for_shadows(i, delta_lights);
         has_clear_ = has_clear_ || clear != Clear::no;
-        geometry.push_back({i.mesh, i.world_from_local, cutout, clear});
+        geometry.push_back(
+            {i.mesh, i.world_from_local, cutout, clear, i.motion.get(), i.shown.get()});
     }
+    return geometry;
+}
+
+void Scene::build_intersector(const std::vector<InstanceGeometry>& geometry) {
     std::vector<Sphere> spheres;
     for (const Light& light : description_.lights) {
         if (const auto* s = std::get_if<SphereLight>(&light)) spheres.push_back(s->shape);
@@ -97,13 +121,13 @@ Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) cons
     return clear == Clear::volume && !delta_lights ? Clear::no : clear;
 }
 
-void Scene::build_records() {
+void Scene::build_records(const std::vector<InstanceGeometry>& geometry) {
     records_.reserve(description_.instances.size());
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
         records_.push_back(make_record(
             description_.meshes[instance.mesh], description_.materials[instance.material],
-            instance.material, instance.world_from_local, intersector_->is_flattened(i)));
+            instance.material, geometry[i], intersector_->is_flattened(i)));
     }
 }
 
@@ -119,21 +143,30 @@ void Scene::build_lights() {
                        description_.light_choice);
 }
 
+void Scene::hold(Vec3d point) {
+    const Vec3f p = to_float(point);
+    for (int k = 0; k < 3; ++k) {
+        bounds_.min[k] = std::min(bounds_.min[k], p[k]);
+        bounds_.max[k] = std::max(bounds_.max[k], p[k]);
+    }
+}
+
 void Scene::measure() {
-    bool first = true;
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    bounds_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    std::map<std::uint32_t, Hull> hulls;  // of meshes that move
     for (const Instance& instance : description_.instances) {
         const Mesh& mesh = description_.meshes[instance.mesh];
         triangle_count_ += mesh.triangles.size();
-        for (Vec3f local : mesh.positions) {
-            const Vec3f p = instance.world_from_local.point(local);
-            if (first) bounds_ = {p, p};
-            first = false;
-            bounds_.min = {std::min(bounds_.min.x, p.x), std::min(bounds_.min.y, p.y),
-                           std::min(bounds_.min.z, p.z)};
-            bounds_.max = {std::max(bounds_.max.x, p.x), std::max(bounds_.max.y, p.y),
-                           std::max(bounds_.max.z, p.z)};
+        if (instance.motion) {
+            const auto vertices = std::span(mesh.positions.begin(), mesh.positions.end());
+            const Hull& hull = hulls.try_emplace(instance.mesh, vertices).first->second;
+            for (const Box& b : moving_bounds(hull, *instance.motion).boxes) hold(b.min), hold(b.max);
+            continue;
         }
+        for (Vec3f local : mesh.positions) hold(to_double(instance.world_from_local.point(local)));
     }
+    if (!(bounds_.min.x <= bounds_.max.x)) bounds_ = {};
 }
 
 /// Alpha: the ray passes with probability 1 - opacity.
@@ -153,7 +186,12 @@ void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) con
     hit.time = ray.time;
     hit.primitive = raw.primitive;
     hit.instance = raw.instance;
-    surface_at(records_[raw.instance], raw.primitive, raw.u, raw.v, hit);
+    const InstanceRecord& record = records_[raw.instance];
+    record.with_placement(ray.time, [&](const Placement& placement) {
+        surface_at(record, placement, raw.primitive, raw.u, raw.v, hit);
+        if (!ray.cone.empty())
+            set_footprint(record, placement, ray.cone.after(raw.t).width, hit);
+    });
     hit.front = dot(hit.ng, hit.wo) > 0;
 }
 
@@ -166,8 +204,6 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     }
     if (raw->instance != RawHit::kSphere) {
         find_surface(ray, *raw, result->surface);
-        if (!ray.cone.empty())
-            set_footprint(records_[raw->instance], ray.cone.after(raw->t).width, result->surface);
         return result;
     }
     SurfaceHit& hit = result->surface;
@@ -182,7 +218,10 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
 }
 
 float Scene::curvature(const SurfaceHit& hit) const {
-    const float c = mean_curvature(records_[hit.instance], hit.primitive);
+    const InstanceRecord& record = records_[hit.instance];
+    const float c = record.with_placement(hit.time, [&](const Placement& placement) {
+        return mean_curvature(record, placement, hit.primitive);
+    });
     return hit.front ? c : -c;
 }
 

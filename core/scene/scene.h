@@ -19,12 +19,7 @@ struct Instance {
     std::uint32_t mesh, material;
     Affine3f world_from_local;                      // where it does not move
     std::shared_ptr<const Motion> motion = nullptr; // of time in s; null: it stands still
-};
-
-/// What one picture exposes, in seconds of the scene's time: the first moment of any row of the film to
-/// the last. Inside the scene time is the fraction of it, 0 .. 1.
-struct TimeInterval {
-    double open = 0, close = 0;
+    std::shared_ptr<const Shown> shown = nullptr;   // times in s; null: always there
 };
 
 /// What a scene is built from. Lights made of meshes are found by Scene::build from the
@@ -37,7 +32,9 @@ struct SceneDescription {
     std::vector<Light> lights;  // punctual and sphere lights
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
-    TimeInterval interval;  // what moves is wanted there
+    /// What the picture exposes, s: the first moment of any row of the film to the last. Inside
+    /// the scene time is the fraction of it, 0 .. 1.
+    TimeInterval interval;
 };
 
 class Scene {
@@ -84,7 +81,7 @@ class Scene {
     struct Bounds {
         Vec3f min, max;
     };
-    /// Of the instances; all 0 without any.
+    /// Of the instances at all times; all 0 without any.
     Bounds bounds() const { return bounds_; }
     std::size_t triangle_count() const { return triangle_count_; }  // instanced
     const SceneDescription& description() const { return description_; }
@@ -92,14 +89,16 @@ class Scene {
 
   private:
     explicit Scene(SceneDescription description);
-    void build_intersector();
-    void build_records();
+    std::vector<InstanceGeometry> geometry_of_instances();
+    void build_intersector(const std::vector<InstanceGeometry>& geometry);
+    void build_records(const std::vector<InstanceGeometry>& geometry);
     void build_lights();
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
+    void hold(Vec3d point);
     Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
     bool has_clear_ = false;
 

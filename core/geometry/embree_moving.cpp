@@ -1,0 +1,42 @@
+#include "geometry/embree_moving.h"
+
+#include "motion/moving_bounds.h"
+
+namespace dg::embree {
+namespace {
+
+float largest(Vec3d v) { return float(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)})); }
+
+}  // namespace
+
+MovingMesh::MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
+                       const InstanceGeometry& instance)
+    : scene(scene),
+      id(id),
+      motion_(instance.motion ? *instance.motion : to_double(instance.world_from_local)),
+      shown_(instance.shown) {
+    const MovingBounds bounds = moving_bounds(hull, motion_);
+    float far = 0;
+    for (const dg::Box& b : bounds.boxes) far = std::max({far, largest(b.min), largest(b.max)});
+    const float slack = 16 * 0x1p-24f * far;  // the rounding of the ray, as for still ones
+    const Vec3f grow{slack, slack, slack};
+    for (const dg::Box& b : bounds.boxes)
+        boxes_.push_back({to_float(b.min) - grow, to_float(b.max) + grow});
+    for (const dg::Ball& b : bounds.balls) {
+        const float radius = 1.0001f * float(b.radius) + 4 * slack;
+        balls_.push_back({to_float(b.center), radius * radius});
+    }
+}
+
+bool MovingMesh::near(const RTCRay& ray) const {
+    if (shown_ && !shown_->at(ray.time)) return false;
+    const std::size_t steps = balls_.size() - 1;
+    if (steps == 0) return comes_near(ray, balls_[0].center, balls_[0].radius_squared);
+    const float x = ray.time * float(steps);
+    const std::size_t i = std::min(std::size_t(x), steps - 1);
+    const Ball &a = balls_[i], &b = balls_[i + 1];
+    const Vec3f center = a.center + (b.center - a.center) * (x - float(i));
+    return comes_near(ray, center, a.radius_squared);
+}
+
+}  // namespace dg::embree
