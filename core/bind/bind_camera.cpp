@@ -72,7 +72,6 @@ auto film_points(const dg::ChiefRays& chief, const Rows3d& points, bool at_infin
 
 void bind_camera(nb::module_& m) {
     using namespace dg;
-    using dg::bind::Matrix4;
     nb::class_<Iris>(m, "Iris")
         .def(nb::init<>())
         .def_static("polygon", &Iris::polygon, "blades"_a, "rotation_deg"_a, "curvature"_a)
@@ -87,23 +86,23 @@ void bind_camera(nb::module_& m) {
              "Where the chief rays of points (N, 3) meet the film (mm, upright); NaN: behind the camera.");
     nb::class_<Camera>(m, "Camera")
         .def_static("pinhole",
-                    [](const Matrix4& world, double film_distance_mm, bool natural_vignetting) {
-                        return Camera{dg::bind::to_affine(world),
+                    [](const Motion& world, double film_distance_mm, bool natural_vignetting) {
+                        return Camera{world,
                                       Pinhole{film_distance_mm, natural_vignetting}};
                     },
                     "world_from_camera"_a, "film_distance_mm"_a, "natural_vignetting"_a = false)
         .def_static("thin",
-                    [](const Matrix4& world, double film_distance_mm, double aperture_radius_mm,
+                    [](const Motion& world, double film_distance_mm, double aperture_radius_mm,
                        double focus_distance_m, const Iris& iris, bool natural_vignetting) {
-                        return Camera{dg::bind::to_affine(world),
+                        return Camera{world,
                                       ThinLens{film_distance_mm, aperture_radius_mm,
                                                focus_distance_m, iris, natural_vignetting}};
                     },
                     "world_from_camera"_a, "film_distance_mm"_a, "aperture_radius_mm"_a,
                     "focus_distance_m"_a, "iris"_a, "natural_vignetting"_a = false)
         .def_static("exact",
-                    [](const Matrix4& world, const ExactLens& lens) {
-                        return Camera{dg::bind::to_affine(world), lens};
+                    [](const Motion& world, const ExactLens& lens) {
+                        return Camera{world, lens};
                     },
                     "world_from_camera"_a, "lens"_a)
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,

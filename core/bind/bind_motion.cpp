@@ -58,5 +58,7 @@ void bind_motion(nb::module_& m) {
              },
              "axis"_a, "revolutions_per_second"_a, "center"_a = Triple{0, 0, 0}, "time"_a = 0.0)
         .def_prop_ro("moves", &Motion::moves)
+        .def("over", &Motion::over, "open"_a, "close"_a,
+             "The same with open (s) as time 0 and close as 1; still if it does not move in between.")
         .def("at", &matrix_at, "time"_a, "(4, 4) at a time, s.");
 }

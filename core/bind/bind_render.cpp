@@ -106,8 +106,7 @@ void bind_render(nb::module_& m) {
                      })
         .def_rw("seed", &RenderSettings::seed)
         .def_rw("threads", &RenderSettings::threads)
-        .def_rw("shutter_open_s", &RenderSettings::shutter_open_s)
-        .def_rw("shutter_close_s", &RenderSettings::shutter_close_s)
+        .def_rw("shutter", &RenderSettings::shutter)
         .def_rw("filter", &RenderSettings::filter)
         .def_prop_rw("max_depth", [](const RenderSettings& s) { return s.path.max_depth; },
                      [](RenderSettings& s, int v) { s.path.max_depth = v; })

@@ -11,6 +11,7 @@ void bind_motion(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
+void bind_shutter(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 
@@ -28,6 +29,7 @@ NB_MODULE(_core, m) {
     bind_optics(m);
     bind_scene(m);
     bind_camera(m);
+    bind_shutter(m);
     bind_film(m);
     bind_render(m);
 }

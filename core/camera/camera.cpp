@@ -8,9 +8,10 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
 }
 
 Ray to_world(const Camera& camera, const Ray& ray) {
+    const Affine3d pose = camera.world_from_camera.at(ray.time);
     Ray world = ray;
-    world.origin = to_float(camera.world_from_camera.point(to_double(ray.origin)));
-    world.direction = to_float(camera.world_from_camera.vector(to_double(ray.direction)));
+    world.origin = to_float(pose.point(to_double(ray.origin)));
+    world.direction = to_float(pose.vector(to_double(ray.direction)));
     return world;
 }
 

@@ -12,14 +12,14 @@
 #include "camera/pinhole.h"
 #include "camera/thin.h"
 #include "geometry/ray.h"
-#include "math/transform.h"
+#include "motion/motion.h"
 
 namespace dg {
 
 using LensKind = std::variant<Pinhole, ThinLens, ExactLens>;
 
 struct Camera {
-    Affine3d world_from_camera;   // rigid; metres
+    Motion world_from_camera;   // rigid; metres; time: fraction of the scene's interval
     LensKind lens;
 };
 
@@ -28,7 +28,7 @@ struct Camera {
 void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
                    std::span<CameraRay> rays);
 
-/// The wall between the camera's frame and the world's.
+/// The wall between the camera's frame and the world's, as they lie at the ray's time.
 Ray to_world(const Camera& camera, const Ray& ray);
 
 }  // namespace dg

@@ -8,14 +8,16 @@ namespace dg {
 struct CameraSample {
     Vec2f film_mm;          // upright picture, +x right, +y up
     Vec2f u_lens;           // [0,1)^2
-    float time_s;
+    float time;             // fraction of the scene's interval
     float wavelength_nm;
+    float iris_opening = 1; // of its radius: a leaf shutter opens and closes it
 };
 
 struct CameraRay {
     Ray ray;                // camera frame, m
     float weight = 0;       // relative exposure; 0: stopped
     float aim_weight = 0;   // exact lens: the weight before the glass's transmittance
+    float iris_opening = 1; // as the sample says
 };
 
 }  // namespace dg

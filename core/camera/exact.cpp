@@ -122,6 +122,13 @@ struct Buffers {
 
 }  // namespace
 
+float ExactLens::leaf_transmission(float opening, float x_mm, float y_mm) const {
+    if (opening >= 1) return 1;
+    if (!(opening > 0)) return 0;
+    const double unit = 1 / (double(opening) * state_->iris_radius);
+    return float(state_->settings.iris.transmission({x_mm * unit, y_mm * unit}));
+}
+
 void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
@@ -146,14 +153,17 @@ void ExactLens::generate(std::span<const CameraSample> samples,
         for (int i = 0; i < count; ++i) {
             CameraRay& out = rays[begin + i];
             const float aim = b.weight[i] * inv_h0;
-            const float weight = aim * b.scene.pass[i];
+            const float weight = aim * b.scene.pass[i] *
+                                 leaf_transmission(samples[begin + i].iris_opening,
+                                                   b.scene.iris_x[i], b.scene.iris_y[i]);
             const bool passed = weight > 0 && std::isfinite(weight);
             out.weight = passed ? weight : 0;
             out.aim_weight = passed ? aim : 0;
             out.ray.origin = {b.scene.x[i] * float(kMetre), b.scene.y[i] * float(kMetre),
                               (b.scene.z[i] - pupil) * float(kMetre)};
             out.ray.direction = {b.scene.dx[i], b.scene.dy[i], b.scene.dz[i]};
-            out.ray.time = samples[begin + i].time_s;
+            out.ray.time = samples[begin + i].time;
+            out.iris_opening = samples[begin + i].iris_opening;
         }
     }
 }
@@ -183,9 +193,12 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
                     padded);
         for (int i = 0; i < count; ++i) {
             const float aim = b.weight[i] * inv_h0;
-            const bool passed = b.scene.pass[i] > 0 && aim > 0 && std::isfinite(aim);
+            const float pass =
+                b.scene.pass[i] * leaf_transmission(rays[begin + i].iris_opening,
+                                                    b.scene.iris_x[i], b.scene.iris_y[i]);
+            const bool passed = pass > 0 && aim > 0 && std::isfinite(aim);
             out[begin + i] = {{-b.film.x[i], -b.film.y[i]},
-                              passed ? b.scene.pass[i] : 0,
+                              passed ? pass : 0,
                               passed ? aim : 0};
         }
     }

@@ -62,6 +62,9 @@ class ExactLens {
 
   private:
     struct State;
+    /// What an iris lets through there that is open to a fraction of its radius, in addition to the
+    /// whole one: a leaf shutter on its way.
+    float leaf_transmission(float opening, float x_mm, float y_mm) const;
     std::shared_ptr<const State> state_;
 };
 

@@ -21,7 +21,7 @@ struct Estimate {
 
 /// E / L at a film point from the lens's own sampler, with T.
 Estimate drawn(const ExactLens& lens, double radius, double nm, int count,
-               unsigned seed) {
+               unsigned seed, float opening = 1) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> u(0, 1);
     std::vector<CameraSample> samples(count);
@@ -30,7 +30,8 @@ Estimate drawn(const ExactLens& lens, double radius, double nm, int count,
         s = {{float(0.8 * radius), float(-0.6 * radius)},
              {u(random), u(random)},
              0,
-             float(nm)};
+             float(nm),
+             opening};
     lens.generate(samples, rays);
     double sum = 0, squares = 0, pass = 0;
     for (const CameraRay& r : rays) {
@@ -202,6 +203,47 @@ TEST_CASE("one stop halves the exposure; the number of blades does not change it
               doctest::Approx(drawn(ExactLens(gauss, at(4)), 0, 550, 1 << 15, 10).mean)
                   .epsilon(4e-3));
     }
+}
+
+TEST_CASE("a leaf that is open to half its radius exposes as two stops less") {
+    for (const Iris& iris : {Iris(), Iris::polygon(6, 10, 0.3), Iris::polygon(5, 0, -0.4)}) {
+        const auto at_stop = [&](double f_stop) {
+            ExactLensSettings settings;
+            settings.f_stop = f_stop, settings.iris = iris;
+            return ExactLens(test::check_lens(), settings);
+        };
+        const ExactLens open = at_stop(4), closed = at_stop(8);
+        for (const double radius : {0.0, 12.0}) {
+            const Estimate leaf = drawn(open, radius, 550, 60000, 1, 0.5f);
+            const Estimate stop = drawn(closed, radius, 550, 60000, 2);
+            const double sigma = std::sqrt(leaf.variance + stop.variance);
+            CHECK(std::abs(leaf.mean - stop.mean) < 4 * sigma);
+            CHECK(sigma < 0.01 * stop.mean);
+        }
+        CHECK(drawn(open, 5, 550, 1000, 1, 0.f).mean == 0);
+    }
+}
+
+TEST_CASE("wavelengths are stopped by the leaf on their way back, too") {
+    ExactLensSettings settings;
+    settings.f_stop = 2.8;
+    const ExactLens lens(test::check_lens(), settings);
+    std::vector<CameraSample> samples;
+    for (int i = 0; i < 400; ++i)
+        samples.push_back({{3, 2}, {(i % 20 + 0.5f) / 20, (i / 20 + 0.5f) / 20}, 0, 500, 0.6f});
+    std::vector<CameraRay> rays(400);
+    lens.generate(samples, rays);
+    std::vector<Reprojection> back(400);
+    const std::vector<float> same(400, 500.f);
+    lens.reproject(rays, same, back);
+    int passed = 0;
+    for (int i = 0; i < 400; ++i) passed += rays[i].weight > 0 && back[i].aim_weight > 0;
+    CHECK(passed > 120);   // 0.36 of those that are drawn
+    for (CameraRay& r : rays) r.iris_opening = 0.4f;
+    lens.reproject(rays, same, back);
+    int fewer = 0;
+    for (int i = 0; i < 400; ++i) fewer += rays[i].weight > 0 && back[i].aim_weight > 0;
+    CHECK(fewer == doctest::Approx(passed * 0.16 / 0.36).epsilon(0.15));
 }
 
 TEST_CASE("uncoated, coated and perfect lenses differ by their transmittance") {

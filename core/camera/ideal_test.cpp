@@ -1,6 +1,7 @@
 // The ideal cameras: directions, focus, sampling of the iris, and where pixels lie.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "camera/camera.h"
@@ -93,13 +94,50 @@ TEST_CASE("pixels and film: top left, upright, and back") {
 }
 
 TEST_CASE("the camera's place and turn reach the ray") {
-    Camera camera{{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {1, 2, 3}}, Pinhole{}};
+    Camera camera{Affine3d{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {1, 2, 3}}, Pinhole{}};
     Ray ray;
     ray.origin = {0.1f, 0, 0};
     ray.direction = {0, 0, -1};
     const Ray world = to_world(camera, ray);
     CHECK(length(world.origin - Vec3f{1, 2, 2.9f}) < 1e-6f);
     CHECK(length(world.direction - Vec3f{-1, 0, 0}) < 1e-6f);
+}
+
+TEST_CASE("a ray starts where the camera is at its time") {
+    const Affine3d turned{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {4, 0, 0}};
+    const double times[] = {0, 1};
+    const Affine3d keys[] = {{}, turned};
+    const Camera camera{Motion::keys(times, keys, Interpolation::decomposed), Pinhole{}};
+    Ray ray;
+    ray.direction = {0, 0, -1};
+    for (const float t : {0.f, 0.25f, 0.5f, 1.f}) {
+        ray.time = t;
+        const float angle = t * float(kPiD) / 2;
+        const Ray world = to_world(camera, ray);
+        CHECK(length(world.origin - Vec3f{4 * t, 0, 0}) < 1e-6f);
+        CHECK(length(world.direction - Vec3f{-std::sin(angle), 0, -std::cos(angle)}) < 1e-6f);
+        CHECK(world.time == t);
+    }
+}
+
+TEST_CASE("a leaf shutter takes an even part of the thin lens's iris, and the light of its area") {
+    const ThinLens lens{50, 12.5, 2, Iris::polygon(5, 10, 0.2), false};
+    for (const float a : {0.f, 0.3f, 0.8f, 1.f}) {
+        double weight = 0, whole = 0;
+        for (int i = 0; i < 200; ++i) {
+            CameraSample s{{3, 4}, {float(hash_uniform(1, i)), float(hash_uniform(2, i))}, 0, 550};
+            CameraRay open, leaf;
+            lens.generate({&s, 1}, {&open, 1});
+            s.iris_opening = a;
+            lens.generate({&s, 1}, {&leaf, 1});
+            CHECK(length(leaf.ray.origin - open.ray.origin * a) < 1e-8f);
+            CHECK(leaf.weight == doctest::Approx(a * a * open.weight));
+            weight += leaf.weight, whole += open.weight;
+            Pinhole{}.generate({&s, 1}, {&leaf, 1});
+            CHECK(leaf.weight == doctest::Approx(a * a));
+        }
+        CHECK(weight / whole == doctest::Approx(a * a));
+    }
 }
 
 }  // namespace dg

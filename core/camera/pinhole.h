@@ -1,4 +1,4 @@
-// pinhole.h -- everything is sharp: all rays pass one point.
+// pinhole.h -- everything is sharp: all rays pass one point. Of a leaf shutter it has the area only.
 #pragma once
 #include <span>
 

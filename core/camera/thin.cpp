@@ -21,7 +21,9 @@ void ThinLens::generate(std::span<const CameraSample> samples, std::span<CameraR
             p = {float(q.x), float(q.y)};
             weight = float(covered * iris.transmission(q));
         }
-        const Vec3f origin{p.x * unit_m, p.y * unit_m, 0};
+        const float radius = unit_m * s.iris_opening;
+        weight *= s.iris_opening * s.iris_opening;   // the area that is open
+        const Vec3f origin{p.x * radius, p.y * radius, 0};
         // The chief ray, of length 1 along the axis, meets the plane of focus at chief * focus; divided
         // by focus, infinity needs no case of its own.
         const Vec3f chief{s.film_mm.x * inverse_film, s.film_mm.y * inverse_film, -1};
@@ -30,7 +32,7 @@ void ThinLens::generate(std::span<const CameraSample> samples, std::span<CameraR
             weight *= cos2 * cos2;
         }
         const Vec3f direction = normalize(chief - origin * inverse_focus);
-        rays[i].ray = Ray{.origin = origin, .direction = direction, .time = s.time_s};
+        rays[i].ray = Ray{.origin = origin, .direction = direction, .time = s.time};
         rays[i].weight = weight;
     }
 }

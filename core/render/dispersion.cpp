@@ -36,10 +36,16 @@ void Footprint::fill(Axis& axis, const Filter& filter, float at, int first, int 
     filter.axis(at - axis.first - 0.5f, axis.count, axis.f);
 }
 
-Footprint::Footprint(const FilmDensity& density, Vec2f px) : density_(density) {
+void Footprint::expose(Axis& axis, const Shutter& shutter, float time) {
+    for (int i = 0; i < axis.count; ++i) axis.f[i] *= shutter.opening(axis.first + i, time);
+}
+
+Footprint::Footprint(const FilmDensity& density, Vec2f px, float time) : density_(density) {
     const FilmLayout& region = density.region();
     fill(x_, density.filter(), px.x, region.offset_x, region.width);
     fill(y_, density.filter(), px.y, region.offset_y, region.height);
+    if (const Shutter* shutter = density.rolling())
+        expose(shutter->scans_columns() ? x_ : y_, *shutter, time);
     if (density.even()) {
         total_ = x_.sum() * y_.sum();
     } else {
@@ -82,17 +88,20 @@ Pixel Footprint::choose_excess(const Footprint& other, Pixel own, float u) const
 
 Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero,
               std::span<const Reprojection> others, float u) {
-    const Footprint home(density, hero.px);
+    const Footprint home(density, hero.px, hero.time);
     std::optional<Footprint> there[kWavelengths];
     float sum = home.total() / hero.aim_weight;
     for (int i = 1; i < kWavelengths; ++i) {
         const Reprojection& other = others[i - 1];
         if (other.aim_weight <= 0) continue;
-        there[i].emplace(density, sensor.px_from_mm(other.film_mm));
+        there[i].emplace(density, sensor.px_from_mm(other.film_mm), hero.time);
         sum += there[i]->total() / other.aim_weight;
     }
-    const float scale = kWavelengths * float(density.filter().absolute_integral()) / sum;
     Landings landings(hero.pixel);
+    if (!(home.total() > 0)) return landings;   // the very moment at which its line opens
+    // The integral of |f| s over film points and times, by which densities are divided.
+    const float integral = float(density.filter().absolute_integral()) * density.shutter_weight();
+    const float scale = kWavelengths * integral / sum;
     landings.add(hero.pixel, 0, home.sign(hero.pixel) * home.total() * scale *
                                     (hero.weight / hero.aim_weight));
     const float drawn = home.share(hero.pixel);

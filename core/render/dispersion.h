@@ -16,6 +16,7 @@
 
 #include "camera/exact.h"
 #include "camera/sensor.h"
+#include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
 #include "spectrum/spectrum.h"
@@ -46,19 +47,25 @@ class Landings {
     int count_ = 1;
 };
 
-/// Region of pixels that are drawn, with the filter: how densely film points are drawn. Where a round draws
-/// n(p) samples of pixel p, all densities are n(p) |f(px - centre of p)|: then the sum of what lands in p
-/// is that of n(p) samples on average, and a pixel that is not drawn gets nothing.
+/// Region of pixels that are drawn, with the filter and the shutter: how densely film points are drawn, and
+/// when. Where a round draws n(p) samples of pixel p, all densities are n(p) |f(px - centre of p)| s_p(t):
+/// then the sum of what lands in p is that of n(p) samples on average, a pixel that is not drawn gets
+/// nothing, and neither does a line that a rolling shutter has shut at that time. (A shutter that is the
+/// same for all pixels cancels.)
 class FilmDensity {
   public:
     /// `counts`: n(p), rows of the region; empty: the same for every pixel.
     FilmDensity(const Filter& filter, const FilmLayout& region,
-                std::span<const std::uint32_t> counts = {})
-        : filter_(filter), region_(region), counts_(counts) {}
+                std::span<const std::uint32_t> counts = {}, const Shutter* shutter = nullptr)
+        : filter_(filter), region_(region), counts_(counts), shutter_(shutter) {}
 
     const Filter& filter() const { return filter_; }
     const FilmLayout& region() const { return region_; }
     bool even() const { return counts_.empty(); }
+    /// The shutter if its lines are not all open at once, else null.
+    const Shutter* rolling() const { return shutter_ && shutter_->rolls() ? shutter_ : nullptr; }
+    /// Mean over its window of what the shutter lets pass.
+    float shutter_weight() const { return shutter_ ? shutter_->weight() : 1; }
     /// n of a pixel of the region; 1 where all are alike.
     float count(Pixel p) const {
         if (even()) return 1;
@@ -70,16 +77,17 @@ class FilmDensity {
     const Filter& filter_;
     const FilmLayout& region_;
     std::span<const std::uint32_t> counts_;
+    const Shutter* shutter_;
 };
 
-/// The filter as it lies around one film point: the pixels in reach, each with n f.
+/// The filter as it lies around one film point at one time: the pixels in reach, each with n f s.
 class Footprint {
   public:
-    Footprint(const FilmDensity& density, Vec2f px);
+    Footprint(const FilmDensity& density, Vec2f px, float time);
 
-    /// Sum of n |f| over the pixels in reach.
+    /// Sum of n |f| s over the pixels in reach.
     float total() const { return total_; }
-    /// n |f| / total of a pixel; 0 where total is.
+    /// n |f| s / total of a pixel; 0 where total is.
     float share(Pixel p) const;
     float sign(Pixel p) const;
     /// A pixel from what this footprint's shares have above those of `other`, with u in [0,1); `other`'s own
@@ -97,6 +105,7 @@ class Footprint {
         float sum() const;
     };
     static void fill(Axis& axis, const Filter& filter, float at, int first, int count);
+    static void expose(Axis& axis, const Shutter& shutter, float time);
 
     const FilmDensity& density_;
     Axis x_, y_;
@@ -107,6 +116,7 @@ class Footprint {
 struct Hero {
     Vec2f px;
     Pixel pixel;
+    float time;          // fraction of the scene's interval
     float weight;        // exposure of the ray: aim weight x transmittance
     float aim_weight;    // the same without transmittance
 };

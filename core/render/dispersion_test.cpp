@@ -16,12 +16,15 @@ std::vector<std::uint32_t> patchy(int pixels) {
 }
 
 /// A lens that shifts each wavelength by an amount of its own and loses nothing: whatever the round, each
-/// wavelength must bring n(p) to pixel p on average. Largest |z| over pixels and wavelengths.
+/// wavelength must bring n(p) to pixel p on average, and of a world that grows brighter in proportion to
+/// time as much as the pixel's line sees of it. Largest |z| over pixels and wavelengths.
 double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>& counts,
-                         std::span<const std::uint32_t> told) {
+                         std::span<const std::uint32_t> told, const Shutter& shutter = {},
+                         bool told_shutter = true) {
     const Sensor sensor{8, 6, 8, 6, {0, 0}};
     const FilmLayout region{8, 6, 0, 0, false};
-    const FilmDensity density(filter, region, told);
+    const FilmDensity density(filter, region, told, told_shutter ? &shutter : nullptr);
+    const bool brightens = shutter.duration_s() > 0;
     const std::array<Vec2f, kWavelengths> shift{Vec2f{0, 0}, {0.7f, 0.2f}, {-0.5f, 0.4f}, {1.6f, -1.3f}};
     std::vector<double> sums(48 * kWavelengths), squares(sums);
     const int rounds = 400;
@@ -32,6 +35,7 @@ double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>&
             for (std::uint32_t i = 0; i < counts[p]; ++i) {
                 const Pixel pixel{p % 8, p / 8};
                 const int first = int(4 * u());
+                const float time = shutter.draw(pixel.x, pixel.y, u()).time;
                 const Vec2f f = filter.sample({u(), u()}).offset;
                 const Vec2f px{pixel.x + 0.5f + f.x, pixel.y + 0.5f + f.y};
                 std::array<Reprojection, kWavelengths - 1> others;
@@ -40,19 +44,22 @@ double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>&
                     const Vec2f there{px.x + to.x - from.x, px.y + to.y - from.y};
                     others[k - 1] = {sensor.mm_from_px(there), 1, 1};
                 }
-                const auto landings = land(density, sensor, {px, pixel, 1, 1}, others, u());
+                const auto landings = land(density, sensor, {px, pixel, time, 1, 1}, others, u());
                 for (const Landing& landing : landings)
                     for (int k = 0; k < kWavelengths; ++k) {
                         const Pixel at = landing.pixel;
                         const std::size_t place = (at.y * 8 + at.x) * 4 + (first + k) % 4;
-                        const float w = landing.weight[k];
+                        const float w = landing.weight[k] * (brightens ? time : 1);
                         sums[place] += w;
                         squares[place] += w * w;
                     }
             }
     double largest = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        const double expected = rounds * counts[i / 4];
+        const int pixel = int(i / 4);
+        // The curve is symmetric: its mean time is the middle of the window.
+        const double seen = brightens ? shutter.draw(pixel % 8, pixel / 8, 0.5f).time : 1;
+        const double expected = rounds * counts[pixel] * seen * shutter.weight();
         const double sigma = std::sqrt(squares[i]);   // of a sum of independent arrivals
         largest = std::max(largest, std::abs(sums[i] - expected) / std::max(sigma, 1e-9));
     }
@@ -79,6 +86,25 @@ TEST_CASE("where pixels get different numbers of samples, so do the landings") {
     }
 }
 
+TEST_CASE("wavelengths land on lines that are open then, in proportion to how far") {
+    ShutterSettings settings;
+    settings.curve = OpeningCurve::trapezoid(0.7);
+    settings.exposure_s = 2, settings.line_time_s = 1;   // two or three lines are open at a time
+    const std::vector<std::uint32_t> even(48, 8);
+    const auto counts = patchy(48);
+    for (const ScanOrder scan : {ScanOrder::none, ScanOrder::top, ScanOrder::bottom, ScanOrder::right}) {
+        settings.scan = scan;
+        const Shutter shutter(settings, 8, 6);
+        for (const FilterKind kind : {FilterKind::box, FilterKind::mitchell}) {
+            const Filter filter(kind);
+            CHECK(largest_deviation(filter, even, {}, shutter) < 5);   // of 192
+            CHECK(largest_deviation(filter, counts, counts, shutter) < 5);
+            if (scan != ScanOrder::none)   // densities that forget the lines
+                CHECK(largest_deviation(filter, even, {}, shutter, false) > 10);
+        }
+    }
+}
+
 TEST_CASE("without dispersion all four wavelengths keep the pixel and the plain weight") {
     const Sensor sensor{8, 6, 8, 6, {0, 0}};
     const FilmLayout region{8, 6, 0, 0, false};
@@ -86,7 +112,7 @@ TEST_CASE("without dispersion all four wavelengths keep the pixel and the plain 
         const Filter filter(kind);
         const FilmDensity density(filter, region);
         const Vec2f px{4.4f, 3.3f};
-        const Hero hero{px, {4, 3}, 0.6f, 0.8f};
+        const Hero hero{px, {4, 3}, 0, 0.6f, 0.8f};
         const Reprojection same{sensor.mm_from_px(px), 0.75f, 0.8f};
         const std::array<Reprojection, 3> others{same, same, same};
         const Landings landings = land(density, sensor, hero, others, 0.999f);
@@ -103,7 +129,7 @@ TEST_CASE("a wavelength that the lens stops brings nothing and takes nothing") {
     const FilmLayout region{8, 6, 0, 0, false};
     const Filter filter(FilterKind::box);
     const FilmDensity density(filter, region);
-    const Hero hero{{4.4f, 3.3f}, {4, 3}, 0.8f, 0.8f};
+    const Hero hero{{4.4f, 3.3f}, {4, 3}, 0, 0.8f, 0.8f};
     const auto landings = land(density, sensor, hero, std::array<Reprojection, 3>{}, 0.5f);
     // The ray could only have been drawn by the hero, one time in four.
     CHECK(landings.end() - landings.begin() == 1);

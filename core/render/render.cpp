@@ -26,7 +26,7 @@ struct Sample {
     Pixel pixel;
     std::uint32_t index;
     Vec2f px;              // film point
-    float filter_weight;
+    float weight;          // of filter and shutter
     PathSampler sampler;
     Wavelengths wavelengths;
 };
@@ -51,7 +51,8 @@ class Renderer {
                      : nullptr),
           end_secondary_(settings.dispersion == Dispersion::end_secondary &&
                          std::holds_alternative<ExactLens>(camera.lens)),
-          density_(settings.filter, film.layout(), uneven(settings.round.count)) {
+          density_(settings.filter, film.layout(), uneven(settings.round.count),
+                   &settings.shutter) {
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
     }
 
@@ -82,18 +83,19 @@ class Renderer {
                                        pixel.x - region.offset_x);
     }
 
-    /// Order of drawing: film point, time, wavelengths; the lens follows for the whole batch.
+    /// Order of drawing: pixel and film point, the time within the pixel's window, wavelengths; the lens
+    /// as it is at that time follows for the whole batch, then the pose.
     void add_sample(Workspace& work, Pixel pixel, std::uint32_t index) const {
         const PathSampler sampler(pixel.x, pixel.y, index, settings_.seed);
         const CameraRandom u = sampler.camera();
         const FilterSample f = settings_.filter.sample(u.film);
         const Vec2f px{pixel.x + 0.5f + f.offset.x, pixel.y + 0.5f + f.offset.y};
         const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
-        const double open = settings_.shutter_open_s, close = settings_.shutter_close_s;
-        work.camera_samples.push_back({settings_.sensor.mm_from_px(px), u.lens,
-                                       float(open + u.time * (close - open)),
-                                       wavelengths.nm[0]});
-        work.samples.push_back({pixel, index, px, f.weight, sampler, wavelengths});
+        const Moment moment = settings_.shutter.draw(pixel.x, pixel.y, u.time);
+        work.camera_samples.push_back({settings_.sensor.mm_from_px(px), u.lens, moment.time,
+                                       wavelengths.nm[0], moment.iris_opening});
+        work.samples.push_back({pixel, index, px, f.weight * settings_.shutter.weight(), sampler,
+                                wavelengths});
     }
 
     void draw_batch(Workspace& work) const {
@@ -138,14 +140,14 @@ class Renderer {
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
         const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
                                         settings_.path, wanted, &work.counters.rays);
-        if (wanted) add_aov(sample, aov);
+        if (wanted) add_aov(sample, ray.time, aov);
         if (exact_) {
             const auto first = work.reprojections.begin() + passed * (kWavelengths - 1);
             splat(sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index,
                       sample.wavelengths.to_xyz(light.sum() *
-                                                (camera_ray.weight * sample.filter_weight)));
+                                                (camera_ray.weight * sample.weight)));
         }
     }
 
@@ -155,11 +157,12 @@ class Renderer {
     /// has the density 0 for this path. It has the plain weight of the hero's own film sample.
     void splat(const Sample& sample, const CameraRay& camera_ray,
                std::span<const Reprojection> others, const Radiance& light) const {
-        const Hero hero{sample.px, sample.pixel, camera_ray.weight, camera_ray.aim_weight};
+        const Hero hero{sample.px, sample.pixel, camera_ray.ray.time, camera_ray.weight,
+                        camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
         const Landings landings =
             land(density_, settings_.sensor, hero, others, sampler.next_1d());
-        Spectrum own = light.hero * (camera_ray.weight * sample.filter_weight);
+        Spectrum own = light.hero * (camera_ray.weight * sample.weight);
         for (const Landing& l : landings) {   // the hero's own pixel comes first
             film_.add_shared(l.pixel.x, l.pixel.y, sample.index,
                              sample.wavelengths.to_xyz(own + light.shared * l.weight));
@@ -167,10 +170,10 @@ class Renderer {
         }
     }
 
-    void add_aov(const Sample& sample, AovSample& aov) const {
+    void add_aov(const Sample& sample, float time, AovSample& aov) const {
         aov.alpha = aov.hit ? 1 : 0;
         if (aov.hit) {
-            const Affine3d& camera = camera_.world_from_camera;
+            const Affine3d camera = camera_.world_from_camera.at(time);
             aov.depth = float(-dot(to_double(aov.position) - camera.origin, camera.z));
         }
         film_.add_aov(sample.pixel.x, sample.pixel.y, sample.index, aov);

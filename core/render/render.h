@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "camera/sensor.h"
+#include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
 #include "render/path.h"
@@ -44,7 +45,7 @@ struct RenderSettings {
     SampleRound round;                          // instead of these, unless empty
     std::uint64_t seed = 0;
     int threads = 0;                            // 0: all
-    double shutter_open_s = 0, shutter_close_s = 0;
+    Shutter shutter;                            // its duration is the scene's interval
     PathSettings path;
     Filter filter;
     Dispersion dispersion = Dispersion::reproject;

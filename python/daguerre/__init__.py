@@ -14,6 +14,7 @@ from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
 from .motion import Keys, Spin, keys, spin
 from .scene import Scene
+from .shutter import RollingShutter
 
 if TYPE_CHECKING:
     from . import lenses
@@ -35,6 +36,7 @@ __all__ = [
     "MismatchError",
     "OutputError",
     "PointLight",
+    "RollingShutter",
     "Scene",
     "Session",
     "SphereLight",

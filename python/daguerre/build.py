@@ -18,8 +18,12 @@ from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSl
 from .scene import Environment, Scene
 
 
-def build(scene: Scene) -> _core.Scene:
+def build(scene: Scene, interval: tuple[float, float] | None = None) -> _core.Scene:
     """Hands the scene to the core, which checks it and builds the ray tracer.
+
+    Args:
+        scene: What is seen.
+        interval: When it is seen, s; None: at its ``time``.
 
     Raises:
         InputError: Some part cannot be rendered; the message names it.
@@ -28,6 +32,7 @@ def build(scene: Scene) -> _core.Scene:
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
     try:
         builder = _core.SceneBuilder()
+        builder.set_interval(*(interval or (scene.time, scene.time)))
         _add_all(builder, scene)
         return builder.build()
     except ValueError as error:

@@ -17,6 +17,7 @@ from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
     from .lenses import Lens
+    from .shutter import RollingShutter
 
 
 #: lenses without a prescription
@@ -38,6 +39,16 @@ MOVABLE = (
     *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
     *("blades", "blade_rotation", "blade_curvature", "shift"),
 )
+
+
+#: ways to say the same, of which one may be given
+RIVALS = (
+    ("f_stop", "aperture_diameter"),
+    ("focus_distance", "focus_at", "focus_on"),
+    ("shutter_time", "shutter_angle"),
+)
+#: ``"box"``, ``("trapezoid", efficiency)`` or points (fraction of the time, opening)
+ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -69,7 +80,17 @@ class Camera:
         aperture_image: Grey picture (H, W) of the iris opening; None: by blades.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Film shift, mm.
-        shutter_time: s; None: the file's.
+        shutter_time: How long a point of the film is exposed, s; 0 freezes. Or
+        shutter_angle: the same in degrees of a frame, 360 fps shutter_time. None of both: the
+            file's, else 180 degrees.
+        fps: Frames per second, for angles, offsets and sequences.
+        shutter_offset: When it opens, in frames from the scene's time; None: the exposure stands
+            around that time.
+        shutter_type: box, leaf, focal_plane, rotary or electronic; None: electronic with a
+            rolling shutter, else box.
+        shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction
+            of the time, opening); of a leaf the radius of the iris.
+        rolling_shutter: Lines of pixels that are exposed in turn; None: as the type has it.
         iso, exposure_compensation: For development; they never change ``frame.rgb``.
         motion: Parameters that change over time.
     """
@@ -94,6 +115,12 @@ class Camera:
     natural_vignetting: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
     shutter_time: float | None = None
+    shutter_angle: float | None = None
+    fps: float = 24.0
+    shutter_offset: float | None = None
+    shutter_type: str | None = None
+    shutter_curve: ShutterCurve | None = None
+    rolling_shutter: RollingShutter | None = None
     iso: float = 100.0
     exposure_compensation: float = 0.0
     motion: dict[str, Dynamic] = field(default_factory=dict)
@@ -142,7 +169,7 @@ class Camera:
             if odd:
                 raise UsageError(f"camera: a pinhole has no {odd[0]}")
         replaced: dict[str, None] = {}
-        for rivals in (("f_stop", "aperture_diameter"), ("focus_distance", "focus_at", "focus_on")):
+        for rivals in RIVALS:
             both = sorted(given & set(rivals))
             if len(both) > 1:
                 raise UsageError(f"camera: wanted either {both[0]} or {both[1]}, got both")

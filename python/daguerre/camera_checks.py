@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from . import lenses
+from . import lenses, shutter
 from .camera import IDEAL, LIMITS, Camera
 from .checks import number, numbers, short, whole
 from .errors import UsageError, suggest
@@ -46,8 +46,7 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
             _positive(name, value, "; a pinhole is its own kind: lens='pinhole'" if hint else "")
     if camera.focus_distance is not None:
         _positive("focus_distance", camera.focus_distance, infinite=True)
-    if camera.shutter_time is not None:
-        number(camera.shutter_time, "camera: shutter_time", 0)
+    shutter.check(camera)
     number(camera.exposure_compensation, "camera: exposure_compensation")
     for shift in numbers(camera.shift, "camera: shift", 2, "two finite numbers (mm)"):
         number(shift, "camera: shift", *LIMITS["shift"])

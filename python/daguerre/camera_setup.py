@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import lenses
+from . import lenses, shutter
 from .camera import Camera
 from .camera_checks import check, lens_and_model
 from .camera_parts import frame_size, iris_facts, iris_of, rigid
@@ -71,13 +71,14 @@ def set_up(
     check(camera, model, prescription=lens is not None)
     world = rigid(camera.transform)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
+    pose = _core.Motion.still(world)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
     if lens is not None:
-        _set_up_prescription(setup, camera, lens, model, world, focus)
+        _set_up_prescription(setup, camera, lens, model, pose, focus)
     elif model == "pinhole":
-        _set_up_pinhole(setup, camera, world)
+        _set_up_pinhole(setup, camera, pose)
     else:
-        _set_up_thin(setup, camera, world, focus)
+        _set_up_thin(setup, camera, pose, focus)
     setup.facts |= {
         "lens_model": model,
         "sensor_size_mm": list(camera.sensor_size),
@@ -87,21 +88,19 @@ def set_up(
         "world_from_camera": np.asarray(world).tolist(),
         "iso": camera.iso,
         "exposure_compensation": camera.exposure_compensation,
-        "shutter_time_s": camera.shutter_time,
+        "shutter": shutter.facts(camera, resolution),
     }
     return setup
 
 
-def _set_up_pinhole(setup: CameraSetup, camera: Camera, world: NDArray[np.float64]) -> None:
+def _set_up_pinhole(setup: CameraSetup, camera: Camera, pose: _core.Motion) -> None:
     f = camera.focal_length or DEFAULT_FOCAL_LENGTH
-    setup.core = _core.Camera.pinhole(world, f, camera.natural_vignetting)
+    setup.core = _core.Camera.pinhole(pose, f, camera.natural_vignetting)
     setup.pinhole_focal_length = f
     setup.facts |= {"lens": "pinhole", "focal_length_mm": f}
 
 
-def _set_up_thin(
-    setup: CameraSetup, camera: Camera, world: NDArray[np.float64], focus: Focus
-) -> None:
+def _set_up_thin(setup: CameraSetup, camera: Camera, pose: _core.Motion, focus: Focus) -> None:
     f = camera.focal_length or DEFAULT_FOCAL_LENGTH
     diameter = camera.aperture_diameter or f / (camera.f_stop or DEFAULT_F_STOP)
     distance = focus.distance(ideal_direction(f))
@@ -116,7 +115,7 @@ def _set_up_thin(
             )
         film = f if math.isinf(distance) else f * distance * 1e3 / (distance * 1e3 - f)
     setup.core = _core.Camera.thin(
-        world, film, diameter / 2, distance, iris_of(camera), camera.natural_vignetting
+        pose, film, diameter / 2, distance, iris_of(camera), camera.natural_vignetting
     )
     setup.pinhole_focal_length = film
     setup.facts |= {
@@ -152,7 +151,7 @@ def _set_up_prescription(
     camera: Camera,
     lens: lenses.Lens,
     model: str,
-    world: NDArray[np.float64],
+    pose: _core.Motion,
     focus: Focus,
 ) -> None:
     """A real lens: traced exactly, or replaced by the ideal lens of the same framing and blur."""
@@ -172,14 +171,14 @@ def _set_up_prescription(
         distance -= (exact.film_z_mm - order.entrance_pupil.z) * 1e-3
     film = framing_distance(order, exact.film_distance_mm, distance)
     if model == "exact":
-        setup.core = _core.Camera.exact(world, exact)
+        setup.core = _core.Camera.exact(pose, exact)
     elif model == "thin":
         radius = order.efl / f_stop / 2
         setup.core = _core.Camera.thin(
-            world, film, radius, distance, iris_of(camera), camera.natural_vignetting
+            pose, film, radius, distance, iris_of(camera), camera.natural_vignetting
         )
     else:
-        setup.core = _core.Camera.pinhole(world, film, camera.natural_vignetting)
+        setup.core = _core.Camera.pinhole(pose, film, camera.natural_vignetting)
     setup.pinhole_focal_length = film
     setup.facts |= {
         "lens": lens.name,

@@ -42,7 +42,8 @@ class Facts:
         far_m: Where it ends.
         pixel_pitch_um: Of the picture.
         pupil_diameter_mm: Entrance pupil.
-        shutter_s: None: unknown.
+        shutter_s: How long a point of the film is exposed.
+        shutter: The same in words, with what else the shutter does.
         ev100: log2(N^2 / t) - log2(ISO / 100), ISO 2720.
     """
 
@@ -61,7 +62,8 @@ class Facts:
     far_m: float | None
     pixel_pitch_um: float
     pupil_diameter_mm: float | None
-    shutter_s: float | None
+    shutter_s: float
+    shutter: str
     ev100: float | None
 
 
@@ -80,6 +82,7 @@ def camera_facts(
         resolution: Shape of the picture, px.
     """
     from .camera_setup import set_up
+    from .shutter import describe, shutter_time
 
     setup = set_up(scene, camera, resolution, core_scene)
     facts = setup.facts
@@ -90,9 +93,9 @@ def camera_facts(
     if stop is not None:
         hyperfocal = hyperfocal_m(focal, stop, coc)
         near, far = depth_of_field_m(focal, stop, coc, focus)
-    shutter = camera.shutter_time
+    shutter = shutter_time(camera)
     ev100 = None
-    if stop is not None and shutter is not None and shutter > 0:
+    if stop is not None and shutter > 0:
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
     return Facts(
         str(facts.get("lens", "thin")),
@@ -111,6 +114,7 @@ def camera_facts(
         setup.frame_size[0] / resolution[0] * 1000,
         None if stop is None else focal / stop,
         shutter,
+        describe(camera, resolution),
         ev100,
     )
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
+from . import shutter
 from .adaptive import Round, check_noise, rounds
 from .build import build, content_hash
 from .camera import Camera
@@ -85,7 +86,8 @@ class Session:
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.aovs = aovs
         started = time.perf_counter()
-        self._core_scene = build(scene)
+        when = shutter.interval(self.camera, scene.time, (self.width, self.height))
+        self._core_scene = build(scene, when)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
         self.setup_seconds = time.perf_counter() - started
         self.notes = list(self._setup.notes)
@@ -94,6 +96,7 @@ class Session:
         self._settings.sensor_size_mm = self._setup.frame_size
         shift_x, shift_y = self.camera.shift
         self._settings.sensor_center_mm = (shift_x, shift_y)
+        self._settings.shutter = shutter.core_shutter(self.camera, (self.width, self.height))
         self._settings.seed = seed
         self._settings.threads = threads
         self._settings.filter = _core.Filter(kind, radius)
@@ -250,7 +253,8 @@ class Session:
         width, height = self._setup.frame_size
         out: dict[str, Any] = {
             "isoSpeed": camera.iso,
-            "expTime": camera.shutter_time,
+            "time": self.scene.time,
+            **shutter.metadata(camera),
             "aperture": facts.get("f_stop"),
             "focus": facts.get("focus_distance_m"),
             "nominalFocalLength": facts.get("focal_length_mm"),

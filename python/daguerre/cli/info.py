@@ -92,8 +92,7 @@ def camera_rows(facts: Facts, resolution: tuple[int, int]) -> dict[str, str]:
             f"{_metres(facts.near_m)} to {_metres(facts.far_m)} "
             f"(circle of confusion {facts.coc_mm * 1000:.3g} um)"
         )
-    if facts.shutter_s is not None:
-        rows["shutter"] = f"{_seconds(facts.shutter_s)}"
+    rows["shutter"] = facts.shutter
     if facts.ev100 is not None:
         rows["EV100"] = f"{facts.ev100:.2f}"
     if facts.notes:
@@ -152,7 +151,3 @@ def _angles(angles: tuple[float, float, float]) -> str:
 
 def _metres(value: float) -> str:
     return "infinity" if math.isinf(value) else f"{value:.4g} m"
-
-
-def _seconds(value: float) -> str:
-    return f"1/{1 / value:.4g} s" if 0 < value < 0.5 else f"{value:.4g} s"
