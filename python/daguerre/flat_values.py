@@ -1,0 +1,82 @@
+"""Values of any kind as a row of numbers and what is none, to see how far two of them are apart."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+# A larger array is no parameter but a picture, and does not change.
+_MAX_ARRAY = 64
+
+
+@dataclass
+class Flat:
+    """A value taken apart.
+
+    Attributes:
+        value: As it was.
+        numbers: All its finite numbers.
+        groups: Which of them are of one size, such as the three of a colour.
+        rest: Names, flags, and what is infinite: these do not change bit by bit.
+    """
+
+    value: Any
+    numbers: FloatArray
+    groups: list[int] = field(default_factory=list)
+    rest: list[Any] = field(default_factory=list)
+
+
+def flat(value: Any) -> Flat:
+    """Takes a number, tuple, array or dataclass apart."""
+    numbers: list[float] = []
+    taken = Flat(value, np.zeros(0))
+    _take(value, numbers, taken)
+    taken.numbers = np.array(numbers)
+    return taken
+
+
+def _take(value: Any, numbers: list[float], into: Flat) -> None:
+    if isinstance(value, np.ndarray) and value.size <= _MAX_ARRAY and value.dtype.kind in "iuf":
+        if value.shape == (4, 4):  # a place is no size
+            _add(value[:3, :3].ravel().tolist(), numbers, into)
+            _add(value[:3, 3].tolist(), numbers, into)
+        else:
+            _add(value.ravel().tolist(), numbers, into)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        _add([value], numbers, into)
+    elif isinstance(value, tuple | list):
+        if all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
+            _add(list(value), numbers, into)
+        else:
+            for item in value:
+                _take(item, numbers, into)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for part in vars(value).values():
+            _take(part, numbers, into)
+    else:
+        into.rest.append(id(value) if isinstance(value, np.ndarray) else value)
+
+
+def _add(values: list[float], numbers: list[float], into: Flat) -> None:
+    group = into.groups[-1] + 1 if into.groups else 0
+    for value in values:
+        if math.isfinite(value):
+            numbers.append(value)
+            into.groups.append(group)
+        else:
+            into.rest.append(value)
+
+
+def sizes(values: list[Flat]) -> FloatArray:
+    """How large each number is: the largest of its group in all values, one row for all."""
+    rows = np.abs(np.array([v.numbers for v in values if len(v.numbers) == len(values[0].numbers)]))
+    largest = rows.max(axis=0) if rows.size else np.zeros(len(values[0].numbers))
+    by_group = np.zeros(max(values[0].groups, default=-1) + 1)
+    np.maximum.at(by_group, values[0].groups, largest)
+    return by_group[values[0].groups] if len(by_group) else largest

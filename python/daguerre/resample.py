@@ -1,0 +1,113 @@
+"""Values over time as keys over one interval, between which the core interpolates.
+
+How near the keys come is stated beside each kind: numbers, transforms, vertices. A jump becomes
+two keys of one time. One key says that nothing changes in the interval.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .flat_values import Flat, flat, sizes
+from .motion import Dynamic
+from .pieces import Pieces
+
+FloatArray = NDArray[np.float64]
+#: Of the size of a number, or of the radius of a mesh.
+BOUND = 1e-4
+#: Of the length of a path: 0.05 px of one across a picture of 2500 px.
+PATH_BOUND = 2e-5
+#: Of the size: what differs by less has not changed but for rounding.
+_STILL = 1e-12
+
+
+def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[float], list[Any]]:
+    """Keys of numbers, tuples, materials, lights, ..., linear in between.
+
+    Every number is kept to ``BOUND`` of the largest that its tuple holds in the interval.
+
+    Args:
+        dynamic: The value.
+        open_s: Begin of the interval, s.
+        close_s: Its end.
+
+    Returns:
+        Times that do not fall, s, and the values there.
+    """
+    pieces = Pieces(lambda t: flat(dynamic.at(t)), dynamic, open_s, close_s)
+    first = pieces.first()
+    limits = sizes(first)
+    if all(_near(v, first[0], first[0], 0.0, _STILL * limits) for v in first):
+        return [open_s], [first[0].value]
+
+    def fits(a: Flat, b: Flat, s: float, value: Flat) -> bool:
+        return _near(value, a, b, s, BOUND * limits)
+
+    keys = pieces.keys(fits)
+    times, values = [keys[0][0]], [keys[0][1].value]
+    for (_, a), (time, b) in itertools.pairwise(keys):
+        if a.rest != b.rest and times[-1] != time:  # nothing lies between two names
+            times.append(time)
+            values.append(a.value)
+        times.append(time)
+        values.append(b.value)
+    return times, values
+
+
+def _near(value: Flat, a: Flat, b: Flat, s: float, limits: FloatArray) -> bool:
+    if not value.rest == a.rest == b.rest:
+        return False
+    gap = np.abs(value.numbers - ((1 - s) * a.numbers + s * b.numbers))
+    return bool((gap <= limits).all())
+
+
+def resample_transform(
+    dynamic: Dynamic, open_s: float, close_s: float, corners: FloatArray
+) -> _core.Motion:
+    """A transform over time, decomposed between its keys.
+
+    No corner is off by more than ``BOUND`` of the radius of what is transformed, or
+    ``PATH_BOUND`` of its way where that is more.
+
+    Args:
+        dynamic: World from local, (4, 4).
+        open_s: Begin of the interval, s.
+        close_s: Its end.
+        corners: Of the box around what is transformed, shape (8, 3), m.
+    """
+    points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T
+    pieces = Pieces(lambda t: np.asarray(dynamic.at(t), np.float64), dynamic, open_s, close_s)
+    first = np.stack(pieces.first())
+    if (np.abs(first - first[0]) <= _STILL * np.abs(first).max()).all():
+        return _core.Motion.still(first[0])
+    placed = (first @ points)[:, :3]
+    middles = placed.mean(axis=2)
+    radius = float(np.linalg.norm(placed - middles[:, :, None], axis=1).max())
+    way = float(np.linalg.norm(np.ptp(middles, axis=0)))
+    limit = max(BOUND * radius, PATH_BOUND * way)
+
+    def fits(a: FloatArray, b: FloatArray, s: float, value: FloatArray) -> bool:
+        between = _core.Motion.keys(np.array([0.0, 1.0]), np.stack([a, b])).at(s)
+        return bool(np.linalg.norm(((value - between) @ points)[:3], axis=0).max() <= limit)
+
+    keys = pieces.keys(fits)
+    return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))
+
+
+def resample_shown(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, float]]:
+    """When something is there, as intervals (begin, end) in s; it changes at breaks only."""
+    if open_s == close_s:
+        return [(open_s, close_s)] if dynamic.at(open_s) else []
+    times = [open_s, *dynamic.breaks(open_s, close_s), close_s]
+    found: list[tuple[float, float]] = []
+    for begin, end in itertools.pairwise(times):
+        if dynamic.at(0.5 * (begin + end)):
+            joins = found and found[-1][1] == begin
+            found.append((found.pop()[0] if joins else begin, end))
+    return found
