@@ -15,8 +15,8 @@ from kit.pose import Point, look
 class Studio:
     """A GLB in the making, in metres, y up, luminances in cd/m2 of which 1 shows as white."""
 
-    def __init__(self) -> None:
-        self.glb = Glb("daguerre examples/extensions.py")
+    def __init__(self, script: str = "extensions.py") -> None:
+        self.glb = Glb(f"daguerre examples/{script}")
 
     def matter(
         self, name: str, color: Point, roughness: float = 0.5, metallic: float = 0.0, **more: Any

@@ -1,0 +1,1 @@
+"""Scenes of examples/motion.py: each shows one way in which a picture blurs."""
