@@ -14,6 +14,7 @@ void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
+void bind_truth(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
@@ -32,4 +33,5 @@ NB_MODULE(_core, m) {
     bind_shutter(m);
     bind_film(m);
     bind_render(m);
+    bind_truth(m);
 }

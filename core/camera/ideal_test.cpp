@@ -85,10 +85,10 @@ TEST_CASE("the mean weight does not depend on the shape of the iris") {
 
 TEST_CASE("pixels and film: top left, upright, and back") {
     const Sensor sensor{36, 24, 36, 24, {2, -1}};
-    CHECK(sensor.mm_from_px({0, 0}).x == doctest::Approx(-16));
-    CHECK(sensor.mm_from_px({0, 0}).y == doctest::Approx(11));
-    CHECK(sensor.mm_from_px({36, 24}).y == doctest::Approx(-13));
-    const Vec2f px = sensor.px_from_mm(sensor.mm_from_px({7.25f, 19.5f}));
+    CHECK(sensor.mm_from_px(Vec2f{0, 0}).x == doctest::Approx(-16));
+    CHECK(sensor.mm_from_px(Vec2f{0, 0}).y == doctest::Approx(11));
+    CHECK(sensor.mm_from_px(Vec2f{36, 24}).y == doctest::Approx(-13));
+    const Vec2f px = sensor.px_from_mm(sensor.mm_from_px(Vec2f{7.25f, 19.5f}));
     CHECK(px.x == doctest::Approx(7.25));
     CHECK(px.y == doctest::Approx(19.5));
 }

@@ -18,6 +18,15 @@ struct Sensor {
         return {float(((mm.x - center_mm.x) / width_mm + 0.5) * width),
                 float((0.5 - (mm.y - center_mm.y) / height_mm) * height)};
     }
+    /// The same in double, for ground truth.
+    Vec2d mm_from_px(Vec2d px) const {
+        return {(px.x / width - 0.5) * width_mm + center_mm.x,
+                (0.5 - px.y / height) * height_mm + center_mm.y};
+    }
+    Vec2d px_from_mm(Vec2d mm) const {
+        return {((mm.x - center_mm.x) / width_mm + 0.5) * width,
+                (0.5 - (mm.y - center_mm.y) / height_mm) * height};
+    }
 };
 
 }  // namespace dg

@@ -89,6 +89,11 @@ Shutter::Shutter(const ShutterSettings& settings, int width, int height) : setti
     if (scans) line_ = settings.line_time_s / duration_s_;
 }
 
+double Shutter::opens_at(Vec2d px) const {
+    const double line = (scans_columns() ? px.x : px.y) - 0.5;   // lines have their middles there
+    return line_ > 0 ? open_of(std::clamp(line, 0.0, lines_ - 1.0)) : 0;
+}
+
 Moment Shutter::draw(int x, int y, float u) const {
     if (settings_.leaf) return {float(exposure_ * u), float(settings_.curve.at(u))};
     const double open = line_ > 0 ? open_of(scans_columns() ? x : y) : 0;

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "math/vec.h"
+
 namespace dg {
 
 /// s(u), piecewise linear; two points of one u are a jump.
@@ -68,6 +70,10 @@ class Shutter {
         return settings_.scan == ScanOrder::left || settings_.scan == ScanOrder::right;
     }
 
+    /// When the line through a point of the picture (px) opens, without steps from line to line; points
+    /// outside are held to the first and last.
+    double opens_at(Vec2d px) const;
+
     /// The time of a sample of pixel (x, y) of the full frame, from u in [0,1): with density s within the
     /// pixel's window. A leaf's is even: its iris decides what passes.
     Moment draw(int x, int y, float u) const;
@@ -78,7 +84,7 @@ class Shutter {
     float opening(int row, float time) const;
 
   private:
-    double open_of(int line) const { return line_ * (backward_ ? lines_ - 1 - line : line); }
+    double open_of(double line) const { return line_ * (backward_ ? lines_ - 1 - line : line); }
 
     ShutterSettings settings_;
     double duration_s_ = 0;

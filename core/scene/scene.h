@@ -54,6 +54,13 @@ class Scene {
         Hit() {}  // written, so that nothing is cleared first and then set (measured)
     };
     std::optional<Hit> intersect(const Ray& ray) const;
+    /// The same in two steps (follow.cpp): which point of which surface, and what it is like. The
+    /// point can be followed through time, and through scenes that differ in nothing but time.
+    std::optional<RawHit> first_hit(const Ray& ray) const { return intersector_->intersect(ray); }
+    Hit surface(const Ray& ray, const RawHit& hit) const;
+    /// Where it is (m) at a time; nothing while it is not shown. `normal` is asked for on spheres.
+    std::optional<Vec3d> follow(const RawHit& hit, Vec3f normal, float time) const;
+
     /// What is left of light that comes to `ray` (origin as spawn_ray moved it) from
     /// `distance` metres along it, not counting what lies there: 0 or 1,
     /// and between them where it passes clear surfaces. It goes through smooth sheets,
@@ -95,6 +102,7 @@ class Scene {
     void build_lights();
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
+    Sphere sphere(std::uint32_t index, float time) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;

@@ -1,0 +1,140 @@
+#include "render/truth.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <limits>
+
+#include "camera/chief.h"
+
+namespace dg {
+namespace {
+
+constexpr int kRounds = 64;        // of the search for the line on which a point lands
+constexpr double kSettled = 1e-7;  // px
+
+/// One frame's camera, ready to be asked at any time.
+class View {
+  public:
+    View(const TruthFrame& frame, const RenderSettings& settings)
+        : scene_(frame.scene),
+          camera_(frame.camera),
+          settings_(settings),
+          chief_(frame.camera.lens) {}
+
+    float time_at(Vec2d px) const { return float(settings_.shutter.opens_at(px)); }
+    Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
+
+    Ray ray(Vec2d px) const {
+        const ChiefRay chief = chief_.at(settings_.sensor.mm_from_px(px));
+        Ray ray;
+        ray.time = time_at(px);
+        const Affine3d world = pose(ray.time);
+        ray.origin = to_float(world.point(chief.origin));
+        ray.direction = to_float(normalize(world.vector(chief.direction)));
+        return ray;
+    }
+
+    /// Where something that is seen lies on the film at `time`.
+    std::optional<Vec2d> px_of(const Truth::Seen& seen, float time) const {
+        const Affine3d camera = inverse(pose(time));
+        std::optional<Vec2d> film;
+        if (!seen.surface) {
+            film = chief_.film_point(camera.vector(to_double(seen.direction)), 0);
+        } else if (const auto point = scene_.follow(seen.hit, seen.direction, time)) {
+            film = chief_.film_point(camera.point(*point));
+        }
+        if (!film) return std::nullopt;
+        return settings_.sensor.px_from_mm(*film);
+    }
+
+    /// With a rolling shutter the line of landing says when: the fixed point of px -> px
+    /// at the time of px's line, reached as long as things move by less than one line
+    /// from one line to the next.
+    Vec2d landing(const Truth::Seen& seen, Vec2d px) const {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        for (int round = 0; round < kRounds; ++round) {
+            const auto next = px_of(seen, time_at(px));
+            if (!next) return {kNone, kNone};
+            const bool settled =
+                !settings_.shutter.rolls() || length(*next - px) < kSettled;
+            px = *next;
+            if (settled) return px;
+        }
+        return {kNone, kNone};
+    }
+
+  private:
+    const Scene& scene_;
+    const Camera& camera_;
+    const RenderSettings& settings_;
+    ChiefRays chief_;
+};
+
+Vec2d centre(const FilmLayout& region, std::size_t i) {
+    return {region.offset_x + double(i % region.width) + 0.5,
+            region.offset_y + double(i / region.width) + 0.5};
+}
+
+/// Calls use(pixel index) for all of a region.
+template <typename Use>
+void for_each_pixel(const FilmLayout& region, const RenderSettings& settings,
+                    const Use& use) {
+    oneapi::tbb::task_arena arena(
+        settings.threads > 0 ? settings.threads : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(0, region.height, [&](int row) {
+            for (int x = 0; x < region.width; ++x)
+                use(std::size_t(row) * region.width + x);
+        });
+    });
+}
+
+void note_surface(Truth& truth, std::size_t i, const Scene& scene, const Ray& ray,
+                  const RawHit& hit, const Affine3d& camera) {
+    const Scene::Hit found = scene.surface(ray, hit);
+    const SurfaceHit& s = found.surface;
+    const Vec3d from_camera = to_double(s.position) - camera.origin;
+    truth.depth[i] = float(-dot(from_camera, camera.z));
+    truth.distance[i] = float(length(from_camera));
+    truth.position[i] = s.position;
+    truth.normal[i] = truth.seen[i].direction = s.ns;
+    if (found.sphere_light >= 0) return;
+    truth.object_id[i] = s.instance + 1;
+    truth.material_id[i] = scene.description().instances[s.instance].material + 1;
+}
+
+}  // namespace
+
+Truth see(const TruthFrame& frame, const FilmLayout& region,
+          const RenderSettings& settings) {
+    const std::size_t n = std::size_t(region.width) * region.height;
+    Truth truth{region,
+                std::vector<Truth::Seen>(n),
+                std::vector<float>(n),
+                std::vector<float>(n),
+                std::vector<Vec3f>(n),
+                std::vector<Vec3f>(n),
+                std::vector<std::uint32_t>(n),
+                std::vector<std::uint32_t>(n)};
+    const View view(frame, settings);
+    for_each_pixel(region, settings, [&](std::size_t i) {
+        const Ray ray = view.ray(centre(region, i));
+        const auto hit = frame.scene.first_hit(ray);
+        truth.seen[i] = {hit.value_or(RawHit{}), hit.has_value(), ray.direction};
+        if (hit) note_surface(truth, i, frame.scene, ray, *hit, view.pose(ray.time));
+    });
+    return truth;
+}
+
+std::vector<Vec2d> places(const Truth& truth, const TruthFrame& frame,
+                          const RenderSettings& settings) {
+    std::vector<Vec2d> px(truth.seen.size());
+    const View view(frame, settings);
+    for_each_pixel(truth.region, settings, [&](std::size_t i) {
+        px[i] = view.landing(truth.seen[i], centre(truth.region, i));
+    });
+    return px;
+}
+
+}  // namespace dg
