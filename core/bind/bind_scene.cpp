@@ -1,10 +1,12 @@
 // bind_scene.cpp -- scenes from arrays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstring>
 
@@ -126,22 +128,42 @@ MinFilter to_min_filter(const std::string& name) {
                               {"linear_mipmap_linear", {kLinear, Mip::linear}}});
 }
 
+/// Of one moment, (N, 3), or of equal steps over the interval, (S, N, 3).
+using Vectors3 = std::variant<Rows3f, Steps3f>;
+using Vectors4 = std::variant<Rows4f, Steps4f>;
+
+template <typename T, typename Vectors>
+SharedArray<T> all_steps(const Vectors& vectors) {
+    return std::visit([](const auto& array) { return shared<T>(array); }, vectors);
+}
+
+using Intervals = std::optional<std::vector<std::pair<double, double>>>;
+
+std::shared_ptr<const Shown> to_shown(const Intervals& intervals) {
+    if (!intervals) return nullptr;
+    Shown shown;
+    for (const auto& [open, close] : *intervals) shown.times.push_back({open, close});
+    return std::make_shared<const Shown>(std::move(shown));
+}
+
 /// Collects the parts; Scene::build checks them.
 struct Builder {
     SceneDescription description;
 
-    int add_mesh(const std::string& name, const Rows3f& positions, const Rows3u& triangles,
-                 std::optional<Rows3f> normals, std::optional<Rows2f> uv0,
-                 std::optional<Rows2f> uv1, std::optional<Rows4f> tangents,
+    int add_mesh(const std::string& name, const Vectors3& positions, const Rows3u& triangles,
+                 std::optional<Vectors3> normals, std::optional<Rows2f> uv0,
+                 std::optional<Rows2f> uv1, std::optional<Vectors4> tangents,
                  std::optional<Rows4f> colors) {
         Mesh mesh;
         mesh.name = name;
-        mesh.positions = shared<Vec3f>(positions);
+        if (const auto* steps = std::get_if<Steps3f>(&positions))
+            mesh.steps = std::uint32_t(steps->shape(0));
+        mesh.positions = all_steps<Vec3f>(positions);
         mesh.triangles = shared<std::array<std::uint32_t, 3>>(triangles);
-        if (normals) mesh.normals = shared<Vec3f>(*normals);
+        if (normals) mesh.normals = all_steps<Vec3f>(*normals);
         if (uv0) mesh.uv[0] = shared<Vec2f>(*uv0);
         if (uv1) mesh.uv[1] = shared<Vec2f>(*uv1);
-        if (tangents) mesh.tangents = shared<std::array<float, 4>>(*tangents);
+        if (tangents) mesh.tangents = all_steps<std::array<float, 4>>(*tangents);
         if (colors) mesh.colors = shared<std::array<float, 4>>(*colors);
         description.meshes.push_back(std::move(mesh));
         return int(description.meshes.size()) - 1;
@@ -181,15 +203,16 @@ struct Builder {
     }
 
     int add_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
-                     const Matrix4& matrix) {
-        description.instances.push_back({name, mesh, material, to_float(to_affine(matrix))});
+                     const Matrix4& matrix, const Intervals& shown) {
+        description.instances.push_back(
+            {name, mesh, material, to_float(to_affine(matrix)), nullptr, to_shown(shown)});
         return int(description.instances.size()) - 1;
     }
 
     int add_moving_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
-                            const Motion& motion) {
-        description.instances.push_back(
-            {name, mesh, material, {}, std::make_shared<const Motion>(motion)});
+                            const Motion& motion, const Intervals& shown) {
+        description.instances.push_back({name, mesh, material, {},
+                                         std::make_shared<const Motion>(motion), to_shown(shown)});
         return int(description.instances.size()) - 1;
     }
 
@@ -260,9 +283,10 @@ void bind_scene(nb::module_& m) {
                  b.description.interval = {open_s, close_s};
              },
              "open_s"_a, "close_s"_a, "What the picture exposes; keys of time are in s as well.")
-        .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a)
+        .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
+             "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
         .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
-             "motion"_a)
+             "motion"_a, "shown"_a = nb::none())
         .def("add_point_light",
              [](Builder& b, const Triple& position, const Triple& intensity, float range) {
                  b.add_light(PointLight{vec(position), to_rgb(intensity), range});

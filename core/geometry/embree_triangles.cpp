@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 
 #include "geometry/layout.h"
 
@@ -21,17 +22,22 @@ GeometryOwner without_vertices(Device& device, const Mesh& mesh) {
     GeometryOwner geometry =
         device.new_geometry(RTC_GEOMETRY_TYPE_TRIANGLE, "mesh '" + mesh.name + "'");
     rtcSetGeometryBuildQuality(geometry.get(), kBuildQuality);
+    rtcSetGeometryTimeStepCount(geometry.get(), mesh.steps);
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                mesh.triangles.size());
     return geometry;
 }
 
-/// Room for the vertices in memory of Embree's own.
-Vec3f* new_vertices(Device& device, RTCGeometry geometry, const Mesh& mesh) {
-    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+std::span<const Vec3f> positions_at(const Mesh& mesh, std::uint32_t step) {
+    return {mesh.positions.data() + step * mesh.vertex_count(), mesh.vertex_count()};
+}
+
+/// Room for the vertices of a step in memory of Embree's own.
+Vec3f* new_vertices(Device& device, RTCGeometry geometry, const Mesh& mesh, std::uint32_t step) {
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step,
                                          RTC_FORMAT_FLOAT3, sizeof(Vec3f),
-                                         mesh.positions.size());
+                                         mesh.vertex_count());
     device.check("vertices of mesh '" + mesh.name + "'");
     return static_cast<Vec3f*>(copy);
 }
@@ -40,12 +46,15 @@ Vec3f* new_vertices(Device& device, RTCGeometry geometry, const Mesh& mesh) {
 
 GeometryOwner triangles_of(Device& device, const Mesh& mesh) {
     GeometryOwner geometry = without_vertices(device, mesh);
-    const SharedArray<Vec3f>& p = mesh.positions;
-    if (readable_behind(p.end(), 4)) {  // 16 bytes are read at the last vertex
-        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                   RTC_FORMAT_FLOAT3, p.data(), 0, sizeof(Vec3f), p.size());
-    } else {
-        std::copy(p.begin(), p.end(), new_vertices(device, geometry.get(), mesh));
+    for (std::uint32_t step = 0; step < mesh.steps; ++step) {
+        const auto p = positions_at(mesh, step);
+        if (step + 1 < mesh.steps || readable_behind(p.data() + p.size(), 4)) {
+            // 16 bytes are read at the last vertex
+            rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, step,
+                                       RTC_FORMAT_FLOAT3, p.data(), 0, sizeof(Vec3f), p.size());
+        } else {
+            std::ranges::copy(p, new_vertices(device, geometry.get(), mesh, step));
+        }
     }
     return geometry;
 }
@@ -54,8 +63,10 @@ GeometryOwner world_triangles_of(Device& device, const Mesh& mesh,
                                  const Affine3f& world_from_local) {
     if (is_identity(world_from_local)) return triangles_of(device, mesh);
     GeometryOwner geometry = without_vertices(device, mesh);
-    Vec3f* world = new_vertices(device, geometry.get(), mesh);
-    for (Vec3f p : mesh.positions) *world++ = world_from_local.point(p);
+    for (std::uint32_t step = 0; step < mesh.steps; ++step) {
+        Vec3f* world = new_vertices(device, geometry.get(), mesh, step);
+        for (Vec3f p : positions_at(mesh, step)) *world++ = world_from_local.point(p);
+    }
     return geometry;
 }
 

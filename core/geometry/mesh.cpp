@@ -33,10 +33,11 @@ std::string text(const std::array<float, 4>& v) {
 
 template <typename T>
 void check_array(const std::string& where, const char* what, const SharedArray<T>& values,
-                 std::size_t vertices) {
-    if (values.size() != vertices) {
+                 std::size_t vertices, std::size_t steps = 1) {
+    if (values.size() != vertices * steps) {
         throw input_error(where, std::string("length of ") + what,
-                          std::to_string(vertices) + " (one per vertex)",
+                          std::to_string(vertices * steps) +
+                              (steps > 1 ? " (one per vertex and time step)" : " (one per vertex)"),
                           std::to_string(values.size()));
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -52,14 +53,17 @@ void check_array(const std::string& where, const char* what, const SharedArray<T
 
 void Mesh::validate() const {
     const std::string where = "mesh '" + name + "'";
-    const std::size_t n = positions.size();
-    check_array(where, "positions", positions, n);
-    if (!normals.empty()) check_array(where, "normals", normals, n);
+    if (steps < 1 || steps > kMostMeshSteps)
+        throw input_error(where, "time steps", "1 to " + std::to_string(kMostMeshSteps),
+                          std::to_string(steps));
+    const std::size_t n = vertex_count();
+    check_array(where, "positions", positions, n, steps);
+    if (!normals.empty()) check_array(where, "normals", normals, n, steps);
     for (int set = 0; set < 2; ++set) {
         const char* what = set == 0 ? "texture coordinates 0" : "texture coordinates 1";
         if (!uv[set].empty()) check_array(where, what, uv[set], n);
     }
-    if (!tangents.empty()) check_array(where, "tangents", tangents, n);
+    if (!tangents.empty()) check_array(where, "tangents", tangents, n, steps);
     if (!colors.empty()) check_array(where, "colours", colors, n);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         for (std::uint32_t vertex : triangles[i]) {

@@ -10,8 +10,11 @@
 namespace dg {
 
 /// Empty attribute arrays mean "absent". Sizes are checked by validate().
+/// A mesh that deforms has positions, normals and tangents of several moments, one after the other:
+/// equal steps over the scene's interval, and linear between them.
 struct Mesh {
     std::string name;
+    std::uint32_t steps = 1;  // 1: it does not deform
     SharedArray<Vec3f> positions;
     SharedArray<std::array<std::uint32_t, 3>> triangles;
     SharedArray<Vec3f> normals;                  // unit, per vertex; absent: flat shading
@@ -19,10 +22,14 @@ struct Mesh {
     SharedArray<std::array<float, 4>> tangents;  // xyz, w = handedness
     SharedArray<std::array<float, 4>> colors;    // linear RGBA
 
+    std::size_t vertex_count() const { return positions.size() / steps; }
+
     /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
     /// length.
     void validate() const;
 };
+
+inline constexpr std::uint32_t kMostMeshSteps = 129;  // of Embree
 
 /// A sphere light that rays can hit.
 struct Sphere {

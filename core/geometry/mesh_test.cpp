@@ -44,6 +44,23 @@ TEST_CASE("a valid mesh passes") {
     CHECK(message(Mesh{}) == "");
 }
 
+TEST_CASE("time steps are counted") {
+    Mesh mesh = triangle_mesh();
+    mesh.positions = std::vector<Vec3f>(9);
+    mesh.steps = 3;
+    CHECK(message(mesh) == "");
+    mesh.normals = std::vector<Vec3f>(3, {0, 0, 1});
+    CHECK(message(mesh).find("normals") != std::string::npos);
+    mesh.normals = std::vector<Vec3f>(9, {0, 0, 1});
+    CHECK(message(mesh) == "");
+    mesh.positions = std::vector<Vec3f>(8);
+    CHECK(message(mesh).find("positions") != std::string::npos);
+    for (const std::uint32_t steps : {0u, 130u}) {
+        mesh.steps = steps;
+        CHECK(message(mesh).find("time steps") != std::string::npos);
+    }
+}
+
 TEST_CASE("a bad mesh is an error that names mesh and element") {
     Mesh mesh = triangle_mesh();
     mesh.positions = {{0, 0, 0}, {1, std::numeric_limits<float>::quiet_NaN(), 0}, {0, 1, 0}};

@@ -9,7 +9,7 @@ constexpr float kSmallestCosine = 1e-3f;
 
 Vec3f world_edge(const InstanceRecord& r, const Placement& place, std::uint32_t from,
                  std::uint32_t to) {
-    const Vec3d edge = to_double(r.positions[to]) - to_double(r.positions[from]);
+    const Vec3d edge = r.position(place, to) - r.position(place, from);
     return to_float(place.world_from_local.vector(edge));
 }
 
@@ -53,7 +53,7 @@ float mean_curvature(const InstanceRecord& r, const Placement& place, std::uint3
     for (int i = 0; i < 3; ++i) {
         const std::uint32_t a = t[i], b = t[(i + 1) % 3];
         const auto normal = [&](std::uint32_t k) {
-            return to_float(normalize(place.normal_matrix.vector(to_double(r.normals[k]))));
+            return to_float(normalize(place.normal_matrix.vector(to_double(r.normal(place, k)))));
         };
         const Vec3f edge = world_edge(r, place, a, b);
         bend += dot(normal(b) - normal(a), edge);

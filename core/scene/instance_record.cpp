@@ -20,7 +20,8 @@ Corners corners_of(const InstanceRecord& r, std::uint32_t primitive) {
     return {t[0], t[1], t[2]};
 }
 
-float largest(Vec3f v) {
+template <typename T>
+T largest(Vec3<T> v) {
     return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
 }
 
@@ -75,8 +76,9 @@ UvFrame uv_frame(const InstanceRecord& r, const Placement& place, Corners t) {
     const Vec2f uv_c = r.tangent_uv[t.c] - r.tangent_uv[t.a];
     const float det = uv_b.x * uv_c.y - uv_b.y * uv_c.x;
     if (!(std::abs(det) > 0)) return {{}, {}, false};
-    const Vec3f e1 = r.positions[t.b] - r.positions[t.a],
-                e2 = r.positions[t.c] - r.positions[t.a];
+    const Vec3f a = to_float(r.position(place, t.a));
+    const Vec3f e1 = to_float(r.position(place, t.b)) - a,
+                e2 = to_float(r.position(place, t.c)) - a;
     const float sign = std::copysign(1.f, det);  // lengths do not matter
     const Vec3f du = (e1 * uv_c.y - e2 * uv_b.y) * sign;
     const Vec3f dv = (e2 * uv_b.x - e1 * uv_c.x) * sign;
@@ -91,7 +93,8 @@ void set_tangent(const InstanceRecord& r, const Placement& place, Corners t, flo
     Vec3f tangent{};
     hit.tangent_sign = 1;
     if (r.tangents) {
-        const auto &a = r.tangents[t.a], &b = r.tangents[t.b], &c = r.tangents[t.c];
+        const auto* now = r.tangents + place.first_vertex;
+        const auto &a = now[t.a], &b = now[t.b], &c = now[t.c];
         const Vec3d local{a[0] * w + b[0] * u + c[0] * v, a[1] * w + b[1] * u + c[1] * v,
                           a[2] * w + b[2] * u + c[2] * v};
         tangent = to_float(place.world_from_local.vector(local));
@@ -130,7 +133,16 @@ Placement place(const Affine3d& m, bool flattened) {
 
 }  // namespace
 
-Placement InstanceRecord::at(float time) const { return place(motion->at(time), false); }
+Placement InstanceRecord::at(float time) const {
+    Placement p = motion ? place(motion->at(time), false) : still;
+    if (steps == 1) return p;
+    // In single precision, as the ray tracer finds its step.
+    const float along = time * float(steps - 1);
+    const float step = std::clamp(std::floor(along), 0.f, float(steps - 2));
+    p.first_vertex = std::size_t(step) * vertex_count;
+    p.step_share = along - step;
+    return p;
+}
 
 InstanceRecord make_record(const Mesh& mesh, const Material& material,
                            std::uint32_t material_index, const InstanceGeometry& geometry,
@@ -139,6 +151,8 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     const bool textured = gltf && uses_textures(*gltf);
     InstanceRecord r{};
     r.positions = mesh.positions.data();
+    r.steps = mesh.steps;
+    r.vertex_count = mesh.vertex_count();
     r.triangles = mesh.triangles.data();
     r.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
     for (int set = 0; set < 2; ++set) {
@@ -162,7 +176,7 @@ std::array<Vec3f, 3> corners_at(const InstanceRecord& r, std::uint32_t primitive
     const Corners t = corners_of(r, primitive);
     return r.with_placement(time, [&](const Placement& place) -> std::array<Vec3f, 3> {
         const auto world = [&](std::uint32_t i) {
-            return to_float(place.world_from_local.point(to_double(r.positions[i])));
+            return to_float(place.world_from_local.point(r.position(place, i)));
         };
         return {world(t.a), world(t.b), world(t.c)};
     });
@@ -170,9 +184,9 @@ std::array<Vec3f, 3> corners_at(const InstanceRecord& r, std::uint32_t primitive
 
 Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v, float time) {
     const Corners t = corners_of(r, primitive);
-    const Vec3d a = to_double(r.positions[t.a]);
-    const Vec3d e1 = to_double(r.positions[t.b]) - a, e2 = to_double(r.positions[t.c]) - a;
     return r.with_placement(time, [&](const Placement& place) {
+        const Vec3d a = r.position(place, t.a);
+        const Vec3d e1 = r.position(place, t.b) - a, e2 = r.position(place, t.c) - a;
         return place.world_from_local.point(a + e1 * double(u) + e2 * double(v));
     });
 }
@@ -194,19 +208,19 @@ void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, fl
 void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t primitive, float u,
                 float v, SurfaceHit& hit) {
     const Corners t = corners_of(r, primitive);
-    const Vec3f fa = r.positions[t.a], fb = r.positions[t.b], fc = r.positions[t.c];
-    const Vec3d a = to_double(fa), e1 = to_double(fb) - a, e2 = to_double(fc) - a;
+    const Vec3d a = r.position(place, t.a), b = r.position(place, t.b), c = r.position(place, t.c);
+    const Vec3d e1 = b - a, e2 = c - a;
     hit.position =
         to_float(place.world_from_local.point(a + e1 * double(u) + e2 * double(v)));
     hit.error =
-        place.error_scale * std::max(largest(fa), std::max(largest(fb), largest(fc))) +
+        place.error_scale * float(std::max(largest(a), std::max(largest(b), largest(c)))) +
         place.error_base;
     hit.ng = to_float(normalize(place.normal_matrix.vector(cross(e1, e2))));
 
     const float w = 1 - u - v;
     hit.ns = hit.ng;
     if (r.normals) {
-        const Vec3f n = r.normals[t.a] * w + r.normals[t.b] * u + r.normals[t.c] * v;
+        const Vec3f n = r.normal(place, t.a) * w + r.normal(place, t.b) * u + r.normal(place, t.c) * v;
         hit.ns =
             unit_or(to_float(place.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
         if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;

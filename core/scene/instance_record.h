@@ -7,7 +7,7 @@
 
 namespace dg {
 
-/// Where an instance is at one time, and how exact points on it are.
+/// Where an instance is at one time, in which of its shapes, and how exact points on it are.
 struct Placement {
     Affine3d world_from_local;
     Affine3d normal_matrix;  // linear part only; keeps the side also when mirrored
@@ -15,6 +15,9 @@ struct Placement {
     // Error bound of positions: error_scale * largest |coordinate| in the mesh's space of
     // the triangle + error_base.
     float error_scale, error_base;
+    // Of a mesh that deforms: where the arrays of the step begin, and the share of the next step.
+    std::size_t first_vertex = 0;
+    float step_share = 0;
 };
 
 struct InstanceRecord {
@@ -27,18 +30,33 @@ struct InstanceRecord {
     const std::array<float, 4>* tangents;
     const std::array<float, 4>* colors;
     std::uint32_t material;
+    std::uint32_t steps;               // of the mesh
+    std::size_t vertex_count;
     bool needs_frame;  // a normal map or anisotropy wants a tangent
-    Placement still;   // of what moves: at time 0
+    Placement still;   // of what neither moves nor deforms
     const Motion* motion = nullptr;  // over the scene's interval; null: stands still
     const Shown* shown = nullptr;    // null: always
 
     bool is_shown(float time) const { return !shown || shown->at(time); }
-    Placement at(float time) const;  // of what moves
+    Placement at(float time) const;
+    bool changes() const { return motion || steps > 1; }
+
+    Vec3d position(const Placement& p, std::uint32_t vertex) const {
+        const Vec3f* now = positions + p.first_vertex + vertex;
+        if (p.step_share == 0) return to_double(*now);
+        const Vec3d a = to_double(*now), b = to_double(now[vertex_count]);
+        return a * (1 - double(p.step_share)) + b * double(p.step_share);
+    }
+    Vec3f normal(const Placement& p, std::uint32_t vertex) const {
+        const Vec3f* now = normals + p.first_vertex + vertex;
+        if (p.step_share == 0) return *now;
+        return *now * (1 - p.step_share) + now[vertex_count] * p.step_share;
+    }
 
     /// Calls use(placement) with that of `time`; what stands still pays nothing.
     template <typename Use>
     decltype(auto) with_placement(float time, const Use& use) const {
-        if (!motion) return use(still);
+        if (!changes()) return use(still);
         return use(at(time));
     }
 };

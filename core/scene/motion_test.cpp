@@ -103,6 +103,93 @@ TEST_CASE("a moving instance is met where it stands at the time of the ray") {
     }
 }
 
+namespace {
+
+/// A ball that bulges and leans, at equal steps; normals as they may be.
+SceneDescription deforming_ball(std::uint32_t steps) {
+    SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
+    Mesh& mesh = d.meshes[0];
+    std::vector<Vec3f> positions, normals;
+    for (std::uint32_t k = 0; k < steps; ++k) {
+        const float s = float(k) / float(steps - 1), swell = 1 + s * s;
+        for (const Vec3f p : mesh.positions) {
+            positions.push_back({p.x * swell + 2 * s * p.y + 5 * s, p.y / swell, p.z + s});
+            normals.push_back(normalize(Vec3f{p.x / swell, p.y * swell - 2 * s * p.x, p.z}));
+        }
+    }
+    mesh.positions = std::move(positions);
+    mesh.normals = std::move(normals);
+    mesh.steps = steps;
+    d.interval = {2, 4};
+    return d;
+}
+
+/// The still mesh of one time, with what lies between steps written out.
+SceneDescription frozen(const SceneDescription& moving, float time) {
+    SceneDescription d = moving;
+    Mesh& mesh = d.meshes[0];
+    const std::size_t n = mesh.vertex_count();
+    const float along = time * float(mesh.steps - 1);
+    const std::size_t step = std::min(std::size_t(along), std::size_t(mesh.steps - 2));
+    const float s = along - float(step);
+    std::vector<Vec3f> positions, normals;
+    for (std::size_t i = step * n; i < (step + 1) * n; ++i) {
+        positions.push_back(mesh.positions[i] * (1 - s) + mesh.positions[i + n] * s);
+        normals.push_back(mesh.normals[i] * (1 - s) + mesh.normals[i + n] * s);
+    }
+    mesh.positions = std::move(positions);
+    mesh.normals = std::move(normals);
+    mesh.steps = 1;
+    for (Instance& instance : d.instances) {
+        if (!instance.motion) continue;
+        instance.world_from_local = to_float(instance.motion->at(2 + 2 * double(time)));
+        instance.motion = nullptr;
+    }
+    return d;
+}
+
+}  // namespace
+
+TEST_CASE("a mesh that deforms is met in its shape at the time of the ray") {
+    const Motion flight = between({}, turned({0, 1, 0.2}, 100, 1.2, {1, 1, -2}));
+    for (const std::uint32_t steps : {2u, 3u, 9u, kMostMeshSteps}) {
+        for (const int kind : {0, 1, 2}) {  // flattened, instanced, moving as well
+            SceneDescription d = deforming_ball(steps);
+            d.instances[0].world_from_local = to_float(turned({1, 0, 0}, 40, 2, {0, 1, 0}));
+            if (kind == 1) add_crowd(d);
+            if (kind == 2) d.instances[0].motion = std::make_shared<const Motion>(flight);
+            const auto moving = Scene::build(d);
+            d.instances.resize(1);
+            int different = 0, met = 0;
+            for (int k = 0; k < 12; ++k) {
+                const float time = k == 11 ? 1.f : float(hash_uniform(3, k));
+                const SceneDescription then = frozen(d, time);
+                const auto still = Scene::build(then);
+                const Affine3f m = then.instances[0].world_from_local;
+                const auto& p = then.meshes[0].positions;
+                for (int i = 0; i < 100; ++i) {
+                    const auto share = float(hash_uniform(4, i));
+                    const Vec3f to = m.point(p[i % p.size()] * share + p[(7 * i) % p.size()] * (1 - share));
+                    Ray ray = test_ray(to + test_direction(i) * 8.f, test_direction(i) * -1.f);
+                    ray.time = time;
+                    const auto a = moving->intersect(ray), b = still->intersect(ray);
+                    met += a.has_value();
+                    different += a.has_value() != b.has_value();
+                    if (!a || !b) continue;
+                    different += length(a->surface.position - b->surface.position) > 1e-4f ||
+                                 (a->surface.primitive == b->surface.primitive &&
+                                  dot(a->surface.ng, b->surface.ng) < 0.9999f) ||
+                                 dot(a->surface.ns, b->surface.ns) < 0.9999f;
+                }
+            }
+            CAPTURE(steps);
+            CAPTURE(kind);
+            CHECK(met > 400);
+            CHECK(different <= 3);
+        }
+    }
+}
+
 TEST_CASE("the bounds of a scene hold what moves at every time") {
     for (const Motion& motion : motions()) {
         const auto scene = Scene::build(moving_ball(motion));

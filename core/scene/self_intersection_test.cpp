@@ -13,7 +13,7 @@ struct Failures {
     int inward = 0, outward = 0;
 };
 
-enum class Kind { flattened, crowded, moving };
+enum class Kind { flattened, crowded, moving, deforming };
 
 /// Turns while it travels by its own size.
 Motion motion_from(const Affine3f& transform) {
@@ -23,10 +23,24 @@ Motion motion_from(const Affine3f& transform) {
     return Motion::keys(std::array{0.0, 1.0}, std::array{a, a * turn}, Interpolation::decomposed);
 }
 
+/// The ball leans over from one step to the next, and stays convex.
+Affine3f leaning(float time) { return {{1, 0, 0}, {time, 1 + time, 0}, {0, 0, 1}, {time, 0, -time}}; }
+
+Mesh leaning_ball() {
+    Mesh mesh = ball_mesh(3);
+    std::vector<Vec3f> positions;
+    for (const float time : {0.f, 0.25f, 0.5f, 0.75f, 1.f})
+        for (const Vec3f p : mesh.positions) positions.push_back(leaning(time).point(p));
+    mesh.positions = std::move(positions);
+    mesh.steps = 5;
+    return mesh;
+}
+
 /// Rays from random points; `shrink` scales the error bound (1: as it is used).
 Failures count_failures(const Affine3f& transform, Kind kind, float shrink, int rays) {
     SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
     d.instances[0].world_from_local = transform;
+    if (kind == Kind::deforming) d.meshes[0] = leaning_ball();
     if (kind == Kind::crowded) add_crowd(d);
     const Motion motion = kind == Kind::moving ? motion_from(transform) : to_double(transform);
     if (motion.moves()) d.instances[0].motion = std::make_shared<const Motion>(motion);
@@ -35,7 +49,8 @@ Failures count_failures(const Affine3f& transform, Kind kind, float shrink, int 
     Failures failures;
     for (int i = 0; i < rays; ++i) {
         const auto time = float(hash_uniform(31, i));
-        const Affine3f placed = motion.moves() ? to_float(motion.at(time)) : transform;
+        Affine3f placed = motion.moves() ? to_float(motion.at(time)) : transform;
+        if (kind == Kind::deforming) placed = transform * leaning(time);
         const Vec3f outside = placed.point(test_direction(2 * i) * 2);
         Ray ray = test_ray(outside, placed.point(test_direction(2 * i) * 0.1f) - outside);
         ray.time = time;
@@ -79,7 +94,7 @@ std::vector<Affine3f> placements() {
 }  // namespace
 
 TEST_CASE("no ray meets the surface that it leaves, at any scale and place") {
-    for (const Kind kind : {Kind::flattened, Kind::crowded, Kind::moving}) {
+    for (const Kind kind : {Kind::flattened, Kind::crowded, Kind::moving, Kind::deforming}) {
         for (const Affine3f& m : placements()) {
             const Failures f = count_failures(m, kind, 1, 20000);
             CAPTURE(m.origin.x);
@@ -92,7 +107,7 @@ TEST_CASE("no ray meets the surface that it leaves, at any scale and place") {
 }
 
 TEST_CASE("the test sees an error bound that is too small") {
-    for (const Kind kind : {Kind::flattened, Kind::moving}) {
+    for (const Kind kind : {Kind::flattened, Kind::moving, Kind::deforming}) {
         Failures sum;
         for (const Affine3f& m : placements()) {
             const Failures f = count_failures(m, kind, 0, 2000);
