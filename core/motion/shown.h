@@ -23,8 +23,9 @@ struct Shown {
         const double span = picture.close - picture.open;
         Shown part;
         for (const TimeInterval& i : times) {
-            if (i.close <= picture.open || i.open > picture.close) continue;
-            const bool first = i.open <= picture.open, last = i.close > picture.close;
+            const bool moment = i.open == i.close && i.open == picture.open;
+            if (i.open > picture.close || (i.close <= picture.open && !moment)) continue;
+            const bool first = i.open <= picture.open, last = i.close >= picture.close;
             part.times.push_back({first ? 0 : (i.open - picture.open) / span,
                                   last ? 2 : (i.close - picture.open) / span});
         }

@@ -223,6 +223,8 @@ TEST_CASE("an instance is met only while it is shown") {
     CHECK_FALSE(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
     d.interval = {3, 3};
     CHECK(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
+    d.instances[0].shown = std::make_shared<const Shown>(Shown{{{3, 3}}});  // a moment
+    CHECK(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
 }
 
 TEST_CASE("what has no extent at a time is not there then") {
