@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace dg {
@@ -22,19 +23,40 @@ KeyPlace place_among(const std::vector<Time>& times, Time t) {
     return {left, right, double(t - times[left]) / double(times[right] - times[left])};
 }
 
-/// Time is the fraction of the scene's interval. `blend(a, b, share)` must exist for T.
-template <typename T>
+/// Time is the fraction of the scene's interval, or (double) seconds. `blend(a, b, share)` must exist
+/// for T.
+template <typename T, typename Time = float>
 struct Keyed {
-    std::vector<float> times;
+    std::vector<Time> times;
     std::vector<T> values;
 
     bool moves() const { return values.size() > 1; }
-    T at(float t) const {
+    T at(Time t) const {
         if (!moves()) return values.front();
-        const KeyPlace p = place_among(times, t);
+        return at(place_among(times, t));
+    }
+    T at(const KeyPlace& p) const {
         return p.share > 0 ? blend(values[p.left], values[p.right], float(p.share))
                            : values[p.left];
     }
 };
+
+/// Keys of seconds with `open` as time 0 and `close` as time 1; one key if they do not move in between.
+template <typename T>
+Keyed<T> over(const Keyed<T, double>& keys, double open, double close) {
+    Keyed<T> cut{{0}, {keys.at(open)}};
+    if (!(close > open) || close <= keys.times.front() || open >= keys.times.back()) return cut;
+    const auto add = [&](double t, T value) {
+        cut.times.push_back(float((t - open) / (close - open)));
+        cut.values.push_back(std::move(value));
+    };
+    std::size_t i = std::upper_bound(keys.times.begin(), keys.times.end(), open) - keys.times.begin();
+    for (; i < keys.times.size() && keys.times[i] < close; ++i) add(keys.times[i], keys.values[i]);
+    if (i == keys.times.size()) return cut;
+    // A jump at the very end is not reached any more.
+    const double share = i == 0 ? 1 : (close - keys.times[i - 1]) / (keys.times[i] - keys.times[i - 1]);
+    add(close, share < 1 ? keys.at({i - 1, i, share}) : keys.values[i]);
+    return cut;
+}
 
 }  // namespace dg
