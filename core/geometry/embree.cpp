@@ -13,6 +13,7 @@
 
 #include "geometry/embree_moving.h"
 #include "geometry/embree_placed.h"
+#include "geometry/embree_spheres.h"
 #include "geometry/embree_triangles.h"
 #include "geometry/intersector.h"
 #include "geometry/layout.h"
@@ -24,7 +25,7 @@ class EmbreeIntersector final : public Intersector {
   public:
     EmbreeIntersector(const std::vector<Mesh>& meshes,
                       const std::vector<InstanceGeometry>& instances,
-                      const std::vector<Sphere>& spheres, CutoutFunction cutout);
+                      std::vector<Keyed<Sphere>> spheres, CutoutFunction cutout);
 
     std::optional<RawHit> intersect(const Ray& ray) const override;
     bool occluded(const Ray& ray, Crossings* crossings) const override;
@@ -38,7 +39,6 @@ class EmbreeIntersector final : public Intersector {
     void set_filters(RTCGeometry geometry, const InstanceGeometry& instance);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
-    void attach_spheres(const std::vector<Sphere>& spheres);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
     const Hull& hull_of(std::uint32_t index, const Mesh& mesh);
     RawHit raw_hit(float t, const RTCHit& hit) const;
@@ -47,6 +47,7 @@ class EmbreeIntersector final : public Intersector {
 
     Device device_;
     CutoutFunction cutout_;
+    std::vector<Keyed<Sphere>> spheres_;  // Embree may keep a pointer
     std::vector<bool> flattened_, has_cutout_;
     std::vector<Clear> clear_;
     std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
@@ -66,9 +67,10 @@ constexpr RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST;
 
 EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
                                      const std::vector<InstanceGeometry>& instances,
-                                     const std::vector<Sphere>& spheres,
+                                     std::vector<Keyed<Sphere>> spheres,
                                      CutoutFunction cutout)
     : cutout_(std::move(cutout)),
+      spheres_(std::move(spheres)),
       flattened_(choose_flattened(meshes, instances)),
       top_(new_scene(count_flattened(meshes, instances, flattened_))),
       sphere_geometry_(static_cast<unsigned>(instances.size())),
@@ -79,7 +81,8 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
         clear_.push_back(instances[i].clear);
         if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
     }
-    if (!spheres.empty()) attach_spheres(spheres);
+    if (!spheres_.empty())
+        attach(top_.get(), geometry_of_spheres(device_, spheres_), sphere_geometry_);
     hulls_.clear();
     rtcCommitScene(top_.get());
     device_.check("building the acceleration structure of the scene");
@@ -149,18 +152,6 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
     placed_.push_back({local_scene, id, local,
                        world_bounds(mesh, instance.world_from_local)});
     attach(top_.get(), geometry_of(device_, placed_.back()), id);
-}
-
-void EmbreeIntersector::attach_spheres(const std::vector<Sphere>& spheres) {
-    static_assert(sizeof(Sphere) == 16, "read in place as x, y, z, radius");
-    GeometryOwner geometry =
-        device_.new_geometry(RTC_GEOMETRY_TYPE_SPHERE_POINT, "sphere lights");
-    void* copy =
-        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                RTC_FORMAT_FLOAT4, sizeof(Sphere), spheres.size());
-    device_.check("sphere lights");
-    std::memcpy(copy, spheres.data(), spheres.size() * sizeof(Sphere));
-    attach(top_.get(), std::move(geometry), sphere_geometry_);
 }
 
 RawHit EmbreeIntersector::raw_hit(float t, const RTCHit& hit) const {
@@ -240,8 +231,8 @@ namespace dg {
 
 std::unique_ptr<Intersector> Intersector::build(
     const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
-    const std::vector<Sphere>& spheres, CutoutFunction cutout) {
-    return std::make_unique<embree::EmbreeIntersector>(meshes, instances, spheres,
+    std::vector<Keyed<Sphere>> spheres, CutoutFunction cutout) {
+    return std::make_unique<embree::EmbreeIntersector>(meshes, instances, std::move(spheres),
                                                        std::move(cutout));
 }
 

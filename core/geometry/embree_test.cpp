@@ -128,7 +128,7 @@ TEST_CASE("t_min and t_max are honoured") {
 }
 
 TEST_CASE("spheres: entry, exit from inside, miss") {
-    const std::vector<Sphere> spheres{{{0, 0, 0}, 1}, {{10, 2, 3}, 0.25f}};
+    const std::vector<Keyed<Sphere>> spheres{{{0}, {{{0, 0, 0}, 1}}}, {{0}, {{{10, 2, 3}, 0.25f}}}};
     const auto tracer = Intersector::build({}, {}, spheres, {});
     auto hit = tracer->intersect(make_ray({10, 2, 9}, {0, 0, -1}));
     REQUIRE(hit.has_value());

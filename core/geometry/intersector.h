@@ -11,6 +11,7 @@
 #include "geometry/mesh.h"
 #include "geometry/ray.h"
 #include "math/transform.h"
+#include "motion/keyed.h"
 #include "motion/motion.h"
 #include "motion/shown.h"
 
@@ -42,7 +43,7 @@ class Intersector {
     /// runs out.
     static std::unique_ptr<Intersector> build(
         const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
-        const std::vector<Sphere>& spheres, CutoutFunction cutout);
+        std::vector<Keyed<Sphere>> spheres, CutoutFunction cutout);
     virtual ~Intersector() = default;
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
     /// With `crossings` the ray goes through clear surfaces and notes them there.

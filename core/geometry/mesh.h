@@ -36,5 +36,8 @@ struct Sphere {
     Vec3f center;  // m, world
     float radius;  // m
 };
+inline Sphere blend(const Sphere& a, const Sphere& b, float share) {
+    return {a.center * (1 - share) + b.center * share, a.radius * (1 - share) + b.radius * share};
+}
 
 }  // namespace dg

@@ -183,7 +183,7 @@ Environment Environment::image(EnvironmentImage image, float scale,
     return e;
 }
 
-Rgb Environment::luminance(Vec3f direction) const {
+Rgb Environment::luminance_within(Vec3f direction) const {
     if (!picture_) return constant_;
     const Picture& p = *picture_;
     const Vec3f d = p.environment_from_world.vector(direction);
@@ -198,7 +198,7 @@ Rgb Environment::luminance(Vec3f direction) const {
     return a * (1 - y) + b * y;
 }
 
-Environment::Sample Environment::sample(Vec2f u) const {
+Environment::Sample Environment::sample_within(Vec2f u) const {
     if (!picture_) return {warp_sphere(u), warp_sphere_pdf()};
     const Picture& p = *picture_;
     if (p.cells.empty()) return {warp_sphere(u), 0};  // a black picture
@@ -218,10 +218,10 @@ Environment::Sample Environment::sample(Vec2f u) const {
     const Vec3f world = normalize(p.world_from_environment.vector(d));
     // Asked of the direction as rounded, so that sample and pdf agree also in the
     // steepest cell.
-    return {world, pdf(world)};
+    return {world, pdf_within(world)};
 }
 
-float Environment::pdf(Vec3f direction) const {
+float Environment::pdf_within(Vec3f direction) const {
     if (!picture_) return warp_sphere_pdf();
     const Picture& p = *picture_;
     if (p.cells.empty()) return 0;

@@ -39,8 +39,8 @@ Affine3f rotation() {
 double p_value(const Environment& e, double fault = 1, int samples = 200000,
                DirectionGrid grid = {}) {
     return direction_p_value(
-        grid, [&](Vec2f u) { return std::optional(e.sample(u).direction); },
-        [&](Vec3f w) { return fault * e.pdf(w); }, samples, 24);
+        grid, [&](Vec2f u) { return std::optional(e.sample(u, 0).direction); },
+        [&](Vec3f w) { return fault * e.pdf(w, 0); }, samples, 24);
 }
 
 /// Integral over the sphere by stratified directions.
@@ -70,10 +70,10 @@ TEST_CASE(
             image.pixels[r * 8 + 6] = {0, 0, 1};  // a quarter to the right
     }
     const Environment e = Environment::image(image, 2, {});
-    CHECK(e.luminance({0, 1, 0}).x == doctest::Approx(10));
-    CHECK(e.luminance({0, -0.6f, -0.8f}).y == doctest::Approx(2));
-    CHECK(e.luminance({0.8f, -0.6f, 0}).z == doctest::Approx(2));
-    CHECK(e.luminance({-0.8f, -0.6f, 0}).z == 0);
+    CHECK(e.luminance({0, 1, 0}, 0).x == doctest::Approx(10));
+    CHECK(e.luminance({0, -0.6f, -0.8f}, 0).y == doctest::Approx(2));
+    CHECK(e.luminance({0.8f, -0.6f, 0}, 0).z == doctest::Approx(2));
+    CHECK(e.luminance({-0.8f, -0.6f, 0}, 0).z == 0);
 }
 
 TEST_CASE("the transform turns the picture") {
@@ -82,10 +82,10 @@ TEST_CASE("the transform turns the picture") {
                       turned = Environment::image(image, 1, rotation());
     for (Vec3f d :
          {Vec3f{0, 0.8f, 0.6f}, Vec3f{0.6f, 0, -0.8f}, Vec3f{-0.48f, 0.6f, 0.64f}}) {
-        CHECK(turned.luminance(rotation().vector(d)).y ==
-              doctest::Approx(still.luminance(d).y).epsilon(1e-4));
-        CHECK(turned.pdf(rotation().vector(d)) ==
-              doctest::Approx(still.pdf(d)).epsilon(1e-4));
+        CHECK(turned.luminance(rotation().vector(d), 0).y ==
+              doctest::Approx(still.luminance(d, 0).y).epsilon(1e-4));
+        CHECK(turned.pdf(rotation().vector(d), 0) ==
+              doctest::Approx(still.pdf(d, 0)).epsilon(1e-4));
     }
 }
 
@@ -116,8 +116,8 @@ TEST_CASE("the density integrates to 1 and is positive wherever there is light")
         const Environment e = Environment::image(image, 1, {});
         bool covered = true;
         const double total = integrate([&](Vec3f w) {
-            covered = covered && (e.pdf(w) > 0 || e.luminance(w).y <= 1e-4f);
-            return double(e.pdf(w));
+            covered = covered && (e.pdf(w, 0) > 0 || e.luminance(w, 0).y <= 1e-4f);
+            return double(e.pdf(w, 0));
         });
         CHECK(total == doctest::Approx(1).epsilon(2e-3));
         CHECK(covered);
@@ -128,14 +128,14 @@ TEST_CASE("sample and pdf agree, and a hot texel makes no fireflies") {
     const Environment e =
         Environment::image(hot_image(64, 32, 9, 20, 1e5f, 0.01f), 1, rotation());
     const double power =
-        integrate([&](Vec3f w) { return double(luminance(e.luminance(w))); }, 1500);
+        integrate([&](Vec3f w) { return double(luminance(e.luminance(w, 0))); }, 1500);
     double sum = 0, largest = 0;
     const int n = 20000;
     for (int i = 0; i < n; ++i) {
         const auto s =
-            e.sample({float(hash_uniform(2, 2 * i)), float(hash_uniform(2, 2 * i + 1))});
-        CHECK(s.pdf == e.pdf(s.direction));
-        const double weight = luminance(e.luminance(s.direction)) / s.pdf;
+            e.sample({float(hash_uniform(2, 2 * i)), float(hash_uniform(2, 2 * i + 1))}, 0);
+        CHECK(s.pdf == e.pdf(s.direction, 0));
+        const double weight = luminance(e.luminance(s.direction, 0)) / s.pdf;
         sum += weight;
         largest = std::max(largest, weight);
     }
@@ -149,9 +149,9 @@ TEST_CASE("an even sky: E = pi L, by the estimator") {
     double sum = 0;
     const int n = 100000;
     for (int i = 0; i < n; ++i) {
-        const auto s = sky.sample({float((i + 0.5) / n), float(hash_uniform(1, i))});
+        const auto s = sky.sample({float((i + 0.5) / n), float(hash_uniform(1, i))}, 0);
         sum +=
-            luminance(sky.luminance(s.direction)) * std::max(0.f, s.direction.y) / s.pdf;
+            luminance(sky.luminance(s.direction, 0)) * std::max(0.f, s.direction.y) / s.pdf;
     }
     CHECK(sum / n == doctest::Approx(kPiD * 0.5).epsilon(0.005));
     CHECK(sky.mean_luminance() == doctest::Approx(0.5));
@@ -175,6 +175,6 @@ TEST_CASE("bad pictures are named by row and column") {
 TEST_CASE("a black picture shines nowhere") {
     const Environment e = Environment::image({4, 2, std::vector<Rgb>(8)}, 1, {});
     CHECK(e.mean_luminance() == 0);
-    CHECK(e.sample({0.3f, 0.6f}).pdf == 0);
-    CHECK(e.pdf({0, 1, 0}) == 0);
+    CHECK(e.sample({0.3f, 0.6f}, 0).pdf == 0);
+    CHECK(e.pdf({0, 1, 0}, 0) == 0);
 }

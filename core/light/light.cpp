@@ -3,6 +3,7 @@
 
 #include "light/emitter.h"
 #include "light/emitter_check.h"
+#include "light/light_keys.h"
 #include "light/triangle_sampler.h"
 
 namespace dg {
@@ -38,15 +39,45 @@ LightSet::LightSet(LightSet&&) noexcept = default;
 LightSet& LightSet::operator=(LightSet&&) noexcept = default;
 
 LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-                   LightChoice choice)
-    : lights_(std::move(lights)), environment_(std::move(environment)) {
+                   LightChoice choice, LightMotion motion)
+    : lights_(std::move(lights)),
+      environment_(std::move(environment)),
+      motion_(std::move(motion)) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const std::string where =
             "light " + std::to_string(i) + " (" + kind_name(lights_[i]) + ")";
         std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
+        const auto keys = motion_.keys.find(std::uint32_t(i));
+        if (keys != motion_.keys.end()) check_keys(keys->second.values, where);
     }
+    build_changes();
     build_groups(choice);
     build_lookup();
+}
+
+/// A light whose keys are of no other use is what its only key says.
+void LightSet::build_changes() {
+    for (const auto& [light, keys] : motion_.keys) {
+        lights_[light] = keys.values[0];
+        if (!keys.moves()) continue;
+        keys_.resize(lights_.size(), nullptr);
+        keys_[light] = &keys;
+    }
+}
+
+/// How bright a light from infinity ever is; 0 for the others.
+float LightSet::infinite_weight(std::size_t light) const {
+    const auto* sun = std::get_if<DirectionalLight>(&lights_[light]);
+    if (!sun) return 0;
+    const Keyed<Light>* keys = keys_of(light);
+    return keys ? brightest(*keys) : selection_weight(sun->illuminance);
+}
+
+LightBounds LightSet::bounds_of(std::size_t light) const {
+    const auto moving = motion_.triangles.find(std::uint32_t(light));
+    if (moving != motion_.triangles.end()) return moving->second;
+    if (const Keyed<Light>* keys = keys_of(light)) return bounds_over(*keys);
+    return std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[light]);
 }
 
 void LightSet::build_groups(LightChoice choice) {
@@ -54,15 +85,14 @@ void LightSet::build_groups(LightChoice choice) {
     std::vector<double> weights;
     tree_index_.assign(lights_.size(), kNone);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-        if (const auto* sun = std::get_if<DirectionalLight>(&lights_[i])) {
-            const float lux = selection_weight(sun->illuminance);
+        if (std::holds_alternative<DirectionalLight>(lights_[i])) {
+            const float lux = infinite_weight(i);
             if (lux <= 0) continue;
             infinite_lights_.push_back(static_cast<std::int32_t>(i));
             weights.push_back(lux);
             continue;
         }
-        LightBounds b =
-            std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[i]);
+        LightBounds b = bounds_of(i);
         if (!(b.intensity > 0) || !std::isfinite(b.intensity)) continue;
         if (choice != LightChoice::tree)
             b = placeless(choice == LightChoice::power ? b.intensity : 1);
@@ -71,6 +101,8 @@ void LightSet::build_groups(LightChoice choice) {
         bounds.push_back(b);
         const auto* triangle = std::get_if<TriangleLight>(&lights_[i]);
         triangles_.push_back(triangle ? TriangleSampler(*triangle) : TriangleSampler());
+        triangles_.back().moves = motion_.triangles.contains(std::uint32_t(i));
+        if (triangles_.back().moves) triangles_.back().area = 0;
     }
     tree_ = LightTree(bounds);
 
@@ -142,7 +174,32 @@ float LightSet::local_probability(Vec3f position, std::size_t light) const {
            tree_.probability(position, tree_index_[light]);
 }
 
+std::optional<TriangleLight> LightSet::triangle_at(std::size_t light, float time) const {
+    std::optional triangle = std::get<TriangleLight>(lights_[light]);
+    const bool moves = tree_index_[light] != kNone && triangles_[tree_index_[light]].moves;
+    if (moves && !motion_.place(*triangle, time)) return std::nullopt;
+    return triangle;
+}
+
+SphereLight LightSet::sphere_at(std::uint32_t sphere, float time) const {
+    const std::size_t light = spheres_[sphere];
+    const Keyed<Light>* keys = keys_of(light);
+    return std::get<SphereLight>(keys ? keys->at(time) : lights_[light]);
+}
+
+/// What is no triangle, or changes.
+std::optional<EmitterSample> LightSet::sample_other(std::size_t light, Vec2f u,
+                                                    Vec3f position, float time) const {
+    const auto toward = [&](const auto& l) { return sample_emitter(l, u, position); };
+    if (const Keyed<Light>* keys = keys_of(light)) return std::visit(toward, keys->at(time));
+    if (!std::holds_alternative<TriangleLight>(lights_[light]))
+        return std::visit(toward, lights_[light]);
+    const auto triangle = triangle_at(light, time);
+    return triangle ? sample_emitter(*triangle, u, position) : std::nullopt;
+}
+
 std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f position,
+                                            float time,
                                             const Wavelengths& wavelengths) const {
     if (empty()) return std::nullopt;
     LightTree::Weights weights;
@@ -151,7 +208,7 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     const float p_infinite = infinite_share(weights.sum);
     if (u_select < p_infinite) {
         const float rest = std::min(u_select / p_infinite, 0x1.fffffep-1f);
-        return sample_infinite(rest, p_infinite, u, wavelengths);
+        return sample_infinite(rest, p_infinite, u, time, wavelengths);
     }
     const float rest = (u_select - p_infinite) / (1 - p_infinite);
     const auto choice = tree_.sample(weights, position, std::min(rest, 0x1.fffffep-1f));
@@ -162,13 +219,11 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     if (triangle.area > 0) {
         if (!triangle.sample(u, position, s)) return std::nullopt;
     } else {
-        const auto found =
-            std::visit([&](const auto& l) { return sample_emitter(l, u, position); },
-                       lights_[light]);
+        const auto found = sample_other(light, u, position, time);
         if (!found) return std::nullopt;
         s = *found;
     }
-    const bool is_triangle = triangle.area > 0;
+    const bool is_triangle = triangle.area > 0 || triangle.moves;
     return LightSample{s.wi,
                        s.distance,
                        wavelengths.emission(s.value),
@@ -180,21 +235,22 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
 }
 
 std::optional<LightSample> LightSet::sample_infinite(
-    float u_select, float p_infinite, Vec2f u, const Wavelengths& wavelengths) const {
+    float u_select, float p_infinite, Vec2f u, float time,
+    const Wavelengths& wavelengths) const {
     const DiscreteSample choice = infinite_.sample(u_select);
     const float probability = p_infinite * choice.pmf;
     const std::int32_t light = infinite_lights_[choice.index];
     LightSample sample{};
     sample.distance = std::numeric_limits<float>::infinity();
     if (light == kEnvironment) {
-        const Environment::Sample s = environment_->sample(u);
+        const Environment::Sample s = environment_->sample(u, time);
         if (!(s.pdf > 0)) return std::nullopt;
         sample.wi = s.direction;
-        sample.radiance = environment_radiance(s.direction, wavelengths);
+        sample.radiance = environment_radiance(s.direction, time, wavelengths);
         sample.pdf = s.pdf * probability;
         return sample;
     }
-    const auto s = sample_emitter(std::get<DirectionalLight>(lights_[light]), u, {});
+    const auto s = sample_other(light, u, {}, time);
     sample.wi = s->wi;
     sample.radiance = wavelengths.emission(s->value);
     sample.pdf = s->pdf * probability;
@@ -203,7 +259,7 @@ std::optional<LightSample> LightSet::sample_infinite(
 }
 
 float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
-                             float cos_light, Vec3f position) const {
+                             float cos_light, Vec3f position, float time) const {
     if (instance >= first_slot_.size() || first_slot_[instance] < 0) return 0;
     const std::size_t slot = first_slot_[instance] + primitive;
     if (slot >= triangle_slots_.size() || triangle_slots_[slot] == kNone) return 0;
@@ -211,32 +267,33 @@ float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, fl
     const auto& triangle = std::get<TriangleLight>(lights_[light]);
     if (triangle.instance != instance || triangle.primitive != primitive) return 0;
     if (tree_index_[light] == kNone) return 0;
-    return triangles_[tree_index_[light]].pdf(t, cos_light) *
-           local_probability(position, light);
+    const TriangleSampler& still = triangles_[tree_index_[light]];
+    const float chosen = local_probability(position, light);
+    if (!still.moves) return still.pdf(t, cos_light) * chosen;
+    const auto now = triangle_at(light, time);
+    return now ? emitter_pdf(*now, t, cos_light) * chosen : 0;
 }
 
-float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position) const {
-    const std::size_t light = spheres_[sphere];
-    return emitter_pdf(std::get<SphereLight>(lights_[light]), position) *
-           local_probability(position, light);
+float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const {
+    return emitter_pdf(sphere_at(sphere, time), position) *
+           local_probability(position, spheres_[sphere]);
 }
 
-float LightSet::pdf_environment(Vec3f direction, Vec3f position) const {
+float LightSet::pdf_environment(Vec3f direction, Vec3f position, float time) const {
     if (environment_pmf_ <= 0) return 0;
     return infinite_probability(position) * environment_pmf_ *
-           environment_->pdf(direction);
+           environment_->pdf(direction, time);
 }
 
-Spectrum LightSet::sphere_radiance(std::uint32_t sphere,
+Spectrum LightSet::sphere_radiance(std::uint32_t sphere, float time,
                                    const Wavelengths& wavelengths) const {
-    return wavelengths.emission(
-        std::get<SphereLight>(lights_[spheres_[sphere]]).luminance);
+    return wavelengths.emission(sphere_at(sphere, time).luminance);
 }
 
-Spectrum LightSet::environment_radiance(Vec3f direction,
+Spectrum LightSet::environment_radiance(Vec3f direction, float time,
                                         const Wavelengths& wavelengths) const {
     if (!environment_) return Spectrum(0.f);
-    return wavelengths.emission(environment_->luminance(direction));
+    return wavelengths.emission(environment_->luminance(direction, time));
 }
 
 }  // namespace dg

@@ -3,7 +3,9 @@
 // luminance cd/m2.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "light/light_tree.h"
 #include "math/distribution.h"
 #include "math/transform.h"
+#include "motion/keyed.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -54,6 +57,16 @@ struct TriangleLight {
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
+/// What lights do while the shutter is open (fractions of the scene's interval), by their index;
+/// those that are not named stay as they are. See light_keys.h.
+struct LightMotion {
+    std::map<std::uint32_t, Keyed<Light>> keys;  // of one kind each; no triangles
+    /// Triangles that move, each with bounds of all that it ever reaches.
+    std::map<std::uint32_t, LightBounds> triangles;
+    /// Puts one of them where it is at a time; false while it is not there at all.
+    std::function<bool(TriangleLight&, float time)> place;
+};
+
 struct LightSample {
     Vec3f wi;           // unit, toward the light
     float distance;     // m; infinity for directional and environment
@@ -71,6 +84,7 @@ struct LightSample {
 };
 
 struct TriangleSampler;
+struct EmitterSample;
 
 /// How one light with a place is chosen: by the tree; by power alone or evenly, to
 /// measure what the tree is worth.
@@ -79,7 +93,8 @@ enum class LightChoice { tree, power, even };
 /// All lights of a scene with the law by which one is chosen for a point: by an estimate
 /// of the illuminance that each brings there, so that neither a huge scene nor a near
 /// lamp starves the others. Lights from infinity (directional, environment) form one
-/// group, the rest a LightTree.
+/// group, the rest a LightTree. The choice is the same at all times: it knows where each
+/// light ever is and how bright it ever gets. What is sampled is the light at the time.
 class LightSet {
   public:
     LightSet();
@@ -89,13 +104,13 @@ class LightSet {
     /// Throws Error naming light and value: not finite, negative colour, zero direction,
     /// radius or range not positive, angles of a spot out of order.
     LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-             LightChoice choice = LightChoice::tree);
+             LightChoice choice = LightChoice::tree, LightMotion motion = {});
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
     /// Radiance of triangle lights is mean_luminance here; LightSample::uneven tells the
     /// caller to replace it by the textured value. Empty when the choice cannot
     /// light the position.
-    std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position,
+    std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position, float time,
                                       const Wavelengths& wavelengths) const;
     /// Solid-angle density (selection included) with which sample() would have chosen the
     /// direction from `position` that met this triangle at `t` metres under |cos| at the
@@ -103,29 +118,45 @@ class LightSet {
     /// knowledge: ask only where it emits. `position` is the one that sample() was given,
     /// since the choice of the light depends on it.
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
-                       float cos_light, Vec3f position) const;
-    float pdf_sphere(std::uint32_t sphere, Vec3f position) const;
+                       float cos_light, Vec3f position, float time) const;
+    float pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const;
     /// 0 everywhere for a constant environment: light sampling leaves it to the BSDF.
-    float pdf_environment(Vec3f direction, Vec3f position) const;
+    float pdf_environment(Vec3f direction, Vec3f position, float time) const;
     /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
-    Spectrum sphere_radiance(std::uint32_t sphere, const Wavelengths& wavelengths) const;
-    Spectrum environment_radiance(Vec3f direction, const Wavelengths& wavelengths) const;
+    Spectrum sphere_radiance(std::uint32_t sphere, float time,
+                             const Wavelengths& wavelengths) const;
+    Spectrum environment_radiance(Vec3f direction, float time,
+                                  const Wavelengths& wavelengths) const;
     bool has_environment() const { return environment_.has_value(); }
     const std::vector<Light>& lights() const { return lights_; }
+    /// A triangle light where it is at a time; empty while it is not there at all.
+    std::optional<TriangleLight> triangle_at(std::size_t light, float time) const;
     const std::optional<Environment>& environment() const { return environment_; }
 
   private:
     static constexpr std::int32_t kEnvironment = -1, kNone = -2;
+    void build_changes();
     void build_groups(LightChoice choice);
+    float infinite_weight(std::size_t light) const;
+    LightBounds bounds_of(std::size_t light) const;
     void build_lookup();
     float infinite_probability(Vec3f position) const;
     float infinite_share(float local) const;
     std::optional<LightSample> sample_infinite(float u_select, float p_infinite, Vec2f u,
+                                               float time,
                                                const Wavelengths& wavelengths) const;
+    std::optional<EmitterSample> sample_other(std::size_t light, Vec2f u, Vec3f position,
+                                              float time) const;
+    const Keyed<Light>* keys_of(std::size_t light) const {
+        return keys_.empty() ? nullptr : keys_[light];
+    }
+    SphereLight sphere_at(std::uint32_t sphere, float time) const;
     float local_probability(Vec3f position, std::size_t light) const;
 
     std::vector<Light> lights_;
     std::optional<Environment> environment_;
+    LightMotion motion_;
+    std::vector<const Keyed<Light>*> keys_;  // by light, into motion_; empty: none changes
     LightTree tree_;
     std::vector<std::uint32_t> tree_lights_;  // light by tree index
     std::vector<TriangleSampler> triangles_;  // by tree index

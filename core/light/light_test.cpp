@@ -31,7 +31,7 @@ double illuminance(const LightSet& lights, Vec3f position, Vec3f normal, int n =
     double sum = 0;
     for (int i = 0; i < n; ++i) {
         const auto s =
-            lights.sample(float((i + 0.5) / n), uniform_2d(i), position, rgb_lanes());
+            lights.sample(float((i + 0.5) / n), uniform_2d(i), position, 0, rgb_lanes());
         if (s) sum += s->radiance[3] * std::max(0.f, dot(normal, s->wi)) / s->pdf;
     }
     return sum / n;
@@ -57,7 +57,7 @@ TEST_CASE("point light: I / d^2 times the cosine, and the range window") {
     CHECK(illuminance(one(light), {0, 0, 0}, {0, 1, 0}, 10) ==
           doctest::Approx(2 * (1 - 1 / 16.0)));
     CHECK(illuminance(one(light), {0, -2.01f, 0}, {0, 1, 0}, 10) == 0);
-    CHECK_FALSE(one(light).sample(0.5f, {}, {0, 2, 0}, rgb_lanes()).has_value());
+    CHECK_FALSE(one(light).sample(0.5f, {}, {0, 2, 0}, 0, rgb_lanes()).has_value());
 }
 
 TEST_CASE("spot light: the angular attenuation of KHR_lights_punctual") {
@@ -82,7 +82,7 @@ TEST_CASE("directional light: its illuminance, anywhere") {
     const LightSet sun = one(DirectionalLight{{0, -1, 0}, {3, 3, 3}});
     CHECK(illuminance(sun, {1e4f, -7, 3}, {0, 1, 0}, 10) == doctest::Approx(3));
     CHECK(illuminance(sun, {0, 0, 0}, {0, 0.6f, 0.8f}, 10) == doctest::Approx(1.8));
-    CHECK(sun.sample(0.5f, {}, {}, rgb_lanes())->distance ==
+    CHECK(sun.sample(0.5f, {}, {}, 0, rgb_lanes())->distance ==
           std::numeric_limits<float>::infinity());
 }
 
@@ -185,7 +185,7 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
         const Vec3f p{float(hash_uniform(2, i)) * 4 - 2, float(hash_uniform(3, i)),
                       float(hash_uniform(4, i))};
         const auto s =
-            set.sample(float(hash_uniform(6, i)), uniform_2d(i), p, rgb_lanes());
+            set.sample(float(hash_uniform(6, i)), uniform_2d(i), p, 0, rgb_lanes());
         if (!s) continue;
         float pdf = s->pdf;
         if (s->triangle_light >= 0) {
@@ -193,28 +193,28 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
             const auto& t = std::get<TriangleLight>(set.lights()[s->triangle_light]);
             const float cosine = dot(normalize(cross(t.b - t.a, t.c - t.a)), s->wi);
             pdf = set.pdf_triangle(t.instance, t.primitive, s->distance, std::abs(cosine),
-                                   p);
+                                   p, 0);
             const Vec3f on =
                 t.a + (t.b - t.a) * s->barycentric.x + (t.c - t.a) * s->barycentric.y;
             CHECK(length(on - p - s->wi * s->distance) < 1e-4f);
         } else if (!s->delta && s->distance < 100) {
             ++kinds[1];
             const bool second = s->radiance[0] == 9;
-            pdf = set.pdf_sphere(second, p);
-            CHECK(set.sphere_radiance(second, rgb_lanes())[0] == s->radiance[0]);
+            pdf = set.pdf_sphere(second, p, 0);
+            CHECK(set.sphere_radiance(second, 0, rgb_lanes())[0] == s->radiance[0]);
         } else if (!s->delta) {
             ++kinds[2];
-            pdf = set.pdf_environment(s->wi, p);
+            pdf = set.pdf_environment(s->wi, p, 0);
         } else {
             ++kinds[3];
         }
         CHECK(s->pdf == doctest::Approx(pdf).epsilon(1e-3));
     }
     for (int k : kinds) CHECK(k > 100);
-    CHECK(set.pdf_triangle(0, 3, 1, 1, {}) == 0);
-    CHECK(set.pdf_triangle(0, 5, 1, 1, {}) == 0);
-    CHECK(set.pdf_triangle(1, 0, 1, 1, {}) == 0);
-    CHECK(set.pdf_triangle(7, 0, 1, 1, {}) == 0);
+    CHECK(set.pdf_triangle(0, 3, 1, 1, {}, 0) == 0);
+    CHECK(set.pdf_triangle(0, 5, 1, 1, {}, 0) == 0);
+    CHECK(set.pdf_triangle(1, 0, 1, 1, {}, 0) == 0);
+    CHECK(set.pdf_triangle(7, 0, 1, 1, {}, 0) == 0);
 }
 
 TEST_CASE("the sum of many lights and a sky is the sum of each") {
@@ -239,15 +239,15 @@ TEST_CASE("the sum of many lights and a sky is the sum of each") {
 TEST_CASE("an even sky is left to the BSDF") {
     const LightSet sky({}, Environment::constant({1, 1, 1}));
     CHECK(sky.empty());
-    CHECK(sky.pdf_environment({0, 1, 0}, {0, 0, 0}) == 0);
-    CHECK(sky.environment_radiance({0, 1, 0}, rgb_lanes())[0] == doctest::Approx(1));
+    CHECK(sky.pdf_environment({0, 1, 0}, {0, 0, 0}, 0) == 0);
+    CHECK(sky.environment_radiance({0, 1, 0}, 0, rgb_lanes())[0] == doctest::Approx(1));
 }
 
 TEST_CASE("no light, bad light") {
     CHECK(LightSet().empty());
-    CHECK_FALSE(LightSet().sample(0.5f, {}, {}, rgb_lanes()).has_value());
+    CHECK_FALSE(LightSet().sample(0.5f, {}, {}, 0, rgb_lanes()).has_value());
     CHECK(LightSet({PointLight{{}, {0, 0, 0}}}, std::nullopt).empty());
-    CHECK(LightSet().environment_radiance({0, 1, 0}, rgb_lanes())[0] == 0);
+    CHECK(LightSet().environment_radiance({0, 1, 0}, 0, rgb_lanes())[0] == 0);
     CHECK_THROWS_WITH_AS(
         one(PointLight{{}, {-1, 0, 0}}),
         doctest::Contains("light 0 (point): intensity: wanted finite values >= 0"),

@@ -12,6 +12,7 @@ struct TriangleSampler {
     Rgb luminance;        // cd/m2, mean
     float area = 0;       // m2; 0: not a triangle
     bool two_sided = false, even = false;
+    bool moves = false;  // and has no place of its own: area 0
 
     TriangleSampler() = default;
     explicit TriangleSampler(const TriangleLight& t)

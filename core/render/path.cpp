@@ -38,14 +38,17 @@ Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavele
                               PathSettings::Strategy strategy) {
     const LightSet& lights = scene.lights();
     if (!lights.has_environment()) return 0.f;
-    const float pdf = walk.from_delta ? 0 : lights.pdf_environment(walk.ray.direction, walk.previous);
-    return lights.environment_radiance(walk.ray.direction, wl) *
+    const float pdf =
+        walk.from_delta
+            ? 0
+            : lights.pdf_environment(walk.ray.direction, walk.previous, walk.ray.time);
+    return lights.environment_radiance(walk.ray.direction, walk.ray.time, wl) *
            emission_weight(walk, pdf, strategy);
 }
 
-Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit& hit,
-                          const Wavelengths& wl, PathSettings::Strategy strategy) {
-    const Material& material = scene.material(hit);
+Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& material,
+                          const SurfaceHit& hit, const Wavelengths& wl,
+                          PathSettings::Strategy strategy) {
     if (!emits(material)) return 0.f;
     SurfaceHit seen = hit;
     // Where light sampling could have come from, both must find the same light: that of a point.
@@ -56,7 +59,7 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const SurfaceHit
                           ? 0
                           : scene.lights().pdf_triangle(
                                 hit.instance, hit.primitive, walk.straight + hit.t,
-                                std::abs(dot(hit.ng, hit.wo)), walk.previous);
+                                std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
     return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
 }
 
@@ -115,7 +118,7 @@ template <typename BsdfKind>
 Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
                       const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
                       PathSettings::Strategy strategy, bool& hero_only, std::uint64_t& rays) {
-    const auto light = scene.sample_light(u.select, u.light, hit.position, wl);
+    const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wl);
     if (!light || light->pdf <= 0) return 0.f;
     if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
     const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
@@ -151,11 +154,12 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
     walk.straight = 0;
 }
 
-void record_first_hit(const Scene& scene, const SurfaceHit& hit, AovSample& aov) {
+void record_first_hit(const Scene& scene, const Material& material, const SurfaceHit& hit,
+                      AovSample& aov) {
     aov.hit = true;
     aov.position = hit.position;
     aov.normal = hit.ns;
-    aov.albedo = albedo(scene.material(hit), scene.textures(), hit);
+    aov.albedo = albedo(material, scene.textures(), hit);
     aov.object_id = hit.instance + 1;
 }
 
@@ -200,19 +204,22 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         if (walk.medium.present) walk.throughput *= walk.medium.transmittance(hit.t);
         if (found->sphere_light >= 0) {
             const auto sphere = std::uint32_t(found->sphere_light);
-            const float pdf =
-                walk.from_delta ? 0 : scene.lights().pdf_sphere(sphere, walk.previous);
-            *gathered += walk.throughput * scene.lights().sphere_radiance(sphere, wavelengths) *
+            const float pdf = walk.from_delta ? 0
+                                              : scene.lights().pdf_sphere(
+                                                    sphere, walk.previous, hit.time);
+            *gathered += walk.throughput *
+                         scene.lights().sphere_radiance(sphere, hit.time, wavelengths) *
                          emission_weight(walk, pdf, settings.strategy);
             break;
         }
-        *gathered += walk.throughput *
-                     surface_emission(scene, walk, hit, wavelengths, settings.strategy);
+        const MaterialAt material = scene.material(hit);
+        *gathered += walk.throughput * surface_emission(scene, walk, material, hit, wavelengths,
+                                                        settings.strategy);
         const bool last = vertex == settings.max_depth;  // behind it only windows count
         if (last && !scene.has_clear()) break;
 
-        const Bsdf bsdf = shade(scene.material(hit), scene.textures(), hit, wavelengths);
-        if (aov && !aov->hit) record_first_hit(scene, hit, *aov);
+        const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
+        if (aov && !aov->hit) record_first_hit(scene, material, hit, *aov);
         const bool alive = std::visit(
             [&](const auto& kind) {
                 const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);

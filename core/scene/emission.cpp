@@ -43,14 +43,14 @@ bool same_everywhere(const InstanceRecord& record, const Material& material) {
            (opaque || (!m->base_color_texture.used() && !record.colors));
 }
 
-Measured measure(const InstanceRecord& record, const Material& material,
+Measured measure(const InstanceRecord& record, const Material& material, bool changes,
                  const std::vector<Texture>& textures, std::uint32_t primitive) {
-    if (same_everywhere(record, material)) {
+    if (!changes && same_everywhere(record, material)) {
         const Vec2f anywhere{0, 0};
         const Rgb front =
-            emission_at(record, material, textures, primitive, anywhere, true);
+            emission_at(record, material, textures, primitive, anywhere, true, 0);
         const Rgb back =
-            emission_at(record, material, textures, primitive, anywhere, false);
+            emission_at(record, material, textures, primitive, anywhere, false, 0);
         Measured m{front, max_component(front) > 0, max_component(back) > 0};
         if (m.back && max_component(back) > max_component(front)) m.mean = back;
         m.even = m.front && (!m.back || front == back);
@@ -67,22 +67,23 @@ Measured measure(const InstanceRecord& record, const Material& material,
             const Vec2f b{float(i) / float(n), float(j) / float(n)};
             for (int side = 0; side < 2; ++side) {
                 sums[side] +=
-                    emission_at(record, material, textures, primitive, b, side == 0);
+                    emission_at(record, material, textures, primitive, b, side == 0, 0);
             }
         }
     }
     Measured m;
     m.front = max_component(sums[0]) > 0;
     m.back = max_component(sums[1]) > 0;
-    const bool resolved = wanted <= n;
-    if (!resolved) {
-        const Rgb least = (material.emission + emission_factor(*gltf)) * kUnseenShare;
+    if (wanted > n || changes) {
+        const Rgb factor = gltf ? emission_factor(*gltf) : Rgb{0, 0, 0};
+        const Rgb least = (material.emission + factor) * kUnseenShare;
         for (Rgb& s : sums) {
             s = {std::max(s.x, least.x * count), std::max(s.y, least.y * count),
                  std::max(s.z, least.z * count)};
         }
         m.front = true;
-        m.back = m.back || gltf->double_sided || gltf->unlit || material.two_sided_emission;
+        m.back = m.back || material.two_sided_emission ||
+                 (gltf && (gltf->double_sided || gltf->unlit));
     }
     const bool brighter_back = m.back && max_component(sums[1]) > max_component(sums[0]);
     m.mean = sums[brighter_back ? 1 : 0] / float(count);
@@ -93,11 +94,14 @@ Measured measure(const InstanceRecord& record, const Material& material,
 
 Rgb emission_at(const InstanceRecord& record, const Material& material,
                 const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front, std::optional<Vec3f> toward) {
+                Vec2f barycentric, bool front, float time, std::optional<Vec3f> toward) {
     SurfaceHit hit;
+    hit.time = time;
     hit.front = front;
     if (emission_is_coated(material)) {
-        surface_at(record, record.still, primitive, barycentric.x, barycentric.y, hit);
+        record.with_placement(time, [&](const Placement& placement) {
+            surface_at(record, placement, primitive, barycentric.x, barycentric.y, hit);
+        });
         hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
     } else {
         interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
@@ -109,19 +113,14 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
 
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
                                std::size_t triangle_count, const Material& material,
-                               const std::vector<Texture>& textures,
+                               bool changes, const std::vector<Texture>& textures,
                                std::vector<Light>& lights) {
     if (!emits(material)) return;
     for (std::uint32_t i = 0; i < triangle_count; ++i) {
-        const auto& t = record.triangles[i];
-        auto world = [&](int k) {
-            return to_float(
-                record.still.world_from_local.point(to_double(record.positions[t[k]])));
-        };
-        TriangleLight light{world(0), world(1), world(2), {},
-                            instance, i,        false,    record.still.mirrored};
-        if (!(length(cross(light.b - light.a, light.c - light.a)) > 0)) continue;
-        const Measured m = measure(record, material, textures, i);
+        const auto [a, b, c] = corners_at(record, record.still, i);
+        TriangleLight light{a, b, c, {}, instance, i, false, record.still.mirrored};
+        if (!record.changes() && !(length(cross(b - a, c - a)) > 0)) continue;
+        const Measured m = measure(record, material, changes, textures, i);
         if (!m.front && !m.back) continue;
         light.mean_luminance = m.mean;
         light.two_sided = m.back;

@@ -10,11 +10,14 @@ namespace dg {
 /// where it is seen from, for a clear coat; without it, along the normal.
 Rgb emission_at(const InstanceRecord& record, const Material& material,
                 const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front, std::optional<Vec3f> toward = {});
+                Vec2f barycentric, bool front, float time,
+                std::optional<Vec3f> toward = {});
 
-/// Appends a light for each triangle of the instance that has area and emits anywhere.
+/// Appends a light for each triangle of the instance that has area and emits anywhere. Of a
+/// material that `changes`, `material` is its brightest: where that says nothing of a point
+/// (textures move), the light is kept all the same, and never taken for even.
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
-                               std::size_t triangle_count, const Material& material,
+                               std::size_t triangle_count, const Material& material, bool changes,
                                const std::vector<Texture>& textures,
                                std::vector<Light>& lights);
 

@@ -34,7 +34,7 @@ Pair irradiance(const Scene& scene, Vec3f position, Vec3f normal, int n = 40000)
     Pair sum{0, 0};
     for (int i = 0; i < n; ++i) {
         const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
-        const auto s = scene.sample_light(float(hash_uniform(3, i)), u, position, wl);
+        const auto s = scene.sample_light(float(hash_uniform(3, i)), u, position, 0, wl);
         if (s && !occluded(scene, position, s->wi, s->distance)) {
             sum.lights +=
                 s->radiance[0] * std::max(0.f, dot(normal, s->wi)) / s->pdf / unit / n;
@@ -42,8 +42,8 @@ Pair irradiance(const Scene& scene, Vec3f position, Vec3f normal, int n = 40000)
         const Vec3f w = test_direction(i);
         const auto hit = scene.intersect(test_ray(position, w));
         if (!hit) continue;
-        const Rgb e =
-            emitted(scene.material(hit->surface), scene.textures(), hit->surface);
+        const MaterialAt material = scene.material(hit->surface);
+        const Rgb e = emitted(material, scene.textures(), hit->surface);
         sum.directions +=
             wl.emission(e)[0] * std::max(0.f, dot(normal, w)) * 4 * kPiD / unit / n;
     }
@@ -171,7 +171,7 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
         const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
         const Vec3f p = test_direction(i);
         const auto s =
-            scene->sample_light(float(hash_uniform(3, i)), u, p, test_wavelengths());
+            scene->sample_light(float(hash_uniform(3, i)), u, p, 0, test_wavelengths());
         if (!s || s->triangle_light < 0 || occluded(*scene, p, s->wi, s->distance))
             continue;
         const auto hit = scene->intersect(test_ray(p, s->wi));
@@ -185,7 +185,7 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
         if (cosine < 0.01f) continue;
         ++compared;
         CHECK(h.front);
-        CHECK(scene->lights().pdf_triangle(h.instance, h.primitive, h.t, cosine, p) ==
+        CHECK(scene->lights().pdf_triangle(h.instance, h.primitive, h.t, cosine, p, 0) ==
               doctest::Approx(s->pdf).epsilon(2e-3));
     }
     CHECK(compared > 1000);
@@ -200,7 +200,7 @@ TEST_CASE("an even light needs no second look; a texture or a veil does") {
         const auto scene = Scene::build(d);
         for (int i = 0; i < 1000; ++i) {
             const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
-            const auto s = scene->sample_light(float(hash_uniform(3, i)), u, {3, 0, 0},
+            const auto s = scene->sample_light(float(hash_uniform(3, i)), u, {3, 0, 0}, 0,
                                                test_wavelengths());
             if (!s) continue;
             const float alpha = material.alpha_mode == GltfMaterial::AlphaMode::opaque

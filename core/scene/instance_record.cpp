@@ -172,14 +172,13 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     return r;
 }
 
-std::array<Vec3f, 3> corners_at(const InstanceRecord& r, std::uint32_t primitive, float time) {
+std::array<Vec3f, 3> corners_at(const InstanceRecord& r, const Placement& place,
+                                std::uint32_t primitive) {
     const Corners t = corners_of(r, primitive);
-    return r.with_placement(time, [&](const Placement& place) -> std::array<Vec3f, 3> {
-        const auto world = [&](std::uint32_t i) {
-            return to_float(place.world_from_local.point(r.position(place, i)));
-        };
-        return {world(t.a), world(t.b), world(t.c)};
-    });
+    const auto world = [&](std::uint32_t i) {
+        return to_float(place.world_from_local.point(r.position(place, i)));
+    };
+    return {world(t.a), world(t.b), world(t.c)};
 }
 
 Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v, float time) {

@@ -40,6 +40,7 @@ struct InstanceRecord {
     bool is_shown(float time) const { return !shown || shown->at(time); }
     Placement at(float time) const;
     bool changes() const { return motion || steps > 1; }
+    bool moves() const { return changes() || shown; }
 
     Vec3d position(const Placement& p, std::uint32_t vertex) const {
         const Vec3f* now = positions + p.first_vertex + vertex;
@@ -66,8 +67,9 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
                            std::uint32_t material_index, const InstanceGeometry& geometry,
                            bool flattened);
 
-/// The corners of a triangle in the world, as light sampling wants them.
-std::array<Vec3f, 3> corners_at(const InstanceRecord& record, std::uint32_t primitive, float time);
+/// The corners of a triangle in the world, where the instance is placed so.
+std::array<Vec3f, 3> corners_at(const InstanceRecord& record, const Placement& placement,
+                                std::uint32_t primitive);
 
 /// A point of a triangle in the world, in double.
 Vec3d point_at(const InstanceRecord& record, std::uint32_t primitive, float u, float v, float time);

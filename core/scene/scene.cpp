@@ -9,7 +9,6 @@
 
 #include "math/hash.h"
 #include "motion/moving_bounds.h"
-#include "scene/emission.h"
 #include "scene/footprint.h"
 #include "scene/pyramids.h"
 #include "scene/validate.h"
@@ -78,7 +77,9 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     for (Instance& instance : description.instances) place_in(instance, description.interval);
     validate(description);
     build_pyramids(description.textures, description.materials);
+    Changes changes = take_changes(description);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
+    scene->changes_ = std::move(changes);
     const auto geometry = scene->geometry_of_instances();
     scene->build_intersector(geometry);
     scene->build_records(geometry);
@@ -94,9 +95,9 @@ std::vector<InstanceGeometry> Scene::geometry_of_instances() {
         });
     std::vector<InstanceGeometry> geometry;
     for (const Instance& i : description_.instances) {
-        const bool cutout =
-            may_be_transparent(description_.materials[i.material],
-                               description_.meshes[i.mesh], description_.textures);
+        const bool cutout = std::ranges::any_of(keys_of(i.material), [&](const Material& m) {
+            return may_be_transparent(m, description_.meshes[i.mesh], description_.textures);
+        });
         const Clear clear = clear_for_shadows(i, delta_lights);
         has_clear_ = has_clear_ || clear != Clear::no;
         geometry.push_back(
@@ -106,18 +107,16 @@ std::vector<InstanceGeometry> Scene::geometry_of_instances() {
 }
 
 void Scene::build_intersector(const std::vector<InstanceGeometry>& geometry) {
-    std::vector<Sphere> spheres;
-    for (const Light& light : description_.lights) {
-        if (const auto* s = std::get_if<SphereLight>(&light)) spheres.push_back(s->shape);
-    }
     intersector_ = Intersector::build(
-        description_.meshes, geometry, spheres,
+        description_.meshes, geometry, spheres(),
         [this](const Ray& ray, const RawHit& hit) { return passes(ray, hit); });
 }
 
 /// Where no light is a delta light, shadow rays need not ask about volumes.
 Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) const {
-    const Clear clear = clearness(description_.materials[instance.material]);
+    const MaterialChange* change = change_of(instance.material);
+    const Clear clear = change ? clearness(change->range)
+                               : clearness(description_.materials[instance.material]);
     return clear == Clear::volume && !delta_lights ? Clear::no : clear;
 }
 
@@ -125,22 +124,12 @@ void Scene::build_records(const std::vector<InstanceGeometry>& geometry) {
     records_.reserve(description_.instances.size());
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
+        const MaterialChange* change = change_of(instance.material);
         records_.push_back(make_record(
-            description_.meshes[instance.mesh], description_.materials[instance.material],
+            description_.meshes[instance.mesh],
+            change ? change->range.most : description_.materials[instance.material],
             instance.material, geometry[i], intersector_->is_flattened(i)));
     }
-}
-
-void Scene::build_lights() {
-    std::vector<Light> lights = description_.lights;
-    for (std::uint32_t i = 0; i < records_.size(); ++i) {
-        append_emissive_triangles(
-            records_[i], i,
-            description_.meshes[description_.instances[i].mesh].triangles.size(),
-            description_.materials[records_[i].material], description_.textures, lights);
-    }
-    lights_ = LightSet(std::move(lights), description_.environment,
-                       description_.light_choice);
 }
 
 void Scene::hold(Vec3d point) {
@@ -174,8 +163,9 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
     const InstanceRecord& record = records_[hit.instance];
     SurfaceHit surface;
     interpolate_attributes(record, hit.primitive, hit.u, hit.v, surface);
-    const float alpha = opacity(description_.materials[record.material],
-                                description_.textures, surface.uv, surface.color[3]);
+    const MaterialAt material = material_at(record.material, ray.time);
+    const float alpha =
+        opacity(material, description_.textures, surface.uv, surface.color[3]);
     if (alpha >= 1) return false;
     return alpha <= 0 || cutout_random(ray, hit) >= alpha;
 }
@@ -223,22 +213,6 @@ float Scene::curvature(const SurfaceHit& hit) const {
         return mean_curvature(record, placement, hit.primitive);
     });
     return hit.front ? c : -c;
-}
-
-std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
-                                               const Wavelengths& wavelengths) const {
-    auto sample = lights_.sample(u_select, u, position, wavelengths);
-    if (!sample || !sample->uneven) return sample;
-    const auto& light = std::get<TriangleLight>(lights_.lights()[sample->triangle_light]);
-    const InstanceRecord& record = records_[light.instance];
-    const Vec3f winding = cross(light.b - light.a, light.c - light.a);
-    const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
-    const Rgb rgb =
-        emission_at(record, description_.materials[record.material],
-                    description_.textures, light.primitive, sample->barycentric, front,
-                    -sample->wi);
-    sample->radiance = wavelengths.emission(rgb);
-    return sample;
 }
 
 Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time) {

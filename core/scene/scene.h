@@ -1,7 +1,9 @@
 // scene.h -- instances (mesh + transform + material) and lights; immutable once built.
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "light/light.h"
 #include "material/material.h"
 #include "motion/motion.h"
+#include "scene/changes.h"
 #include "scene/instance_record.h"
 
 namespace dg {
@@ -35,6 +38,10 @@ struct SceneDescription {
     /// What the picture exposes, s: the first moment of any row of the film to the last. Inside
     /// the scene time is the fraction of it, 0 .. 1.
     TimeInterval interval;
+    /// What changes over time (s), by index; what is not named stays as it is above.
+    std::map<std::uint32_t, Keyed<Material, double>> material_keys;
+    std::map<std::uint32_t, Keyed<Light, double>> light_keys;
+    std::optional<Keyed<EnvironmentPose, double>> environment_keys;
 };
 
 class Scene {
@@ -73,8 +80,9 @@ class Scene {
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
 
-    const Material& material(const SurfaceHit& hit) const {
-        return description_.materials[records_[hit.instance].material];
+    /// As it is at the hit's time.
+    MaterialAt material(const SurfaceHit& hit) const {
+        return material_at(records_[hit.instance].material, hit.time);
     }
     /// Mean curvature (1/m) of the interpolated normals over the hit's triangle as seen from
     /// wo: positive where the surface bulges toward it. 0 without vertex normals.
@@ -83,6 +91,7 @@ class Scene {
     const LightSet& lights() const { return lights_; }
     /// Light sampling with textured emission resolved (see LightSample::uneven).
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
+                                            float time,
                                             const Wavelengths& wavelengths) const;
 
     struct Bounds {
@@ -107,12 +116,27 @@ class Scene {
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
     void hold(Vec3d point);
+    MaterialAt material_at(std::uint32_t material, float time) const {
+        if (const MaterialChange* change = change_of(material))
+            return MaterialAt(change->keys.at(time));
+        return MaterialAt(&description_.materials[material]);
+    }
+    const MaterialChange* change_of(std::uint32_t material) const {
+        return changes_.materials.empty() ? nullptr : changes_.materials[material].get();
+    }
+    /// One, where it stays as it is.
+    std::span<const Material> keys_of(std::uint32_t material) const {
+        if (const MaterialChange* change = change_of(material)) return change->keys.values;
+        return {&description_.materials[material], 1};
+    }
+    std::vector<Keyed<Sphere>> spheres() const;
     Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
     bool has_clear_ = false;
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;
     std::vector<InstanceRecord> records_;
+    Changes changes_;
     LightSet lights_;
     Bounds bounds_{};
     std::size_t triangle_count_ = 0;

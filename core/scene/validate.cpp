@@ -31,6 +31,35 @@ void check_transform(const std::string& where, const Affine3f& m) {
                       "determinant " + std::to_string(det));
 }
 
+template <typename T>
+void check_times(const std::string& where, const Keyed<T, double>& keys) {
+    const auto& t = keys.times;
+    if (t.empty() || t.size() != keys.values.size())
+        throw input_error(where, "keys", "as many values as times, at least one",
+                          std::to_string(t.size()) + " times, " +
+                              std::to_string(keys.values.size()) + " values");
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        if (std::isfinite(t[i]) && (i == 0 || t[i] >= t[i - 1])) continue;
+        throw input_error(where, "key " + std::to_string(i) + ": time",
+                          "finite times that do not fall", std::to_string(t[i]) + " s");
+    }
+}
+
+void validate_keys(const SceneDescription& d) {
+    for (const auto& [i, keys] : d.material_keys) {
+        check_index("keys of material " + std::to_string(i), "index", i, d.materials.size());
+        check_times("material '" + d.materials[i].name + "'", keys);
+        validate(keys.values, d.textures);
+    }
+    for (const auto& [i, keys] : d.light_keys) {
+        const std::string where = "light " + std::to_string(i);
+        check_index("keys of " + where, "index", i, d.lights.size());
+        check_times(where, keys);
+        check_keys(keys.values, where);
+    }
+    if (d.environment_keys) check_times("environment", *d.environment_keys);
+}
+
 }  // namespace
 
 void validate(const SceneDescription& d) {
@@ -45,6 +74,7 @@ void validate(const SceneDescription& d) {
         check_index(where, "material index", instance.material, d.materials.size());
         if (!instance.motion) check_transform(where, instance.world_from_local);
     }
+    validate_keys(d);
 }
 
 }  // namespace dg

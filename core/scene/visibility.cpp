@@ -46,10 +46,12 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
         left *= medium.transmittance(hit.t - here);
         here = hit.t;
         next = here + surface.error / std::abs(dot(surface.ng, surface.wo));
-        const Bsdf bsdf = shade(material(surface), textures(), surface, wavelengths);
+        const MaterialAt now = material(surface);
+        const Bsdf bsdf = shade(now, textures(), surface, wavelengths);
         std::visit(
             [&](const auto& kind) {
-                left *= kind.straight(surface.wo);
+                const bool bent = kind.bounds_volume() && !crossings.volumes;
+                left *= bent ? Spectrum(0.f) : kind.straight(surface.wo);
                 medium = medium_beyond(medium, kind.interior(), kind.bounds_volume(),
                                        surface.front);
             },

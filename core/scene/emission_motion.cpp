@@ -1,0 +1,108 @@
+#include "scene/emission_motion.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "light/light_keys.h"
+#include "motion/moving_bounds.h"
+
+namespace dg {
+namespace {
+
+// Between two keys a motion turns by half a turn at most.
+constexpr int kStepsPerKey = 8, kStepsPerTurn = 16;
+// What takes more is bounded as a whole: every triangle of it may be wherever the mesh ever is.
+constexpr std::size_t kMostSteps = 512;
+
+/// Places of the instance, between which it turns by less than a right angle. Of a jump both sides.
+/// Those of the whole way all the same where that would be too many, and `complete` is false.
+struct Places {
+    std::vector<Placement> list;
+    bool complete = true;
+};
+
+Places places_of(const InstanceRecord& record) {
+    if (!record.changes()) return {{record.still}, true};
+    std::vector<double> keys{0, 1};
+    for (std::uint32_t i = 1; i + 1 < record.steps; ++i) keys.push_back(double(i) / (record.steps - 1));
+    const Motion::Track* track = record.motion ? record.motion->track() : nullptr;
+    for (double t : track ? track->times : std::vector<double>())
+        if (t > 0 && t < 1) keys.push_back(t);
+    std::ranges::sort(keys);
+    const double turns = track ? std::abs(track->spin.revolutions_per_second) : 0;
+    const double steps = double(kStepsPerKey * keys.size()) + turns * kStepsPerTurn;
+    Places places{{}, steps < kMostSteps};
+    if (!places.complete) keys = {0, 1};
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+        const double span = keys[i + 1] - keys[i];
+        const int n = kStepsPerKey + (places.complete ? int(turns * span * kStepsPerTurn) : 0);
+        for (int k = 0; k < n; ++k)
+            places.list.push_back(record.at(float(keys[i] + span * k / n)));
+        places.list.push_back(record.at(std::nextafter(float(keys[i + 1]), 0.f)));
+    }
+    return places;
+}
+
+void put(const InstanceRecord& record, const Placement& placement, TriangleLight& light) {
+    const auto [a, b, c] = corners_at(record, placement, light.primitive);
+    light.a = a, light.b = b, light.c = c;
+    light.mirrored = placement.mirrored;
+}
+
+void hold(LightBounds& bounds, Vec3d low, Vec3d high) {
+    for (int k = 0; k < 3; ++k) {
+        bounds.min[k] = std::min(bounds.min[k], float(low[k]));
+        bounds.max[k] = std::max(bounds.max[k], float(high[k]));
+    }
+}
+
+/// Bounds of everything that the mesh reaches, in whatever shape; its intensity is still to be set.
+LightBounds bounds_of_way(const InstanceRecord& record, const Mesh& mesh) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    LightBounds all;
+    all.min = {kInfinity, kInfinity, kInfinity}, all.max = -all.min;
+    if (record.motion) {
+        const Hull hull(std::span(mesh.positions.begin(), mesh.positions.end()));
+        for (const Box& box : moving_bounds(hull, *record.motion).boxes) hold(all, box.min, box.max);
+    } else {
+        for (Vec3f p : mesh.positions) {
+            const Vec3d q = record.still.world_from_local.point(to_double(p));
+            hold(all, q, q);
+        }
+    }
+    return all;
+}
+
+}  // namespace
+
+bool place(const InstanceRecord& record, TriangleLight& light, float time) {
+    if (!record.is_shown(time)) return false;
+    record.with_placement(time, [&](const Placement& now) { put(record, now, light); });
+    return true;
+}
+
+void bound_moving_triangles(const InstanceRecord& record, const Mesh& mesh,
+                            const std::vector<Light>& lights, std::size_t first,
+                            LightMotion& motion) {
+    if (first == lights.size()) return;
+    const Places places = places_of(record);
+    const LightBounds way = places.complete ? LightBounds{} : bounds_of_way(record, mesh);
+    std::vector<TriangleLight> steps(places.list.size());
+    for (std::size_t i = first; i < lights.size(); ++i) {
+        const auto& light = std::get<TriangleLight>(lights[i]);
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            steps[k] = light;
+            put(record, places.list[k], steps[k]);
+        }
+        LightBounds bounds = bounds_over(steps, light.mean_luminance);
+        if (!places.complete) {
+            const float intensity = bounds.intensity;
+            bounds = way;
+            bounds.intensity = intensity;
+        }
+        motion.triangles[std::uint32_t(i)] = bounds;
+    }
+}
+
+}  // namespace dg

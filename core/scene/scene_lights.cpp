@@ -1,0 +1,61 @@
+// scene_lights.cpp -- the lights of a scene: those it was given, and those that its meshes are.
+#include "scene/emission.h"
+#include "scene/emission_motion.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+/// The shapes of the sphere lights, in their order.
+std::vector<Keyed<Sphere>> Scene::spheres() const {
+    std::vector<Keyed<Sphere>> spheres;
+    for (std::uint32_t i = 0; i < description_.lights.size(); ++i) {
+        const auto* still = std::get_if<SphereLight>(&description_.lights[i]);
+        if (!still) continue;
+        spheres.push_back({{0}, {still->shape}});
+        const auto found = changes_.lights.find(i);
+        if (found == changes_.lights.end()) continue;
+        spheres.back() = {found->second.times, {}};
+        for (const Light& key : found->second.values)
+            spheres.back().values.push_back(std::get<SphereLight>(key).shape);
+    }
+    return spheres;
+}
+
+void Scene::build_lights() {
+    std::vector<Light> lights = description_.lights;
+    LightMotion motion{changes_.lights, {}, [this](TriangleLight& light, float time) {
+                           return place(records_[light.instance], light, time);
+                       }};
+    for (std::uint32_t i = 0; i < records_.size(); ++i) {
+        const Material& still = description_.materials[records_[i].material];
+        const MaterialChange* change = change_of(records_[i].material);
+        const Mesh& mesh = description_.meshes[description_.instances[i].mesh];
+        const std::size_t first = lights.size();
+        append_emissive_triangles(
+            records_[i], i, mesh.triangles.size(),
+            change ? brightest(change->keys, change->range) : still, change != nullptr,
+            description_.textures, lights);
+        if (records_[i].moves())
+            bound_moving_triangles(records_[i], mesh, lights, first, motion);
+    }
+    lights_ = LightSet(std::move(lights), description_.environment,
+                       description_.light_choice, std::move(motion));
+}
+
+std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
+                                               float time,
+                                               const Wavelengths& wavelengths) const {
+    auto sample = lights_.sample(u_select, u, position, time, wavelengths);
+    if (!sample || !sample->uneven) return sample;
+    const TriangleLight light = *lights_.triangle_at(sample->triangle_light, time);
+    const InstanceRecord& record = records_[light.instance];
+    const Vec3f winding = cross(light.b - light.a, light.c - light.a);
+    const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
+    const MaterialAt material = material_at(record.material, time);
+    const Rgb rgb = emission_at(record, material, description_.textures, light.primitive,
+                                sample->barycentric, front, time, -sample->wi);
+    sample->radiance = wavelengths.emission(rgb);
+    return sample;
+}
+
+}  // namespace dg
