@@ -11,19 +11,26 @@ import numpy as np
 
 import daguerre._core as _core
 
+from .build_motion import Moving
 from .checks import frozen, short
 from .errors import DaguerreError, InputError, UsageError
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from .pieces import samples
 from .scene import Environment, Scene
 
 
-def build(scene: Scene, interval: tuple[float, float] | None = None) -> _core.Scene:
+def build(
+    scene: Scene,
+    interval: tuple[float, float] | None = None,
+    notes: list[str] | None = None,
+) -> _core.Scene:
     """Hands the scene to the core, which checks it and builds the ray tracer.
 
     Args:
         scene: What is seen.
         interval: When it is seen, s; None: at its ``time``.
+        notes: Is told what moves in a way that cannot be shown to its end.
 
     Raises:
         InputError: Some part cannot be rendered; the message names it.
@@ -32,8 +39,9 @@ def build(scene: Scene, interval: tuple[float, float] | None = None) -> _core.Sc
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
     try:
         builder = _core.SceneBuilder()
-        builder.set_interval(*(interval or (scene.time, scene.time)))
-        _add_all(builder, scene)
+        seen = interval or (scene.time, scene.time)
+        builder.set_interval(*seen)
+        _add_all(builder, scene, Moving(scene, seen, [] if notes is None else notes))
         return builder.build()
     except ValueError as error:
         if isinstance(error, DaguerreError):
@@ -41,23 +49,26 @@ def build(scene: Scene, interval: tuple[float, float] | None = None) -> _core.Sc
         raise InputError(f"{scene.path or 'scene'}: {error}") from None
 
 
-def _add_all(builder: _core.SceneBuilder, scene: Scene) -> None:
+def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: Moving) -> None:
     for texture in scene.textures:
         pixels = frozen(texture.pixels)
         filters = (texture.filter, texture.min_filter)
         builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, *filters)
-    for mesh in scene.meshes:
-        optional = (mesh.normals, mesh.uv, mesh.uv1, mesh.tangents, mesh.colors)
+    for i, mesh in enumerate(scene.meshes):
+        v = moving.vertices(i)
+        optional = (v.normals, v.uv, v.uv1, v.tangents, v.colors)
         builder.add_mesh(
             mesh.name,
-            frozen(mesh.positions),
+            frozen(v.positions),
             frozen(mesh.indices),
             *(None if values is None else frozen(values) for values in optional),
         )
     for material in scene.materials:
         _add_material(builder, material)
-    for instance in scene.instances:
-        builder.add_instance(instance.name, instance.mesh, instance.material, instance.transform)
+    for i, instance in enumerate(scene.instances):
+        builder.add_instance(
+            instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)
+        )
     for light, transform in scene.lights:
         _add_light(builder, light, transform)
     if scene.environment is not None:
@@ -134,8 +145,13 @@ def _set_environment(builder: _core.SceneBuilder, environment: Environment) -> N
     builder.set_environment_image(environment.image, environment.scale, matrix)
 
 
-def content_hash(scene: Scene) -> str:
-    """SHA-256 of everything that the picture can depend on."""
+def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> str:
+    """SHA-256 of everything that the picture can depend on.
+
+    Args:
+        scene: What is seen.
+        interval: When it is seen, s; what moves is looked at its ends, its keys and in between.
+    """
     digest = hashlib.sha256()
 
     def add(value: Any) -> None:
@@ -162,4 +178,8 @@ def content_hash(scene: Scene) -> str:
         scene.environment,
     ):
         add(part)
+    if interval is not None:
+        for where, dynamic in scene.motion.parts():
+            add(where)
+            add(samples(dynamic, *interval))
     return digest.hexdigest()

@@ -34,8 +34,8 @@ def frame_everything(scene: Scene) -> Camera | None:
 
 
 def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
-    """Corners (3,) of the box around the boxes of all instances, m; None if there is nothing."""
-    filled = [i for i in scene.instances if len(scene.meshes[i.mesh].positions)]
+    """Corners (3,) of the box around the boxes of what is shown, m; None if there is nothing."""
+    filled = [i for i in scene.instances if i.shown and len(scene.meshes[i.mesh].positions)]
     if not filled:
         return None
     boxes = {}

@@ -16,6 +16,7 @@ from .framing import bounds
 
 if TYPE_CHECKING:
     from .camera import Camera
+    from .materials import Material
     from .scene import Instance, Scene
 
 #: A blur of 1/1500 of the diagonal is the classical limit of "sharp" (Ray, ch. 22).
@@ -201,19 +202,44 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "emissive_instances": sum(_emits(scene, i) for i in scene.instances),
         "environment": light,
         "time_s": scene.time,
-        "animation_duration_s": getattr(scene, "duration", None),
+        "animation_duration_s": scene.duration,
+        "moves": _moves(scene),
         "variants": list(scene.variants),
         "warnings": list(scene.warnings),
     }
 
 
+def _moves(scene: Scene) -> dict[str, Any]:
+    """What changes over time: how many of each kind, and of the cameras which parameters."""
+    motion = scene.motion
+    counts = {
+        "instances": len(motion.instances),
+        "shown": len(motion.shown),
+        "meshes": len(motion.meshes),
+        "materials": len(motion.materials),
+        "lights": len(motion.lights),
+        "environment": int(motion.environment is not None),
+    }
+    cameras = {name: list(c.motion) for name, c in scene.cameras.items() if c.motion}
+    found: dict[str, Any] = {name: count for name, count in counts.items() if count}
+    return found | ({"cameras": cameras} if cameras else {})
+
+
 def lit(scene: Scene) -> bool:
-    """Whether there is any light."""
+    """Whether there is any light, at any time."""
     return bool(scene.lights or scene.environment or any(_emits(scene, i) for i in scene.instances))
 
 
 def _emits(scene: Scene, instance: Instance) -> bool:
-    material = scene.materials[instance.material]
+    over_time = scene.motion.materials.get(instance.material)
+    if over_time is not None:
+        times = [scene.time, *over_time.breaks(-math.inf, math.inf)]
+        some = times[:: 1 + len(times) // 64]
+        return any(_shines(over_time.at(t)) for t in some)
+    return _shines(scene.materials[instance.material])
+
+
+def _shines(material: Material) -> bool:
     own = getattr(material.kind, "emissive", (0, 0, 0))
     if getattr(material.kind, "unlit", False):
         own = getattr(material.kind, "base_color", own)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from .motion import Dynamic
 
@@ -15,9 +15,18 @@ Fits = Callable[[T, T, float, T], bool]
 #: Keys of one value, and how often a piece between two breaks is halved at most.
 MAX_KEYS = 4096
 _MAX_HALVINGS = 10
+_MAX_SAMPLES = 64
 QUARTERS = (0.25, 0.5, 0.75)
 #: Where to look first: uneven, so that what repeats does not look as if it stood still.
 FIRST = (0.137, 0.25, 0.418, 0.5, 0.75, 0.873)
+
+
+def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, Any]]:
+    """Some times of an interval, ends and breaks among them, and the values there."""
+    breaks = [float(t) for t in dynamic.breaks(open_s, close_s)]
+    between = (open_s + s * (close_s - open_s) for s in FIRST)
+    some = breaks[:: 1 + len(breaks) // _MAX_SAMPLES]
+    return [(t, dynamic.at(t)) for t in sorted({open_s, close_s, *some, *between})]
 
 
 class Pieces(Generic[T]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -50,7 +50,7 @@ class PointCache:
         if turn is not None and tangents is not None:
             turned = turn.of(tangents[:, :3])
             tangents = np.concatenate([turned, tangents[:, 3:]], axis=1)
-        return Vertices(points, normals, tangents)
+        return replace(self.rest, positions=points, normals=normals, tangents=tangents)
 
     def breaks(self, begin: float, end: float) -> Sequence[float]:
         """Those of positions and normals."""

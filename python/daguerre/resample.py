@@ -25,6 +25,7 @@ BOUND = 1e-4
 PATH_BOUND = 2e-5
 #: Of the size: what differs by less has not changed but for rounding.
 _STILL = 1e-12
+_ENDS = np.array([0.0, 1.0])
 
 
 def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[float], list[Any]]:
@@ -93,8 +94,9 @@ def resample_transform(
     limit = max(BOUND * radius, PATH_BOUND * way)
 
     def fits(a: FloatArray, b: FloatArray, s: float, value: FloatArray) -> bool:
-        between = _core.Motion.keys(np.array([0.0, 1.0]), np.stack([a, b])).at(s)
-        return bool(np.linalg.norm(((value - between) @ points)[:3], axis=0).max() <= limit)
+        between = _core.Motion.keys(_ENDS, np.array((a, b))).at(s)
+        gaps = (value - between)[:3] @ points
+        return bool((gaps * gaps).sum(axis=0).max() <= limit * limit)
 
     keys = pieces.keys(fits)
     return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))

@@ -95,7 +95,9 @@ def _points(vertices: Vertices) -> NDArray[np.float64]:
 
 
 def _same(a: Vertices, b: Vertices) -> bool:
-    pairs = ((a.positions, b.positions), (a.normals, b.normals), (a.tangents, b.tangents))
-    return all(
-        x is y or (x is not None and y is not None and np.array_equal(x, y)) for x, y in pairs
-    )
+    return all(same_array(x, getattr(b, name)) for name, x in vars(a).items())
+
+
+def same_array(a: NDArray[np.float32] | None, b: NDArray[np.float32] | None) -> bool:
+    """Whether two arrays are equal, or both absent."""
+    return a is b or (a is not None and b is not None and np.array_equal(a, b))

@@ -40,6 +40,11 @@ class Mesh:
     name: str = ""
 
 
+def vertices_of(mesh: Mesh) -> Vertices:
+    """The vertices of a mesh at the time of its scene."""
+    return Vertices(mesh.positions, mesh.normals, mesh.tangents, mesh.uv, mesh.uv1, mesh.colors)
+
+
 @dataclass(frozen=True)
 class Texture:
     """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels.
@@ -224,7 +229,7 @@ class Scene:
             name,
         )
         if moving is not None or moving_normals is not None:
-            rest = Vertices(mesh.positions, mesh.normals, mesh.tangents)
+            rest = vertices_of(mesh)
             path = moving or Composite(points)
             cache = PointCache(path, moving_normals, rest, mesh.indices, where)
             mesh = replace(mesh, **vars(cache.at(self.time)))

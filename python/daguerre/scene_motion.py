@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,17 +17,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Vertices:
-    """The vertices of a mesh at a time: what of a mesh may change.
+    """The vertices of a mesh at a time.
 
     Attributes:
         positions: Shape (N, 3), m.
         normals: Shape (N, 3), or None where the mesh has none.
         tangents: Shape (N, 4), likewise.
+        uv: Shape (N, 2), likewise. This, ``uv1`` and ``colors`` may differ from picture to picture,
+            but do not change while a shutter is open.
+        uv1: Shape (N, 2).
+        colors: Shape (N, 4).
     """
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32] | None = None
     tangents: NDArray[np.float32] | None = None
+    uv: NDArray[np.float32] | None = None
+    uv1: NDArray[np.float32] | None = None
+    colors: NDArray[np.float32] | None = None
 
 
 @dataclass
@@ -53,6 +61,15 @@ class SceneMotion:
 
     def __bool__(self) -> bool:
         return any(getattr(self, part.name) for part in fields(self))
+
+    def parts(self) -> Iterator[tuple[str, Dynamic]]:
+        """All that changes, each with a name such as ``instances 3``."""
+        for part in fields(self):
+            value = getattr(self, part.name)
+            if isinstance(value, dict):
+                yield from ((f"{part.name} {key}", one) for key, one in value.items())
+            elif value is not None:
+                yield part.name, value
 
 
 def scene_at(scene: Scene, time: float) -> Scene:

@@ -86,11 +86,12 @@ class Session:
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.aovs = aovs
         started = time.perf_counter()
-        when = shutter.interval(self.camera, scene.time, (self.width, self.height))
-        self._core_scene = build(scene, when)
+        self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
+        found: list[str] = []
+        self._core_scene = build(scene, self.interval, found)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
         self.setup_seconds = time.perf_counter() - started
-        self.notes = list(self._setup.notes)
+        self.notes = [*found, *self._setup.notes]
         self._settings = _core.RenderSettings()
         self._settings.resolution = (self.width, self.height)
         self._settings.sensor_size_mm = self._setup.frame_size
@@ -238,7 +239,7 @@ class Session:
     def key(self) -> dict[str, str]:
         """What passes must share to be added: hashes of scene, camera, settings, and the build."""
         return {
-            "scene": content_hash(self.scene),
+            "scene": content_hash(self.scene, self.interval),
             "camera": _hash_json(self._setup.facts),
             "settings": _hash_json(self._identity),
             "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "

@@ -121,10 +121,23 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
     }
     if content["variants"]:
         rows["variants"] = ", ".join(content["variants"])
+    if content["moves"]:
+        rows["moves"] = _moving(content["moves"])
     if content["animation_duration_s"]:
         rows["animation"] = f"{content['animation_duration_s']:.4g} s"
     lines = [f"{key:12} {value}" for key, value in rows.items()]
     return lines + [f"note: {text}" for text in content["warnings"]]
+
+
+def _moving(moves: dict[str, Any]) -> str:
+    """Such as ``34 instances, cameras 'pan' (transform)``."""
+    parts = [
+        name if name == "environment" else f"{count} {name}"
+        for name, count in moves.items()
+        if name != "cameras"
+    ]
+    cameras = [f"{name!r} ({', '.join(of)})" for name, of in moves.get("cameras", {}).items()]
+    return ", ".join(parts + (["cameras " + ", ".join(cameras)] if cameras else []))
 
 
 def _print_json(

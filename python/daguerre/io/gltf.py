@@ -9,26 +9,28 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.errors import InputError, UsageError
 from daguerre.scene import Scene
 
 from .gltf_accessors import Accessors
-from .gltf_animation import play
+from .gltf_animation import Animations
 from .gltf_budget import Budget
 from .gltf_cameras import read_camera
 from .gltf_extensions import check_extensions
 from .gltf_file import load_buffers, open_document
 from .gltf_instancing import instance_transforms
 from .gltf_lights import light_items, read_light
-from .gltf_materials import read_materials
+from .gltf_materials import read_material, read_materials
 from .gltf_meshes import Meshes
+from .gltf_moving import Moving
 from .gltf_nodes import Placed, Tree, unique_names
 from .gltf_placing import Placing
+from .gltf_poses import Poses
 from .gltf_skins import Skins
 from .gltf_textures import Textures
 from .gltf_transforms import without_scale
@@ -87,17 +89,22 @@ class _Reader:
             self.notes.add("a byte behind the stated end of the file", self.document.trailing)
         buffers = load_buffers(self.document)
         self.accessors = Accessors(self.root, buffers)
-        play(self.root, self.accessors, time, self.notes)  # before anything else is read
+        # Before anything else is read:
+        self.animations = Animations(self.root, self.accessors, time, self.notes)
+        self.scene.duration = self.animations.duration
         self.tree = Tree(self.root)
-        skins = Skins(self.root, self.accessors, self.tree, self.notes)
+        self.poses = Poses(self.tree, self.animations)
+        skins = Skins(self.root, self.accessors, self.tree, self.poses, self.notes)
         limit = max(_MAX_COPIES, sum(map(len, buffers)) // _BYTES_PER_COPY)
         copies = Budget(limit, "vertices that are not shared")
         variants = Variants(self.root, variant)
         self.scene.variants = variants.names
         self.meshes = Meshes(
-            self.root, self.accessors, skins, variants, self.scene, copies, self.notes
+            *(self.root, self.accessors, self.animations, skins, variants),
+            *(self.scene, copies, self.notes),
         )
         self.placing = Placing(self.scene, copies, self.notes)
+        self.moving = Moving(self.scene, self.animations, self.poses)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)
         self.names = unique_names(self.tree, self.meshes.items, self.cameras)
@@ -107,6 +114,7 @@ class _Reader:
         textures = Textures(self.document, self.accessors, self.notes)
         scene.materials = read_materials(self.root, textures, self.notes)
         textures.decode(scene)
+        self.moving.materials(partial(read_material, textures=textures, notes=Notes()), self.root)
         placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
         firsts = []
         for position in placed:
@@ -136,25 +144,31 @@ class _Reader:
     def _node(self, placed: Placed) -> None:
         item, name = self.tree.items[placed.index], self.names[placed.index]
         self.scene.node_positions[name] = placed.world[:3, 3].copy()
+        self.moving.position(placed.index, name)
         mesh, camera = item.get("mesh"), item.get("camera")
         light = item.extension("KHR_lights_punctual")
-        if mesh is not None and placed.visible:
-            self._mesh(item, placed.world, name)
+        seen = placed.visible or self.poses.blinks(placed.index)
+        if mesh is not None and seen:
+            self._mesh(item, placed, name)
         if camera is not None:
             self._camera(self.cameras[camera.index(len(self.cameras), "cameras")], placed, name)
-        if light is not None and placed.visible:
+        if light is not None and seen:
             chosen = self.lights[light.need("light").index(len(self.lights), "lights")]
             self._light(chosen, placed, name)
 
-    def _mesh(self, node: Item, world: NDArray[np.float64], name: str) -> None:
+    def _mesh(self, node: Item, placed: Placed, name: str) -> None:
         copies = instance_transforms(node, self.accessors, self.notes)
+        world = placed.world
         for part in self.meshes.parts(node):
             worlds = world[None] if copies is None else world @ copies
             if part.in_world:
                 worlds = np.eye(4)[None]
                 if copies is not None:
                     self.notes.add("a mesh that a skin moves is shown once, not at its instances")
-            self.placing.add(node, part.mesh, part.material, worlds, name)
+            moves = self.moving.instances(
+                placed.index, None if part.in_world else copies, worlds, rigid=part.in_world
+            )
+            self.placing.add(node, part.mesh, part.material, worlds, name, moves)
 
     def _camera(self, item: Item, placed: Placed, name: str) -> None:
         rigid = without_scale(placed.world)
@@ -164,17 +178,21 @@ class _Reader:
             )
         camera = read_camera(item, rigid, self.notes)
         if camera is not None:
-            self.scene.add_camera(name, camera)
+            self.scene.add_camera(name, self.moving.camera(camera, item, placed.index))
             if item.name():
                 self.scene.camera_aliases.setdefault(item.name(), name)
 
     def _light(self, item: Item, placed: Placed, name: str) -> None:
         light = read_light(item, name)
+        motion = self.moving.light(partial(read_light, item, name), item, placed.index)
         rigid = without_scale(placed.world)
-        if rigid is None:
+        if motion is not None:
+            self.scene.motion.lights[len(self.scene.lights)] = motion
+            self.scene.lights.append(motion.at(self.scene.time))
+        elif rigid is None:
             self.notes.add("a light whose node is scaled to nothing is left out")
-            return
-        self.scene.add_light(light, rigid)
+        else:
+            self.scene.add_light(light, rigid)
 
     def _collect(self, placed: list[Placed], firsts: list[int]) -> None:
         """Instances of each node and its descendants: one run of numbers, as parents come first."""

@@ -97,6 +97,17 @@ def _snake(name: str) -> str:
     return "".join("_" + c.lower() if c.isupper() else c for c in name)
 
 
+def fields_of(tokens: list[str]) -> tuple[str, ...]:
+    """Parameters of ``Camera`` that a value of the file, such as yfov, has a say in."""
+    key = tokens[-1]
+    fields = {
+        "yfov": ("focal_length",),
+        "aspectRatio": ("sensor_size", "focal_length"),
+        "sensorSize": ("sensor_size", "focal_length"),
+    }
+    return fields.get(key, (_snake(key),) if key in _EXTRAS else ())
+
+
 def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Camera | None:
     """A camera at ``transform`` (4, 4; rigid), or None with a note if it is orthographic."""
     if item.need("type").choice(("perspective", "orthographic")) == "orthographic":

@@ -30,10 +30,11 @@ _IOR_OF_ZERO = 1e4
 
 def read_materials(root: Item, textures: Textures, notes: Notes) -> list[Material]:
     """All materials of a file, in its order."""
-    return [_material(item, textures, notes) for item in root.list_of("materials")]
+    return [read_material(item, textures, notes) for item in root.list_of("materials")]
 
 
-def _material(item: Item, textures: Textures, notes: Notes) -> Material:
+def read_material(item: Item, textures: Textures, notes: Notes) -> Material:
+    """One material."""
     values: dict[str, Any] = {}
     _coverage(item, values)
     if is_unlit(item):  # what else there is are fallbacks for readers that know no unlit

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
@@ -17,11 +18,13 @@ from daguerre.scene import Scene
 
 from . import gltf_draco
 from .gltf_accessors import Accessors
+from .gltf_animation import Animations
 from .gltf_budget import Budget
+from .gltf_deforming import MeshOverTime, finished
 from .gltf_morphs import Displacement, displacements, morph, weights_of
 from .gltf_nodes import MAX_SIZE
-from .gltf_normals import unit_normals, unit_tangents
-from .gltf_skins import Skins, skin
+from .gltf_over_time import PartOverTime
+from .gltf_skins import Influences, Skins, skin
 from .gltf_triangles import triangles_of
 from .gltf_variants import Variants
 from .json_item import Item, clean
@@ -61,6 +64,9 @@ class _Source:
     attributes: dict[str, Item]
     displacements: tuple[Displacement, ...]
     skin: int | None
+    weights: PartOverTime
+    #: equal for weights that change alike
+    changes: tuple[Hashable, ...]
 
     def key(self, accessors: Accessors) -> Hashable:
         """Equal for primitives with equal vertices and triangles."""
@@ -70,7 +76,8 @@ class _Source:
             if name in _KNOWN or (self.skin is not None and name.startswith(_SKINNED))
         )
         indices = None if self.indices is None else accessors.index(self.indices)
-        return self.mode, indices, tuple(sorted(uses)), self.displacements, self.skin
+        shape = self.mode, indices, tuple(sorted(uses))
+        return *shape, self.displacements, self.skin, self.changes
 
 
 class Meshes:
@@ -79,6 +86,7 @@ class Meshes:
     Args:
         root: The JSON object of the file.
         accessors: Its accessors.
+        animations: What changes in it.
         skins: Its skins.
         variants: Which materials are chosen.
         scene: Gets the meshes.
@@ -90,6 +98,7 @@ class Meshes:
         self,
         root: Item,
         accessors: Accessors,
+        animations: Animations,
         skins: Skins,
         variants: Variants,
         scene: Scene,
@@ -99,6 +108,7 @@ class Meshes:
         self.items = root.list_of("meshes")
         self._variants = variants
         self._accessors = accessors
+        self._animations = animations
         self._skins = skins
         self._scene = scene
         self._copies = copies
@@ -113,21 +123,43 @@ class Meshes:
         item, skin_use = self.items[index], node.get("skin")
         chosen = None if skin_use is None else self._skins.index(skin_use)
         weights = weights_of(node, item)
-        key = index, None if weights is None else tuple(w.number() for w in weights), chosen
+        shape = None if weights is None else tuple(w.number() for w in weights)
+        owner = ("meshes", str(index)) if node.get("weights") is None else ("nodes", str(node.key))
+        moved = [c for c in self._animations.of(*owner) if "weights" in c.tokens]
+        changes = tuple((id(c.track), *c.tokens[2:]) for c in moved)
+        key = index, shape, chosen, changes
         if key not in self._parts:
             primitives = list(item.need("primitives"))
             name = item.name() or f"mesh{index}"
             self._parts[key] = []
             for primitive in primitives:
                 full = name if len(primitives) == 1 else f"{name}/{primitive.key}"
-                part = self._part(primitive, weights, chosen, full)
+                reading = partial(self._displacements, primitive, node, item)
+                source = self._source(primitive, chosen, PartOverTime(moved, reading), changes)
+                part = None if source is None else self._part(source, full)
                 if part is not None:
                     self._parts[key].append(part)
         return self._parts[key]
 
-    def _part(
-        self, primitive: Item, weights: Item | None, chosen: int | None, name: str
-    ) -> Part | None:
+    def _displacements(self, primitive: Item, node: Item, mesh: Item) -> tuple[Displacement, ...]:
+        return displacements(primitive, weights_of(node, mesh), self._accessors, self._notes)
+
+    def _part(self, source: _Source, name: str) -> Part | None:
+        key = source.key(self._accessors)
+        if key not in self._shared:
+            self._shared[key] = self._read(source, name)
+        mesh = self._shared[key]
+        if mesh is None:
+            return None
+        return Part(mesh, self._variants.material(source.primitive), source.skin is not None)
+
+    def _source(
+        self,
+        primitive: Item,
+        chosen: int | None,
+        weights: PartOverTime,
+        changes: tuple[Hashable, ...],
+    ) -> _Source | None:
         mode_item = primitive.get("mode")
         mode = 4 if mode_item is None else mode_item.choice(range(7))
         attributes = {str(item.key): item for item in primitive.need("attributes").members()}
@@ -140,21 +172,17 @@ class Meshes:
         if chosen is not None and "JOINTS_0" not in attributes:
             self._notes.add("a mesh without JOINTS_0 is not moved by its skin")
             chosen = None
-        if chosen is not None and not self._skins.matrices(chosen)[:, :3, :3].any():
+        if chosen is not None and self._is_nothing(chosen):
             # As with nodes (3.5.3): scale 0 is how files hide things.
             self._notes.add("a mesh that its skin scales to nothing is left out")
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):
             mode = 4
-        moved = displacements(primitive, weights, self._accessors, self._notes)
-        source = _Source(primitive, mode, primitive.get("indices"), attributes, moved, chosen)
-        key = source.key(self._accessors)
-        if key not in self._shared:
-            self._shared[key] = self._read(source, name)
-        mesh = self._shared[key]
-        if mesh is None:
-            return None
-        return Part(mesh, self._variants.material(primitive), chosen is not None)
+        indices, moved = primitive.get("indices"), weights.read()
+        return _Source(primitive, mode, indices, attributes, moved, chosen, weights, changes)
+
+    def _is_nothing(self, skin: int) -> bool:
+        return not self._skins.moves(skin) and not self._skins.matrices(skin)[:, :3, :3].any()
 
     def _read(self, source: _Source, name: str) -> int | None:
         attributes = source.attributes
@@ -169,8 +197,9 @@ class Meshes:
         if not len(triangles):
             self._notes.add("a mesh primitive without a triangle that has an area is left out")
             return None
-        triangles = self._deform(source, arrays, triangles)
-        positions, normals = arrays["POSITION"], arrays.get("NORMAL")
+        base = dict(arrays)
+        triangles, influences = self._deform(source, arrays, triangles)
+        positions = arrays["POSITION"]
         # NaN is not smaller than anything.
         if not max(positions.max(), -positions.min()) < MAX_SIZE:
             far = np.flatnonzero(~(np.abs(positions) < MAX_SIZE).all(axis=1))
@@ -178,26 +207,25 @@ class Meshes:
                 f"vertex {far[0]}: wanted coordinates below {MAX_SIZE:g}, "
                 f"got {positions[far[0]].tolist()}"
             )
-        if normals is not None:
-            normals = unit_normals(normals, positions, triangles, self._notes)
-        optional: dict[str, Any] = {
-            "normals": normals,
-            "uv": arrays.get("TEXCOORD_0"),
-            "uv1": arrays.get("TEXCOORD_1"),
-            "tangents": unit_tangents(arrays.get("TANGENT"), self._notes),
-            "colors": arrays.get("COLOR_0"),
-        }
-        self._scene.add_mesh(
-            given_up(positions),
-            given_up(triangles),
-            **{key: cast("Any", given_up(v)) for key, v in optional.items() if v is not None},
+        moves = bool(source.changes)
+        moves = moves or (source.skin is not None and self._skins.moves(source.skin))
+        made = finished(arrays, base if moves else {}, triangles, self._notes)
+        index = self._scene.add_mesh(
+            indices=given_up(triangles),
             name=name,
+            **{key: cast("Any", given_up(v)) for key, v in vars(made).items() if v is not None},
         )
-        return len(self._scene.meshes) - 1
+        if moves:
+            skin_of = None if influences is None else (source.skin or 0, influences)
+            over = MeshOverTime(
+                base, triangles, source.weights, self._skins, skin_of, self._accessors
+            )
+            self._scene.motion.meshes[index] = over
+        return index
 
     def _deform(
         self, source: _Source, arrays: dict[str, FloatArray], triangles: NDArray[np.uint32]
-    ) -> NDArray[np.uint32]:
+    ) -> tuple[NDArray[np.uint32], Influences | None]:
         """Morphs, then skins (3.7.2.2); returns triangles that wind as their vertices lie now."""
         count = len(arrays["POSITION"])
         if source.displacements:
@@ -205,12 +233,12 @@ class Meshes:
             self._work.spend(count * len(source.displacements), source.primitive)
             morph(arrays, source.displacements, self._accessors)
         if source.skin is None:
-            return triangles
+            return triangles, None
         sets = sum(name.startswith("JOINTS_") for name in source.attributes)
         self._copies.spend(count * sets, source.primitive)
         found = self._skins.influences(source.attributes, source.skin, count)
         mirrored = skin(arrays, found, self._skins.matrices(source.skin))
-        return np.where(mirrored[triangles[:, :1]], triangles[:, ::-1], triangles)
+        return np.where(mirrored[triangles[:, :1]], triangles[:, ::-1], triangles), found
 
     def _note_unknown(self, attributes: dict[str, Item]) -> None:
         for key in attributes:

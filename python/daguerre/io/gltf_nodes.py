@@ -5,7 +5,9 @@ Source: glTF 2.0 specification, chapters 3.5 and 3.11 (a node that is animated h
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -106,7 +108,7 @@ class Tree:
             if closes >= 0:
                 ends[closes] = len(order)
                 continue
-            visible = visible and _is_visible(self.items[node])
+            visible = visible and is_visible(self.items[node])
             stack.append((node, visible, len(order)))
             order.append((node, visible))
             ends.append(0)
@@ -126,23 +128,41 @@ class Tree:
             chain.append(node)
             node = self.parents[node]
         for below in reversed(chain):
-            local = self._local(below)
             parent = self.parents[below]
-            world = local if parent < 0 else self._worlds[parent] @ local
-            size = float(np.abs(world).max())
-            if not size < MAX_SIZE:  # NaN is not smaller than anything
-                self.items[below].fail(
-                    f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
-                )
-            self._worlds[below] = world
+            self._worlds[below] = self.joined(None if parent < 0 else self._worlds[parent], below)
         return self._worlds[chain[0] if chain else node]
 
-    def _local(self, node: int) -> Matrix:
+    def joined(
+        self,
+        parent: Matrix | None,
+        node: int,
+        moved: Mapping[str, Sequence[float]] = MappingProxyType({}),
+    ) -> Matrix:
+        """World from node, below a world from parent; None: at the root.
+
+        Args:
+            parent: World from parent, (4, 4).
+            node: Index of the node.
+            moved: Translation, rotation and scale that stand in for the node's own.
+        """
+        local = self._local(node, moved)
+        world = local if parent is None else parent @ local
+        size = float(np.abs(world).max())
+        if not size < MAX_SIZE:  # NaN is not smaller than anything
+            self.items[node].fail(
+                f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
+            )
+        return world
+
+    def _local(self, node: int, moved: Mapping[str, Sequence[float]]) -> Matrix:
         """Parent from node."""
         item = self.items[node]
         matrix = item.get("matrix")
         if matrix is None:
-            t, q, s = (np.array(item.numbers_of(path, d)) for path, d in _DEFAULTS.items())
+            t, q, s = (
+                np.array(moved[path] if path in moved else item.numbers_of(path, d))
+                for path, d in _DEFAULTS.items()
+            )
             length = float(np.sqrt(q @ q))
             if not 1e-9 < length < np.inf:
                 item.need("rotation").fail(
@@ -154,7 +174,7 @@ class Tree:
         return affine(np.array(matrix.numbers(16)).reshape(4, 4).T, matrix)  # stored by columns
 
 
-def _is_visible(item: Item) -> bool:
+def is_visible(item: Item) -> bool:
     """KHR_node_visibility; it rules the node's descendants too."""
     extension = item.extension("KHR_node_visibility")
     visible = None if extension is None else extension.get("visible")

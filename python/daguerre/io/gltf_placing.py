@@ -5,19 +5,39 @@ Source: glTF 2.0 specification, chapters 3.5.3 (scale 0) and 3.7.4.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.materials import Gltf, Material
-from daguerre.scene import Instance, Scene
+from daguerre.scene import Instance, Scene, vertices_of
 
 from .gltf_budget import Budget
 from .gltf_instancing import MAX_INSTANCES
 from .gltf_nodes import MAX_SIZE
+from .gltf_over_time import FlatOverTime, NodeOverTime, ShownOverTime
+from .gltf_transforms import ranks
 from .json_item import Item
 from .notes import Notes
 
 Matrices = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What an instance does over time; None: nothing.
+
+    Attributes:
+        transform: World from mesh.
+        shown: Whether it is there.
+        flat: Instead of ``transform``, where this may have no inverse.
+    """
+
+    transform: NodeOverTime | None = None
+    shown: ShownOverTime | None = None
+    flat: NodeOverTime | None = None
 
 
 class Placing:
@@ -36,7 +56,15 @@ class Placing:
         self._notes = notes
         self._default_material: int | None = None
 
-    def add(self, node: Item, mesh: int, material: int | None, worlds: Matrices, name: str) -> None:
+    def add(
+        self,
+        node: Item,
+        mesh: int,
+        material: int | None,
+        worlds: Matrices,
+        name: str,
+        moves: Sequence[Motion] | None = None,
+    ) -> None:
         """Places a mesh.
 
         Args:
@@ -45,6 +73,7 @@ class Placing:
             material: Index of its material; None: glTF's default.
             worlds: World from mesh, shape (instances, 4, 4).
             name: Of the instances.
+            moves: What each of them does over time; None: nothing.
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)
@@ -53,16 +82,36 @@ class Placing:
         if material is None:
             material = self._default()
         self._note_missing_uv(mesh, material)
-        ranks = _ranks(worlds[:, :3, :3])
-        hidden = int((ranks < 2).sum())
+        dimensions = ranks(worlds[:, :3, :3])
+        hidden = int((dimensions < 2).sum()) if moves is None else 0
         if hidden:  # scale 0 is how files hide things
             self._notes.add("a mesh that its node scales to nothing is left out", hidden)
-        for world, rank in zip(worlds, ranks.tolist(), strict=True):
+        if moves is not None:
+            for world, motion in zip(worlds, moves, strict=True):
+                self._add_moving(node, Instance(mesh, material, world, name), motion)
+            return
+        for world, rank in zip(worlds, dimensions.tolist(), strict=True):
             if rank == 3:  # checked above, all at once: there may be a million
                 scene.instances.append(Instance(mesh, material, world, name))
             elif rank == 2:
                 self._copies.spend(len(scene.meshes[mesh].positions), node)
                 scene.add_instance(self._flattened(mesh, world, name), material, name=name)
+
+    def _add_moving(self, node: Item, instance: Instance, motion: Motion) -> None:
+        scene, index = self._scene, len(self._scene.instances)
+        if motion.flat is not None:
+            mesh = scene.meshes[instance.mesh]
+            self._copies.spend(len(mesh.positions), node)
+            flat = self._flattened(instance.mesh, instance.transform, instance.name)
+            rest = replace(vertices_of(mesh), normals=None, tangents=None)
+            scene.motion.meshes[flat] = FlatOverTime(motion.flat, rest)
+            instance = replace(instance, mesh=flat, transform=np.eye(4))
+        if motion.transform is not None:
+            scene.motion.instances[index] = motion.transform
+        if motion.shown is not None:
+            scene.motion.shown[index] = motion.shown
+            instance = replace(instance, shown=bool(motion.shown.at(scene.time)))
+        scene.instances.append(instance)
 
     def _default(self) -> int:
         if self._default_material is None:
@@ -84,13 +133,3 @@ class Placing:
             if key.endswith("_texture") and slot is not None and arrays[slot.uv_set] is None:
                 self._notes.add("a textured mesh lacks the texture coordinates that it needs")
                 return
-
-
-def _ranks(linear: Matrices) -> NDArray[np.int64]:
-    """Dimensions that transforms leave; 2 also where the float determinant would vanish."""
-    volumes, sizes = np.abs(np.linalg.det(linear)), np.abs(linear).max(axis=(1, 2))
-    ranks = np.full(len(linear), 3)
-    for i in np.flatnonzero(~((volumes > 1e-30) & (volumes > 1e-12 * sizes**3))):
-        rank = int(np.linalg.matrix_rank(linear[i], tol=1e-12 * sizes[i]))
-        ranks[i] = min(rank, 2) if volumes[i] <= 1e-30 else rank
-    return ranks

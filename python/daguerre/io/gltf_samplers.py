@@ -5,7 +5,7 @@ Source: glTF 2.0 specification, chapter 3.11 and appendix C.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
@@ -14,107 +14,150 @@ from numpy.typing import NDArray
 from .gltf_accessors import Accessors
 from .gltf_pointers import Target
 from .json_item import Item
+from .notes import Notes
 
 FloatArray = NDArray[np.float64]
 _MODES = ("LINEAR", "STEP", "CUBICSPLINE")
 
 
-@dataclass(frozen=True)
-class _Place:
-    """Where a time lies among keys: at or behind key ``left``, ``fraction`` of ``span`` s."""
+#: Quaternions of keys this near to length 1 are taken to be rounded.
+_SLACK = 0.01
 
-    count: int
-    left: int
-    fraction: float
-    span: float
+
+class Track:
+    """What a sampler makes of a value over time.
+
+    Args:
+        use: The sampler's output, for complaints.
+        keys: Times, shape (K,), s.
+        values: Shape (K, rows, width), rows being in-tangent, value and out-tangent of a spline,
+            else the value alone; of flags shape (K,).
+        mode: LINEAR, STEP or CUBICSPLINE.
+        target: What is animated.
+    """
+
+    def __init__(
+        self, use: Item, keys: FloatArray, values: NDArray[Any], mode: str, target: Target
+    ) -> None:
+        self._use, self._keys, self._values, self._mode = use, keys, values, mode
+        self._is_list, self._is_flag = target.is_list, target.is_flag
+        self._turns = _are_turns(values, target)
+        self._rows = 1 if target.is_flag else values.shape[1]
 
     @property
-    def right(self) -> int:
-        return min(self.left + 1, self.count - 1)
+    def changes(self) -> bool:
+        """Whether it is not always the same."""
+        values = self._values
+        if self._rows == 3 and len(values) > 1 and values[:, ::2].any():
+            return True
+        middle = values if self._is_flag else values[:, self._rows // 2]
+        return bool((middle[1:] != middle[:1]).any())
+
+    @property
+    def lowest(self) -> float:
+        """The smallest value of all keys."""
+        return float(self._values[:, self._rows // 2].min())
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times of the first and the last key, s."""
+        return float(self._keys[0]), float(self._keys[-1])
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """The times of the keys inside of (begin, end), s."""
+        first = np.searchsorted(self._keys, begin, side="right")
+        return self._keys[first : np.searchsorted(self._keys, end, side="left")]
+
+    def at(self, time: float) -> Any:
+        """A number, a list of numbers, or true or false; held before and behind the keys."""
+        left = max(int(self._keys.searchsorted(time, side="right")) - 1, 0)
+        if self._is_flag:
+            return bool(self._values[left])
+        value = self._value(left, time)
+        return float(value[0]) if len(value) == 1 and not self._is_list else value.tolist()
+
+    def _value(self, left: int, time: float) -> FloatArray:
+        """The numbers between key ``left`` and the next."""
+        keys, values, middle = self._keys, self._values, self._rows // 2
+        start = np.asarray(values[left, middle])
+        if left == len(keys) - 1 or time <= keys[left] or self._mode == "STEP":
+            return _unit(start) if self._turns else start
+        span = float(keys[left + 1] - keys[left])
+        s = float(time - keys[left]) / span
+        if self._mode == "CUBICSPLINE":
+            value = _hermite(values[left], values[left + 1], s, span)
+            if self._turns:
+                if np.linalg.norm(value) < 1e-9:
+                    self._use.fail(f"the rotation at {time:g} s has length 0")
+                value = _unit(value)
+            return value
+        end = values[left + 1, middle]
+        return slerp(_unit(start), _unit(end), s) if self._turns else (1 - s) * start + s * end
 
 
 class Samplers:
-    """Values of animation samplers at one time; each is worked out once, however many use it.
+    """The samplers of a file as tracks; each is read once, however many use it.
 
     Args:
         accessors: Those of the file.
-        time: s.
+        notes: Is told what was repaired.
     """
 
-    def __init__(self, accessors: Accessors, time: float) -> None:
+    def __init__(self, accessors: Accessors, notes: Notes) -> None:
         self._accessors = accessors
-        self._time = time
-        self._places: dict[int, _Place] = {}
-        self._values: dict[tuple[Any, ...], Any] = {}
+        self._notes = notes
+        self._times: dict[int, FloatArray] = {}
+        self._tracks: dict[tuple[Any, ...], Track] = {}
 
-    def value(self, sampler: Item, target: Target) -> Any:
-        """A number, a list of numbers, or true or false."""
+    def track(self, sampler: Item, target: Target) -> Track:
+        """The values of a sampler for what it animates.
+
+        Raises:
+            InputError: Keys or values cannot be used.
+        """
         mode_item = sampler.get("interpolation")
         mode = "LINEAR" if mode_item is None else mode_item.choice(_MODES)
         keys, output = sampler.need("input"), sampler.need("output")
         index = self._accessors.index(keys), self._accessors.index(output)
         key = (*index, mode, target.name, target.width, target.types)
-        if key not in self._values:
-            place = self._place(keys, index[0])
-            if target.is_flag:
-                self._values[key] = self._flag(output, place, mode)
-            else:
-                self._values[key] = self._numbers(output, place, mode, target)
-        value = self._values[key]
-        return list(value) if isinstance(value, list) else value
+        if key not in self._tracks:
+            if index[0] not in self._times:
+                self._times[index[0]] = _keys(keys, self._accessors)
+            times = self._times[index[0]]
+            read = self._flags if target.is_flag else self._numbers
+            values = read(output, len(times), mode, target)
+            self._tracks[key] = Track(output, times, values, mode, target)
+        return self._tracks[key]
 
-    def _place(self, use: Item, index: int) -> _Place:
-        if index not in self._places:
-            keys = _keys(use, self._accessors)
-            i = int(np.clip(np.searchsorted(keys, self._time, side="right") - 1, 0, len(keys) - 1))
-            held = i == len(keys) - 1 or self._time <= keys[0]
-            span = 1.0 if held else float(keys[i + 1] - keys[i])
-            fraction = 0.0 if held else float(self._time - keys[i]) / span
-            self._places[index] = _Place(len(keys), i, fraction, span)
-        return self._places[index]
-
-    def _flag(self, use: Item, place: _Place, mode: str) -> bool:
+    def _flags(self, use: Item, count: int, mode: str, target: Target) -> NDArray[Any]:
         if self._accessors.kind(use) != ("SCALAR", 5121, False) or mode != "STEP":
             use.fail("wanted SCALAR of component type 5121 and STEP for what is true or false")
         values = self._accessors.integers(use)
-        if len(values) != place.count:
-            use.fail(f"wrong number of key values: wanted {place.count}, got {len(values)}")
-        return bool(values[place.left])
+        if len(values) != count:
+            use.fail(f"wrong number of key values: wanted {count}, got {len(values)}")
+        return np.asarray(values != 0)
 
-    def _numbers(self, use: Item, place: _Place, mode: str, target: Target) -> Any:
-        left, right = self._keys_around(use, place, mode, target)
-        turns = target.name == "rotation" and left.shape[1] == 4
-        if turns:
-            _check_turns(use, place, left[1], right[1])
-        s = 0.0 if mode == "STEP" else place.fraction
-        if mode == "CUBICSPLINE":
-            value = _hermite(left, right, s, place.span)
-        elif turns:
-            value = slerp(_unit(left[1]), _unit(right[1]), s)
-        else:
-            value = (1 - s) * left[1] + s * right[1] if s else left[1]
-        if turns:
-            if np.linalg.norm(value) < 1e-9:
-                use.fail(f"the rotation at {self._time:g} s has length 0")
-            value = _unit(value)
-        return float(value[0]) if len(value) == 1 and not target.is_list else value.tolist()
-
-    def _keys_around(
-        self, use: Item, place: _Place, mode: str, target: Target
-    ) -> tuple[FloatArray, FloatArray]:
-        """Two keys as (3, width): in-tangent, value, out-tangent; tangents are 0 but of splines."""
+    def _numbers(self, use: Item, count: int, mode: str, target: Target) -> NDArray[Any]:
         raw = self._accessors.floats(use, target.types, "key value")
         rows = 3 if mode == "CUBICSPLINE" else 1
-        per_key = place.count * rows
+        per_key = count * rows
         # The elements of a list lie one behind the other.
         if len(raw) % per_key or (len(raw) != per_key and not target.is_list):
             wanted = f"{'a multiple of ' if target.is_list else ''}{per_key} ({mode})"
             use.fail(f"wrong number of key values: wanted {wanted}, got {len(raw)}")
-        shaped = raw.reshape(place.count, rows, -1)
-        around = np.zeros((2, 3, shaped.shape[2]))
-        for k, key in enumerate((place.left, place.right)):
-            around[k, 1 - rows // 3 : 2 + rows // 3] = shaped[key]
-        return around[0], around[1]
+        values = raw.reshape(count, rows, -1).astype(np.float64)
+        if _are_turns(values, target):
+            self._check_turns(use, values[:, rows // 2])
+        return values
+
+    def _check_turns(self, use: Item, turns: NDArray[Any]) -> None:
+        lengths = np.linalg.norm(turns, axis=1)
+        empty = np.flatnonzero(lengths < 1e-9)
+        if empty.size:
+            use.fail(f"key value {empty[0]}: wanted a quaternion of length 1, got length 0")
+        odd = int((np.abs(lengths - 1) > _SLACK).sum())
+        if odd:
+            self._notes.add("a key quaternion whose length is not 1 is scaled to it", odd)
 
 
 def _keys(use: Item, accessors: Accessors) -> FloatArray:
@@ -131,14 +174,12 @@ def _keys(use: Item, accessors: Accessors) -> FloatArray:
     return keys
 
 
-def _check_turns(use: Item, place: _Place, left: FloatArray, right: FloatArray) -> None:
-    for key, value in ((place.left, left), (place.right, right)):
-        if np.linalg.norm(value) < 1e-9:
-            use.fail(f"key value {key}: wanted a quaternion of length 1, got length 0")
+def _are_turns(values: NDArray[Any], target: Target) -> bool:
+    return target.name == "rotation" and values.shape[-1] == 4
 
 
 def _unit(quaternion: FloatArray) -> FloatArray:
-    return np.asarray(quaternion / np.linalg.norm(quaternion))
+    return np.asarray(quaternion / math.sqrt(float(quaternion @ quaternion)))
 
 
 def slerp(a: FloatArray, b: FloatArray, s: float) -> FloatArray:
@@ -146,10 +187,11 @@ def slerp(a: FloatArray, b: FloatArray, s: float) -> FloatArray:
     cosine = float(a @ b)
     if cosine < 0:
         b, cosine = -b, -cosine
-    angle = float(np.arccos(min(cosine, 1.0)))
+    angle = math.acos(min(cosine, 1.0))
     if angle < 1e-6:
         return (1 - s) * a + s * b
-    return np.asarray((np.sin((1 - s) * angle) * a + np.sin(s * angle) * b) / np.sin(angle))
+    sine = math.sin(angle)
+    return np.asarray((math.sin((1 - s) * angle) / sine) * a + (math.sin(s * angle) / sine) * b)
 
 
 def _hermite(left: FloatArray, right: FloatArray, s: float, span: float) -> FloatArray:

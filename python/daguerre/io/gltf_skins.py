@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .gltf_accessors import Accessors
 from .gltf_nodes import Tree
+from .gltf_poses import Poses
 from .gltf_transforms import affine
 from .json_item import Item
 from .notes import Notes
@@ -45,15 +46,21 @@ class Skins:
         root: The JSON object of the file.
         accessors: Its accessors.
         tree: Its nodes.
+        poses: Its nodes over time.
         notes: What was not understood.
     """
 
-    def __init__(self, root: Item, accessors: Accessors, tree: Tree, notes: Notes) -> None:
+    def __init__(
+        self, root: Item, accessors: Accessors, tree: Tree, poses: Poses, notes: Notes
+    ) -> None:
         self._items = root.list_of("skins")
         self._accessors = accessors
         self._tree = tree
+        self._poses = poses
         self._notes = notes
         self._matrices: dict[int, NDArray[np.float64]] = {}
+        self._joint_nodes: dict[int, list[int]] = {}
+        self._bind: dict[int, NDArray[np.float64]] = {}
 
     def index(self, use: Item) -> int:
         """The skin that ``use`` names; checked."""
@@ -62,10 +69,31 @@ class Skins:
     def matrices(self, index: int) -> NDArray[np.float64]:
         """World from mesh for each joint, shape (joints, 4, 4)."""
         if index not in self._matrices:
-            self._matrices[index] = self._read(self._items[index])
+            self._read(index)
+            world = np.stack([self._tree.world(joint) for joint in self._joint_nodes[index]])
+            self._matrices[index] = world @ self._bind[index]
         return self._matrices[index]
 
-    def _read(self, item: Item) -> NDArray[np.float64]:
+    def matrices_at(self, index: int, time: float) -> NDArray[np.float64]:
+        """The same at a time, s."""
+        if not self.moves(index):
+            return self.matrices(index)
+        joints = self._joint_nodes[index]
+        worlds = {joint: self._poses.world(joint, time) for joint in set(joints)}
+        return np.stack([worlds[joint] for joint in joints]) @ self._bind[index]
+
+    def moves(self, index: int) -> bool:
+        """Whether a joint moves."""
+        self.matrices(index)
+        return any(map(self._poses.moves, self._joint_nodes[index]))
+
+    def breaks(self, index: int, begin: float, end: float) -> list[float]:
+        """Times of all keys that move the joints, inside of (begin, end), s."""
+        joints = set(self._joint_nodes[index])
+        return sorted({t for joint in joints for t in self._poses.breaks(joint, begin, end)})
+
+    def _read(self, index: int) -> None:
+        item = self._items[index]
         tree, skeleton = self._tree, item.get("skeleton")
         if skeleton is not None:  # a pivot for editors
             skeleton.index(len(tree.items), "nodes")
@@ -75,9 +103,10 @@ class Skins:
         outside = sum(not tree.is_placed(joint) for joint in joints)
         if outside:
             self._notes.add("a joint of a skin stands outside of the scene", outside)
-        world = np.stack([tree.world(joint) for joint in joints])
         bind = item.get("inverseBindMatrices")
-        return world if bind is None else world @ self._inverse_bind(bind, len(joints))
+        self._joint_nodes[index] = joints
+        still = np.eye(4)[None]
+        self._bind[index] = still if bind is None else self._inverse_bind(bind, len(joints))
 
     def _inverse_bind(self, use: Item, count: int) -> NDArray[np.float64]:
         if self._accessors.kind(use)[1] != 5126:

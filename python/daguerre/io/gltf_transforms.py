@@ -56,3 +56,13 @@ def without_scale(world: Matrix) -> Matrix | None:
     rigid[:3, 1] = np.cross(rigid[:3, 2], rigid[:3, 0])
     rigid[:3, 3] = world[:3, 3]
     return rigid
+
+
+def ranks(linear: Matrix) -> NDArray[np.int64]:
+    """Dimensions that transforms leave; 2 also where the float determinant would vanish."""
+    volumes, sizes = np.abs(np.linalg.det(linear)), np.abs(linear).max(axis=(1, 2))
+    found = np.full(len(linear), 3)
+    for i in np.flatnonzero(~((volumes > 1e-30) & (volumes > 1e-12 * sizes**3))):
+        rank = int(np.linalg.matrix_rank(linear[i], tol=1e-12 * sizes[i]))
+        found[i] = min(rank, 2) if volumes[i] <= 1e-30 else rank
+    return found
