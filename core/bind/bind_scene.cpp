@@ -226,6 +226,7 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     Ray ray;
     ray.origin = vec(origin);
     ray.direction = normalize(vec(direction));
+    ray.time = 0.5f;
     const auto hit = scene.intersect(ray);
     if (!hit) return std::nullopt;
     return std::tuple{hit->surface.t, hit->surface.instance};
@@ -247,7 +248,7 @@ void bind_scene(nb::module_& m) {
                                            Triple{b.max.x, b.max.y, b.max.z}};
                      })
         .def("first_hit", &first_hit, "origin"_a, "direction"_a,
-             "Distance (m) and instance index of the nearest surface, or None.");
+             "Distance (m) and instance index of the nearest surface at mid-interval, or None.");
 
     nb::class_<Builder>(m, "SceneBuilder")
         .def(nb::init<>())

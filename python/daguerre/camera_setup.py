@@ -19,7 +19,9 @@ import daguerre._core as _core
 from . import lenses, shutter
 from .camera import Camera
 from .camera_checks import check, lens_and_model
-from .camera_parts import frame_size, iris_facts, iris_of, rigid
+from .camera_parts import frame_size, iris_facts, iris_of
+from .camera_pose import motion_facts
+from .camera_pose import pose as pose_over
 from .checks import short
 from .errors import InputError, UsageError
 from .focusing import Focus, ideal_direction
@@ -67,11 +69,14 @@ def set_up(
     if not isinstance(camera, Camera):
         raise UsageError(f"camera: wanted a Camera, got {short(camera)}")
     lens, model = lens_and_model(camera)
+    begin, end = shutter.interval(camera, scene.time, resolution)
+    pose = pose_over(camera, begin, end)
+    world = pose.at(0.5)
+    facts = motion_facts(camera, begin, end)
+    camera = camera.at(0.5 * (begin + end))  # what is said of the camera is said of mid-shutter
     size = frame_size(camera, resolution)
     check(camera, model, prescription=lens is not None)
-    world = rigid(camera.transform)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
-    pose = _core.Motion.still(world)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
     if lens is not None:
         _set_up_prescription(setup, camera, lens, model, pose, focus)
@@ -89,6 +94,7 @@ def set_up(
         "iso": camera.iso,
         "exposure_compensation": camera.exposure_compensation,
         "shutter": shutter.facts(camera, resolution),
+        **facts,
     }
     return setup
 

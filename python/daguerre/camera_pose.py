@@ -1,0 +1,89 @@
+"""Where a camera is while the shutter is open: a rigid motion, whatever moves it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .camera import Camera
+from .camera_parts import rigid
+from .motion import Dynamic, Keys, Spin
+from .resample import resample_transform
+
+#: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
+_STAY_RIGID = ("decomposed", "twist", "slerp")
+#: What a moving camera may be off by is told by points around it, m.
+_AROUND = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
+
+#: Moments at which a motion is looked at for its hash.
+_LOOKS = 64
+
+
+@dataclass(frozen=True)
+class _Rigid:
+    """World from camera over time, without what scale the file may have."""
+
+    transform: Dynamic
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        return rigid(self.transform.at(time_s))
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        return self.transform.breaks(begin, end)
+
+
+def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
+    """World from camera over an interval (s), in fractions of it; rigid.
+
+    Keys and spins go to the core as they are; anything else as keys that keep the bound of
+    :func:`daguerre.resample.resample_transform`.
+
+    Raises:
+        UsageError: A transform is singular.
+    """
+    moving = camera.motion.get("transform")
+    if moving is None or not end > begin:
+        return _core.Motion.still(rigid(camera.at(0.5 * (begin + end)).transform))
+    if isinstance(moving, Spin):
+        base = moving.transform
+        if not isinstance(base, Keys):
+            return replace(moving, transform=rigid(base)).motion.over(begin, end)
+        if base.interpolation in _STAY_RIGID:
+            return replace(moving, transform=_near(base, begin, end)).motion.over(begin, end)
+    if isinstance(moving, Keys) and moving.interpolation in _STAY_RIGID:
+        return _near(moving, begin, end).motion.over(begin, end)
+    return resample_transform(_Rigid(moving), begin, end, _AROUND).over(begin, end)
+
+
+def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
+    """Which parameters change in an interval, and what identifies how; for metadata and hashes."""
+    if not end > begin:
+        return {}
+    times = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
+    found: dict[str, Any] = {}
+    for name, dynamic in camera.motion.items():
+        values = [np.asarray(dynamic.at(t)).tolist() for t in times]
+        if any(value != values[0] for value in values):
+            text = json.dumps([values, [float(t) for t in dynamic.breaks(begin, end)]])
+            found[name] = {
+                "open": values[0],
+                "close": values[-1],
+                "sha256": hashlib.sha256(text.encode()).hexdigest(),
+            }
+    return {"motion": found} if found else {}
+
+
+def _near(keys: Keys, begin: float, end: float) -> Keys:
+    """The keys that an interval needs, made rigid."""
+    first = max(0, int(np.searchsorted(keys.times, begin, side="right")) - 1)
+    last = int(np.searchsorted(keys.times, end, side="left")) + 1
+    values = tuple(rigid(value) for value in keys.values[first:last])
+    return replace(keys, times=keys.times[first:last], values=values)
