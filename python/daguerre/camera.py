@@ -17,7 +17,7 @@ from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
     from .lenses import Lens
-    from .shutter import RollingShutter
+    from .shutter import RollingShutter, ShutterCurve
 
 
 #: lenses without a prescription
@@ -47,8 +47,6 @@ RIVALS = (
     ("focus_distance", "focus_at", "focus_on"),
     ("shutter_time", "shutter_angle"),
 )
-#: ``"box"``, ``("trapezoid", efficiency)`` or points (fraction of the time, opening)
-ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 
 
 @dataclass(frozen=True)

@@ -32,8 +32,14 @@ READOUT_S = 1 / 60
 GATE_ANGLE = 60.0
 #: A leaf shutter is on its way for as long as it rests wide open (radius).
 LEAF_EFFICIENCY = 0.75
+#: Far beyond any shutter: what lies outside is a mistake.
 MAX_TIME = 1e6
+MAX_ANGLE = 360e6
+FPS_RANGE = (1e-6, 1e9)
+MAX_OFFSET = 1e9
 MAX_POINTS = 4096
+#: ``"box"``, ``("trapezoid", efficiency)`` or points (fraction of the time, opening)
+ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -124,10 +130,10 @@ def check(camera: Camera) -> None:
     if camera.shutter_time is not None:
         number(camera.shutter_time, "camera: shutter_time", 0, MAX_TIME)
     if camera.shutter_angle is not None:
-        number(camera.shutter_angle, "camera: shutter_angle", 0, 360e6)
-    number(camera.fps, "camera: fps", 1e-6, 1e9)
+        number(camera.shutter_angle, "camera: shutter_angle", 0, MAX_ANGLE)
+    number(camera.fps, "camera: fps", *FPS_RANGE)
     if camera.shutter_offset is not None:
-        number(camera.shutter_offset, "camera: shutter_offset", -1e9, 1e9)
+        number(camera.shutter_offset, "camera: shutter_offset", -MAX_OFFSET, MAX_OFFSET)
     if camera.shutter_time is not None and camera.shutter_angle is not None:
         raise UsageError("camera: wanted either shutter_time or shutter_angle, got both")
     kind = camera.shutter_type

@@ -125,9 +125,6 @@ class CameraFlags:
     shift: Annotated[
         Text, option("--shift", metavar="X,Y", help="Film shift right and up, mm.", panel=_CAMERA)
     ] = None
-    shutter: Annotated[
-        Text, option("--shutter", metavar="S", help="Shutter time, s: 1/48, 20ms.", panel=_CAMERA)
-    ] = None
     iso: Annotated[
         float | None,
         option("--iso", metavar="N", help="For metadata and development only.", panel=_CAMERA),
@@ -156,7 +153,6 @@ class CameraFlags:
             "blade_rotation": ("blade_rotation", "--blade-rotation", q.angle_deg),
             "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
-            "shutter": ("shutter_time", "--shutter", q.time_s),
         }
         plain = {
             "lens": "lens",

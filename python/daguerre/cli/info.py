@@ -14,15 +14,17 @@ from . import quantities as q
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .scene_flags import SceneFlags
+from .shutter_flags import ShutterFlags
 
 if TYPE_CHECKING:
     from daguerre.info import Facts
 
 
-@with_flags(camera_flags=CameraFlags, scene_flags=SceneFlags)
+@with_flags(camera_flags=CameraFlags, shutter_flags=ShutterFlags, scene_flags=SceneFlags)
 def info(
     scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
     camera_flags: CameraFlags,
+    shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     res: Annotated[
         str | None, option("--res", metavar="WxH", help="Shape of the picture, px [960x540].")
@@ -38,7 +40,7 @@ def info(
     from daguerre.camera import Camera
 
     resolution = q.resolution("--res", res, (960, 540)) if res else (960, 540)
-    changes = camera_flags.changes()
+    changes = camera_flags.changes() | shutter_flags.changes()
     scene = scene_flags.load(scene_path)
     names = [camera_flags.camera] if camera_flags.camera else list(scene.cameras)
     cameras: dict[str, Camera] = {name: scene.camera(name).with_(**changes) for name in names}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from daguerre.errors import UsageError, suggest
 
 from . import quantities as q
+from .frames import numbered
 
 DEFAULT_RESOLUTION = (960, 540)
 DEFAULT_SPP = 64
@@ -39,6 +40,10 @@ class Plan:
     aovs: list[str]
     denoise: bool
     interval_s: float
+
+    def of_frame(self, frame: int) -> Plan:
+        """The same for one frame of a sequence."""
+        return replace(self, outputs=[numbered(path, frame) for path in self.outputs])
 
     @property
     def checkpoint(self) -> Path:

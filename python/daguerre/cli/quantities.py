@@ -66,6 +66,11 @@ def angle_deg(flag: str, text: str) -> float:
     return _finite(flag, text, value)
 
 
+def plain_number(flag: str, text: str, wanted: str) -> float:
+    """A number without a unit, or a fraction of two."""
+    return _finite(flag, text, _quantity(flag, text, {"": 1.0}, "", wanted))
+
+
 def f_number(flag: str, text: str) -> float:
     """``2.8`` or ``f/2.8``."""
     number = re.sub(r"^[fF]/?", "", text.strip())

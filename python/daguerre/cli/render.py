@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -14,21 +13,21 @@ from daguerre.errors import UsageError
 from . import console
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
-from .job import INTERRUPTED, Job, core_errors
+from .frames import check_names, frame_numbers
 from .plan import Plan, check_outputs, make_plan
 from .scene_flags import SceneFlags
-
-if TYPE_CHECKING:
-    from daguerre.session import Session
+from .shoot import Shoot, interrupted_early
+from .shutter_flags import ShutterFlags
 
 _OUTPUT = "Output"
 _SAMPLING = "Sampling"
 
 
-@with_flags(camera_flags=CameraFlags, scene_flags=SceneFlags)
+@with_flags(camera_flags=CameraFlags, shutter_flags=ShutterFlags, scene_flags=SceneFlags)
 def render(
     scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
     camera_flags: CameraFlags,
+    shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     output: Annotated[
         list[Path],
@@ -101,6 +100,16 @@ def render(
             "--checkpoint", metavar="S", help="Time between checkpoints, s [60].", panel=_SAMPLING
         ),
     ] = "60",
+    frames: Annotated[
+        str | None,
+        option(
+            "--frames",
+            metavar="A-BxS",
+            help="A sequence: frame f is drawn at --time + f / fps, into -o NAME.####.exr; with "
+            "--resume those that are complete are left.",
+            panel=_OUTPUT,
+        ),
+    ] = None,
     quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
     json_progress: Annotated[
         bool, option("--json-progress", help="Progress as JSON lines on stdout.")
@@ -108,46 +117,41 @@ def render(
     stats: Annotated[bool, option("--stats", help="Counts and times at the end.")] = False,
     dry_run: Annotated[bool, option("--dry-run", help="Check everything, draw nothing.")] = False,
 ) -> int:
-    """Renders a scene to a picture.
+    """Renders a scene to a picture, or a sequence of them.
 
     Stop with Ctrl-C: what was drawn is kept, and the command that goes on is printed.
     """
-    from daguerre.info import lit
-
     console.quiet = quiet
     sampling = (spp, samples, noise)
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
+    numbers = frame_numbers("--frames", frames) if frames is not None else None
+    check_names(plan.outputs, numbers)
     _check_numbers(seed, threads, max_depth)
-    changes = camera_flags.changes()
-    check_outputs(plan)
+    changes = camera_flags.changes() | shutter_flags.changes()
+    plans: list[tuple[int | None, Plan]] = [(None, plan)]
+    if numbers is not None:
+        plans = [(n, plan.of_frame(n)) for n in numbers]
+    for _, one in plans:
+        check_outputs(one)
     launched = time.monotonic()
     try:
         scene = scene_flags.load(scene_path)
-        for warning in scene.warnings:
-            console.warn(f"{scene_path}: {warning}")
-        session = _session(
-            scene,
-            scene.camera(camera_flags.camera).with_(**changes),
-            plan,
-            {
-                "seed": seed,
-                "filter": filter,
-                "threads": threads,
-                "max_depth": max_depth,
-            },
-        )
     except KeyboardInterrupt:
-        console.say("daguerre: interrupted before the first sample; nothing was written")
-        return INTERRUPTED
-    for text in session.notes:
-        console.note(text)
-    if not lit(scene):
-        console.warn(f"{scene_path}: nothing shines, so the picture will be black; --env lights it")
+        return interrupted_early()
+    for warning in scene.warnings:
+        console.warn(f"{scene_path}: {warning}")
+    settings = {"seed": seed, "filter": filter, "threads": threads, "max_depth": max_depth}
+    shoot = Shoot(scene, scene_path, camera_flags.camera, changes, settings, tone, stats)
     if dry_run:
-        _describe(plan, session, scene_path)
-        return 0
-    job = Job(session, plan, tone, time.monotonic() - launched, stats)
-    return job.run(resume=resume, quiet=quiet, as_json=json_progress)
+        return shoot.describe(*plans[0])
+    for i, (frame, one) in enumerate(plans):
+        if frame is not None:
+            console.note(f"frame {frame} ({i + 1} of {len(plans)})")
+        code = shoot.draw(frame, one, launched, resume=resume, quiet=quiet, as_json=json_progress)
+        if code:
+            return code
+        launched = time.monotonic()
+    return 0
 
 
 def _check_numbers(seed: int, threads: int, max_depth: int) -> None:
@@ -158,38 +162,3 @@ def _check_numbers(seed: int, threads: int, max_depth: int) -> None:
     ):
         if not low <= value <= high:
             raise UsageError(f"{flag}: wanted {low} to {high}, got {value}")
-
-
-def _session(scene: Any, camera: Any, plan: Plan, settings: dict[str, Any]) -> Session:
-    from daguerre.info import camera_warnings
-    from daguerre.session import Session
-
-    for warning in camera_warnings(camera):
-        console.warn(warning)
-    with core_errors("render"):
-        return Session(
-            scene,
-            camera,
-            resolution=plan.resolution,
-            aovs=bool(plan.aovs) or plan.denoise,
-            crop=plan.crop,
-            **settings,
-        )
-
-
-def _describe(plan: Plan, session: Session, scene_path: Path) -> None:
-    """What would be drawn, on stdout."""
-    from daguerre.io.exr import jsonable, without_infinity
-
-    facts = {
-        "scene": str(scene_path),
-        "outputs": [str(path) for path in plan.outputs],
-        "resolution": list(plan.resolution),
-        "crop": list(session.crop),
-        "samples": list(plan.wanted),
-        "noise": plan.noise,
-        "aovs": plan.aovs,
-        "camera": session.metadata.get("camera"),
-        "key": session.key,
-    }
-    print(json.dumps(without_infinity(facts), indent=2, default=jsonable))

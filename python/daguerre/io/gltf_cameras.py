@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from daguerre.camera import IDEAL, LIMITS, Camera
 from daguerre.lenses import library
 
+from .gltf_shutter import SHUTTER
 from .json_item import Item, clean, short
 from .notes import Notes
 
@@ -87,9 +88,9 @@ _EXTRAS: dict[str, _Reader] = _PHYSICAL | {
     "bladeCurvature": lambda item: item.number(-1, 1),
     "naturalVignetting": lambda item: item.flag(),
     "shift": lambda item: item.numbers(2, *LIMITS["shift"]),
-    "shutterTime": lambda item: item.number(0),
     "iso": _positive,
     "exposureCompensation": _any,
+    **SHUTTER,
 }
 
 

@@ -1,0 +1,55 @@
+"""``--frames``: which frames of a sequence, and the files that they go to."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from daguerre.errors import UsageError
+
+MOST = 1_000_000
+_RANGE = re.compile(r"\s*(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?\s*")
+_PLACE = re.compile(r"#+(?=[^#]*$)")  # the last run of #
+
+
+def frame_numbers(flag: str, text: str) -> list[int]:
+    """``1-48``, ``1-48x2`` (every second one), ``7``, or several of them between commas."""
+    wanted = "frames such as 1-48, 1-48x2 or 1,5,9-12"
+    found: dict[int, None] = {}
+    for part in text.split(","):
+        match = _RANGE.fullmatch(part)
+        if not match:
+            raise UsageError(f"{flag}: wanted {wanted}; got {text!r}")
+        first = int(match[1])
+        last = int(match[2]) if match[2] else first
+        step = int(match[3]) if match[3] else 1
+        if last < first or step < 1:
+            raise UsageError(f"{flag}: wanted {wanted}, rising; got {text!r}")
+        if len(found) + (last - first) // step >= MOST:
+            raise UsageError(f"{flag}: wanted at most {MOST} frames; got {text!r}")
+        found |= dict.fromkeys(range(first, last + 1, step))
+    return list(found)
+
+
+def numbered(path: Path, frame: int) -> Path:
+    """``shot.####.exr`` with the frame in the place of #, with as many digits at least."""
+    return path.with_name(
+        _PLACE.sub(lambda place: f"{frame:0{len(place[0])}d}", path.name, count=1)
+    )
+
+
+def check_names(outputs: list[Path], frames: list[int] | None) -> None:
+    """Each of several frames needs a file of its own, and # means a frame.
+
+    Raises:
+        UsageError: Names without # for several frames, or with # and no frames.
+    """
+    for path in outputs:
+        has_place = _PLACE.search(path.name) is not None
+        if frames is None and has_place:
+            raise UsageError(f"-o {path}: # stands for the number of a frame; wanted --frames")
+        if frames is not None and len(frames) > 1 and not has_place:
+            raise UsageError(
+                f"-o {path}: {len(frames)} frames wanted a name with #, "
+                f"such as {path.stem}.####{path.suffix}"
+            )

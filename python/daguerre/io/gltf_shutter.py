@@ -1,0 +1,58 @@
+"""The shutter in ``extras.daguerre`` of a glTF camera."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from daguerre import shutter
+
+from .json_item import Item
+
+
+def _curve(item: Item) -> shutter.ShutterCurve:
+    """``"box"``, ``{"trapezoid": efficiency}`` or points [[fraction, opening], ...]."""
+    if isinstance(item.value, str):
+        return str(item.choice(("box",)))
+    if isinstance(item.value, dict):
+        return "trapezoid", item.need("trapezoid").number(0.5, 1)
+    points = list(item)
+    if not 2 <= len(points) <= shutter.MAX_POINTS:
+        item.fail(f"wrong length: wanted 2 .. {shutter.MAX_POINTS} points, got {len(points)}")
+    curve: list[tuple[float, float]] = []
+    for point in points:
+        time, opening = point.numbers(2, 0)
+        if time > 1 or (curve and time < curve[-1][0]):
+            point.fail(f"out of order: wanted times that do not fall, 0 .. 1, got {time:g}")
+        curve.append((time, opening))
+    if not any(opening > 0 for _, opening in curve):
+        item.fail("never open: wanted an opening above 0, got none")
+    return curve
+
+
+def _rolling(item: Item) -> shutter.RollingShutter:
+    """``{"scanOrder": side, "lineTime" or "readoutTime": s}``."""
+    order = item.get("scanOrder")
+    times = {
+        name: None if member is None else member.number(0, shutter.MAX_TIME)
+        for name in ("lineTime", "readoutTime")
+        for member in (item.get(name),)
+    }
+    if (times["lineTime"] is None) == (times["readoutTime"] is None):
+        item.fail("ambiguous: wanted either lineTime or readoutTime")
+    return shutter.RollingShutter(
+        "top" if order is None else order.choice(shutter.SCAN_ORDERS),
+        times["lineTime"],
+        times["readoutTime"],
+    )
+
+
+SHUTTER: dict[str, Callable[[Item], Any]] = {
+    "shutterTime": lambda item: item.number(0, shutter.MAX_TIME),
+    "shutterAngle": lambda item: item.number(0, shutter.MAX_ANGLE),
+    "fps": lambda item: item.number(*shutter.FPS_RANGE),
+    "shutterOffset": lambda item: item.number(-shutter.MAX_OFFSET, shutter.MAX_OFFSET),
+    "shutterType": lambda item: item.choice(shutter.TYPES),
+    "shutterCurve": _curve,
+    "rollingShutter": _rolling,
+}
