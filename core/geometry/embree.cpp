@@ -6,6 +6,7 @@
 // `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
 // stands between them.
 #include <cstring>
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <span>
@@ -32,6 +33,9 @@ class EmbreeIntersector final : public Intersector {
     const char* name() const override { return name_.c_str(); }
     bool is_flattened(std::uint32_t instance) const override {
         return flattened_[instance];
+    }
+    Box bounds_of_moving(std::uint32_t instance) const override {
+        return std::ranges::lower_bound(moving_, instance, {}, &MovingMesh::id)->box();
     }
 
   private:

@@ -17,15 +17,26 @@ MovingMesh::MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
       shown_(instance.shown) {
     const MovingBounds bounds = moving_bounds(hull, motion_);
     float far = 0;
-    for (const dg::Box& b : bounds.boxes) far = std::max({far, largest(b.min), largest(b.max)});
+    for (const Box& b : bounds.boxes) far = std::max({far, largest(b.min), largest(b.max)});
     const float slack = 16 * 0x1p-24f * far;  // the rounding of the ray, as for still ones
     const Vec3f grow{slack, slack, slack};
-    for (const dg::Box& b : bounds.boxes)
+    for (const Box& b : bounds.boxes)
         boxes_.push_back({to_float(b.min) - grow, to_float(b.max) + grow});
     for (const dg::Ball& b : bounds.balls) {
         const float radius = 1.0001f * float(b.radius) + 4 * slack;
         balls_.push_back({to_float(b.center), radius * radius});
     }
+}
+
+Box MovingMesh::box() const {
+    Box all{to_double(boxes_[0].min), to_double(boxes_[0].max)};
+    for (const BoxAtStep& b : boxes_) {
+        for (int k = 0; k < 3; ++k) {
+            all.min[k] = std::min(all.min[k], double(b.min[k]));
+            all.max[k] = std::max(all.max[k], double(b.max[k]));
+        }
+    }
+    return all;
 }
 
 bool MovingMesh::near(const RTCRay& ray) const {

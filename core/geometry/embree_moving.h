@@ -21,13 +21,14 @@ class MovingMesh {
     RTCRay to_local(const RTCRay& ray) const {
         return transformed(ray, inverse(motion_.at(ray.time)));
     }
+    Box box() const;  // at all times
     unsigned steps() const { return unsigned(boxes_.size()); }
     void bounds(unsigned step, RTCBounds& out) const {
         set_bounds(out, boxes_[step].min, boxes_[step].max);
     }
 
   private:
-    struct Box {
+    struct BoxAtStep {
         Vec3f min, max;
     };
     struct Ball {  // the radius holds until the next
@@ -36,7 +37,7 @@ class MovingMesh {
     };
     Motion motion_;
     const Shown* shown_;
-    std::vector<Box> boxes_;
+    std::vector<BoxAtStep> boxes_;
     std::vector<Ball> balls_;
 };
 

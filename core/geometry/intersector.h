@@ -11,6 +11,7 @@
 #include "geometry/mesh.h"
 #include "geometry/ray.h"
 #include "math/transform.h"
+#include "motion/hull.h"
 #include "motion/keyed.h"
 #include "motion/motion.h"
 #include "motion/shown.h"
@@ -54,6 +55,9 @@ class Intersector {
     /// were transformed once, and not by a ray transformed into the space of the mesh
     /// (see layout.h).
     virtual bool is_flattened(std::uint32_t instance) const = 0;
+
+    /// World box that holds an instance with a motion at all times.
+    virtual Box bounds_of_moving(std::uint32_t instance) const = 0;
 };
 
 }  // namespace dg

@@ -9,6 +9,7 @@
 namespace dg {
 namespace {
 
+constexpr double kConstant = 1e-10;  // of stretches, relative: what is less is rounding
 constexpr double kRigid = 1e-5;   // largest stretch that twist takes for rounding
 
 bool is_finite(const Affine3d& m) {
@@ -58,43 +59,79 @@ std::optional<RotationStretch> split(const Affine3d& m, Interpolation how, std::
     return std::nullopt;
 }
 
+/// M(angle) p = base rot(axis, angle) stretch (p - about), for a linear base.
+Motion::Turn turn_about(const Affine3d& base, Vec3d axis, const Affine3d& stretch, Vec3d about) {
+    Motion::Turn turn;
+    for (Vec3d Affine3d::*column : {&Affine3d::x, &Affine3d::y, &Affine3d::z}) {
+        const Vec3d v = stretch.*column, along = axis * dot(axis, v);
+        turn.mean.*column = base.vector(along);
+        turn.cosine.*column = base.vector(v - along);
+        turn.sine.*column = base.vector(cross(axis, v));
+    }
+    for (Affine3d* part : {&turn.mean, &turn.cosine, &turn.sine})
+        part->origin = -part->vector(about);
+    return turn;
+}
+
 /// How the way to the next key turns, and what it changes.
-void lead_to(Motion::Segment& from, const Motion::Segment& to) {
-    if (!from.turns || !to.turns || from.first.determinant() * to.first.determinant() < 0) {
-        from.turns = false;
+void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
+    from.turns = from.turns && to.turns && from.first.determinant() * to.first.determinant() > 0;
+    if (!from.turns) {
         from.change = difference(to.first, from.first);
         return;
     }
-    from.path_change = to.path - from.path;
-    from.stretch_change = difference(to.stretch, from.stretch);
+    const Affine3d growth = difference(to.stretch, from.stretch);
+    from.stretches = spectral_norm(growth) > kConstant * spectral_norm(from.stretch);
+    if (from.stretches) from.change = growth;
+    from.change.origin = to.first.point(pivot) - from.first.point(pivot);
     Quaterniond delta = from.rotation.conjugate() * to.rotation;   // R0^-1 R1: the lecture's twist
     if (delta.w < 0) delta = -delta;
     const Vec3d v{delta.x, delta.y, delta.z};
     const double sine = length(v);
     from.angle = 2 * std::atan2(sine, delta.w);
     if (sine > 0) from.axis = v / sine;
+    const Affine3d rotation = to_matrix(from.rotation);
+    from.turn = from.stretches ? turn_about(rotation, from.axis, {}, {})
+                               : turn_about(rotation, from.axis, from.stretch, pivot);
 }
 
 }  // namespace
 
+Affine3d Motion::Turn::at(double angle) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {mean.x + cosine.x * c + sine.x * s, mean.y + cosine.y * c + sine.y * s,
+            mean.z + cosine.z * c + sine.z * s, mean.origin + cosine.origin * c + sine.origin * s};
+}
+
+Affine3d Motion::Segment::stretch_at(double s) const {
+    return {stretch.x + change.x * s, stretch.y + change.y * s, stretch.z + change.z * s, {}};
+}
+
 Affine3d Motion::Segment::at(double s, Vec3d pivot) const {
     if (s == 0) return first;
     if (!turns) return moved(first, change, s);
-    const Affine3d r = to_matrix(rotation * Quaterniond::from_axis_angle(axis, angle * s));
-    Affine3d m = r * moved(stretch, stretch_change, s);
-    m.origin = path + path_change * s - m.vector(pivot);
+    Affine3d m = turn.at(angle * s);
+    if (stretches) {
+        m = m * stretch_at(s);
+        m.origin = -m.vector(pivot);
+    }
+    m.origin += first.point(pivot) + change.origin * s;
     return m;
 }
 
 Motion::Motion(Track track) {
     const bool moves = track.segments.size() > 1 || track.spins();
     still_ = track.segments.front().first;
+    track.spun_first = turn_about(still_, track.spin.axis, {}, track.spin.center);
+    track.spun_first.mean.origin += still_.point(track.spin.center);
     if (moves) track_ = std::make_shared<const Track>(std::move(track));
 }
 
 Motion::Track Motion::track_or_still() const {
     if (track_) return *track_;
-    Track track{{0}, std::vector<Segment>(1), {}, {}};
+    Track track;
+    track.times = {0};
+    track.segments.resize(1);
     track.segments[0].first = still_;
     return track;
 }
@@ -105,7 +142,10 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
         throw input_error("motion", "keys", "one matrix for each time",
                           std::to_string(times.size()) + " times, " + std::to_string(keys.size()) +
                               " matrices");
-    Track track{{times.begin(), times.end()}, std::vector<Segment>(keys.size()), pivot, {}};
+    Track track;
+    track.times.assign(times.begin(), times.end());
+    track.segments.resize(keys.size());
+    track.pivot = pivot;
     for (std::size_t i = 0; i < keys.size(); ++i) {
         if (!std::isfinite(times[i]) || !is_finite(keys[i]))
             throw input_error("motion key " + std::to_string(i), "numbers", "finite ones",
@@ -119,11 +159,10 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
             segment.turns = true;
             segment.rotation = parts->rotation;
             segment.stretch = parts->stretch;
-            segment.path = keys[i].point(pivot);
         }
     }
     for (std::size_t i = 0; i + 1 < keys.size(); ++i)
-        lead_to(track.segments[i], track.segments[i + 1]);
+        lead_to(track.segments[i], track.segments[i + 1], pivot);
     return Motion(std::move(track));
 }
 
@@ -140,16 +179,20 @@ Motion Motion::spinning(const Spin& spin) const {
 }
 
 Affine3d Motion::Track::at(double time) const {
+    if (segments.size() == 1) return spins() ? spun_first.at(spin_angle(time)) : segments[0].first;
     const KeyPlace place = place_among(times, time);
     const Affine3d base = segments[place.left].at(place.share, pivot);
     return spins() ? base * spun(time) : base;
 }
 
-Affine3d Motion::Track::spun(double time) const {
-    // Whole turns are taken off first: the sine of a large angle has lost its digits.
+/// Whole turns are taken off: the sine of a large angle has lost its digits.
+double Motion::Track::spin_angle(double time) const {
     const double turns = spin.revolutions_per_second * (time - spin.time);
-    const double angle = 2 * kPiD * (turns - std::floor(turns));
-    Affine3d turn = to_matrix(Quaterniond::from_axis_angle(spin.axis, angle));
+    return 2 * kPiD * (turns - std::floor(turns));
+}
+
+Affine3d Motion::Track::spun(double time) const {
+    Affine3d turn = to_matrix(Quaterniond::from_axis_angle(spin.axis, spin_angle(time)));
     turn.origin = spin.center - turn.vector(spin.center);
     return turn;
 }

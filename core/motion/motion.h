@@ -51,28 +51,38 @@ class Motion {
     /// between.
     Motion over(double open, double close) const;
 
+    /// What turns about an axis at rest: M(angle) = mean + cos(angle) cosine + sin(angle) sine.
+    struct Turn {
+        Affine3d mean{}, cosine{}, sine{};
+        Affine3d at(double angle) const;
+    };
     /// From one key to the next: M(s) = T R S about the pivot, or M0 + s dM.
     struct Segment {
-        Affine3d first{};              // the key, as it was given
-        Affine3d change{};             // linear: what is added until the next key
-        bool turns = false;            // else linear
-        Vec3d path{}, path_change{};   // of the pivot, m
-        Quaterniond rotation{};        // R at the key
-        Vec3d axis{0, 0, 1};           // of the turn until the next key; angle in rad, 0 .. pi
+        Affine3d first{};        // the key, as it was given
+        bool turns = false;      // else linear
+        bool stretches = false;  // turns, and S changes
+        /// What is added until the next key; if it turns, to S and to the place of the pivot.
+        Affine3d change{{}, {}, {}, {}};
+        Quaterniond rotation{};  // R at the key
+        Vec3d axis{0, 0, 1};     // of the turn until the next key; angle in rad, 0 .. pi
         double angle = 0;
-        Affine3d stretch{}, stretch_change{};  // S; linear parts only
+        Affine3d stretch{};      // S at the key; linear part only
+        Turn turn{};             // R S about the pivot; R alone where S changes
 
         Affine3d at(double s, Vec3d pivot) const;
+        Affine3d stretch_at(double s) const;
     };
     struct Track {
         std::vector<double> times;
         std::vector<Segment> segments;  // one per time; the last one is held
         Vec3d pivot{};
         Spin spin;
+        Turn spun_first{};  // the first key, spinning
 
         Affine3d at(double time) const;
         bool spins() const { return spin.revolutions_per_second != 0; }
         Affine3d spun(double time) const;  // the spin alone
+        double spin_angle(double time) const;
     };
     const Track* track() const { return track_.get(); }  // null: stands still
 

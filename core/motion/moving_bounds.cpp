@@ -112,11 +112,6 @@ struct Rates {
     bool constant() const { return turn == 0 && growth == 0; }
 };
 
-Affine3d stretch_at(const Segment& g, double s) {
-    return {g.stretch.x + g.stretch_change.x * s, g.stretch.y + g.stretch_change.y * s,
-            g.stretch.z + g.stretch_change.z * s, {}};
-}
-
 Rates rates_of(const Piece& p) {
     const Segment& g = p.segment;
     if (p.rate == 0) return {0, {}, spectral_norm(g.first), 0};
@@ -125,9 +120,9 @@ Rates rates_of(const Piece& p) {
         return {0, {}, size, spectral_norm(g.change) * p.rate};
     }
     const double size =
-        std::max(spectral_norm(stretch_at(g, p.s0)), spectral_norm(stretch_at(g, p.s1)));
+        std::max(spectral_norm(g.stretch_at(p.s0)), spectral_norm(g.stretch_at(p.s1)));
     return {g.angle * p.rate, g.rotation.rotate(g.axis), size,
-            spectral_norm(g.stretch_change) * p.rate};
+            spectral_norm(g.change) * p.rate};
 }
 
 /// Share of each axis of the world that lies across `axis`.
@@ -143,8 +138,8 @@ Vec3d bend_turning(const Body& body, const Track& track, const Piece& p, const R
     const auto aside = [&](const Affine3d& stretch) {
         return body.most([&](Vec3d q) { return across(stretch.vector(q - track.pivot), g.axis); });
     };
-    const double arm = std::max(aside(stretch_at(g, p.s0)), aside(stretch_at(g, p.s1)));
-    const double growth = aside(g.stretch_change) * p.rate;
+    const double arm = std::max(aside(g.stretch_at(p.s0)), aside(g.stretch_at(p.s1)));
+    const double growth = aside(g.change) * p.rate;
     return across_shares(r.axis) * (r.turn * r.turn * arm + 2 * r.turn * growth);
 }
 

@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <map>
-#include <span>
 
 #include "math/hash.h"
-#include "motion/moving_bounds.h"
 #include "scene/footprint.h"
 #include "scene/pyramids.h"
 #include "scene/validate.h"
@@ -143,14 +140,14 @@ void Scene::hold(Vec3d point) {
 void Scene::measure() {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     bounds_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    std::map<std::uint32_t, Hull> hulls;  // of meshes that move
-    for (const Instance& instance : description_.instances) {
+    for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
+        const Instance& instance = description_.instances[i];
         const Mesh& mesh = description_.meshes[instance.mesh];
         triangle_count_ += mesh.triangles.size();
+        if (instance.motion && mesh.triangles.empty()) continue;
         if (instance.motion) {
-            const auto vertices = std::span(mesh.positions.begin(), mesh.positions.end());
-            const Hull& hull = hulls.try_emplace(instance.mesh, vertices).first->second;
-            for (const Box& b : moving_bounds(hull, *instance.motion).boxes) hold(b.min), hold(b.max);
+            const Box box = intersector_->bounds_of_moving(i);
+            hold(box.min), hold(box.max);
             continue;
         }
         for (Vec3f local : mesh.positions) hold(to_double(instance.world_from_local.point(local)));
