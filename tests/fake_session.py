@@ -40,6 +40,8 @@ class FakeSession:
         seed: int = 0,
         filter: str = "blackman_harris",
         aovs: bool = False,
+        gt_time: str | None = None,
+        motion: bool = False,
         crop: tuple[int, int, int, int] | None = None,
         threads: int = 0,
         max_depth: int = 16,
@@ -89,7 +91,10 @@ class FakeSession:
         self.rays += (end - begin) * sums.size * 3
         return True
 
-    def frame(self) -> Frame:
+    def with_truth(self, frame: Frame) -> Frame:
+        return frame
+
+    def frame(self, *, truth: bool = True) -> Frame:
         count = max(1, sum(b - a for a, b in self.ranges))
         grey = (self.sums / count / 65521).astype(np.float32)
         aovs = {}

@@ -74,6 +74,25 @@ class Frame:
         """Rows, px."""
         return int(self.rgb.shape[0])
 
+    @property
+    def motion(self) -> NDArray[np.float32] | None:
+        """Where what is seen goes until the next frame, px, +x right and +y down, (H, W, 2).
+
+        None without ground truth; see ``daguerre.truth``.
+        """
+        return self._flow("motion")
+
+    @property
+    def motion_back(self) -> NDArray[np.float32] | None:
+        """Where what is seen was in the frame before, from where it is now; as ``motion``."""
+        return self._flow("motion_back")
+
+    def _flow(self, name: str) -> NDArray[np.float32] | None:
+        names = [f"{name}.{axis}" for axis in "UV"]
+        if not all(n in self.aovs for n in names):
+            return None
+        return np.stack([self.aovs[n] for n in names], axis=2)
+
     def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
         """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
 

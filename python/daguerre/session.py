@@ -28,6 +28,7 @@ from .errors import MismatchError, UsageError, suggest
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .scene import Scene
+from .truth import GroundTruth, check_gt_time, focused
 
 Progress = Callable[[float], bool]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
@@ -51,6 +52,11 @@ class Session:
         threads: 0: all cores.
         max_depth: Largest number of surfaces at which a path scatters.
         strategy: mis, or light or bsdf alone (to check one against the other).
+        gt_time: open, mid or close: depth, distance, P, N, object_id and material_id are exact
+            values at that moment of each pixel's exposure, through its chief ray
+            (``daguerre.truth``), and not means over the samples.
+        motion: Also ``motion`` and ``motion_back``, where things go and come from, in px; of mid
+            unless ``gt_time`` is given.
         dispersion: What an exact lens does with a path's other wavelengths: reproject, or
             end_secondary (the plain reference; noisier).
 
@@ -68,6 +74,8 @@ class Session:
         seed: int = 0,
         filter: str = "blackman_harris",
         aovs: bool = False,
+        gt_time: str | None = None,
+        motion: bool = False,
         crop: tuple[int, int, int, int] | None = None,
         threads: int = 0,
         max_depth: int = 16,
@@ -85,6 +93,7 @@ class Session:
         self.scene = scene
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.aovs = aovs
+        self.gt_time, self.motion = check_gt_time(gt_time, wanted=motion), motion
         started = time.perf_counter()
         self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
         found: list[str] = []
@@ -193,9 +202,33 @@ class Session:
         self.samples += camera_rays
         return True
 
-    def frame(self) -> Frame:
-        """The picture of the samples drawn so far."""
-        return frame_of(self._whole_film(), self.metadata, aovs=self.aovs)
+    def frame(self, *, truth: bool = True) -> Frame:
+        """The picture of the samples drawn so far, by default with ground truth if asked for."""
+        frame = frame_of(self._whole_film(), self.metadata, aovs=self.aovs)
+        return self.with_truth(frame) if truth else frame
+
+    def with_truth(self, frame: Frame) -> Frame:
+        """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""
+        if self.gt_time is None:
+            return frame
+        frame = replace(frame, aovs=frame.aovs | self._truth)
+        if frame.motion is not None:
+            missing = int(np.isnan(frame.motion[:, :, 0]).sum())
+            frame.metadata["motion_missing"] = missing
+        return frame
+
+    @cached_property
+    def _truth(self) -> dict[str, NDArray[Any]]:
+        truth = GroundTruth(
+            self.scene,
+            focused(self.camera, self._setup.facts),
+            (self.width, self.height),
+            self.crop,
+            self.gt_time or "mid",
+            self._settings.threads,
+            None if self.scene.motion else self._core_scene,
+        )
+        return truth.planes(motion=self.motion)
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
@@ -280,6 +313,7 @@ class Session:
             "scene_hash": self.key["scene"],
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],
+            "gt_time": self.gt_time,
             "version": _core.__version__,
             "intersector": self._core_scene.intersector,
         }
@@ -316,7 +350,8 @@ def render(
         noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
             pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
             samples as each needs.
-        **options: As of :class:`Session`: resolution, seed, filter, aovs, crop, threads, max_depth.
+        **options: As of :class:`Session`: resolution, seed, filter, aovs, gt_time, motion,
+            crop, threads, max_depth.
 
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.

@@ -72,7 +72,7 @@ def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
         UsageError: A parameter is wrong, or does not go with another.
     """
     check(camera)
-    order, line_time = _scan(camera, resolution)
+    order, line_time = scan(camera, resolution)
     try:
         return _core.Shutter(
             shutter_time(camera), _curve(camera), order, line_time, _is_leaf(camera), resolution
@@ -95,7 +95,7 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
 
 def facts(camera: Camera, resolution: tuple[int, int]) -> dict[str, Any]:
     """The shutter as resolved: for metadata and hashes, JSON-able."""
-    order, line_time = _scan(camera, resolution)
+    order, line_time = scan(camera, resolution)
     begin, end = interval(camera, 0.0, resolution)
     return {
         "type": type_of(camera),
@@ -178,7 +178,7 @@ def _check_rolling(camera: Camera) -> None:
             number(value, f"{where}: {name}", 0, MAX_TIME)
 
 
-def _scan(camera: Camera, resolution: tuple[int, int]) -> tuple[str, float]:
+def scan(camera: Camera, resolution: tuple[int, int]) -> tuple[str, float]:
     """Which lines come first (none: all at once), and the time from one to the next, s."""
     usual = {
         # Curtains fall, and the picture on the film is upside down.
@@ -245,7 +245,7 @@ def describe(camera: Camera, resolution: tuple[int, int]) -> str:
         if time * camera.fps <= 1:
             parts.append(f"{360 * time * camera.fps:.4g} deg at {camera.fps:.4g} fps")
     parts.append(kind)
-    order, _ = _scan(camera, resolution)
+    order, _ = scan(camera, resolution)
     if order != "none":
         whole = core_shutter(camera, resolution).duration_s
         parts.append(f"from the {order}, {whole * 1e3:.4g} ms in all")

@@ -102,7 +102,7 @@ class Job:
 
     def _frame(self) -> Frame:
         """The picture so far, with the channels that were asked for."""
-        frame = self.session.frame()
+        frame = self.session.frame(truth=False)
         facts = {
             "resolution": (self.session.width, self.session.height),
             "crop": self.session.crop,
@@ -113,7 +113,8 @@ class Job:
         if self.plan.denoise:
             from daguerre.denoise import denoise
 
-            frame = denoise(frame)
+            frame = denoise(frame)  # by means over the samples, blurred as the picture is
+        frame = self.session.with_truth(frame)
         keep = {
             name: plane
             for name, plane in frame.aovs.items()

@@ -53,6 +53,7 @@ def merge(
         from daguerre.denoise import denoise as clean
 
         frame = clean(frame)
+    frame = replace(frame, aovs=frame.aovs | total.truth)
     wanted = total.metadata.get("aovs")
     if wanted is not None:
         keep = {name: p for name, p in frame.aovs.items() if name.split(".")[0] in wanted}

@@ -23,6 +23,8 @@ AOVS = {
     "object_id": "object_id",
     "id": "object_id",
 }
+#: the same that only ground truth has; they are not among "all"
+TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back")}
 #: groups that every EXR has, so asking for them changes nothing
 ALWAYS = ("variance", "samples")
 
@@ -40,10 +42,28 @@ class Plan:
     aovs: list[str]
     denoise: bool
     interval_s: float
+    gt_time: str | None = None
 
     def of_frame(self, frame: int) -> Plan:
         """The same for one frame of a sequence."""
         return replace(self, outputs=[numbered(path, frame) for path in self.outputs])
+
+    def with_truth(self, gt_time: str | None) -> Plan:
+        """With ground truth of that moment; some channels ask for it by themselves."""
+        wanted = any(name in self.aovs for name in TRUTH)
+        if gt_time is None and not wanted:
+            return self
+        from daguerre.truth import check_gt_time
+
+        moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
+        if gt_time is not None and not self.aovs:
+            raise UsageError("--gt-time: wanted channels to write, say --aov depth,motion")
+        return replace(self, gt_time=moment)
+
+    @property
+    def motion(self) -> bool:
+        """Whether motion in pixels is asked for."""
+        return "motion" in self.aovs or "motion_back" in self.aovs
 
     @property
     def checkpoint(self) -> Path:
@@ -135,10 +155,10 @@ def _aov_groups(names: list[str], everything: bool) -> list[str]:
     for name in (part.strip() for text in names for part in text.split(",")):
         if name == "all":
             groups |= set(AOVS.values())
-        elif name in AOVS:
-            groups.add(AOVS[name])
+        elif name in AOVS or name in TRUTH:
+            groups.add(AOVS.get(name, name))
         elif name not in ALWAYS:
-            known = [*AOVS, *ALWAYS, "all"]
+            known = [*AOVS, *TRUTH, *ALWAYS, "all"]
             raise UsageError(
                 f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
             )

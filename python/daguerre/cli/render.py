@@ -48,7 +48,18 @@ def render(
         option(
             "--aov",
             metavar="LIST",
-            help="Channels beside the picture: depth,P,N,albedo,object_id or all.",
+            help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
+            "distance,material_id,motion,motion_back of ground truth.",
+            panel=_OUTPUT,
+        ),
+    ] = None,
+    gt_time: Annotated[
+        str | None,
+        option(
+            "--gt-time",
+            metavar="open|mid|close",
+            help="Depth, P, N and ids exactly, at that moment of the exposure, not as means "
+            "[mid with --aov motion].",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -124,6 +135,7 @@ def render(
     console.quiet = quiet
     sampling = (spp, samples, noise)
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
+    plan = plan.with_truth(gt_time)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
     check_names(plan.outputs, numbers)
     _check_numbers(seed, threads, max_depth)

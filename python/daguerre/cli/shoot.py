@@ -101,6 +101,8 @@ class Shoot:
                 camera,
                 resolution=plan.resolution,
                 aovs=bool(plan.aovs) or plan.denoise,
+                gt_time=plan.gt_time,
+                motion=plan.motion,
                 crop=plan.crop,
                 **self.settings,
             )

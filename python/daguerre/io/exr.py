@@ -39,8 +39,9 @@ MATRICES = ("worldToCamera", "worldToNDC")
 RATIONALS = ("captureRate",)
 OWN_NUMBERS = (
     "samples", "samples_min", "samples_max", "noise", "seed", "h0", "time", "bad_samples",
+    "motion_missing",
 )  # fmt: skip
-OWN_STRINGS = ("version", "scene_hash", "filter", "denoised")
+OWN_STRINGS = ("version", "scene_hash", "filter", "denoised", "gt_time")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 

@@ -25,7 +25,7 @@ def merge(
         aovs: Keep the auxiliary channels, if the passes have them.
 
     Returns:
-        The picture, and the sum as a pass.
+        The picture, and the sum as a pass, which also has the ground truth.
 
     Raises:
         InputError: A file cannot be read.
@@ -41,6 +41,8 @@ def merge(
         if first is None:
             first = replace(one, state={})
         check_key(first, one)
+        if one.truth and not first.truth:  # every pass that has it has all of it
+            first = replace(first, truth=one.truth, metadata=first.metadata | _truth_facts(one))
         if one.round is not None:
             raise MismatchError(
                 f"{one.path or 'pass'}: drawn with --noise, each pixel to its own count; "
@@ -66,7 +68,11 @@ def merge(
     }
     state = {part: total.state(part) for part in total.state_parts()}
     frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
-    return frame, Pass(state, merged, first.key, metadata)
+    return frame, Pass(state, merged, first.key, metadata, truth=first.truth)
+
+
+def _truth_facts(one: Pass) -> dict[str, Any]:
+    return {k: v for k, v in one.metadata.items() if k in ("gt_time", "motion_missing", "aovs")}
 
 
 def film_of(one: Pass) -> Any:

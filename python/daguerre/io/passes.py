@@ -7,7 +7,8 @@ before two passes may be added (``daguerre:key``: hashes of scene, camera, setti
 which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
 channels in the same way. The sums are integers, so adding them in any order gives the same bits.
 The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
-``round``, and how far it is (``daguerre:round``).
+``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
+of a picture has it whole among the channels of its first part.
 """
 
 from __future__ import annotations
@@ -60,6 +61,7 @@ class Pass:
         metadata: Facts of the frame.
         path: Where it was read, for messages.
         round: Of adaptive sampling, else None.
+        truth: Channels of ground truth (``daguerre.truth``) by name, if the pass has them.
     """
 
     state: State
@@ -68,6 +70,7 @@ class Pass:
     metadata: dict[str, Any] = field(default_factory=dict)
     path: Path | None = None
     round: Round | None = None
+    truth: dict[str, NDArray[Any]] = field(default_factory=dict)
 
 
 def pass_of(session: Session) -> Pass:
@@ -147,7 +150,8 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
                 f"{path}: holds no sums, only a picture; "
                 "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
             )
-        return replace(facts, state=state, path=path, round=found)
+        truth = _read_truth(path, source) if facts.metadata.get("gt_time") else {}
+        return replace(facts, state=state, path=path, round=found, truth=truth)
     finally:
         source.close()
 
@@ -175,6 +179,27 @@ def _state_parts(source: Any) -> Iterator[int]:
         if source.spec().get_string_attribute("oiio:subimagename") in STATE_PARTS:
             yield index
         index += 1
+
+
+def _read_truth(path: Path, source: Any) -> dict[str, NDArray[Any]]:
+    """The channels of ground truth of the picture in a pass."""
+    import OpenImageIO as oiio
+
+    from daguerre.truth import MOTION, PLANES
+
+    source.seek_subimage(0, 0)
+    spec = source.spec()
+    _check_size(path, spec)
+    known = {*PLANES, *(f"{name}.{axis}" for name in MOTION for axis in "UV")}
+    planes: dict[str, NDArray[Any]] = {}
+    for i, name in enumerate(spec.channelnames):
+        if name in known:
+            kind = oiio.UINT if name.endswith("_id") else oiio.FLOAT
+            plane = source.read_image(0, 0, i, i + 1, kind)
+            if plane is None:
+                raise InputError(f"{path}: damaged pass file: {source.geterror()}")
+            planes[name] = plane.reshape(spec.height, spec.width)
+    return planes
 
 
 def _check_size(path: Path, spec: Any) -> None:

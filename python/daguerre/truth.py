@@ -1,0 +1,132 @@
+"""Ground truth: exact values at a stated time of the exposure, and motion in pixels.
+
+One ray per pixel, the chief ray of the pixel's centre, at the pixel's own moment: with a rolling
+shutter each line has its own. See "Ground truth" in docs/motion.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from . import shutter
+from .build import build
+from .camera import Camera
+from .camera_setup import set_up
+from .errors import UsageError, suggest
+from .scene import Scene
+
+#: When in the exposure of a pixel: as a fraction of its length.
+GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
+#: What is seen, in the names of the files.
+PLANES = (
+    "depth.Z", "distance.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object_id", "material_id",
+)  # fmt: skip
+#: Where it is in the next frame and where it was in the last one: how many frames later.
+MOTION = {"motion": 1, "motion_back": -1}
+
+
+def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") -> str | None:
+    """The moment of ground truth, or None; what is ``wanted`` without one is that of the middle.
+
+    Raises:
+        UsageError: There is no such moment.
+    """
+    if gt_time is None:
+        return "mid" if wanted else None
+    if gt_time not in GT_TIMES:
+        known = ", ".join(GT_TIMES)
+        raise UsageError(
+            f"{where}: wanted {known}, got {gt_time!r}{suggest(str(gt_time), GT_TIMES)}"
+        )
+    return gt_time
+
+
+@dataclass(frozen=True)
+class GroundTruth:
+    """What is asked of a frame.
+
+    Attributes:
+        scene: What is seen; its time is that of the frame.
+        camera: What sees it, its focus chosen.
+        resolution: Width and height, px.
+        crop: Pixels (x0, y0, x1, y1), end exclusive.
+        gt_time: open, mid or close: when in the exposure of each pixel.
+        threads: 0: all cores.
+        core_scene: The scene if it does not move, so that it need not be built again.
+    """
+
+    scene: Scene
+    camera: Camera
+    resolution: tuple[int, int]
+    crop: tuple[int, int, int, int]
+    gt_time: str
+    threads: int = 0
+    core_scene: _core.Scene | None = None
+
+    def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
+        """Channels (H, W) by name: ``PLANES``, and with ``motion`` also ``motion.U``, ... in px.
+
+        ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
+        later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN
+        where it does not appear there, hidden or behind the camera.
+        """
+        now = self._shot(0)
+        seen = _core.see(*now, self.crop)
+        planes: dict[str, NDArray[Any]] = {name: seen.plane(name) for name in PLANES}
+        if not motion:
+            return planes
+        here = seen.places(*now)
+        for name, frames in MOTION.items():
+            moved = seen.places(*self._shot(frames)) - here
+            for axis, channel in enumerate("UV"):
+                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        return planes
+
+    def _shot(self, frames: int) -> tuple[_core.Scene, _core.Camera, _core.RenderSettings]:
+        """Scene and camera some frames later, built for the moments of ground truth alone."""
+        camera = _instants(self.camera, self.resolution)
+        opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)
+        exposure = shutter.shutter_time(self.camera)
+        begin = opens + GT_TIMES[self.gt_time] * exposure + frames / self.camera.fps
+        begin, end = begin, begin + shutter.core_shutter(camera, self.resolution).duration_s
+        scene = self.scene.at(0.5 * (begin + end))
+        core_scene = self.core_scene or build(scene, (begin, end))
+        setup = set_up(scene, camera, self.resolution, core_scene)
+        settings = _core.RenderSettings()
+        settings.resolution = self.resolution
+        settings.sensor_size_mm = setup.frame_size
+        settings.sensor_center_mm = tuple(camera.at(scene.time).shift)
+        settings.shutter = shutter.core_shutter(camera, self.resolution)
+        settings.threads = self.threads
+        return core_scene, setup.core, settings
+
+
+def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
+    """The camera with the focus that was found for the picture: it does not hunt between frames."""
+    distance = facts.get("focus_distance_m")
+    if distance is None or "focus_distance" in camera.motion:
+        return camera
+    return replace(
+        camera, focus_distance=distance, focus_at=None, focus_on=None, focus_from="pupil"
+    )
+
+
+def _instants(camera: Camera, resolution: tuple[int, int]) -> Camera:
+    """The camera with an exposure of no length, around the scene's time, on each of its lines."""
+    order, line_time = shutter.scan(camera, resolution)
+    rolling = shutter.RollingShutter(order, line_time=line_time) if order != "none" else None
+    return replace(
+        camera,
+        shutter_time=0.0,
+        shutter_angle=None,
+        shutter_offset=None,
+        shutter_type=None,
+        shutter_curve=None,
+        rolling_shutter=rolling,
+    )
