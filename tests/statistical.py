@@ -142,13 +142,16 @@ def _expected_spread(a: NDArray[np.float64], b: Values, samples: int) -> Values:
     return Reference(own.mean, np.maximum(own.variance, floor), own.batches)
 
 
-def differences(a: NDArray[np.float64], b: Values, samples: int = 0) -> list[str]:
+def differences(
+    a: NDArray[np.float64], b: Values, samples: int = 0, alpha: float = ALPHA
+) -> list[str]:
     """What is wrong if the pictures have different means; empty: nothing.
 
     Args:
         a: Independent batches, (n, H, W, 3).
         b: The same, or a reference; its one channel stands for three.
         samples: Per pixel in all batches of ``a`` together, to hold against a reference's.
+        alpha: Chance that equal pictures are called different, by each of the three tests.
     """
     out = []
     for name, x, y in (
@@ -159,7 +162,7 @@ def differences(a: NDArray[np.float64], b: Values, samples: int = 0) -> list[str
         p = welch_p(x, y)
         if not p.size:
             continue
-        limit = 1 - (1 - ALPHA) ** (1 / p.size)
+        limit = 1 - (1 - alpha) ** (1 / p.size)
         failed = p < limit
         # 99.75 % of the pixels must pass; no block and no channel of the mean may fail.
         if failed.mean() > (0.0025 if name == "pixel" else 0):
