@@ -45,11 +45,11 @@ def pinhole(**values: Any) -> dg.Camera:
     return dg.Camera(**({"lens": "pinhole", "focal_length": 35.0} | values))
 
 
-def sky(scale: Any = 1.0, rotation: Any = 0.0) -> dg.Scene:
+def sky(scale: Any = 1.0, rotation: Any = 0.0, time: float = TIME) -> dg.Scene:
     """A coloured sky, brighter above, and nothing else."""
     rows = np.linspace(1.5, 0.2, 8)[:, None, None]
     hues = 0.4 + 0.4 * np.cos(np.arange(16)[None, :, None] * math.pi / 8 + np.array([0, 2, 4]))
-    scene = dg.Scene(time=TIME)
+    scene = dg.Scene(time=time)
     scene.set_environment((rows * hues).astype(np.float32), scale=scale, rotation=rotation)
     return scene
 
