@@ -14,6 +14,7 @@ import daguerre._core as _core
 from .checks import given_up, matrix
 from .errors import InputError
 from .motion import Dynamic, Keys, Spin
+from .pieces import MAX_BREAKS
 from .resample import resample_shown, resample_transform
 from .resample_vertices import MAX_STEPS, resample_vertices, same_array
 from .scene import Instance, Mesh, Scene, vertices_of
@@ -74,6 +75,12 @@ class Moving:
     def _resampled(self, dynamic: Dynamic, instance: Instance, index: int) -> _core.Motion:
         if instance.mesh not in self._corners:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
+        many = len(dynamic.breaks(*self._interval))
+        if many > MAX_BREAKS:
+            self._notes.append(
+                f"{_where(instance, index)} has {many} keys while the shutter is open; "
+                f"{MAX_BREAKS} at most show it"
+            )
         try:
             return resample_transform(dynamic, *self._interval, self._corners[instance.mesh])
         except (TypeError, ValueError) as error:

@@ -36,7 +36,7 @@ class _Rigid:
     def at(self, time_s: float) -> NDArray[np.float64]:
         return rigid(self.transform.at(time_s))
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
         return self.transform.breaks(begin, end)
 
 

@@ -77,10 +77,13 @@ class Focus:
         if name not in scene.node_positions and name not in scene.nodes:
             known = set(scene.node_positions) | set(scene.nodes)
             raise InputError(f"camera: focus_on: no node named {name!r}{suggest(name, known)}")
-        instances = scene.nodes.get(name, [])
+        instances = [i for i in scene.nodes.get(name, []) if scene.instances[i].shown]
         eye, axis = self.world[:3, 3], -self.world[:3, 2]
         if not instances:
-            depth = float((scene.node_positions[name] - eye) @ axis)
+            place = scene.node_positions.get(name)
+            if place is None:
+                raise InputError(f"camera: focus_on: node {name!r} is hidden at {scene.time:g} s")
+            depth = float((place - eye) @ axis)
             return self._in_front(name, depth, "is")
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         nearest, farthest = math.inf, -math.inf

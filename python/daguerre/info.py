@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .framing import bounds
+from .pieces import some_breaks
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -233,9 +234,8 @@ def lit(scene: Scene) -> bool:
 def _emits(scene: Scene, instance: Instance) -> bool:
     over_time = scene.motion.materials.get(instance.material)
     if over_time is not None:
-        times = [scene.time, *over_time.breaks(-math.inf, math.inf)]
-        some = times[:: 1 + len(times) // 64]
-        return any(_shines(over_time.at(t)) for t in some)
+        times = [scene.time, *some_breaks(over_time, -math.inf, math.inf, 64)]
+        return any(_shines(over_time.at(t)) for t in times)
     return _shines(scene.materials[instance.material])
 
 

@@ -34,7 +34,7 @@ class Dynamic(Protocol):
     def at(self, time_s: float) -> Any:
         """The value at a time, s."""
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> Sequence[float] | FloatArray:
         """Rising times inside of (begin, end), between which the value changes smoothly, s."""
 
 

@@ -14,6 +14,7 @@ Fits = Callable[[T, T, float, T], bool]
 
 #: Keys of one value, and how often a piece between two breaks is halved at most.
 MAX_KEYS = 4096
+MAX_BREAKS = MAX_KEYS // 4
 _MAX_HALVINGS = 10
 _MAX_SAMPLES = 64
 QUARTERS = (0.25, 0.5, 0.75)
@@ -23,10 +24,15 @@ FIRST = (0.137, 0.25, 0.418, 0.5, 0.75, 0.873)
 
 def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, Any]]:
     """Some times of an interval, ends and breaks among them, and the values there."""
-    breaks = [float(t) for t in dynamic.breaks(open_s, close_s)]
     between = (open_s + s * (close_s - open_s) for s in FIRST)
-    some = breaks[:: 1 + len(breaks) // _MAX_SAMPLES]
+    some = some_breaks(dynamic, open_s, close_s, _MAX_SAMPLES)
     return [(t, dynamic.at(t)) for t in sorted({open_s, close_s, *some, *between})]
+
+
+def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> list[float]:
+    """The breaks inside of an interval; of more than ``most`` every second, third, ..."""
+    breaks = dynamic.breaks(open_s, close_s)
+    return [float(t) for t in breaks[:: max(1, math.ceil(len(breaks) / most))]]
 
 
 class Pieces(Generic[T]):
@@ -42,9 +48,7 @@ class Pieces(Generic[T]):
     def __init__(
         self, value: Callable[[float], T], dynamic: Dynamic, open_s: float, close_s: float
     ) -> None:
-        breaks = [float(t) for t in dynamic.breaks(open_s, close_s)]
-        stride = 1 + len(breaks) // (MAX_KEYS // 4)  # of very many, some have to do
-        self._cuts = [open_s, *breaks[::stride]]
+        self._cuts = [open_s, *some_breaks(dynamic, open_s, close_s, MAX_BREAKS)]
         if close_s > open_s:
             self._cuts.append(close_s)
         self._value = value

@@ -16,7 +16,7 @@ import daguerre._core as _core
 
 from .flat_values import Flat, flat, sizes
 from .motion import Dynamic
-from .pieces import Pieces
+from .pieces import MAX_KEYS, Pieces, some_breaks
 
 FloatArray = NDArray[np.float64]
 #: Of the size of a number, or of the radius of a mesh.
@@ -106,7 +106,7 @@ def resample_shown(dynamic: Dynamic, open_s: float, close_s: float) -> list[tupl
     """When something is there, as intervals (begin, end) in s; it changes at breaks only."""
     if open_s == close_s:
         return [(open_s, close_s)] if dynamic.at(open_s) else []
-    times = [open_s, *dynamic.breaks(open_s, close_s), close_s]
+    times = [open_s, *some_breaks(dynamic, open_s, close_s, MAX_KEYS), close_s]
     found: list[tuple[float, float]] = []
     for begin, end in itertools.pairwise(times):
         if dynamic.at(0.5 * (begin + end)):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .motion import Dynamic
-from .pieces import FIRST
+from .pieces import FIRST, some_breaks
 from .resample import BOUND, PATH_BOUND
 from .scene_motion import Vertices
 
@@ -40,8 +40,7 @@ def resample_vertices(
     first = grid.at(0.0)
     if open_s == close_s:
         return [first], True
-    breaks = dynamic.breaks(open_s, close_s)
-    some = breaks[:: 1 + len(breaks) // _MAX_BREAKS]
+    some = some_breaks(dynamic, open_s, close_s, _MAX_BREAKS)
     checks = [(t - open_s) / (close_s - open_s) for t in some]
     if all(_same(grid.once(s), first) for s in (*FIRST, *checks, 1.0)):
         return [first], True

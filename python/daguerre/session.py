@@ -96,11 +96,11 @@ class Session:
         self.gt_time, self.motion = check_gt_time(gt_time, wanted=motion), motion
         started = time.perf_counter()
         self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
-        found: list[str] = []
-        self._core_scene = build(scene, self.interval, found)
+        self.warnings: list[str] = []  # what moves in a way that cannot be shown to its end
+        self._core_scene = build(scene, self.interval, self.warnings)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
         self.setup_seconds = time.perf_counter() - started
-        self.notes = [*found, *self._setup.notes]
+        self.notes = list(self._setup.notes)
         self._settings = _core.RenderSettings()
         self._settings.resolution = (self.width, self.height)
         self._settings.sensor_size_mm = self._setup.frame_size

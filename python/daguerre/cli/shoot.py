@@ -110,6 +110,8 @@ class Shoot:
             console.warn(
                 f"{self.scene_path}: nothing shines, so the picture will be black; --env lights it"
             )
+        for text in session.warnings:
+            console.warn(f"{self.scene_path}: {text}")
         for text in session.notes:
             console.note(text)
         return session

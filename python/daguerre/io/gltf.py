@@ -171,14 +171,12 @@ class _Reader:
             self.placing.add(node, part.mesh, part.material, worlds, name, moves)
 
     def _camera(self, item: Item, placed: Placed, name: str) -> None:
-        rigid = without_scale(placed.world)
+        node, rigid = self.tree.items[placed.index], without_scale(placed.world)
         if rigid is None:
-            self.tree.items[placed.index].fail(
-                "wanted a transform that leaves its camera a direction, got a scale of 0"
-            )
+            node.fail("wanted a transform that leaves its camera a direction, got a scale of 0")
         camera = read_camera(item, rigid, self.notes)
         if camera is not None:
-            self.scene.add_camera(name, self.moving.camera(camera, item, placed.index))
+            self.scene.add_camera(name, self.moving.camera(camera, item, node))
             if item.name():
                 self.scene.camera_aliases.setdefault(item.name(), name)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from .gltf_accessors import Accessors
 from .gltf_pointers import Pointers, Target, parse
-from .gltf_samplers import Samplers, Track
+from .gltf_samplers import FloatArray, Samplers, Track
 from .json_item import Item, clean, short
 from .notes import Notes
 
@@ -99,10 +99,11 @@ def play(channels: Sequence[Channel], time: float) -> None:
         channel.write(time)
 
 
-def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> list[float]:
+def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArray:
     """Rising times of the keys inside of (begin, end), s."""
-    times = [channel.track.breaks(begin, end) for channel in channels]
-    return np.unique(np.concatenate([np.zeros(0), *times])).tolist() if times else []
+    tracks = {id(c.track): c.track for c in channels}  # many nodes may follow one
+    times = [track.breaks(begin, end) for track in tracks.values()]
+    return times[0] if len(times) == 1 else np.unique(np.concatenate([np.zeros(0), *times]))
 
 
 def _has(target: Target) -> bool:

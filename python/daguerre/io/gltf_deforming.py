@@ -53,10 +53,12 @@ class MeshOverTime:
                 skin(arrays, influences, self.skins.matrices_at(index, time_s))
             return finished(arrays, self.arrays, self.triangles, Notes())
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> NDArray[np.float64]:
         """Times of all keys of weights and joints."""
-        joints = [] if self.skin is None else self.skins.breaks(self.skin[0], begin, end)
-        return sorted({*self.displacements.breaks(begin, end), *joints})
+        morphs = self.displacements.breaks(begin, end)
+        if self.skin is None:
+            return morphs
+        return np.union1d(morphs, self.skins.breaks(self.skin[0], begin, end))
 
 
 def finished(arrays: Arrays, base: Arrays, triangles: NDArray[np.uint32], notes: Notes) -> Vertices:

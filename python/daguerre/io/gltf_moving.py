@@ -91,15 +91,15 @@ class Moving:
 
     def _is_flat(self, place: NodeOverTime) -> bool:
         """Whether it is a plane at some key, and not only on its way from one to another."""
-        times = [self._scene.time, *place.breaks(-np.inf, np.inf)]
-        some = times[:: 1 + len(times) // _MAX_LOOKS]
+        times = place.breaks(-np.inf, np.inf)
+        some = [self._scene.time, *times[:: 1 + len(times) // _MAX_LOOKS].tolist()]
         return bool((ranks(np.stack([place.at(t)[:3, :3] for t in some])) == 2).any())
 
-    def camera(self, camera: Camera, item: Item, node: int) -> Camera:
-        """The camera with what changes of it."""
+    def camera(self, camera: Camera, item: Item, node: Item) -> Camera:
+        """The camera at a node, with what changes of it."""
         motion: dict[str, Dynamic] = {}
-        if self._poses.moves(node):
-            motion["transform"] = RigidOverTime(NodeOverTime(self._poses, node))
+        if self._poses.moves(int(node.key)):
+            motion["transform"] = RigidOverTime(NodeOverTime(self._poses, int(node.key)), node)
         channels = self._animations.of("cameras", str(item.key))
         for channel in channels:
             for name in fields_of(channel.tokens):

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.lights import DirectionalLight, Light, PointLight, SpotLight
 from daguerre.scene_motion import Vertices
@@ -17,8 +18,11 @@ from daguerre.scene_motion import Vertices
 from .gltf_animation import Channel, breaks_of, play
 from .gltf_poses import Poses
 from .gltf_transforms import Matrix, ranks, without_scale
+from .json_item import Item
 
+FloatArray = NDArray[np.float64]
 _BLACK = (0.0, 0.0, 0.0)
+_NONE = np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +43,7 @@ class PartOverTime:
         with np.errstate(all="ignore"):
             return self.read()
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
         return breaks_of(self.channels, begin, end)
 
@@ -63,24 +67,34 @@ class NodeOverTime:
         world = self.poses.world(self.node, time_s)
         return world if self.local is None else world @ self.local
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
         return self.poses.breaks(self.node, begin, end)
 
 
 @dataclass(frozen=True, eq=False)
 class RigidOverTime:
-    """The place and directions of a camera, which ignores the scale of its node."""
+    """The place and directions of a camera, which ignores the scale of its node.
+
+    Attributes:
+        node: Where it stands.
+        item: The node, for complaints.
+    """
 
     node: NodeOverTime
+    item: Item
 
     def at(self, time_s: float) -> Matrix:
-        """The transform at a time, s, (4, 4); as it was meant where a scale leaves no direction."""
-        world = self.node.at(time_s)
-        rigid = without_scale(world)
-        return world if rigid is None else rigid
+        """The transform at a time, s, (4, 4)."""
+        rigid = without_scale(self.node.at(time_s))
+        if rigid is None:
+            self.item.fail(
+                "wanted a transform that leaves its camera a direction, "
+                f"got a scale of 0 at {time_s:g} s"
+            )
+        return rigid
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
         return self.node.breaks(begin, end)
 
@@ -95,7 +109,7 @@ class PositionOverTime:
         """The position at a time, s, (3,), m."""
         return self.node.at(time_s)[:3, 3].copy()
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
         return self.node.breaks(begin, end)
 
@@ -120,12 +134,12 @@ class ShownOverTime:
             return False
         return not self.vanishes or bool(ranks(self.node.at(time_s)[None, :3, :3])[0] >= 2)
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys of both."""
         poses, node = self.node.poses, self.node.node
-        shown = poses.shown_breaks(node, begin, end) if self.blinks else []
-        moved = self.node.breaks(begin, end) if self.vanishes else []
-        return sorted({*shown, *moved})
+        shown = poses.shown_breaks(node, begin, end) if self.blinks else _NONE
+        moved = self.node.breaks(begin, end) if self.vanishes else _NONE
+        return np.union1d(shown, moved)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +155,7 @@ class FlatOverTime:
         points = self.mesh.positions @ world[:3, :3].T + world[:3, 3]
         return replace(self.mesh, positions=points.astype(np.float32))
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
         return self.node.breaks(begin, end)
 
@@ -168,16 +182,11 @@ class LightOverTime:
             light = dark(light)
         return light, np.eye(4) if rigid is None else rigid
 
-    def breaks(self, begin: float, end: float) -> list[float]:
+    def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of all keys."""
         poses, node = self.node.poses, self.node.node
-        return sorted(
-            {
-                *self.part.breaks(begin, end),
-                *poses.breaks(node, begin, end),
-                *poses.shown_breaks(node, begin, end),
-            }
-        )
+        nodes = np.union1d(poses.breaks(node, begin, end), poses.shown_breaks(node, begin, end))
+        return np.union1d(self.part.breaks(begin, end), nodes)
 
 
 def dark(light: PointLight | SpotLight | DirectionalLight) -> Light:

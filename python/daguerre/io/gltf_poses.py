@@ -6,10 +6,12 @@ Only nodes that move are worked out, each once for a time, for some times at onc
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from functools import cached_property
 
 from .gltf_animation import Animations, Channel, breaks_of
 from .gltf_nodes import Tree, is_visible
+from .gltf_samplers import FloatArray
 from .gltf_transforms import Matrix
 
 #: Times whose poses are kept.
@@ -101,11 +103,16 @@ class Poses:
         """Whether a node that blinks is shown at a time, s."""
         return all(c.track.at(time) for n in self._chain(node) for c in self._shown.get(n, ()))
 
-    def breaks(self, node: int, begin: float, end: float) -> list[float]:
+    def breaks(self, node: int, begin: float, end: float) -> FloatArray:
         """Times of all keys that move the node, inside of (begin, end), s."""
-        return breaks_of([c for n in self._chain(node) for c in self._own.get(n, ())], begin, end)
+        return self.breaks_of_all([node], begin, end)
 
-    def shown_breaks(self, node: int, begin: float, end: float) -> list[float]:
+    def breaks_of_all(self, nodes: Sequence[int], begin: float, end: float) -> FloatArray:
+        """Likewise of several nodes."""
+        chains = dict.fromkeys(n for node in nodes for n in self._chain(node))
+        return breaks_of([c for n in chains for c in self._own.get(n, ())], begin, end)
+
+    def shown_breaks(self, node: int, begin: float, end: float) -> FloatArray:
         """Likewise of keys that show or hide it."""
         return breaks_of([c for n in self._chain(node) for c in self._shown.get(n, ())], begin, end)
 

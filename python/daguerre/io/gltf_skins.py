@@ -87,10 +87,9 @@ class Skins:
         self.matrices(index)
         return any(map(self._poses.moves, self._joint_nodes[index]))
 
-    def breaks(self, index: int, begin: float, end: float) -> list[float]:
+    def breaks(self, index: int, begin: float, end: float) -> NDArray[np.float64]:
         """Times of all keys that move the joints, inside of (begin, end), s."""
-        joints = set(self._joint_nodes[index])
-        return sorted({t for joint in joints for t in self._poses.breaks(joint, begin, end)})
+        return self._poses.breaks_of_all(self._joint_nodes[index], begin, end)
 
     def _read(self, index: int) -> None:
         item = self._items[index]
