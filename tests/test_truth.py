@@ -138,6 +138,65 @@ def test_the_background_moves_with_the_camera_alone() -> None:
     assert not frame.aovs["depth.Z"].any()
 
 
+def test_a_sky_that_turns_carries_its_points() -> None:
+    scene = dg.Scene()
+    sky = np.random.default_rng(1).uniform(0, 1, (8, 16, 3))
+    scene.set_environment(sky, rotation=dg.keys([(-1.0, -20.0), (1.0, 20.0)]))
+    frame = truth(scene)
+    x, y = seen()
+    c, s = math.cos(math.radians(2)), math.sin(math.radians(2))  # about +y, so ahead goes left
+    u, v, w = c * x - s, y, s * x + c
+    expected = np.stack([u / w - x, y - v / w], -1) * PIXELS
+    np.testing.assert_allclose(frame.motion, expected, atol=1e-3)
+    assert frame.motion[*MIDDLE, 0] < -1
+
+
+def test_a_lamp_that_travels_and_grows() -> None:
+    scene = dg.Scene()
+    lamp = dg.SphereLight(radius=dg.keys([(0.0, 1.0), (1.0, 2.0)]), luminance=(1, 1, 1))
+    scene.add_light(lamp, dg.keys([(0.0, at(0, 0, -5)), (1.0, at(3, 0, -5))]))
+    frame = truth(scene)
+    row, column = MIDDLE
+    x, y = (seen()[i][row, column] for i in range(2))
+    depth = frame.aovs["depth.Z"][row, column]
+    assert depth == pytest.approx(4, rel=1e-3)
+    # The point of the ball has its direction from the centre; the ball has 1.1 of its radius then.
+    then = 1.1 * np.array([depth * x, depth * y, 5 - depth]) + (0.3, 0, 0)
+    moved = np.array([then[0] / (5 - then[2]) - x, y - then[1] / (5 - then[2])]) * PIXELS
+    np.testing.assert_allclose(frame.motion[row, column], moved, atol=2e-3)
+    assert not frame.aovs["object_id"].any()
+
+
+def test_a_zoom_moves_what_stands_still() -> None:
+    zoom = PINHOLE.with_(focal_length=dg.keys([(-1.0, 40.0), (1.0, 60.0)]))
+    frame = truth(wall(at(z=-4)), zoom)
+    x, y = seen()
+    grown = 51 / 50 - 1
+    np.testing.assert_allclose(frame.motion[..., 0], x * PIXELS * grown, atol=1e-3)
+    np.testing.assert_allclose(frame.motion[..., 1], -y * PIXELS * grown, atol=1e-3)
+
+
+def test_through_an_exact_lens_motion_is_that_of_its_chief_rays() -> None:
+    camera = dg.Camera(
+        lens="double-gauss-50mm-f2",
+        f_stop=2.8,
+        fps=FPS,
+        focus_distance=4.0,
+        transform=dg.keys([(t, turned(1, 40 * t)) for t in (-1.0, 1.0)]),
+    )
+    scene = dg.Scene()
+    scene.set_environment(color=(1, 1, 1))
+    session = dg.Session(scene, camera, resolution=SIZE, motion=True)
+    session.draw(0, 1)
+    chief = session._setup.core.chief_rays()
+    x, y = seen()
+    film = np.stack([x, y], -1).reshape(-1, 2) * 50
+    _, directions = chief.rays(film)
+    then = chief.film_points(directions @ turned(1, 4)[:3, :3], True)
+    expected = ((then - film) * SIZE[0] / 36 * (1, -1)).reshape(*SIZE[::-1], 2)
+    np.testing.assert_allclose(session.frame().motion, expected, atol=1e-3)
+
+
 def test_a_vertex_animation_is_followed_inside_its_triangles() -> None:
     # The wall stretches to the right, by half in a second: x -> x (1 + t / 2).
     corners, faces = scenes.quad(4)

@@ -221,6 +221,16 @@ Environment::Sample Environment::sample_within(Vec2f u) const {
     return {world, pdf_within(world)};
 }
 
+Vec3f Environment::to_picture(Vec3f direction, float time) const {
+    if (!picture_) return direction;
+    return picture_->environment_from_world.vector(turned(direction, time, -1));
+}
+
+Vec3f Environment::to_world(Vec3f direction, float time) const {
+    if (!picture_) return direction;
+    return turned(picture_->world_from_environment.vector(direction), time, 1);
+}
+
 float Environment::pdf_within(Vec3f direction) const {
     if (!picture_) return warp_sphere_pdf();
     const Picture& p = *picture_;

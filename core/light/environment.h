@@ -51,6 +51,10 @@ class Environment {
     float pdf(Vec3f direction, float time) const {
         return poses_ ? pdf_posed(direction, time) : pdf_within(direction);
     }
+    /// A direction as the picture has it, from the one in the world at that time, and back. One colour
+    /// has no picture: they are the same.
+    Vec3f to_picture(Vec3f direction, float time) const;
+    Vec3f to_world(Vec3f direction, float time) const;
     bool is_constant() const { return !picture_; }
     float mean_luminance() const { return mean_luminance_; }  // over the sphere; the largest ever
 
@@ -59,6 +63,7 @@ class Environment {
     Rgb luminance_within(Vec3f direction) const;
     Sample sample_within(Vec2f u) const;
     float pdf_within(Vec3f direction) const;
+    Vec3f turned(Vec3f direction, float time, float sign) const;
     Rgb luminance_posed(Vec3f direction, float time) const;
     Sample sample_posed(Vec2f u, float time) const;
     float pdf_posed(Vec3f direction, float time) const;

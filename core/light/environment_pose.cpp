@@ -31,6 +31,11 @@ Environment Environment::posed(Keyed<EnvironmentPose> poses) const {
     return e;
 }
 
+/// About +y by the turn at that time, or back (sign -1).
+Vec3f Environment::turned(Vec3f direction, float time, float sign) const {
+    return poses_ ? turned_about_y(direction, sign * poses_->at(time).turn) : direction;
+}
+
 Rgb Environment::luminance_posed(Vec3f direction, float time) const {
     const EnvironmentPose now = poses_->at(time);
     return luminance_within(turned_about_y(direction, -now.turn)) * now.strength;

@@ -127,6 +127,7 @@ class LightSet {
                              const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, float time,
                                   const Wavelengths& wavelengths) const;
+    SphereLight sphere_at(std::uint32_t sphere, float time) const;
     bool has_environment() const { return environment_.has_value(); }
     const std::vector<Light>& lights() const { return lights_; }
     /// A triangle light where it is at a time; empty while it is not there at all.
@@ -150,7 +151,6 @@ class LightSet {
     const Keyed<Light>* keys_of(std::size_t light) const {
         return keys_.empty() ? nullptr : keys_[light];
     }
-    SphereLight sphere_at(std::uint32_t sphere, float time) const;
     float local_probability(Vec3f position, std::size_t light) const;
 
     std::vector<Light> lights_;

@@ -40,7 +40,8 @@ class View {
         const Affine3d camera = inverse(pose(time));
         std::optional<Vec2d> film;
         if (!seen.surface) {
-            film = chief_.film_point(camera.vector(to_double(seen.direction)), 0);
+            const Vec3f world = scene_.world_from_sky(seen.direction, time);
+            film = chief_.film_point(camera.vector(to_double(world)), 0);
         } else if (const auto point = scene_.follow(seen.hit, seen.direction, time)) {
             film = chief_.film_point(camera.point(*point));
         }
@@ -121,7 +122,8 @@ Truth see(const TruthFrame& frame, const FilmLayout& region,
     for_each_pixel(region, settings, [&](std::size_t i) {
         const Ray ray = view.ray(centre(region, i));
         const auto hit = frame.scene.first_hit(ray);
-        truth.seen[i] = {hit.value_or(RawHit{}), hit.has_value(), ray.direction};
+        truth.seen[i] = {hit.value_or(RawHit{}), hit.has_value(),
+                         frame.scene.sky_from_world(ray.direction, ray.time)};
         if (hit) note_surface(truth, i, frame.scene, ray, *hit, view.pose(ray.time));
     });
     return truth;

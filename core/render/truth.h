@@ -28,7 +28,7 @@ struct Truth {
     struct Seen {
         RawHit hit;
         bool surface = false;
-        Vec3f direction;  // world, unit: of the surface's normal, or away from the camera
+        Vec3f direction;  // unit: the surface's normal in the world, or where in the sky
     };
     FilmLayout region;
     std::vector<Seen> seen;

@@ -15,7 +15,8 @@ Scene::Hit Scene::surface(const Ray& ray, const RawHit& raw) const {
     s.t = raw.t;
     s.time = ray.time;
     s.position = ray.origin + ray.direction * raw.t;
-    s.ng = s.ns = normalize(s.position - sphere(raw.primitive, ray.time).center);
+    s.ng = s.ns =
+        normalize(s.position - lights_.sphere_at(raw.primitive, ray.time).shape.center);
     s.instance = RawHit::kSphere;
     s.primitive = raw.primitive;
     return hit;
@@ -23,7 +24,7 @@ Scene::Hit Scene::surface(const Ray& ray, const RawHit& raw) const {
 
 std::optional<Vec3d> Scene::follow(const RawHit& hit, Vec3f normal, float time) const {
     if (hit.instance == RawHit::kSphere) {
-        const Sphere s = sphere(hit.primitive, time);
+        const Sphere s = lights_.sphere_at(hit.primitive, time).shape;
         return to_double(s.center) + to_double(normal) * double(s.radius);
     }
     const InstanceRecord& record = records_[hit.instance];
@@ -31,12 +32,14 @@ std::optional<Vec3d> Scene::follow(const RawHit& hit, Vec3f normal, float time) 
     return point_at(record, hit.primitive, hit.u, hit.v, time);
 }
 
-/// The sphere light of that index among the sphere lights.
-Sphere Scene::sphere(std::uint32_t index, float) const {
-    for (const Light& light : description_.lights)
-        if (const auto* s = std::get_if<SphereLight>(&light); s && index-- == 0)
-            return s->shape;
-    return {};
+Vec3f Scene::sky_from_world(Vec3f direction, float time) const {
+    const auto& sky = lights_.environment();
+    return sky ? sky->to_picture(direction, time) : direction;
+}
+
+Vec3f Scene::world_from_sky(Vec3f direction, float time) const {
+    const auto& sky = lights_.environment();
+    return sky ? sky->to_world(direction, time) : direction;
 }
 
 }  // namespace dg

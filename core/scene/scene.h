@@ -67,6 +67,9 @@ class Scene {
     Hit surface(const Ray& ray, const RawHit& hit) const;
     /// Where it is (m) at a time; nothing while it is not shown. `normal` is asked for on spheres.
     std::optional<Vec3d> follow(const RawHit& hit, Vec3f normal, float time) const;
+    /// Directions at infinity stay where they are in the sky, which may turn.
+    Vec3f sky_from_world(Vec3f direction, float time) const;
+    Vec3f world_from_sky(Vec3f direction, float time) const;
 
     /// What is left of light that comes to `ray` (origin as spawn_ray moved it) from
     /// `distance` metres along it, not counting what lies there: 0 or 1,
@@ -111,7 +114,6 @@ class Scene {
     void build_lights();
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
-    Sphere sphere(std::uint32_t index, float time) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
