@@ -217,6 +217,32 @@ struct Builder {
     }
 
     void add_light(Light light) { description.lights.push_back(std::move(light)); }
+
+    void fold_materials(const std::vector<double>& times) {
+        fold(description.materials, times, description.material_keys);
+    }
+    void fold_lights(const std::vector<double>& times) {
+        fold(description.lights, times, description.light_keys);
+    }
+    using Pose = std::pair<Triple, float>;
+    void key_environment(const std::vector<double>& times, const std::vector<Pose>& poses) {
+        Keyed<EnvironmentPose, double> keys{times, {}};
+        for (const auto& [strength, turn] : poses) keys.values.push_back({to_rgb(strength), turn});
+        description.environment_keys = std::move(keys);
+    }
+
+  private:
+    /// The last of the list, as many as there are times, become keys of one.
+    template <typename T>
+    static void fold(std::vector<T>& list, const std::vector<double>& times,
+                     std::map<std::uint32_t, Keyed<T, double>>& keys) {
+        if (times.empty() || times.size() > list.size())
+            throw input_error("keys", "times", "1 to " + std::to_string(list.size()),
+                              std::to_string(times.size()));
+        const std::size_t first = list.size() - times.size();
+        keys[std::uint32_t(first)] = {times, {list.begin() + std::ptrdiff_t(first), list.end()}};
+        list.resize(first + 1, list[first]);
+    }
 };
 
 Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
@@ -306,6 +332,12 @@ void bind_scene(nb::module_& m) {
              [](Builder& b, const Triple& center, float radius, const Triple& luminance) {
                  b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance)});
              })
+        .def("fold_materials", &Builder::fold_materials, "times_s"_a,
+             "The materials added last, one per time (s), become keys of a single one.")
+        .def("fold_lights", &Builder::fold_lights, "times_s"_a,
+             "The lights added last, one per time (s), become keys of a single one.")
+        .def("key_environment", &Builder::key_environment, "times_s"_a, "poses"_a,
+             "Poses of the environment: RGB that its light is multiplied by, and a turn about +y, rad.")
         .def("set_environment_image",
              [](Builder& b, const PixelsF& pixels, float scale, const Matrix4& matrix) {
                  EnvironmentImage image;

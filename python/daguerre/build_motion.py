@@ -33,7 +33,7 @@ class Moving:
     """
 
     def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
-        self._scene, self._interval, self._notes = scene, interval, notes
+        self._scene, self.interval, self._notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
 
     def vertices(self, index: int) -> Vertices:
@@ -42,7 +42,7 @@ class Moving:
         dynamic = self._scene.motion.meshes.get(index)
         if dynamic is None:
             return vertices_of(mesh)
-        steps, keeps = resample_vertices(dynamic, *self._interval)
+        steps, keeps = resample_vertices(dynamic, *self.interval)
         if not keeps:
             self._notes.append(
                 f"mesh {mesh.name or index!r} moves too unevenly for {MAX_STEPS} steps: "
@@ -65,7 +65,7 @@ class Moving:
         dynamic = self._scene.motion.instances.get(index)
         if dynamic is None:
             return instance.transform
-        begin, end = self._interval
+        begin, end = self.interval
         if begin == end:
             return matrix(dynamic.at(begin), _where(instance, index))
         if isinstance(dynamic, Keys | Spin):  # as they were meant, without a key too many
@@ -82,7 +82,7 @@ class Moving:
                 f"{MAX_BREAKS} at most show it"
             )
         try:
-            return resample_transform(dynamic, *self._interval, self._corners[instance.mesh])
+            return resample_transform(dynamic, *self.interval, self._corners[instance.mesh])
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
@@ -93,7 +93,7 @@ class Moving:
         dynamic = self._scene.motion.shown.get(index)
         if dynamic is None:
             return None if self._scene.instances[index].shown else []
-        begin, end = self._interval
+        begin, end = self.interval
         found = resample_shown(dynamic, begin, end)
         # The last moment belongs to the picture, and the end of a stretch does not belong to it.
         held = [(a, b if b < end else np.inf) for a, b in found]

@@ -1,0 +1,173 @@
+"""Materials, lights and the environment, in the form that the core takes them: over an interval."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .errors import InputError
+from .lights import DirectionalLight, Light, PointLight, SphereLight, SpotLight, check_light
+from .materials import (
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Gltf,
+    Material,
+    TextureSlot,
+    check_material,
+)
+from .motion import Dynamic
+from .resample import resample
+from .scene import Environment, Scene
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A value over time, as ``look`` turns it into what the core takes: there it shall be linear."""
+
+    dynamic: Dynamic
+    look: Callable[[Any], Any]
+
+    def at(self, time_s: float) -> Any:
+        return self.look(self.dynamic.at(time_s))
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        return self.dynamic.breaks(begin, end)
+
+
+def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """All materials; those that change as keys."""
+    for i, material in enumerate(scene.materials):
+        dynamic = scene.motion.materials.get(i)
+        if dynamic is None:
+            _add_material(builder, material)
+            continue
+        times, values = resample(_Seen(dynamic, _checker(f"material {i}")), *interval)
+        for value in values:
+            _add_material(builder, value)
+        builder.fold_materials(times)
+
+
+def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """All lights; those that change as keys."""
+    for i, (light, transform) in enumerate(scene.lights):
+        dynamic = scene.motion.lights.get(i)
+        if dynamic is None:
+            _add_light(builder, _core_light(light, transform))
+            continue
+        times, values = resample(_Seen(dynamic, lambda pair: _core_light(*pair)), *interval)
+        for value in values:
+            _add_light(builder, value)
+        builder.fold_lights(times)
+
+
+def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """The environment, and what changes of it."""
+    dynamic = scene.motion.environment
+    if dynamic is None:
+        if scene.environment is not None:
+            _set_environment(builder, scene.environment)
+        return
+    first = dynamic.at(interval[0])
+    plain = {"scale": 1.0, "rotation": 0.0, "color": None if first.color is None else (1.0,) * 3}
+    _set_environment(builder, dataclasses.replace(first, **plain))
+
+    def pose(environment: Environment) -> tuple[tuple[float, ...], float]:
+        if environment.image is not first.image:
+            raise InputError("environment: image: wanted one that stays, got another later")
+        color = (1.0,) * 3 if environment.image is not None else environment.color or (0.0,) * 3
+        strength = tuple(float(c) * environment.scale for c in color)
+        return strength, math.radians(environment.rotation)
+
+    builder.key_environment(*resample(_Seen(dynamic, pose), *interval))
+
+
+def _checker(where: str) -> Callable[[Any], Material]:
+    def checked(material: Any) -> Material:
+        check_material(material, where)
+        return material  # type: ignore[no-any-return]
+
+    return checked
+
+
+def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:
+    return None if slot is None else (slot.texture, slot.uv_set, tuple(slot.transform))
+
+
+def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
+    kind, rest = material.kind, (material.emission, material.two_sided_emission)
+    if isinstance(kind, Diffuse):
+        builder.add_diffuse(material.name, kind.reflectance, *rest)
+    elif isinstance(kind, Conductor):
+        builder.add_conductor(material.name, kind.reflectance, kind.alpha, *rest)
+    elif isinstance(kind, Dielectric):
+        builder.add_dielectric(
+            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, *rest
+        )
+    elif isinstance(kind, Gltf):
+        values = {f.name: getattr(kind, f.name) for f in dataclasses.fields(kind)}
+        for name, value in values.items():
+            if name.endswith("_texture"):
+                values[name] = _slot(value)
+        values["anisotropy_rotation"] = math.radians(kind.anisotropy_rotation)
+        builder.add_gltf(material.name, values, *rest)
+    else:
+        raise InputError(
+            f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
+            f"got {type(kind).__name__}"
+        )
+
+
+#: Kind of light, and what the core's function for that kind takes.
+CoreLight = tuple[Any, ...]
+
+
+def _add_light(builder: _core.SceneBuilder, light: CoreLight) -> None:
+    kind, *values = light
+    getattr(builder, f"add_{kind}_light")(*values)
+
+
+def _core_light(light: Light, transform: NDArray[np.float64]) -> CoreLight:
+    check_light(light)
+    position = tuple(float(x) for x in transform[:3, 3])
+    shines = -transform[:3, 2]
+    length = float(np.linalg.norm(shines))
+    if not length > 0:
+        raise InputError(f"light {light.name!r}: transform: wanted a direction, got a zero axis")
+    direction = tuple(float(x) for x in shines / length)
+    if isinstance(light, PointLight) and light.radius > 0:
+        # A ball of luminance L has the intensity L pi r^2 seen from afar.
+        luminance = tuple(c / (math.pi * light.radius**2) for c in light.intensity)
+        return "sphere", position, light.radius, luminance
+    if isinstance(light, PointLight):
+        return "point", position, light.intensity, light.range
+    if isinstance(light, SpotLight):
+        cone = math.radians(light.inner_angle), math.radians(light.outer_angle)
+        return "spot", position, direction, light.intensity, *cone, light.range
+    if isinstance(light, DirectionalLight):
+        return "directional", direction, light.illuminance
+    if isinstance(light, SphereLight):
+        return "sphere", position, light.radius, light.luminance
+    raise InputError(f"light: wanted a point, spot, directional or sphere light, got {light!r}")
+
+
+def _set_environment(builder: _core.SceneBuilder, environment: Environment) -> None:
+    if environment.image is None:
+        color = environment.color or (0.0, 0.0, 0.0)
+        builder.set_environment_color(tuple(c * environment.scale for c in color))
+        return
+    angle = math.radians(environment.rotation)
+    matrix = np.eye(4)
+    matrix[0, 0] = matrix[2, 2] = math.cos(angle)
+    matrix[0, 2], matrix[2, 0] = math.sin(angle), -math.sin(angle)
+    builder.set_environment_image(environment.image, environment.scale, matrix)
