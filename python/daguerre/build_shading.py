@@ -29,11 +29,13 @@ from .resample import resample
 from .scene import Environment, Scene
 
 Interval = tuple[float, float]
+#: Kind of light, and what the core's function for that kind takes.
+CoreLight = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class _Seen:
-    """A value over time, as ``look`` turns it into what the core takes: there it shall be linear."""
+    """A value over time, as ``look`` makes it what the core takes: there it shall be linear."""
 
     dynamic: Dynamic
     look: Callable[[Any], Any]
@@ -52,7 +54,7 @@ def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval)
         if dynamic is None:
             _add_material(builder, material)
             continue
-        times, values = resample(_Seen(dynamic, _checker(f"material {i}")), *interval)
+        times, values = resample(_Seen(dynamic, _checker(material, i)), *interval)
         for value in values:
             _add_material(builder, value)
         builder.fold_materials(times)
@@ -62,10 +64,11 @@ def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) ->
     """All lights; those that change as keys."""
     for i, (light, transform) in enumerate(scene.lights):
         dynamic = scene.motion.lights.get(i)
+        first = _core_light(light, transform)
         if dynamic is None:
-            _add_light(builder, _core_light(light, transform))
+            _add_light(builder, first)
             continue
-        times, values = resample(_Seen(dynamic, lambda pair: _core_light(*pair)), *interval)
+        times, values = resample(_Seen(dynamic, _light_checker(first[0])), *interval)
         for value in values:
             _add_light(builder, value)
         builder.fold_lights(times)
@@ -92,10 +95,31 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
     builder.key_environment(*resample(_Seen(dynamic, pose), *interval))
 
 
-def _checker(where: str) -> Callable[[Any], Material]:
+def _checker(first: Material, index: int) -> Callable[[Any], Material]:
+    where = f"material {first.name!r}" if first.name else f"material {index}"
+    kind = type(first.kind)
+
     def checked(material: Any) -> Material:
         check_material(material, where)
+        if not isinstance(material.kind, kind):
+            raise InputError(
+                f"{where}: kind: wanted {kind.__name__} at all times, "
+                f"got {type(material.kind).__name__} at one"
+            )
         return material  # type: ignore[no-any-return]
+
+    return checked
+
+
+def _light_checker(kind: str) -> Callable[[Any], CoreLight]:
+    def checked(pair: tuple[Light, NDArray[np.float64]]) -> CoreLight:
+        light = _core_light(*pair)
+        if light[0] != kind:
+            raise InputError(
+                f"light {pair[0].name!r}: kind: wanted a {kind} light at all times, "
+                f"got a {light[0]} light at one"
+            )
+        return light
 
     return checked
 
@@ -126,10 +150,6 @@ def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
             f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
             f"got {type(kind).__name__}"
         )
-
-
-#: Kind of light, and what the core's function for that kind takes.
-CoreLight = tuple[Any, ...]
 
 
 def _add_light(builder: _core.SceneBuilder, light: CoreLight) -> None:
