@@ -261,11 +261,11 @@ ALL: dict[str, Callable[[], Builder]] = {
     "keys that end": on_a_disc,
     "skin": skinned,
     "morph": morphed,
+    "materials": materials,
+    "coat and lamp": coated,
 }
 #: of what is not blurred yet
 LATER: dict[str, Callable[[], Builder]] = {
-    "materials": materials,
-    "coat and lamp": coated,
     "camera": camera,
 }
 

@@ -506,6 +506,11 @@ ALL: dict[str, Callable[[], Case]] = {
     **{f"rolling {order}": rolling(order) for order in ("top", "bottom", "left", "right")},
     "curve": curve,
     "leaf": leaf,
+    "point light": point_light,
+    "sphere light": sphere_light,
+    "spot light": spot_light,
+    "turning sky": turning_sky,
+    "paint": paint,
 }
 #: of what is not blurred yet
 LATER: dict[str, Callable[[], Case]] = {
@@ -515,9 +520,4 @@ LATER: dict[str, Callable[[], Case]] = {
     "focus pull": focus_pull,
     "iris": iris_closing,
     "exact": exact_pull,
-    "point light": point_light,
-    "sphere light": sphere_light,
-    "spot light": spot_light,
-    "turning sky": turning_sky,
-    "paint": paint,
 }

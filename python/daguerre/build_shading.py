@@ -77,22 +77,27 @@ def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) ->
 def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
     """The environment, and what changes of it."""
     dynamic = scene.motion.environment
-    if dynamic is None:
-        if scene.environment is not None:
-            _set_environment(builder, scene.environment)
+    environment = scene.environment if dynamic is None else dynamic.at(interval[0])
+    if environment is None:
         return
-    first = dynamic.at(interval[0])
-    plain = {"scale": 1.0, "rotation": 0.0, "color": None if first.color is None else (1.0,) * 3}
-    _set_environment(builder, dataclasses.replace(first, **plain))
+    if dynamic is not None:
+        times, poses = resample(_Seen(dynamic, lambda e: _pose(e, environment)), *interval)
+        if len(times) > 1:
+            builder.key_environment(times, poses)
+            color = None if environment.color is None else (1.0, 1.0, 1.0)
+            environment = dataclasses.replace(environment, color=color, scale=1.0, rotation=0.0)
+    _set_environment(builder, environment)
 
-    def pose(environment: Environment) -> tuple[tuple[float, ...], float]:
-        if environment.image is not first.image:
-            raise InputError("environment: image: wanted one that stays, got another later")
-        color = (1.0,) * 3 if environment.image is not None else environment.color or (0.0,) * 3
-        strength = tuple(float(c) * environment.scale for c in color)
-        return strength, math.radians(environment.rotation)
 
-    builder.key_environment(*resample(_Seen(dynamic, pose), *interval))
+def _pose(environment: Environment, first: Environment) -> tuple[tuple[float, ...], float]:
+    """What its light is multiplied by, and its turn about +y, rad."""
+    if environment.image is not first.image:
+        raise InputError("environment: image: wanted one that stays, got another later")
+    color = (1.0, 1.0, 1.0)
+    if environment.image is None:
+        color = environment.color or (0.0, 0.0, 0.0)
+    strength = tuple(float(c) * environment.scale for c in color)
+    return strength, math.radians(environment.rotation)
 
 
 def _checker(first: Material, index: int) -> Callable[[Any], Material]:
