@@ -75,7 +75,7 @@ class Moving:
     def _resampled(self, dynamic: Dynamic, instance: Instance, index: int) -> _core.Motion:
         if instance.mesh not in self._corners:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
-        many = len(dynamic.breaks(*self._interval))
+        many = len(dynamic.breaks(*self.interval))
         if many > MAX_BREAKS:
             self._notes.append(
                 f"{_where(instance, index)} has {many} keys while the shutter is open; "

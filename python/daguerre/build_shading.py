@@ -43,7 +43,7 @@ class _Seen:
     def at(self, time_s: float) -> Any:
         return self.look(self.dynamic.at(time_s))
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
         return self.dynamic.breaks(begin, end)
 
 
@@ -81,7 +81,8 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
     if environment is None:
         return
     if dynamic is not None:
-        times, poses = resample(_Seen(dynamic, lambda e: _pose(e, environment)), *interval)
+        image = environment.image
+        times, poses = resample(_Seen(dynamic, lambda e: _pose(e, image)), *interval)
         if len(times) > 1:
             builder.key_environment(times, poses)
             color = None if environment.color is None else (1.0, 1.0, 1.0)
@@ -89,9 +90,9 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
     _set_environment(builder, environment)
 
 
-def _pose(environment: Environment, first: Environment) -> tuple[tuple[float, ...], float]:
+def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
     """What its light is multiplied by, and its turn about +y, rad."""
-    if environment.image is not first.image:
+    if environment.image is not image:
         raise InputError("environment: image: wanted one that stays, got another later")
     color = (1.0, 1.0, 1.0)
     if environment.image is None:
