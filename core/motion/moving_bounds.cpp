@@ -1,6 +1,7 @@
 #include "motion/moving_bounds.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -241,8 +242,11 @@ Box union_of(const std::vector<Box>& boxes) {
 
 /// As many steps as make the boxes small; where they stay nearly one, that one.
 std::vector<Box> best_boxes(const Body& body, const Track& track) {
-    std::vector<Box> best = boxes_at_steps(body, track, 1);
-    for (int n = 2; n <= kMostMotionSteps; n *= 2) {
+    // Steps that are much longer than the keys' would be wasted work.
+    const int keys = int(std::min<std::size_t>(track.segments.size(), 2 * kMostMotionSteps));
+    int n = std::max(1, int(std::bit_ceil(unsigned(keys))) / 2);
+    std::vector<Box> best = boxes_at_steps(body, track, n);
+    for (n *= 2; n <= kMostMotionSteps; n *= 2) {
         std::vector<Box> finer = boxes_at_steps(body, track, n);
         const bool worth = mean_area(finer) < (1 - kWorthwhile) * mean_area(best);
         if (worth) best = std::move(finer);
