@@ -108,15 +108,16 @@ def worst(motion, dynamic, open_s, close_s) -> float:
 
 
 @pytest.mark.parametrize(
-    "dynamic",
+    "make",
     [
-        dg.keys([(0, turned(0)), (0.4, turned(120)), (1, turned(-10))]),
-        dg.spin((1, 2, 3), 2.5),
-        Over(lambda t: turned(90 * t * t) + 5 * math.sin(t) * np.eye(4, 4, 3)),
+        lambda: dg.keys([(0, turned(0)), (0.4, turned(120)), (1, turned(-10))]),
+        lambda: dg.spin((1, 2, 3), 2.5),
+        lambda: Over(lambda t: turned(90 * t * t) + 5 * math.sin(t) * np.eye(4, 4, 3)),
     ],
     ids=["keys", "spin", "curve"],
 )
-def test_transforms_keep_the_bound(dynamic):
+def test_transforms_keep_the_bound(make):
+    dynamic = make()
     motion = resample_transform(dynamic, 0.1, 0.9, BOX)
     assert motion.moves
     assert worst(motion, dynamic, 0.1, 0.9) < 1.2 * BOUND * math.sqrt(3)

@@ -39,7 +39,9 @@ def build(
         builder = _core.SceneBuilder()
         seen = interval or (scene.time, scene.time)
         builder.set_interval(*seen)
-        _add_all(builder, scene, Moving(scene, seen, [] if notes is None else notes))
+        moving = Moving(scene, seen, [] if notes is None else notes)
+        _add_all(builder, scene, moving)
+        moving.finish()
         return builder.build()
     except ValueError as error:
         if isinstance(error, DaguerreError):

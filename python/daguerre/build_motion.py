@@ -21,6 +21,9 @@ from .scene import Instance, Mesh, Scene, vertices_of
 from .scene_motion import Vertices
 
 FloatArray = NDArray[np.float64]
+#: Keys of a file that are looked at, of all transforms together; few of each are left at least.
+MAX_ALL_BREAKS = 1 << 18
+_MIN_BREAKS = 8
 
 
 class Moving:
@@ -35,6 +38,9 @@ class Moving:
     def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
         self._scene, self.interval, self._notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
+        self._crowded: list[tuple[str, int]] = []
+        shared = MAX_ALL_BREAKS // max(1, len(scene.motion.instances))
+        self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared))
 
     def vertices(self, index: int) -> Vertices:
         """Those of a mesh: of one moment, (N, ...), or of even steps, (S, N, ...)."""
@@ -76,17 +82,25 @@ class Moving:
         if instance.mesh not in self._corners:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
         many = len(dynamic.breaks(*self.interval))
-        if many > MAX_BREAKS:
-            self._notes.append(
-                f"{_where(instance, index)} has {many} keys while the shutter is open; "
-                f"{MAX_BREAKS} at most show it"
-            )
+        if many > self._most:
+            self._crowded.append((_where(instance, index), many))
         try:
-            return resample_transform(dynamic, *self.interval, self._corners[instance.mesh])
+            box = self._corners[instance.mesh]
+            return resample_transform(dynamic, *self.interval, box, self._most)
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"{_where(instance, index)}: transform: {error}") from None
+
+    def finish(self) -> None:
+        """Says once what has more keys than can be shown."""
+        if self._crowded:
+            where, many = self._crowded[0]
+            others = len(self._crowded) - 1
+            self._notes.append(
+                f"{where} has {many} keys while the shutter is open; {self._most} at most show it"
+                + (f" ({others} others likewise)" if others else "")
+            )
 
     def shown(self, index: int) -> list[tuple[float, float]] | None:
         """When an instance is there, s; None: always."""

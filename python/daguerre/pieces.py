@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, Generic, TypeVar
+
+import numpy as np
 
 from .motion import Dynamic
 
@@ -38,67 +41,77 @@ def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> l
 class Pieces(Generic[T]):
     """Looks at a value at as few times as it takes.
 
+    A value with a method ``many`` (times (T,) to T values) is asked for many at once.
+
     Args:
-        value: At a time, s.
-        dynamic: Has the breaks.
+        dynamic: The value.
+        taken: What is made of it, such as a row of numbers.
         open_s: Begin of the interval, s.
         close_s: Its end.
+        most_breaks: Of more breaks only so many are looked at.
     """
 
     def __init__(
-        self, value: Callable[[float], T], dynamic: Dynamic, open_s: float, close_s: float
+        self,
+        dynamic: Dynamic,
+        taken: Callable[[Any], T],
+        open_s: float,
+        close_s: float,
+        most_breaks: int = MAX_BREAKS,
     ) -> None:
-        self._cuts = [open_s, *some_breaks(dynamic, open_s, close_s, MAX_BREAKS)]
+        self._cuts = [open_s, *some_breaks(dynamic, open_s, close_s, most_breaks)]
         if close_s > open_s:
             self._cuts.append(close_s)
-        self._value = value
+        # The last moment before a break, where the value may jump; the end is none.
+        self._before = {t: math.nextafter(t, -math.inf) for t in self._cuts[1:-1]}
+        self._dynamic, self._taken = dynamic, taken
         self._known: dict[float, T] = {}
 
     def first(self) -> list[T]:
         """Enough values to see whether something changes, and how much."""
-        times = list(self._cuts)
-        for begin, end in self._spans():
-            times += [self._before(end), *(begin + s * (end - begin) for s in FIRST)]
-        return [self._at(t) for t in times]
+        inside = [a + s * (b - a) for a, b in pairwise(self._cuts) for s in FIRST]
+        times = [*self._cuts, *self._before.values(), *inside]
+        self._look(times)
+        return [self._known[t] for t in times]
 
     def keys(self, fits: Fits[T]) -> list[tuple[float, T]]:
         """Times that do not fall, two equal ones where the value jumps, and the values there."""
-        keys = [(self._cuts[0], self._at(self._cuts[0]))]
-        halvings = min(_MAX_HALVINGS, int(math.log2(MAX_KEYS / len(self._cuts))))
-        for begin, end in self._spans():
-            before, start = keys[-1][1], self._at(begin)
-            if not fits(before, before, 0.0, start):
-                keys.append((begin, start))
-            stop = end, self._at(self._before(end))
-            self._halve((begin, start), stop, fits, FIRST, halvings, keys)
+        times = sorted({*self._cuts, *self._halved(fits)})
+        keys: list[tuple[float, T]] = []
+        for time in times:
+            before = self._left_of(time)
+            keys.append((time, before))
+            if time in self._before and not fits(before, before, 0.0, self._known[time]):
+                keys.append((time, self._known[time]))
         return keys
 
-    def _spans(self) -> list[tuple[float, float]]:
-        return list(zip(self._cuts, self._cuts[1:], strict=False))
+    def _halved(self, fits: Fits[T]) -> list[float]:
+        """Times between the cuts at which there must be keys."""
+        active, found = list(pairwise(self._cuts)), []
+        checks: Sequence[float] = FIRST
+        for _ in range(min(_MAX_HALVINGS, int(math.log2(MAX_KEYS / len(self._cuts))))):
+            self._look([a + s * (b - a) for a, b in active for s in checks])
+            failing = [span for span in active if not self._fit(*span, fits, checks)]
+            middles = [a + 0.5 * (b - a) for a, b in failing]
+            found += middles
+            active = [
+                half
+                for (a, b), middle in zip(failing, middles, strict=True)
+                for half in ((a, middle), (middle, b))
+            ]
+            checks = QUARTERS
+        return found
 
-    def _before(self, time: float) -> float:
-        """The last moment before a break, where the value may jump; the end is none."""
-        return time if time == self._cuts[-1] else math.nextafter(time, -math.inf)
+    def _fit(self, a: float, b: float, fits: Fits[T], checks: Sequence[float]) -> bool:
+        start, stop = self._known[a], self._left_of(b)
+        return all(fits(start, stop, s, self._known[a + s * (b - a)]) for s in checks)
 
-    def _at(self, time: float) -> T:
-        if time not in self._known:
-            self._known[time] = self._value(time)
-        return self._known[time]
+    def _left_of(self, time: float) -> T:
+        return self._known[self._before.get(time, time)]
 
-    def _halve(
-        self,
-        a: tuple[float, T],
-        b: tuple[float, T],
-        fits: Fits[T],
-        checks: Sequence[float],
-        left: int,
-        keys: list[tuple[float, T]],
-    ) -> None:
-        width = b[0] - a[0]
-        if left == 0 or all(fits(a[1], b[1], s, self._at(a[0] + s * width)) for s in checks):
-            keys.append(b)
-            return
-        middle = a[0] + 0.5 * width
-        half = middle, self._at(middle)
-        self._halve(a, half, fits, QUARTERS, left - 1, keys)
-        self._halve(half, b, fits, QUARTERS, left - 1, keys)
+    def _look(self, times: Sequence[float]) -> None:
+        """Works out the values that are not known yet."""
+        new = [t for t in dict.fromkeys(times) if t not in self._known]
+        many = getattr(self._dynamic, "many", None)
+        values = map(self._dynamic.at, new) if many is None or not new else many(np.array(new))
+        self._known |= {t: self._taken(v) for t, v in zip(new, values, strict=True)}

@@ -16,7 +16,7 @@ import daguerre._core as _core
 
 from .flat_values import Flat, flat, sizes
 from .motion import Dynamic
-from .pieces import MAX_KEYS, Pieces, some_breaks
+from .pieces import MAX_BREAKS, MAX_KEYS, Pieces, some_breaks
 
 FloatArray = NDArray[np.float64]
 #: Of the size of a number, or of the radius of a mesh.
@@ -41,7 +41,7 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     Returns:
         Times that do not fall, s, and the values there.
     """
-    pieces = Pieces(lambda t: flat(dynamic.at(t)), dynamic, open_s, close_s)
+    pieces = Pieces(dynamic, flat, open_s, close_s)
     first = pieces.first()
     limits = sizes(first)
     if all(_near(v, first[0], first[0], 0.0, _STILL * limits) for v in first):
@@ -69,7 +69,11 @@ def _near(value: Flat, a: Flat, b: Flat, s: float, limits: FloatArray) -> bool:
 
 
 def resample_transform(
-    dynamic: Dynamic, open_s: float, close_s: float, corners: FloatArray
+    dynamic: Dynamic,
+    open_s: float,
+    close_s: float,
+    corners: FloatArray,
+    most_breaks: int = MAX_BREAKS,
 ) -> _core.Motion:
     """A transform over time, decomposed between its keys.
 
@@ -81,9 +85,10 @@ def resample_transform(
         open_s: Begin of the interval, s.
         close_s: Its end.
         corners: Of the box around what is transformed, shape (8, 3), m.
+        most_breaks: Of more breaks only so many are looked at.
     """
     points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T
-    pieces = Pieces(lambda t: np.asarray(dynamic.at(t), np.float64), dynamic, open_s, close_s)
+    pieces = Pieces(dynamic, _double, open_s, close_s, most_breaks)
     first = np.stack(pieces.first())
     if (np.abs(first - first[0]) <= _STILL * np.abs(first).max()).all():
         return _core.Motion.still(first[0])
@@ -100,6 +105,10 @@ def resample_transform(
 
     keys = pieces.keys(fits)
     return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))
+
+
+def _double(transform: Any) -> FloatArray:
+    return np.asarray(transform, np.float64)
 
 
 def resample_shown(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, float]]:

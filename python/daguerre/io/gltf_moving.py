@@ -92,8 +92,8 @@ class Moving:
     def _is_flat(self, place: NodeOverTime) -> bool:
         """Whether it is a plane at some key, and not only on its way from one to another."""
         times = place.breaks(-np.inf, np.inf)
-        some = [self._scene.time, *times[:: 1 + len(times) // _MAX_LOOKS].tolist()]
-        return bool((ranks(np.stack([place.at(t)[:3, :3] for t in some])) == 2).any())
+        some = np.array([self._scene.time, *times[:: 1 + len(times) // _MAX_LOOKS]])
+        return bool((ranks(place.many(some)[:, :3, :3]) == 2).any())
 
     def camera(self, camera: Camera, item: Item, node: Item) -> Camera:
         """The camera at a node, with what changes of it."""

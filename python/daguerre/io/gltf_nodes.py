@@ -5,9 +5,7 @@ Source: glTF 2.0 specification, chapters 3.5 and 3.11 (a node that is animated h
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from .json_item import Item
 
 #: Lengths beyond this (m) overflow when a renderer squares them in float.
 MAX_SIZE = 1e18
+#: What a node's place consists of.
 _DEFAULTS = {
     "translation": (0.0, 0.0, 0.0),
     "rotation": (0.0, 0.0, 0.0, 1.0),
@@ -129,49 +128,38 @@ class Tree:
             node = self.parents[node]
         for below in reversed(chain):
             parent = self.parents[below]
-            self._worlds[below] = self.joined(None if parent < 0 else self._worlds[parent], below)
+            local = self.local(below)
+            world = local if parent < 0 else self._worlds[parent] @ local
+            self.check_size(below, world)
+            self._worlds[below] = world
         return self._worlds[chain[0] if chain else node]
 
-    def joined(
-        self,
-        parent: Matrix | None,
-        node: int,
-        moved: Mapping[str, Sequence[float]] = MappingProxyType({}),
-    ) -> Matrix:
-        """World from node, below a world from parent; None: at the root.
-
-        Args:
-            parent: World from parent, (4, 4).
-            node: Index of the node.
-            moved: Translation, rotation and scale that stand in for the node's own.
-        """
-        local = self._local(node, moved)
-        world = local if parent is None else parent @ local
+    def check_size(self, node: int, world: Matrix) -> None:
+        """Refuses transforms (..., 4, 4) that are no numbers, or beyond all bounds."""
         size = float(np.abs(world).max())
         if not size < MAX_SIZE:  # NaN is not smaller than anything
             self.items[node].fail(
                 f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
             )
-        return world
 
-    def _local(self, node: int, moved: Mapping[str, Sequence[float]]) -> Matrix:
+    def local(self, node: int) -> Matrix:
         """Parent from node."""
         item = self.items[node]
         matrix = item.get("matrix")
         if matrix is None:
-            t, q, s = (
-                np.array(moved[path] if path in moved else item.numbers_of(path, d))
-                for path, d in _DEFAULTS.items()
-            )
-            length = float(np.sqrt(q @ q))
-            if not 1e-9 < length < np.inf:
-                item.need("rotation").fail(
-                    f"wanted a quaternion of length 1, got length {length:g}"
-                )
-            return compose(t, q / length, s)
+            return compose(*self.parts(node))
         if any(path in item.value for path in _DEFAULTS):  # as of a node that is animated
             matrix.fail("wanted either a matrix or translation, rotation and scale, got both")
         return affine(np.array(matrix.numbers(16)).reshape(4, 4).T, matrix)  # stored by columns
+
+    def parts(self, node: int) -> tuple[Matrix, Matrix, Matrix]:
+        """Translation (3,), rotation (4,; unit x, y, z, w) and scale (3,) of a node."""
+        item = self.items[node]
+        t, q, s = (np.array(item.numbers_of(path, d)) for path, d in _DEFAULTS.items())
+        length = float(np.sqrt(q @ q))
+        if not 1e-9 < length < np.inf:
+            item.need("rotation").fail(f"wanted a quaternion of length 1, got length {length:g}")
+        return t, q / length, s
 
 
 def is_visible(item: Item) -> bool:

@@ -64,8 +64,12 @@ class NodeOverTime:
 
     def at(self, time_s: float) -> Matrix:
         """The transform at a time, s, (4, 4)."""
-        world = self.poses.world(self.node, time_s)
-        return world if self.local is None else world @ self.local
+        return np.asarray(self.many(np.array([time_s]))[0])
+
+    def many(self, times: FloatArray) -> Matrix:
+        """Transforms at many times, (T, 4, 4)."""
+        worlds = self.poses.worlds(self.node, times)
+        return worlds if self.local is None else worlds @ self.local
 
     def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""

@@ -1,6 +1,6 @@
 """Where the nodes of a file stand at any time, and whether they are shown.
 
-Only nodes that move are worked out, each once for a time, for some times at once.
+Only nodes that move are worked out, for many times at once.
 """
 
 from __future__ import annotations
@@ -9,13 +9,15 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from functools import cached_property
 
+import numpy as np
+
 from .gltf_animation import Animations, Channel, breaks_of
 from .gltf_nodes import Tree, is_visible
 from .gltf_samplers import FloatArray
-from .gltf_transforms import Matrix
+from .gltf_transforms import Matrix, compose
 
-#: Times whose poses are kept.
-_MAX_POSES = 64
+#: Poses of nodes, at one or many times, that are kept: parents are asked for by all their children.
+_MAX_KNOWN = 4096
 #: Scales below this leave no volume, or may mirror on their way.
 _THIN = 1e-6
 _PLACE = ("translation", "rotation", "scale")
@@ -39,7 +41,7 @@ class Poses:
             shown = [c for c in channels if c.target.is_flag]
             self._own |= {node: own} if own else {}
             self._shown |= {node: shown} if shown else {}
-        self._worlds: OrderedDict[float, dict[int, Matrix]] = OrderedDict()
+        self._known: OrderedDict[tuple[int, bytes], Matrix] = OrderedDict()
 
     @cached_property
     def _moving(self) -> set[int]:
@@ -86,18 +88,43 @@ class Poses:
 
     def world(self, node: int, time: float) -> Matrix:
         """World from node at a time, s, shape (4, 4)."""
-        worlds = self._at(time)
+        return np.asarray(self.worlds(node, np.array([time]))[0])
+
+    def worlds(self, node: int, times: FloatArray) -> Matrix:
+        """World from node at many times, shape (T, 4, 4)."""
+        if node not in self._moving:
+            return np.asarray(np.broadcast_to(self._tree.world(node), (len(times), 4, 4)))
+        moment = times.tobytes()
         chain = []
-        while node >= 0 and node not in worlds and node in self._moving:
+        while node in self._moving and (node, moment) not in self._known:
             chain.append(node)
             node = self._tree.parents[node]
-        world = worlds[node] if node in worlds else self._still(node)
+        world: Matrix | None = self._known.get((node, moment))
+        if world is None and node >= 0:
+            world = self._tree.world(node)
         for below in reversed(chain):
-            values = {str(c.target.key): c.track.at(time) for c in self._own.get(below, ())}
-            world = self._tree.joined(world, below, values)
-            worlds[below] = world
+            local = self._locals(below, times)
+            world = local if world is None else world @ local
+            self._tree.check_size(below, world)
+            self._keep((below, moment), world)
         assert world is not None
         return world
+
+    def _locals(self, node: int, times: FloatArray) -> Matrix:
+        """Parent from node, (T, 4, 4), or (4, 4) where the node itself stays."""
+        if node not in self._own:
+            return self._tree.local(node)
+        moved = {str(c.target.key): c.track for c in self._own[node]}
+        parts = (
+            moved[path].many(times) if path in moved else np.broadcast_to(p, (len(times), len(p)))
+            for path, p in zip(_PLACE, self._tree.parts(node), strict=True)
+        )
+        return compose(*parts)
+
+    def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
+        while len(self._known) >= _MAX_KNOWN:
+            self._known.popitem(last=False)
+        self._known[key] = world
 
     def shown(self, node: int, time: float) -> bool:
         """Whether a node that blinks is shown at a time, s."""
@@ -123,13 +150,3 @@ class Poses:
             chain.append(node)
             node = self._tree.parents[node]
         return chain
-
-    def _still(self, node: int) -> Matrix | None:
-        return None if node < 0 else self._tree.world(node)
-
-    def _at(self, time: float) -> dict[int, Matrix]:
-        if time not in self._worlds:
-            while len(self._worlds) >= _MAX_POSES:
-                self._worlds.popitem(last=False)
-            self._worlds[time] = {}
-        return self._worlds[time]

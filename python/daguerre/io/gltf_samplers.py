@@ -5,7 +5,6 @@ Source: glTF 2.0 specification, chapter 3.11 and appendix C.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -70,29 +69,32 @@ class Track:
 
     def at(self, time: float) -> Any:
         """A number, a list of numbers, or true or false; held before and behind the keys."""
-        left = max(int(self._keys.searchsorted(time, side="right")) - 1, 0)
+        value = self.many(np.array([time]))[0]
         if self._is_flag:
-            return bool(self._values[left])
-        value = self._value(left, time)
+            return bool(value)
         return float(value[0]) if len(value) == 1 and not self._is_list else value.tolist()
 
-    def _value(self, left: int, time: float) -> FloatArray:
-        """The numbers between key ``left`` and the next."""
+    def many(self, times: FloatArray) -> NDArray[Any]:
+        """Values at many times, shape (T, width); of flags (T,)."""
         keys, values, middle = self._keys, self._values, self._rows // 2
-        start = np.asarray(values[left, middle])
-        if left == len(keys) - 1 or time <= keys[left] or self._mode == "STEP":
-            return _unit(start) if self._turns else start
-        span = float(keys[left + 1] - keys[left])
-        s = float(time - keys[left]) / span
+        left = np.maximum(keys.searchsorted(times, side="right") - 1, 0)
+        if self._is_flag:
+            return np.asarray(values[left])
+        right = np.minimum(left + 1, len(keys) - 1)
+        span = keys[right] - keys[left]
+        s = np.maximum(times - keys[left], 0) / np.where(span > 0, span, np.inf)
+        s = np.zeros((len(times), 1)) if self._mode == "STEP" else s[:, None]
         if self._mode == "CUBICSPLINE":
-            value = _hermite(values[left], values[left + 1], s, span)
-            if self._turns:
-                if np.linalg.norm(value) < 1e-9:
-                    self._use.fail(f"the rotation at {time:g} s has length 0")
-                value = _unit(value)
-            return value
-        end = values[left + 1, middle]
-        return slerp(_unit(start), _unit(end), s) if self._turns else (1 - s) * start + s * end
+            value = _hermite(values[left], values[right], s, span[:, None])
+        else:
+            value, end = values[left, middle], values[right, middle]
+            value = slerp(_unit(value), _unit(end), s) if self._turns else (1 - s) * value + s * end
+        if self._turns:
+            empty = np.flatnonzero(np.einsum("ti,ti->t", value, value) < 1e-18)
+            if empty.size:
+                self._use.fail(f"the rotation at {times[empty[0]]:g} s has length 0")
+            value = _unit(value)
+        return np.asarray(value)
 
 
 class Samplers:
@@ -178,28 +180,34 @@ def _are_turns(values: NDArray[Any], target: Target) -> bool:
     return target.name == "rotation" and values.shape[-1] == 4
 
 
-def _unit(quaternion: FloatArray) -> FloatArray:
-    return np.asarray(quaternion / math.sqrt(float(quaternion @ quaternion)))
+def _unit(quaternions: FloatArray) -> FloatArray:
+    lengths = np.sqrt(np.einsum("ti,ti->t", quaternions, quaternions))
+    return np.asarray(quaternions / lengths[:, None])
 
 
-def slerp(a: FloatArray, b: FloatArray, s: float) -> FloatArray:
-    """Spherical interpolation of unit quaternions the shorter way round (appendix C.4)."""
-    cosine = float(a @ b)
-    if cosine < 0:
-        b, cosine = -b, -cosine
-    angle = math.acos(min(cosine, 1.0))
-    if angle < 1e-6:
-        return (1 - s) * a + s * b
-    sine = math.sin(angle)
-    return np.asarray((math.sin((1 - s) * angle) / sine) * a + (math.sin(s * angle) / sine) * b)
+def slerp(a: FloatArray, b: FloatArray, s: FloatArray) -> FloatArray:
+    """Spherical interpolation of unit quaternions the shorter way round (appendix C.4).
+
+    Args:
+        a: Shape (T, 4), where ``s`` is 0.
+        b: Where it is 1.
+        s: Shape (T, 1).
+    """
+    cosine = np.einsum("ti,ti->t", a, b)[:, None]
+    b = np.where(cosine < 0, -b, b)
+    angle = np.arccos(np.minimum(np.abs(cosine), 1.0))
+    near = angle < 1e-6
+    sine = np.where(near, 1.0, np.sin(angle))
+    weights = np.sin((1 - s) * angle) / sine, np.sin(s * angle) / sine
+    return np.asarray(np.where(near, (1 - s) * a + s * b, weights[0] * a + weights[1] * b))
 
 
-def _hermite(left: FloatArray, right: FloatArray, s: float, span: float) -> FloatArray:
-    """Cubic spline between two keys (appendix C.5); tangents are per second."""
+def _hermite(left: FloatArray, right: FloatArray, s: FloatArray, span: FloatArray) -> FloatArray:
+    """Cubic spline between keys (T, 3, width) (appendix C.5); tangents are per second."""
     s2, s3 = s * s, s * s * s
     return np.asarray(
-        (2 * s3 - 3 * s2 + 1) * left[1]
-        + span * (s3 - 2 * s2 + s) * left[2]
-        + (3 * s2 - 2 * s3) * right[1]
-        + span * (s3 - s2) * right[0]
+        (2 * s3 - 3 * s2 + 1) * left[:, 1]
+        + span * (s3 - 2 * s2 + s) * left[:, 2]
+        + (3 * s2 - 2 * s3) * right[:, 1]
+        + span * (s3 - s2) * right[:, 0]
     )
