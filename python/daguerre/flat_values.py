@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 # A larger array is no parameter but a picture, and does not change.
 _MAX_ARRAY = 64
+_ROUNDING = 1e-4
 
 
 @dataclass
@@ -73,10 +74,16 @@ def _add(values: list[float], numbers: list[float], into: Flat) -> None:
             into.rest.append(value)
 
 
-def sizes(values: list[Flat]) -> FloatArray:
-    """How large each number is: the largest of its group in all values, one row for all."""
-    rows = np.abs(np.array([v.numbers for v in values if len(v.numbers) == len(values[0].numbers)]))
-    largest = rows.max(axis=0) if rows.size else np.zeros(len(values[0].numbers))
-    by_group = np.zeros(max(values[0].groups, default=-1) + 1)
-    np.maximum.at(by_group, values[0].groups, largest)
-    return by_group[values[0].groups] if len(by_group) else largest
+def changes(values: list[Flat]) -> FloatArray:
+    """How much each number changes: the most of its group in all values, one row for all.
+
+    At least ``_ROUNDING`` of its size, so that rounding is not followed.
+    """
+    rows = np.array([v.numbers for v in values if len(v.numbers) == len(values[0].numbers)])
+    if not rows.size:
+        return np.zeros(len(values[0].numbers))
+    groups = values[0].groups
+    most = np.zeros(groups[-1] + 1)
+    np.maximum.at(most, groups, np.ptp(rows, axis=0))
+    np.maximum.at(most, groups, _ROUNDING * np.abs(rows).max(axis=0))
+    return most[groups]

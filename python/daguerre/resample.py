@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from .flat_values import Flat, flat, sizes
+from .flat_values import Flat, changes, flat
 from .motion import Dynamic
 from .pieces import MAX_BREAKS, MAX_KEYS, Pieces, some_breaks
 
 FloatArray = NDArray[np.float64]
-#: Of the size of a number, or of the radius of a mesh.
+#: Of the change of a number, or of the radius of a mesh.
 BOUND = 1e-4
 #: Of the length of a path: 0.05 px of one across a picture of 2500 px.
 PATH_BOUND = 2e-5
@@ -31,7 +31,7 @@ _ENDS = np.array([0.0, 1.0])
 def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[float], list[Any]]:
     """Keys of numbers, tuples, materials, lights, ..., linear in between.
 
-    Every number is kept to ``BOUND`` of the largest that its tuple holds in the interval.
+    Every number is kept to ``BOUND`` of what its tuple changes by in the interval.
 
     Args:
         dynamic: The value.
@@ -43,8 +43,8 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     """
     pieces = Pieces(dynamic, flat, open_s, close_s)
     first = pieces.first()
-    limits = sizes(first)
-    if all(_near(v, first[0], first[0], 0.0, _STILL * limits) for v in first):
+    limits = changes(first)
+    if all(_near(v, first[0], first[0], 0.0, 1e-8 * limits) for v in first):
         return [open_s], [first[0].value]
 
     def fits(a: Flat, b: Flat, s: float, value: Flat) -> bool:
