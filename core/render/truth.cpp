@@ -10,8 +10,8 @@
 namespace dg {
 namespace {
 
-constexpr int kRounds = 64;        // of the search for the line on which a point lands
-constexpr double kSettled = 1e-7;  // px
+constexpr int kRounds = 16;  // of the plain search for the line on which a point lands
+constexpr double kSettled = 1e-5;  // px
 
 /// One frame's camera, ready to be asked at any time.
 class View {
@@ -49,23 +49,36 @@ class View {
         return settings_.sensor.px_from_mm(*film);
     }
 
-    /// With a rolling shutter the line of landing says when: the fixed point of px -> px
-    /// at the time of px's line, reached as long as things move by less than one line
-    /// from one line to the next.
-    Vec2d landing(const Truth::Seen& seen, Vec2d px) const {
-        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-        for (int round = 0; round < kRounds; ++round) {
+    /// Where it lands at the moment of the line on which it lands; `px` is a first guess.
+    std::optional<Vec2d> landing(const Truth::Seen& seen, Vec2d px) const {
+        if (!settings_.shutter.rolls()) return px_of(seen, time_at(px));
+        for (int round = 0; round < kRounds;
+             ++round) {  // settles if it is slower than the lines
             const auto next = px_of(seen, time_at(px));
-            if (!next) return {kNone, kNone};
-            const bool settled =
-                !settings_.shutter.rolls() || length(*next - px) < kSettled;
+            if (!next || length(*next - px) < kSettled) return next;
             px = *next;
-            if (settled) return px;
         }
-        return {kNone, kNone};
+        return bisected(seen);
     }
 
   private:
+    /// As fast as the lines, or faster. Before the first line and past the last one time
+    /// is held, so it lands there or crosses some line in between.
+    std::optional<Vec2d> bisected(const Truth::Seen& seen) const {
+        const bool columns = settings_.shutter.scans_columns();
+        double low = 0, high = columns ? settings_.sensor.width : settings_.sensor.height;
+        std::optional<Vec2d> px;
+        for (int i = 0; i < 50; ++i) {
+            const double middle = i == 0 ? low : i == 1 ? high : 0.5 * (low + high);
+            px = px_of(seen, time_at({middle, middle}));
+            if (!px) return px;
+            const bool further = (columns ? px->x : px->y) > middle;
+            if (further == (i == 1) && i < 2) return px;  // outside of the frame
+            (further ? low : high) = middle;
+        }
+        return px;
+    }
+
     const Scene& scene_;
     const Camera& camera_;
     const RenderSettings& settings_;
@@ -134,7 +147,9 @@ std::vector<Vec2d> places(const Truth& truth, const TruthFrame& frame,
     std::vector<Vec2d> px(truth.seen.size());
     const View view(frame, settings);
     for_each_pixel(truth.region, settings, [&](std::size_t i) {
-        px[i] = view.landing(truth.seen[i], centre(truth.region, i));
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        px[i] = view.landing(truth.seen[i], centre(truth.region, i))
+                    .value_or(Vec2d{kNone, kNone});
     });
     return px;
 }
