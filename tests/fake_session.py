@@ -52,6 +52,7 @@ class FakeSession:
         self.crop = crop or (0, 0, *resolution)
         self.aovs = aovs
         self.notes = ["autofocus: centre ray hit at 1.532 m"]
+        self.warnings: list[str] = []
         self.key = {
             "scene": "a" * 64,
             "camera": f"{camera.f_stop}",
