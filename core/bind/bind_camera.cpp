@@ -3,6 +3,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "bind/arrays.h"
 #include "camera/camera.h"
 #include "camera/chief.h"
@@ -68,6 +70,49 @@ auto film_points(const dg::ChiefRays& chief, const Rows3d& points, bool at_infin
     return dg::bind::to_numpy(std::move(film), {n, std::size_t(2)});
 }
 
+using Column = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+std::vector<float> rising(const Column& times, std::size_t wanted, const char* what) {
+    if (times.shape(0) != wanted || wanted == 0)
+        throw dg::input_error("camera", what, "as many as times, one at least",
+                              std::to_string(wanted) + " and " + std::to_string(times.shape(0)));
+    if (!std::is_sorted(times.data(), times.data() + wanted))
+        throw dg::Error(std::string("camera: ") + what + ": wanted times that do not fall");
+    return {times.data(), times.data() + wanted};
+}
+
+void change_lens(dg::Camera& camera, const Column& times, const std::vector<const dg::Camera*>& cameras) {
+    dg::LensMotion motion{rising(times, cameras.size(), "lenses"), {}};
+    for (const dg::Camera* at : cameras) {
+        if (at->lens.index() != camera.lens.index())
+            throw dg::Error("camera: lenses: wanted all of one kind");
+        const auto* exact = std::get_if<dg::ExactLens>(&at->lens);
+        motion.lenses.push_back(
+            exact ? dg::LensKind(exact->in_the_body_of(std::get<dg::ExactLens>(camera.lens))) : at->lens);
+    }
+    camera.lens_motion = std::move(motion);
+}
+
+void change_setting(dg::Camera& camera, const Column& times, const Column& openings,
+                    const dg::bind::Rows2f& shifts) {
+    const std::size_t n = openings.shape(0);
+    if (shifts.shape(0) != n) throw dg::Error("camera: setting: wanted a shift for each opening");
+    dg::Keyed<dg::LensSetting> setting{rising(times, n, "setting"), {}};
+    for (std::size_t i = 0; i < n; ++i)
+        setting.values.push_back({openings(i), {shifts(i, 0), shifts(i, 1)}});
+    camera.setting = std::move(setting);
+}
+
+std::tuple<double, double, double> lens_numbers(const dg::Camera& camera) {
+    if (const auto* pinhole = std::get_if<dg::Pinhole>(&camera.lens))
+        return {pinhole->film_distance_mm, 0, 0};
+    if (const auto* thin = std::get_if<dg::ThinLens>(&camera.lens)) {
+        const auto n = thin->numbers();
+        return {n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus};
+    }
+    throw dg::Error("camera: lens numbers: wanted an ideal lens");
+}
+
 }  // namespace
 
 void bind_camera(nb::module_& m) {
@@ -105,6 +150,12 @@ void bind_camera(nb::module_& m) {
                         return Camera{world, lens};
                     },
                     "world_from_camera"_a, "lens"_a)
+        .def("change_lens", &change_lens, "times"_a, "cameras"_a,
+             "The lens at some moments (fractions of the interval) is that of these cameras.")
+        .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,
+             "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")
+        .def_prop_ro("lens_numbers", &lens_numbers,
+                     "Film distance (mm), iris radius (mm), 1 / focus distance (1/m) of an ideal lens.")
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
              "(origins, directions, weights) in the world for explicit film points (mm, upright).")
         .def("chief_rays", [](const Camera& camera) { return ChiefRays(camera.lens); },

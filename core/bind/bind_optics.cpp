@@ -221,6 +221,7 @@ void bind_optics(nb::module_& m) {
             [](ExactLens* self, const Prescription& lens, double f_stop, const Iris& iris,
                double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
                bool only_slope_boxes) {
+                nb::gil_scoped_release release;   // states of a lens are set up side by side
                 new (self) ExactLens(
                     lens, {f_stop, iris, focus_distance_m,
                            focus_from_sensor ? FocusFrom::sensor : FocusFrom::pupil,

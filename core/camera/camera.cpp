@@ -2,11 +2,6 @@
 
 namespace dg {
 
-void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
-                   std::span<CameraRay> rays) {
-    std::visit([&](const auto& lens) { lens.generate(samples, rays); }, camera.lens);
-}
-
 Ray to_world(const Camera& camera, const Ray& ray) {
     const Affine3d pose = camera.world_from_camera.at(ray.time);
     Ray world = ray;

@@ -12,21 +12,47 @@
 #include "camera/pinhole.h"
 #include "camera/thin.h"
 #include "geometry/ray.h"
+#include "motion/keyed.h"
 #include "motion/motion.h"
 
 namespace dg {
 
 using LensKind = std::variant<Pinhole, ThinLens, ExactLens>;
 
-struct Camera {
-    Motion world_from_camera;   // rigid; metres; time: fraction of the scene's interval
-    LensKind lens;
+/// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Ideal
+/// lenses change evenly from one to the next; of exact ones each sample takes the nearest in time.
+struct LensMotion {
+    std::vector<float> times;       // empty: it stays as it is
+    std::vector<LensKind> lenses;   // exact ones relative to the camera's own (ExactLens::in_the_body_of)
 };
 
-/// Fills rays[i] (camera frame) for samples[i]; weight 0: stopped by glass or iris. A white world of
-/// luminance 1 has mean weight 1 on the optical axis: weights are exposures divided by H0.
+/// What else changes behind and in the lens: the iris's radius, as a fraction of the lens's own, and how
+/// far the film is shifted (mm, upright), in addition to the sensor's centre.
+struct LensSetting {
+    float iris_opening = 1;
+    Vec2f film_shift_mm{0, 0};
+};
+inline LensSetting blend(const LensSetting& a, const LensSetting& b, float s) {
+    return {a.iris_opening + s * (b.iris_opening - a.iris_opening),
+            a.film_shift_mm + (b.film_shift_mm - a.film_shift_mm) * s};
+}
+
+struct Camera {
+    Motion world_from_camera;   // rigid; metres; time: fraction of the scene's interval
+    LensKind lens;              // as it is at mid-interval: what H0 is measured with
+    LensMotion lens_motion;
+    Keyed<LensSetting> setting; // empty: it stays
+};
+
+/// Fills rays[i] (camera frame) for samples[i], with the lens as it is at their times; weight 0: stopped by
+/// glass or iris. A white world of luminance 1 has mean weight 1 on the optical axis at mid-interval:
+/// weights are exposures divided by H0.
 void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
                    std::span<CameraRay> rays);
+
+/// ExactLens::reproject, with the lens as it is at the rays' times.
+void reproject(const Camera& camera, std::span<const CameraRay> rays,
+               std::span<const float> wavelength_nm, std::span<Reprojection> out);
 
 /// The wall between the camera's frame and the world's, as they lie at the ray's time.
 Ray to_world(const Camera& camera, const Ray& ray);

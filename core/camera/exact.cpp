@@ -108,7 +108,16 @@ struct ExactLens::State {
 };
 
 ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
-    : state_(std::make_shared<State>(lens, settings)) {}
+    : state_(std::make_shared<State>(lens, settings)),
+      origin_z_(state_->order.entrance_pupil_z),
+      unit_(state_->h0) {}
+
+ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
+    ExactLens lens = *this;
+    lens.origin_z_ = middle.origin_z_ + state_->film_z - middle.state_->film_z;
+    lens.unit_ = middle.unit_;
+    return lens;
+}
 
 namespace {
 
@@ -133,8 +142,7 @@ void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / state_->h0),
-                pupil = float(state_->order.entrance_pupil_z);
+    const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
     for (std::size_t begin = 0; begin < samples.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, samples.size() - begin));
         for (int i = 0; i < count; ++i) {
@@ -160,7 +168,7 @@ void ExactLens::generate(std::span<const CameraSample> samples,
             out.weight = passed ? weight : 0;
             out.aim_weight = passed ? aim : 0;
             out.ray.origin = {b.scene.x[i] * float(kMetre), b.scene.y[i] * float(kMetre),
-                              (b.scene.z[i] - pupil) * float(kMetre)};
+                              (b.scene.z[i] - origin) * float(kMetre)};
             out.ray.direction = {b.scene.dx[i], b.scene.dy[i], b.scene.dz[i]};
             out.ray.time = samples[begin + i].time;
             out.iris_opening = samples[begin + i].iris_opening;
@@ -174,8 +182,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / state_->h0),
-                pupil = float(state_->order.entrance_pupil_z);
+    const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
         const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
@@ -183,7 +190,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             const std::size_t from = begin + std::min(i, count - 1);
             const Ray& ray = rays[from].ray;
             b.scene.x[i] = 1e3f * ray.origin.x, b.scene.y[i] = 1e3f * ray.origin.y;
-            b.scene.z[i] = 1e3f * ray.origin.z + pupil;
+            b.scene.z[i] = 1e3f * ray.origin.z + origin;
             b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
             b.scene.dz[i] = ray.direction.z;
             b.film.nm[i] = wavelength_nm[from];

@@ -34,6 +34,10 @@ class ExactLens {
     /// Error if the lens cannot open or focus like that (see paraxial.h).
     ExactLens(const Prescription& lens, const ExactLensSettings& settings);
 
+    /// The same lens as a state of a body that is `middle` at mid-exposure: the film stays where it is in
+    /// the body, so that focusing moves the glass; weights are exposures divided by the H0 of `middle`.
+    ExactLens in_the_body_of(const ExactLens& middle) const;
+
     /// Rays start on the first surface. Film points beyond half_diagonal_mm get weight 0.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
@@ -66,6 +70,7 @@ class ExactLens {
     /// whole one: a leaf shutter on its way.
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
     std::shared_ptr<const State> state_;
+    double origin_z_, unit_;   // of the camera's frame in the lens's, mm; the exposure of weight 1
 };
 
 /// E / L on the axis at one wavelength, by quadrature in double; with T = 1 if `perfect`.

@@ -4,10 +4,12 @@
 
 namespace dg {
 
-void ThinLens::generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
-    const float unit_m = float(aperture_radius_mm * 1e-3);
-    const float inverse_film = float(1 / film_distance_mm);
-    const float inverse_focus = float(1 / focus_distance_m);   // 0 at infinity
+void ThinLens::generate(const Numbers& numbers, std::span<const CameraSample> samples,
+                        std::span<CameraRay> rays) const {
+    const float unit_m = float(numbers.aperture_radius_mm * 1e-3);
+    const float inverse_film = float(1 / numbers.film_distance_mm);
+    const float inverse_focus = float(numbers.inverse_focus);
+    const float exposure = float(numbers.exposure);
     const bool round = iris.kind() == Iris::Kind::round;
     const double covered = iris.sampling_area() / kPiD;   // the sampled region may exceed the shape
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -22,7 +24,7 @@ void ThinLens::generate(std::span<const CameraSample> samples, std::span<CameraR
             weight = float(covered * iris.transmission(q));
         }
         const float radius = unit_m * s.iris_opening;
-        weight *= s.iris_opening * s.iris_opening;   // the area that is open
+        weight *= exposure * s.iris_opening * s.iris_opening;   // the area that is open
         const Vec3f origin{p.x * radius, p.y * radius, 0};
         // The chief ray, of length 1 along the axis, meets the plane of focus at chief * focus; divided
         // by focus, infinity needs no case of its own.

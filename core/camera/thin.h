@@ -17,7 +17,27 @@ struct ThinLens {
     Iris iris;                         // shape of unit radius
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
 
-    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+    /// What of it changes evenly while it is on its way.
+    struct Numbers {
+        double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
+        double exposure = 1;                                          // factor on weights
+    };
+    Numbers numbers() const {
+        return {film_distance_mm, aperture_radius_mm, 1 / focus_distance_m};
+    }
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+        generate(numbers(), samples, rays);
+    }
+    /// With other numbers than its own.
+    void generate(const Numbers& numbers, std::span<const CameraSample> samples,
+                  std::span<CameraRay> rays) const;
 };
+
+inline ThinLens::Numbers blend(const ThinLens::Numbers& a, const ThinLens::Numbers& b, double s) {
+    const auto mix = [&](double x, double y) { return x + s * (y - x); };
+    return {mix(a.film_distance_mm, b.film_distance_mm),
+            mix(a.aperture_radius_mm, b.aperture_radius_mm), mix(a.inverse_focus, b.inverse_focus)};
+}
 
 }  // namespace dg

@@ -92,10 +92,16 @@ class Renderer {
         const Vec2f px{pixel.x + 0.5f + f.offset.x, pixel.y + 0.5f + f.offset.y};
         const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
         const Moment moment = settings_.shutter.draw(pixel.x, pixel.y, u.time);
-        work.camera_samples.push_back({settings_.sensor.mm_from_px(px), u.lens, moment.time,
-                                       wavelengths.nm[0], moment.iris_opening});
+        const LensSetting lens = setting_at(moment.time);
+        work.camera_samples.push_back({settings_.sensor.mm_from_px(px) + lens.film_shift_mm, u.lens,
+                                       moment.time, wavelengths.nm[0],
+                                       moment.iris_opening * lens.iris_opening});
         work.samples.push_back({pixel, index, px, f.weight * settings_.shutter.weight(), sampler,
                                 wavelengths});
+    }
+
+    LensSetting setting_at(float time) const {
+        return camera_.setting.values.empty() ? LensSetting{} : camera_.setting.at(time);
     }
 
     void draw_batch(Workspace& work) const {
@@ -127,7 +133,12 @@ class Renderer {
             }
         }
         work.reprojections.assign(work.secondary_rays.size(), Reprojection{});
-        exact_->reproject(work.secondary_rays, work.secondary_nm, work.reprojections);
+        dg::reproject(camera_, work.secondary_rays, work.secondary_nm, work.reprojections);
+        if (!camera_.setting.moves()) return;
+        for (std::size_t i = 0; i < work.reprojections.size(); ++i) {   // the film lay elsewhere then
+            Vec2f& film = work.reprojections[i].film_mm;
+            film = film - setting_at(work.secondary_rays[i].ray.time).film_shift_mm;
+        }
     }
 
     void draw_sample(Workspace& work, std::size_t i, std::size_t passed) const {

@@ -25,6 +25,7 @@ from .camera_pose import pose as pose_over
 from .checks import short
 from .errors import InputError, UsageError
 from .focusing import Focus, ideal_direction
+from .lens_motion import LensMotion
 from .scene import Scene
 
 DEFAULT_FOCAL_LENGTH = 50.0
@@ -73,17 +74,31 @@ def set_up(
     pose = pose_over(camera, begin, end)
     world = pose.at(0.5)
     facts = motion_facts(camera, begin, end)
-    camera = camera.at(0.5 * (begin + end))  # what is said of the camera is said of mid-shutter
+    moving, camera = (
+        camera,
+        camera.at(0.5 * (begin + end)),
+    )  # what is said of the camera is said of mid-shutter
     size = frame_size(camera, resolution)
     check(camera, model, prescription=lens is not None)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
-    if lens is not None:
-        _set_up_prescription(setup, camera, lens, model, pose, focus)
-    elif model == "pinhole":
-        _set_up_pinhole(setup, camera, pose)
-    else:
-        _set_up_thin(setup, camera, pose, focus)
+    _set_up_lens(setup, camera, lens, model, pose, focus)
+
+    def lens_of(now: Camera) -> _core.Camera:
+        """Of another moment; its focus distance is known."""
+        check(now, model, prescription=lens is not None)
+        made = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
+        known = Focus(scene, now, resolution, size, world, None, [])
+        _set_up_lens(made, now, lens, model, pose, known)
+        return made.core
+
+    changing = set(facts.get("motion", {})) - {"transform"}
+    if changing:
+        parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
+        lens_motion = LensMotion(moving, changing, begin, end, *parts, lens_of)
+        efl = setup.facts["effective_focal_length_mm"] if model == "exact" else None
+        note = lens_motion.apply(setup.core, efl, size[0] / resolution[0])
+        setup.notes += [note] if note else []
     setup.facts |= {
         "lens_model": model,
         "sensor_size_mm": list(camera.sensor_size),
@@ -97,6 +112,22 @@ def set_up(
         **facts,
     }
     return setup
+
+
+def _set_up_lens(
+    setup: CameraSetup,
+    camera: Camera,
+    lens: lenses.Lens | None,
+    model: str,
+    pose: _core.Motion,
+    focus: Focus,
+) -> None:
+    if lens is not None:
+        _set_up_prescription(setup, camera, lens, model, pose, focus)
+    elif model == "pinhole":
+        _set_up_pinhole(setup, camera, pose)
+    else:
+        _set_up_thin(setup, camera, pose, focus)
 
 
 def _set_up_pinhole(setup: CameraSetup, camera: Camera, pose: _core.Motion) -> None:

@@ -104,7 +104,7 @@ class Session:
         self._settings = _core.RenderSettings()
         self._settings.resolution = (self.width, self.height)
         self._settings.sensor_size_mm = self._setup.frame_size
-        shift_x, shift_y = self.camera.shift
+        shift_x, shift_y = self._setup.facts["shift_mm"]  # at mid-exposure
         self._settings.sensor_center_mm = (shift_x, shift_y)
         self._settings.shutter = shutter.core_shutter(self.camera, (self.width, self.height))
         self._settings.seed = seed
@@ -300,7 +300,7 @@ class Session:
             "lensModel": facts.get("lens"),
             "sensorPhotositePitch": width / self.width * 1e3,
             "sensorOverallDimensions": (width, height),
-            "sensorCenterOffset": (camera.shift[0] * 1e3, camera.shift[1] * 1e3),
+            "sensorCenterOffset": tuple(1e3 * shift for shift in facts["shift_mm"]),
             "worldToCamera": _world_to_camera(matrix),
             "worldToNDC": _world_to_ndc(matrix, self._setup.pinhole_focal_length, width, height),
             "h0": facts.get("h0"),

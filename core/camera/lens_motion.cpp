@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include "camera/camera.h"
+
+namespace dg {
+namespace {
+
+/// Samples of one state at a time, so that the lens sees full batches.
+template <typename Each>
+void by_state(const LensMotion& motion, std::size_t count, const auto& time_of, const Each& each) {
+    thread_local std::vector<std::uint32_t> state, members;
+    state.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const KeyPlace p = place_among(motion.times, float(time_of(i)));
+        state[i] = std::uint32_t(p.share < 0.5 ? p.left : p.right);
+    }
+    for (std::uint32_t k = 0; k < motion.lenses.size(); ++k) {
+        members.clear();
+        for (std::size_t i = 0; i < count; ++i)
+            if (state[i] == k) members.push_back(std::uint32_t(i));
+        if (!members.empty()) each(motion.lenses[k], members);
+    }
+}
+
+template <typename T>
+std::vector<T> taken(std::span<const T> from, std::span<const std::uint32_t> members) {
+    std::vector<T> some;
+    some.reserve(members.size());
+    for (const std::uint32_t i : members) some.push_back(from[i]);
+    return some;
+}
+
+void generate_exact(const LensMotion& motion, std::span<const CameraSample> samples,
+                    std::span<CameraRay> rays) {
+    by_state(motion, samples.size(), [&](std::size_t i) { return samples[i].time; },
+             [&](const LensKind& lens, const auto& members) {
+                 std::vector<CameraRay> drawn(members.size());
+                 std::get<ExactLens>(lens).generate(taken(samples, members), drawn);
+                 for (std::size_t i = 0; i < members.size(); ++i) rays[members[i]] = drawn[i];
+             });
+}
+
+/// Numbers lie between those of the neighbouring keys; an iris is that of the nearer key.
+void generate_ideal(const Camera& camera, std::span<const CameraSample> samples,
+                    std::span<CameraRay> rays) {
+    const LensMotion& motion = camera.lens_motion;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const KeyPlace p = place_among(motion.times, samples[i].time);
+        const LensKind &a = motion.lenses[p.left], &b = motion.lenses[p.right];
+        const auto sample = samples.subspan(i, 1);
+        const auto ray = rays.subspan(i, 1);
+        if (const auto* pinhole = std::get_if<Pinhole>(&a)) {
+            Pinhole now = *pinhole;
+            const double next = std::get<Pinhole>(b).film_distance_mm;
+            now.film_distance_mm += p.share * (next - now.film_distance_mm);
+            now.generate(sample, ray);
+            continue;
+        }
+        const ThinLens &first = std::get<ThinLens>(a), &second = std::get<ThinLens>(b);
+        ThinLens::Numbers now = blend(first.numbers(), second.numbers(), p.share);
+        const double cone = now.aperture_radius_mm / now.film_distance_mm;
+        const ThinLens& middle = std::get<ThinLens>(camera.lens);
+        const double usual = middle.aperture_radius_mm / middle.film_distance_mm;
+        now.exposure = cone * cone / (usual * usual);
+        (p.share < 0.5 ? first : second).generate(now, sample, ray);
+    }
+}
+
+}  // namespace
+
+void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
+                   std::span<CameraRay> rays) {
+    const LensMotion& motion = camera.lens_motion;
+    if (motion.times.empty()) {
+        std::visit([&](const auto& lens) { lens.generate(samples, rays); }, camera.lens);
+    } else if (std::holds_alternative<ExactLens>(camera.lens)) {
+        generate_exact(motion, samples, rays);
+    } else {
+        generate_ideal(camera, samples, rays);
+    }
+}
+
+void reproject(const Camera& camera, std::span<const CameraRay> rays,
+               std::span<const float> wavelength_nm, std::span<Reprojection> out) {
+    const LensMotion& motion = camera.lens_motion;
+    if (motion.times.empty())
+        return std::get<ExactLens>(camera.lens).reproject(rays, wavelength_nm, out);
+    by_state(motion, rays.size(), [&](std::size_t i) { return rays[i].ray.time; },
+             [&](const LensKind& lens, const auto& members) {
+                 std::vector<Reprojection> found(members.size());
+                 std::get<ExactLens>(lens).reproject(taken(rays, members), taken(wavelength_nm, members),
+                                                     found);
+                 for (std::size_t i = 0; i < members.size(); ++i) out[members[i]] = found[i];
+             });
+}
+
+}  // namespace dg
