@@ -23,6 +23,15 @@ def test_blur_is_the_mean_of_still_frames(name):
     assert disagreement(frozen(case, BATCHES, MOMENTS * SAMPLES), wanted) != []
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", motion_scenes.SLOW)
+def test_blur_is_the_mean_of_still_frames_through_a_traced_lens(name):
+    case = motion_scenes.SLOW[name]()
+    wanted = mean_of_stills(case, BATCHES, MOMENTS, SAMPLES)
+    assert disagreement(blurred(case, BATCHES, MOMENTS * SAMPLES), wanted) == []
+    assert disagreement(frozen(case, BATCHES, MOMENTS * SAMPLES), wanted) != []
+
+
 @pytest.mark.parametrize("name", motion_files.ALL)
 def test_what_a_file_animates_is_blurred(name, tmp_path):
     case = motion_files.file_case(name, tmp_path)
