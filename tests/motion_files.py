@@ -263,16 +263,13 @@ ALL: dict[str, Callable[[], Builder]] = {
     "morph": morphed,
     "materials": materials,
     "coat and lamp": coated,
-}
-#: of what is not blurred yet
-LATER: dict[str, Callable[[], Builder]] = {
     "camera": camera,
 }
 
 
 def file_case(name: str, folder: Path) -> Case:
     """The file as read at the time of the frame; still frames as read at theirs."""
-    b = (ALL | LATER)[name]()
+    b = ALL[name]()
     if "cameras" not in b.json:
         b.add("cameras", {"type": "perspective", "perspective": {"yfov": YFOV}})
         b.node(camera=0, name="eye")
