@@ -1,6 +1,7 @@
 // embree_api.h -- Embree 3.13 or 4 under one set of names: single rays, the context that travels
 // with them, and owners of handles. For the files embree*.cpp of this room only.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <type_traits>
 
@@ -15,6 +16,14 @@
 #endif
 
 namespace dg::embree {
+
+/// Embree takes no others: no NaN, nothing infinite, and nothing at which its own numbers overflow.
+inline bool is_traceable(const RTCRay& ray) {
+    constexpr float kFar = 1e18f;
+    return std::abs(ray.org_x) + std::abs(ray.org_y) + std::abs(ray.org_z) +
+               std::abs(ray.dir_x) + std::abs(ray.dir_y) + std::abs(ray.dir_z) <
+           kFar;
+}
 
 #if DG_EMBREE_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;

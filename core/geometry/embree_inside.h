@@ -1,5 +1,7 @@
 // embree_inside.h -- user geometries of one primitive: a mesh that is traced in its own space.
 #pragma once
+#include <limits>
+
 #include "geometry/embree_device.h"
 
 namespace dg::embree {
@@ -17,6 +19,14 @@ RTCRay transformed(const RTCRay& ray, const Affine<Real>& m) {
     local.org_x = float(o.x), local.org_y = float(o.y), local.org_z = float(o.z);
     local.dir_x = float(d.x), local.dir_y = float(d.y), local.dir_z = float(d.z);
     return local;
+}
+
+/// A ray that begins behind everything.
+inline RTCRay nowhere(RTCRay ray) {
+    ray.org_x = ray.org_y = ray.org_z = 0;
+    ray.dir_x = ray.dir_y = ray.dir_z = 1;
+    ray.tnear = std::numeric_limits<float>::infinity();
+    return ray;
 }
 
 /// The context of a query inside, which tells hits and filters the instance.

@@ -18,8 +18,10 @@ class MovingMesh {
     std::uint32_t id;  // of the instance
 
     bool near(const RTCRay& ray) const;
+    /// Where the transform has no inverse at the time of the ray, a ray that meets nothing.
     RTCRay to_local(const RTCRay& ray) const {
-        return transformed(ray, inverse(motion_.at(ray.time)));
+        const RTCRay local = transformed(ray, inverse(motion_.at(ray.time)));
+        return is_traceable(local) ? local : nowhere(ray);
     }
     Box box() const;  // at all times
     unsigned steps() const { return unsigned(boxes_.size()); }

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from .checks import given_up, matrix
+from .checks import given_matrix, given_up
 from .errors import InputError
 from .motion import Dynamic, Keys, Spin
 from .pieces import MAX_BREAKS
@@ -73,7 +73,7 @@ class Moving:
             return instance.transform
         begin, end = self.interval
         if begin == end:
-            return matrix(dynamic.at(begin), _where(instance, index))
+            return given_matrix(dynamic.at(begin), _where(instance, index))
         if isinstance(dynamic, Keys | Spin):  # as they were meant, without a key too many
             return dynamic.motion
         return self._resampled(dynamic, instance, index)
@@ -81,16 +81,16 @@ class Moving:
     def _resampled(self, dynamic: Dynamic, instance: Instance, index: int) -> _core.Motion:
         if instance.mesh not in self._corners:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
-        many = len(dynamic.breaks(*self.interval))
-        if many > self._most:
-            self._crowded.append((_where(instance, index), many))
+        box, where = self._corners[instance.mesh], _where(instance, index)
         try:
-            box = self._corners[instance.mesh]
-            return resample_transform(dynamic, *self.interval, box, self._most)
+            many = len(dynamic.breaks(*self.interval))
+            if many > self._most:
+                self._crowded.append((where, many))
+            return resample_transform(dynamic, *self.interval, box, self._most, where)
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f"{_where(instance, index)}: transform: {error}") from None
+            raise InputError(f"{where}: transform: {error}") from None
 
     def finish(self) -> None:
         """Says once what has more keys than can be shown."""

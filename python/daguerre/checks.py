@@ -81,8 +81,11 @@ def given_up(values: NDArray[Any]) -> NDArray[Any]:
 
 def matrix(transform: Any, where: str) -> NDArray[np.float64]:
     """A finite transform (4, 4); None is the identity."""
-    if transform is None:
-        return np.eye(4)
+    return np.eye(4) if transform is None else given_matrix(transform, where)
+
+
+def given_matrix(transform: Any, where: str) -> NDArray[np.float64]:
+    """A finite transform (4, 4)."""
     numbers = to_numbers(transform, where, "transform", "shape (4, 4)").astype(np.float64)
     if numbers.shape != (4, 4):
         raise InputError(f"{where}: transform: wanted shape (4, 4), got {numbers.shape}")

@@ -26,6 +26,9 @@ FloatArray = NDArray[np.float64]
 OF_MATRICES = ("decomposed", "linear", "twist", "slerp")
 OF_NUMBERS = ("linear", "step")
 MAX_KEYS = 1_000_000
+#: Far beyond any shot: more is a mistake, and doubles would lose the digits of a shutter or a turn.
+MAX_TIME = 1e12  # s
+MAX_SPEED = 1e9  # revolutions per second
 
 
 class Dynamic(Protocol):
@@ -151,7 +154,7 @@ def keys(
         InputError: Something else was given; the message names the key.
     """
     listed = _pairs(pairs)
-    times = np.array([number(t, f"keys[{i}]: time", error=InputError) for i, (t, _) in listed])
+    times = np.array([_time(t, f"keys[{i}]: time") for i, (t, _) in listed])
     late = np.flatnonzero(np.diff(times) <= 0)
     if late.size:
         i = int(late[0])
@@ -202,8 +205,14 @@ def spin(
     base = transform if isinstance(transform, Keys) else matrix(transform, "spin")
     if isinstance(base, Keys) and not base.moves_matrices:
         raise InputError("spin: transform: wanted keys of matrices (4, 4), got keys of others")
-    rate = number(revolutions_per_second, "spin: revolutions_per_second", error=InputError)
-    zero = number(time, "spin: time", error=InputError)
+    rate = number(
+        revolutions_per_second,
+        "spin: revolutions_per_second",
+        -MAX_SPEED,
+        MAX_SPEED,
+        error=InputError,
+    )
+    zero = _time(time, "spin: time")
     made = Spin(direction, rate, _point(center, "spin: center"), base, zero)
     _in_core(made, "spin")
     return made
@@ -282,6 +291,10 @@ def _value(value: Any, where: str, interpolation: str | None) -> Any:
     if isinstance(value, tuple | list) and numbers.ndim == 1:
         return tuple(numbers.tolist())
     return matrix(value, where) if numbers.shape == (4, 4) else frozen(numbers)
+
+
+def _time(value: Any, where: str) -> float:
+    return number(value, where, -MAX_TIME, MAX_TIME, error=InputError)
 
 
 def _shape(value: Any) -> tuple[int, ...]:

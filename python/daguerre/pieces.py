@@ -34,8 +34,9 @@ def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float
 
 def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> list[float]:
     """The breaks inside of an interval; of more than ``most`` every second, third, ..."""
-    breaks = dynamic.breaks(open_s, close_s)
-    return [float(t) for t in breaks[:: max(1, math.ceil(len(breaks) / most))]]
+    found = np.unique(np.asarray(dynamic.breaks(open_s, close_s), np.float64))
+    inside = found[(open_s < found) & (found < close_s)]
+    return [float(t) for t in inside[:: max(1, math.ceil(len(inside) / most))]]
 
 
 class Pieces(Generic[T]):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
+from .checks import given_matrix
 from .flat_values import Flat, changes, flat
 from .motion import Dynamic
 from .pieces import MAX_BREAKS, MAX_KEYS, Pieces, some_breaks
@@ -62,8 +63,8 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
 
 
 def _near(value: Flat, a: Flat, b: Flat, s: float, limits: FloatArray) -> bool:
-    if not value.rest == a.rest == b.rest:
-        return False
+    if not value.rest == a.rest == b.rest or len(limits) != len(value.numbers):
+        return False  # a part came, or went
     gap = np.abs(value.numbers - ((1 - s) * a.numbers + s * b.numbers))
     return bool((gap <= limits).all())
 
@@ -74,6 +75,7 @@ def resample_transform(
     close_s: float,
     corners: FloatArray,
     most_breaks: int = MAX_BREAKS,
+    where: str = "motion",
 ) -> _core.Motion:
     """A transform over time, decomposed between its keys.
 
@@ -86,9 +88,10 @@ def resample_transform(
         close_s: Its end.
         corners: Of the box around what is transformed, shape (8, 3), m.
         most_breaks: Of more breaks only so many are looked at.
+        where: For complaints.
     """
     points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T
-    pieces = Pieces(dynamic, _double, open_s, close_s, most_breaks)
+    pieces = Pieces(dynamic, lambda m: given_matrix(m, where), open_s, close_s, most_breaks)
     first = np.stack(pieces.first())
     if (np.abs(first - first[0]) <= _STILL * np.abs(first).max()).all():
         return _core.Motion.still(first[0])
@@ -105,10 +108,6 @@ def resample_transform(
 
     keys = pieces.keys(fits)
     return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))
-
-
-def _double(transform: Any) -> FloatArray:
-    return np.asarray(transform, np.float64)
 
 
 def resample_shown(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, float]]:

@@ -276,9 +276,12 @@ class Scene:
         index = len(self.instances)
         if (motion := _dynamic(transform)) is not None:
             self.motion.instances[index] = motion
+        visible = self._now(shown)
+        if not isinstance(visible, bool | np.bool_ | int | float):
+            raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
         if (presence := _dynamic(shown)) is not None:
             self.motion.shown[index] = presence
-        self.instances.append(Instance(mesh, material, world, name, bool(self._now(shown))))
+        self.instances.append(Instance(mesh, material, world, name, bool(visible)))
         if name:
             self.nodes.setdefault(name, []).append(index)
         return index

@@ -85,12 +85,21 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
     """From the first light on the first line to the last on the last one, s of scene time.
 
     It stands around ``time``, unless ``shutter_offset`` says when it opens.
+
+    Raises:
+        UsageError: As of ``core_shutter``; or the time is no number, or so large that doubles
+            cannot tell the opening from the closing.
     """
     duration = core_shutter(camera, resolution).duration_s
-    if camera.shutter_offset is None:
-        return time - duration / 2, time + duration / 2
-    begin = time + camera.shutter_offset / camera.fps
-    return begin, begin + duration
+    begin = number(time, "scene: time") - duration / 2
+    if camera.shutter_offset is not None:
+        begin = time + camera.shutter_offset / camera.fps
+    end = begin + duration
+    if abs(end - begin - duration) > 0.01 * duration:
+        raise UsageError(
+            f"scene: time: wanted one at which {duration:g} s can be told apart, got {time:g} s"
+        )
+    return begin, end
 
 
 def facts(camera: Camera, resolution: tuple[int, int]) -> dict[str, Any]:
