@@ -1,6 +1,8 @@
 // embree_test.cpp -- hits against closed forms, on both paths: flattened and through an
 // instance.
 #include <doctest/doctest.h>
+
+#include "math/hash.h"
 #include <sys/mman.h>
 
 #include <random>
@@ -141,6 +143,46 @@ TEST_CASE("spheres: entry, exit from inside, miss") {
     CHECK(hit->t == doctest::Approx(0.5).epsilon(1e-6));
     CHECK_FALSE(tracer->intersect(make_ray({0, 1.01f, 5}, {0, 0, -1})).has_value());
     CHECK(tracer->occluded(make_ray({0, 0.99f, 5}, {0, 0, -1})));
+}
+
+TEST_CASE("spheres that move are met where they are at the time of the ray, and nowhere else") {
+    std::vector<Keyed<Sphere>> spheres;
+    for (int i = 0; i < 5; ++i) {
+        Keyed<Sphere> keys;
+        for (int k = 0; k < 4; ++k) {
+            const Vec3f center{float(hash_uniform(1, 4 * i + k)) * 6, float(i) * 3,
+                               float(hash_uniform(2, 4 * i + k)) * 6};
+            keys.times.push_back(k == 2 ? 0.3f : float(k) / 3);  // a jump at 1/3, nearly
+            keys.values.push_back({center, 0.1f + float(hash_uniform(3, 4 * i + k))});
+        }
+        std::ranges::sort(keys.times);
+        spheres.push_back(keys);
+    }
+    spheres.push_back({{0}, {{{0, -9, 0}, 1}}});  // one that stays
+    const auto tracer = Intersector::build({}, {}, spheres, {});
+    for (int i = 0; i < 3000; ++i) {
+        const std::uint32_t which = i % 6;
+        const float time = float(hash_uniform(4, i));
+        const Sphere now = spheres[which].at(time);
+        const double angle = 2 * kPiD * hash_uniform(5, i);
+        const Vec3f toward{float(std::cos(angle)), 0, float(std::sin(angle))};
+        Ray ray = make_ray(now.center - toward * 20, toward);
+        ray.time = time;
+        const auto hit = tracer->intersect(ray);
+        REQUIRE(hit.has_value());
+        CHECK(hit->instance == RawHit::kSphere);
+        CHECK(hit->primitive == which);
+        CHECK(hit->t == doctest::Approx(20 - now.radius).epsilon(1e-5));
+        CHECK(tracer->occluded(ray));
+        ray.t_max = 19.9f - now.radius;
+        CHECK_FALSE(tracer->occluded(ray));
+        ray = make_ray(now.center, toward);
+        ray.time = time;
+        CHECK(tracer->intersect(ray)->t == doctest::Approx(now.radius).epsilon(1e-5));
+        ray = make_ray(now.center - toward * 20 + Vec3f{0, 1.01f * now.radius, 0}, toward);
+        ray.time = time;
+        CHECK_FALSE(tracer->intersect(ray).has_value());
+    }
 }
 
 TEST_CASE("an empty scene is never hit") {

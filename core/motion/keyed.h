@@ -45,7 +45,8 @@ struct Keyed {
 template <typename T>
 Keyed<T> over(const Keyed<T, double>& keys, double open, double close) {
     Keyed<T> cut{{0}, {keys.at(open)}};
-    if (!(close > open) || close <= keys.times.front() || open >= keys.times.back()) return cut;
+    if (!keys.moves() || !(close > open)) return cut;
+    if (close <= keys.times.front() || open >= keys.times.back()) return cut;
     const auto add = [&](double t, T value) {
         cut.times.push_back(float((t - open) / (close - open)));
         cut.values.push_back(std::move(value));
