@@ -99,6 +99,12 @@ ChiefRays::ChiefRays(const LensKind& kind) {
     table_[0].angle = table_[0].offset = 0;
 }
 
+ChiefRaysOverTime::ChiefRaysOverTime(const Camera& camera)
+    : times_(camera.lens_motion.times) {
+    if (times_.empty()) states_.emplace_back(camera.lens);
+    for (const LensKind& lens : camera.lens_motion.lenses) states_.emplace_back(lens);
+}
+
 /// Cubic between radii (Catmull and Rom), linear past the last one.
 ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
     if (film_distance_mm_ > 0) return {std::atan2(mm, film_distance_mm_), 0, 0};

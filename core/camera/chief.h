@@ -42,12 +42,38 @@ class ChiefRays {
     };
 
   private:
+    friend class ChiefRaysOverTime;
+    explicit ChiefRays(double film_distance_mm) : film_distance_mm_(film_distance_mm) {}
     Meridional at_radius(double mm) const;
     std::optional<double> solve(double outward, double z, double w) const;
 
     double film_distance_mm_ = 0;    // of an ideal lens, else 0
     std::vector<Meridional> table_;  // of an exact one, by film radius
     double step_mm_ = 0;
+};
+
+/// Those of a camera whose lens changes while the shutter is open: of the lens that draws
+/// at each time.
+class ChiefRaysOverTime {
+  public:
+    explicit ChiefRaysOverTime(const Camera& camera);
+
+    /// Calls use(chief rays) with those of `time`; a lens that stays as it is pays
+    /// nothing.
+    template <typename Use>
+    decltype(auto) with_lens(float time, const Use& use) const {
+        if (times_.empty()) return use(states_.front());
+        const KeyPlace p = place_among(times_, time);
+        const ChiefRays &a = states_[p.left], &b = states_[p.right];
+        if (a.film_distance_mm_ == 0)
+            return use(p.share < 0.5 ? a : b);  // as exact lenses draw
+        return use(ChiefRays(a.film_distance_mm_ +
+                             p.share * (b.film_distance_mm_ - a.film_distance_mm_)));
+    }
+
+  private:
+    std::vector<float> times_;  // empty: one state
+    std::vector<ChiefRays> states_;
 };
 
 }  // namespace dg

@@ -20,15 +20,17 @@ class View {
         : scene_(frame.scene),
           camera_(frame.camera),
           settings_(settings),
-          chief_(frame.camera.lens) {}
+          chief_(frame.camera) {}
 
     float time_at(Vec2d px) const { return float(settings_.shutter.opens_at(px)); }
     Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
 
     Ray ray(Vec2d px) const {
-        const ChiefRay chief = chief_.at(settings_.sensor.mm_from_px(px));
         Ray ray;
         ray.time = time_at(px);
+        const Vec2d film = settings_.sensor.mm_from_px(px) + shift(ray.time);
+        const ChiefRay chief = chief_.with_lens(
+            ray.time, [&](const ChiefRays& lens) { return lens.at(film); });
         const Affine3d world = pose(ray.time);
         ray.origin = to_float(world.point(chief.origin));
         ray.direction = to_float(normalize(world.vector(chief.direction)));
@@ -38,15 +40,19 @@ class View {
     /// Where something that is seen lies on the film at `time`.
     std::optional<Vec2d> px_of(const Truth::Seen& seen, float time) const {
         const Affine3d camera = inverse(pose(time));
-        std::optional<Vec2d> film;
-        if (!seen.surface) {
-            const Vec3f world = scene_.world_from_sky(seen.direction, time);
-            film = chief_.film_point(camera.vector(to_double(world)), 0);
-        } else if (const auto point = scene_.follow(seen.hit, seen.direction, time)) {
-            film = chief_.film_point(camera.point(*point));
+        std::optional<Vec3d> point;
+        if (seen.surface) {
+            point = scene_.follow(seen.hit, seen.direction, time);
+            if (point) point = camera.point(*point);
+        } else {
+            point = camera.vector(to_double(scene_.world_from_sky(seen.direction, time)));
         }
+        if (!point) return std::nullopt;
+        const double w = seen.surface ? 1 : 0;
+        const auto film = chief_.with_lens(
+            time, [&](const ChiefRays& lens) { return lens.film_point(*point, w); });
         if (!film) return std::nullopt;
-        return settings_.sensor.px_from_mm(*film);
+        return settings_.sensor.px_from_mm(*film - shift(time));
     }
 
     /// Where it lands at the moment of the line on which it lands; `px` is a first guess.
@@ -62,6 +68,13 @@ class View {
     }
 
   private:
+    /// Of the film, mm, beside what the sensor has anyway.
+    Vec2d shift(float time) const {
+        if (camera_.setting.values.empty()) return {};
+        const Vec2f mm = camera_.setting.at(time).film_shift_mm;
+        return {mm.x, mm.y};
+    }
+
     /// As fast as the lines, or faster. Before the first line and past the last one time
     /// is held, so it lands there or crosses some line in between.
     std::optional<Vec2d> bisected(const Truth::Seen& seen) const {
@@ -82,7 +95,7 @@ class View {
     const Scene& scene_;
     const Camera& camera_;
     const RenderSettings& settings_;
-    ChiefRays chief_;
+    ChiefRaysOverTime chief_;
 };
 
 Vec2d centre(const FilmLayout& region, std::size_t i) {
