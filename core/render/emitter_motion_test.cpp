@@ -157,6 +157,19 @@ TEST_CASE("an area light that deforms, grows out of nothing, and is there for a 
     check_all(d);
 }
 
+TEST_CASE("an area light that is pressed flat is met by no ray, and lights nothing") {
+    SceneDescription d = floor_scene();
+    add_lamp(d, {9, 9, 9}, true);
+    Affine3d whole = turned(0, {0.5, 1, 0}), flat = whole;
+    flat.y = {};  // a flat lamp keeps its area
+    d.instances[1].motion = std::make_shared<const Motion>(
+        Motion::keys(std::array{kOpen, 10.2, kClose}, std::array{whole, flat, flat}, Interpolation::linear));
+    const SampleMoments bsdf = moving(d, Strategy::bsdf, 160000);
+    CHECK(bsdf.mean > 0.1);
+    CHECK(welch_p_value(bsdf, moving(d, Strategy::light, 40000)) > 1e-4);
+    CHECK(welch_p_value(bsdf, moving(d, Strategy::mis, 40000)) > 1e-4);
+}
+
 TEST_CASE("an area light that dims, is switched off, and on again in another colour") {
     SceneDescription d = floor_scene();
     add_lamp(d, {0, 0, 0}, true);
