@@ -197,6 +197,21 @@ def test_through_an_exact_lens_motion_is_that_of_its_chief_rays() -> None:
     np.testing.assert_allclose(session.frame().motion, expected, atol=1e-3)
 
 
+@pytest.mark.parametrize("lens", ["double-gauss-50mm-f2", "wide-angle-28mm-f3.5"])
+def test_in_focus_means_over_the_samples_agree(lens: str) -> None:
+    camera = dg.Camera(lens=lens, focus_distance=4.0, shutter_time=0.0)
+    scene = wall(at(z=-4))
+    options = {"resolution": SIZE, "spp": 256, "filter": "box", "max_depth": 1}
+    means = dg.render(scene, camera, aovs=True, **options).aovs
+    exact = dg.render(scene, camera, gt_time="mid", **options).aovs
+    for name in ("P.X", "P.Y"):
+        pixel = np.ptp(exact[name]) / (SIZE[name == "P.Y"] - 1)
+        error = (means[name] - exact[name]) / pixel
+        # A pixel of 256 stratified samples knows its middle to far less than sqrt(1 / 12 / 256).
+        assert np.abs(error).max() < 0.02
+        assert np.abs(error.mean()) < 2e-3
+
+
 def test_a_vertex_animation_is_followed_inside_its_triangles() -> None:
     # The wall stretches to the right, by half in a second: x -> x (1 + t / 2).
     corners, faces = scenes.quad(4)
@@ -320,5 +335,7 @@ def test_channels_of_the_command_line_and_of_merged_passes(
 def test_what_is_no_moment_is_refused_by_name() -> None:
     with pytest.raises(UsageError, match="gt_time: wanted open, mid, close, got 'opn'"):
         truth(drifting((0, 0, 0)), gt_time="opn")
+    with pytest.raises(UsageError, match=r"gt_time: wanted open, mid, close, got \['mid'\]"):
+        truth(drifting((0, 0, 0)), gt_time=["mid"])
     assert main(["render", "s.glb", "-o", "a.exr", "--gt-time", "late", "--aov", "N"]) == 2
     assert main(["render", "s.glb", "-o", "a.exr", "--gt-time", "mid"]) == 2

@@ -44,7 +44,8 @@ class Frame:
         alpha: Share of the samples that hit something, shape (H, W); by default 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         samples: Samples per pixel, shape (H, W).
-        aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``.
+        aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
+            with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
         metadata: Facts of camera and render; see ``daguerre.io.exr``.
         bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
     """

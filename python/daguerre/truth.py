@@ -18,6 +18,7 @@ from . import shutter
 from .build import build
 from .camera import Camera
 from .camera_setup import set_up
+from .checks import short
 from .errors import UsageError, suggest
 from .scene import Scene
 
@@ -39,10 +40,10 @@ def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") 
     """
     if gt_time is None:
         return "mid" if wanted else None
-    if gt_time not in GT_TIMES:
+    if str(gt_time) not in GT_TIMES:
         known = ", ".join(GT_TIMES)
         raise UsageError(
-            f"{where}: wanted {known}, got {gt_time!r}{suggest(str(gt_time), GT_TIMES)}"
+            f"{where}: wanted {known}, got {short(gt_time)}{suggest(str(gt_time), GT_TIMES)}"
         )
     return gt_time
 
