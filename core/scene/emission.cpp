@@ -99,9 +99,9 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
     hit.time = time;
     hit.front = front;
     if (emission_is_coated(material)) {
-        record.with_placement(time, [&](const Placement& placement) {
-            surface_at(record, placement, primitive, barycentric.x, barycentric.y, hit);
-        });
+        std::optional<Placement> made;
+        surface_at(record, record.placement(time, made), primitive, barycentric.x, barycentric.y,
+                   hit);
         hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
     } else {
         interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);

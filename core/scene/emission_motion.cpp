@@ -78,10 +78,10 @@ LightBounds bounds_of_way(const InstanceRecord& record, const Mesh& mesh) {
 
 bool place(const InstanceRecord& record, TriangleLight& light, float time) {
     if (!record.is_shown(time)) return false;
-    return record.with_placement(time, [&](const Placement& now) {
-        put(record, now, light);
-        return now.world_from_local.determinant() != 0;  // or no ray would meet it
-    });
+    std::optional<Placement> made;
+    const Placement& now = record.placement(time, made);
+    put(record, now, light);
+    return now.world_from_local.determinant() != 0;  // or no ray would meet it
 }
 
 void bound_moving_triangles(const InstanceRecord& record, const Mesh& mesh,

@@ -183,11 +183,11 @@ std::array<Vec3f, 3> corners_at(const InstanceRecord& r, const Placement& place,
 
 Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v, float time) {
     const Corners t = corners_of(r, primitive);
-    return r.with_placement(time, [&](const Placement& place) {
-        const Vec3d a = r.position(place, t.a);
-        const Vec3d e1 = r.position(place, t.b) - a, e2 = r.position(place, t.c) - a;
-        return place.world_from_local.point(a + e1 * double(u) + e2 * double(v));
-    });
+    std::optional<Placement> made;
+    const Placement& place = r.placement(time, made);
+    const Vec3d a = r.position(place, t.a);
+    const Vec3d e1 = r.position(place, t.b) - a, e2 = r.position(place, t.c) - a;
+    return place.world_from_local.point(a + e1 * double(u) + e2 * double(v));
 }
 
 void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, float u,

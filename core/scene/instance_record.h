@@ -1,6 +1,8 @@
 // instance_record.h -- what the loop needs to know of an instance, in one place, and how
 // a hit becomes a surface point.
 #pragma once
+#include <optional>
+
 #include "geometry/hit.h"
 #include "geometry/intersector.h"
 #include "material/material.h"
@@ -54,11 +56,9 @@ struct InstanceRecord {
         return *now * (1 - p.step_share) + now[vertex_count] * p.step_share;
     }
 
-    /// Calls use(placement) with that of `time`; what stands still pays nothing.
-    template <typename Use>
-    decltype(auto) with_placement(float time, const Use& use) const {
-        if (!changes()) return use(still);
-        return use(at(time));
+    /// That of a time. What stands still pays nothing; for all else `made` keeps it.
+    const Placement& placement(float time, std::optional<Placement>& made) const {
+        return changes() ? made.emplace(at(time)) : still;
     }
 };
 

@@ -174,11 +174,10 @@ void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) con
     hit.primitive = raw.primitive;
     hit.instance = raw.instance;
     const InstanceRecord& record = records_[raw.instance];
-    record.with_placement(ray.time, [&](const Placement& placement) {
-        surface_at(record, placement, raw.primitive, raw.u, raw.v, hit);
-        if (!ray.cone.empty())
-            set_footprint(record, placement, ray.cone.after(raw.t).width, hit);
-    });
+    std::optional<Placement> made;
+    const Placement& placement = record.placement(ray.time, made);
+    surface_at(record, placement, raw.primitive, raw.u, raw.v, hit);
+    if (!ray.cone.empty()) set_footprint(record, placement, ray.cone.after(raw.t).width, hit);
     hit.front = dot(hit.ng, hit.wo) > 0;
 }
 
@@ -206,9 +205,8 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
 
 float Scene::curvature(const SurfaceHit& hit) const {
     const InstanceRecord& record = records_[hit.instance];
-    const float c = record.with_placement(hit.time, [&](const Placement& placement) {
-        return mean_curvature(record, placement, hit.primitive);
-    });
+    std::optional<Placement> made;
+    const float c = mean_curvature(record, record.placement(hit.time, made), hit.primitive);
     return hit.front ? c : -c;
 }
 
