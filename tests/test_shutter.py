@@ -104,6 +104,14 @@ def test_each_type_exposes_the_lines_in_its_own_order() -> None:
         ({"rolling_shutter": dg.RollingShutter("top", 1, 1)}, "got both"),
         ({"rolling_shutter": dg.RollingShutter("top", -1)}, "line_time: wanted"),
         (
+            {"lens": "tessar-50mm-f2.8", "aperture_image": np.ones((4, 4)), "shutter_type": "leaf"},
+            "shutter_type leaf: the iris of an exact lens wanted blades",
+        ),
+        (
+            {"sensor_size": dg.keys([(-1, (36.0, 24.0)), (1, (18.0, 12.0))])},
+            "sensor_size: cannot change while the shutter is open",
+        ),
+        (
             {"rolling_shutter": dg.RollingShutter("top", 1), "shutter_type": "leaf"},
             "a leaf shutter exposes all lines at once",
         ),

@@ -66,6 +66,11 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
         raise UsageError("camera: wanted either f_stop or aperture_diameter, got both")
     if camera.focus_from not in ("pupil", "sensor"):
         raise UsageError(f"camera: focus_from: wanted pupil or sensor, got {camera.focus_from!r}")
+    if model == "exact" and camera.aperture_image is not None and camera.shutter_type == "leaf":
+        raise UsageError(
+            "camera: shutter_type leaf: the iris of an exact lens wanted blades, "
+            "got an aperture_image"
+        )
     if camera.blades and camera.aperture_image is not None:
         raise UsageError("camera: wanted either blades or aperture_image, got both")
     if model == "exact" and camera.natural_vignetting:

@@ -67,12 +67,14 @@ def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
     """Which parameters change in an interval, and what identifies how; for metadata and hashes."""
     if not end > begin:
         return {}
-    times = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
+    even = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
     found: dict[str, Any] = {}
     for name, dynamic in camera.motion.items():
+        breaks = [float(t) for t in dynamic.breaks(begin, end)]
+        times = sorted({*even, *breaks[: 16 * _LOOKS]})
         values = [np.asarray(dynamic.at(t)).tolist() for t in times]
         if any(value != values[0] for value in values):
-            text = json.dumps([values, [float(t) for t in dynamic.breaks(begin, end)]])
+            text = json.dumps([values, breaks])
             found[name] = {
                 "open": values[0],
                 "close": values[-1],

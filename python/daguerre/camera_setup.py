@@ -74,10 +74,8 @@ def set_up(
     pose = pose_over(camera, begin, end)
     world = pose.at(0.5)
     facts = motion_facts(camera, begin, end)
-    moving, camera = (
-        camera,
-        camera.at(0.5 * (begin + end)),
-    )  # what is said of the camera is said of mid-shutter
+    moving = camera  # what is said of a camera is said of mid-shutter
+    camera = moving.at(0.5 * (begin + end))
     size = frame_size(camera, resolution)
     check(camera, model, prescription=lens is not None)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
