@@ -19,6 +19,7 @@ OpeningCurve::OpeningCurve(std::vector<double> u, std::vector<double> s)
     : u_(std::move(u)), s_(std::move(s)), area_(u_.size()) {
     for (std::size_t i = 1; i < u_.size(); ++i)
         area_[i] = area_[i - 1] + 0.5 * (s_[i - 1] + s_[i]) * (u_[i] - u_[i - 1]);
+    box_ = area_.back() == 1;
 }
 
 OpeningCurve OpeningCurve::trapezoid(double efficiency) {
@@ -61,7 +62,7 @@ double OpeningCurve::at(double u) const {
 // Within a segment the density is linear from a to b, so its CDF is a parabola. The form of its root is
 // that which keeps its digits: x = r (a + b) / (a + sqrt(a^2 (1 - r) + b^2 r)).
 // Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 4th ed., section 2.3.2.
-double OpeningCurve::sample(double r) const {
+double OpeningCurve::draw(double r) const {
     const double wanted = r * mean();
     const auto above = std::upper_bound(area_.begin(), area_.end(), wanted);
     const std::size_t i = std::min<std::size_t>(above - area_.begin(), area_.size() - 1);

@@ -28,13 +28,15 @@ class OpeningCurve {
     double at(double u) const;
     double mean() const { return area_.back(); }
     /// u drawn with density s(u) / mean, from r in [0,1).
-    double sample(double r) const;
+    double sample(double r) const { return box_ ? r : draw(r); }
     std::span<const double> places() const { return u_; }
     std::span<const double> values() const { return s_; }
 
   private:
     OpeningCurve(std::vector<double> u, std::vector<double> s);
+    double draw(double r) const;
     std::vector<double> u_, s_, area_;   // area_[i]: integral of s up to u_[i]
+    bool box_;                           // as it is most of the time: nothing to invert
 };
 
 /// The side of the upright picture that is exposed first; none: all at once.
