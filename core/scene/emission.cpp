@@ -99,7 +99,7 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
     hit.time = time;
     hit.front = front;
     if (emission_is_coated(material)) {
-        std::optional<Placement> made;
+        PlacementRoom made;
         surface_at(record, record.placement(time, made), primitive, barycentric.x, barycentric.y,
                    hit);
         hit.wo = toward.value_or(front ? hit.ng : -hit.ng);

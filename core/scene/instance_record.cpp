@@ -183,7 +183,7 @@ std::array<Vec3f, 3> corners_at(const InstanceRecord& r, const Placement& place,
 
 Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v, float time) {
     const Corners t = corners_of(r, primitive);
-    std::optional<Placement> made;
+    PlacementRoom made;
     const Placement& place = r.placement(time, made);
     const Vec3d a = r.position(place, t.a);
     const Vec3d e1 = r.position(place, t.b) - a, e2 = r.position(place, t.c) - a;

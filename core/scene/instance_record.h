@@ -1,8 +1,6 @@
 // instance_record.h -- what the loop needs to know of an instance, in one place, and how
 // a hit becomes a surface point.
 #pragma once
-#include <optional>
-
 #include "geometry/hit.h"
 #include "geometry/intersector.h"
 #include "material/material.h"
@@ -20,6 +18,14 @@ struct Placement {
     // Of a mesh that deforms: where the arrays of the step begin, and the share of the next step.
     std::size_t first_vertex = 0;
     float step_share = 0;
+};
+
+/// Room for one; nothing is cleared first (an optional is, by gcc: bug 86173).
+struct PlacementRoom {
+    union {
+        Placement placement;
+    };
+    PlacementRoom() {}  // NOLINT: left as it is
 };
 
 struct InstanceRecord {
@@ -57,8 +63,8 @@ struct InstanceRecord {
     }
 
     /// That of a time. What stands still pays nothing; for all else `made` keeps it.
-    const Placement& placement(float time, std::optional<Placement>& made) const {
-        return changes() ? made.emplace(at(time)) : still;
+    const Placement& placement(float time, PlacementRoom& made) const {
+        return changes() ? (made.placement = at(time)) : still;
     }
 };
 

@@ -174,7 +174,7 @@ void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) con
     hit.primitive = raw.primitive;
     hit.instance = raw.instance;
     const InstanceRecord& record = records_[raw.instance];
-    std::optional<Placement> made;
+    PlacementRoom made;
     const Placement& placement = record.placement(ray.time, made);
     surface_at(record, placement, raw.primitive, raw.u, raw.v, hit);
     if (!ray.cone.empty()) set_footprint(record, placement, ray.cone.after(raw.t).width, hit);
@@ -205,7 +205,7 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
 
 float Scene::curvature(const SurfaceHit& hit) const {
     const InstanceRecord& record = records_[hit.instance];
-    std::optional<Placement> made;
+    PlacementRoom made;
     const float c = mean_curvature(record, record.placement(hit.time, made), hit.primitive);
     return hit.front ? c : -c;
 }
