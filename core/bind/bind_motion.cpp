@@ -34,11 +34,25 @@ dg::Motion from_keys(const Times& times, const Matrices& matrices, const std::st
     return dg::Motion::keys({times.data(), times.size()}, keys, interpolation(how), vec(pivot));
 }
 
-auto matrix_at(const dg::Motion& motion, double time) {
+std::array<double, 16> matrix_at(const dg::Motion& motion, double time) {
     const dg::Affine3d m = motion.at(time);
-    return dg::bind::to_numpy<double>({m.x.x, m.y.x, m.z.x, m.origin.x,
-                                       m.x.y, m.y.y, m.z.y, m.origin.y,
-                                       m.x.z, m.y.z, m.z.z, m.origin.z, 0, 0, 0, 1}, {4, 4});
+    return {m.x.x, m.y.x, m.z.x, m.origin.x, m.x.y, m.y.y, m.z.y, m.origin.y,
+            m.x.z, m.y.z, m.z.z, m.origin.z, 0, 0, 0, 1};
+}
+
+auto one_matrix(const dg::Motion& motion, double time) {
+    const auto m = matrix_at(motion, time);
+    return dg::bind::to_numpy<double>({m.begin(), m.end()}, {4, 4});
+}
+
+auto matrices(const dg::Motion& motion, const Times& times) {
+    std::vector<double> all;
+    all.reserve(16 * times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const auto m = matrix_at(motion, times(i));
+        all.insert(all.end(), m.begin(), m.end());
+    }
+    return dg::bind::to_numpy(std::move(all), {times.size(), std::size_t(4), std::size_t(4)});
 }
 
 }  // namespace
@@ -60,5 +74,6 @@ void bind_motion(nb::module_& m) {
         .def_prop_ro("moves", &Motion::moves)
         .def("over", &Motion::over, "open"_a, "close"_a,
              "The same with open (s) as time 0 and close as 1; still if it does not move in between.")
-        .def("at", &matrix_at, "time"_a, "(4, 4) at a time, s.");
+        .def("at", &one_matrix, "time"_a, "(4, 4) at a time, s.")
+        .def("many", &matrices, "times"_a, "(T, 4, 4) at times (T,), s.");
 }

@@ -21,7 +21,8 @@ from .scene import Instance, Mesh, Scene, vertices_of
 from .scene_motion import Vertices
 
 FloatArray = NDArray[np.float64]
-#: Keys of a file that are looked at, of all transforms together; few of each are left at least.
+#: Keys of a file that are looked at, of all transforms together; few of each are left at least,
+#: or none where even that is too much work: halving finds what they tell, if less exactly.
 MAX_ALL_BREAKS = 1 << 18
 _MIN_BREAKS = 8
 
@@ -39,8 +40,10 @@ class Moving:
         self._scene, self.interval, self._notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
         self._crowded: list[tuple[str, int]] = []
-        shared = MAX_ALL_BREAKS // max(1, len(scene.motion.instances))
-        self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared))
+        # What hangs at the end of a long chain costs as much as the whole of it.
+        work = sum(getattr(d, "weight", 1) for d in scene.motion.instances.values())
+        shared = MAX_ALL_BREAKS // max(1, work)
+        self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared)) if shared else 0
 
     def vertices(self, index: int) -> Vertices:
         """Those of a mesh: of one moment, (N, ...), or of even steps, (S, N, ...)."""

@@ -12,8 +12,10 @@ import numpy as np
 from .motion import Dynamic
 
 T = TypeVar("T")
-#: Whether ``value`` is near enough to what lies at ``s`` (0 .. 1) between ``a`` and ``b``.
-Fits = Callable[[T, T, float, T], bool]
+#: Values a and b, s (0 .. 1), and the value that what lies at s between them is held against.
+Check = tuple[T, T, float, T]
+#: Whether values are near enough.
+Fits = Callable[[list[Check[T]]], Sequence[bool]]
 
 #: Keys of one value, and how often a piece between two breaks is halved at most.
 MAX_KEYS = 4096
@@ -34,6 +36,8 @@ def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float
 
 def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> list[float]:
     """The breaks inside of an interval; of more than ``most`` every second, third, ..."""
+    if most == 0:
+        return []
     found = np.unique(np.asarray(dynamic.breaks(open_s, close_s), np.float64))
     inside = found[(open_s < found) & (found < close_s)]
     return [float(t) for t in inside[:: max(1, math.ceil(len(inside) / most))]]
@@ -77,12 +81,13 @@ class Pieces(Generic[T]):
 
     def keys(self, fits: Fits[T]) -> list[tuple[float, T]]:
         """Times that do not fall, two equal ones where the value jumps, and the values there."""
-        times = sorted({*self._cuts, *self._halved(fits)})
+        inner = list(self._before)
+        held = fits([(self._left_of(t), self._left_of(t), 0.0, self._known[t]) for t in inner])
+        jumps = {t for t, fit in zip(inner, held, strict=True) if not fit}
         keys: list[tuple[float, T]] = []
-        for time in times:
-            before = self._left_of(time)
-            keys.append((time, before))
-            if time in self._before and not fits(before, before, 0.0, self._known[time]):
+        for time in sorted({*self._cuts, *self._halved(fits)}):
+            keys.append((time, self._left_of(time)))
+            if time in jumps:
                 keys.append((time, self._known[time]))
         return keys
 
@@ -91,21 +96,22 @@ class Pieces(Generic[T]):
         active, found = list(pairwise(self._cuts)), []
         checks: Sequence[float] = FIRST
         for _ in range(min(_MAX_HALVINGS, int(math.log2(MAX_KEYS / len(self._cuts))))):
-            self._look([a + s * (b - a) for a, b in active for s in checks])
-            failing = [span for span in active if not self._fit(*span, fits, checks)]
-            middles = [a + 0.5 * (b - a) for a, b in failing]
-            found += middles
-            active = [
-                half
-                for (a, b), middle in zip(failing, middles, strict=True)
-                for half in ((a, middle), (middle, b))
-            ]
+            spans = [(a, a + 0.5 * (b - a), b) for a, b in self._failing(active, checks, fits)]
+            found += [middle for _, middle, _ in spans]
+            active = [half for a, middle, b in spans for half in ((a, middle), (middle, b))]
             checks = QUARTERS
         return found
 
-    def _fit(self, a: float, b: float, fits: Fits[T], checks: Sequence[float]) -> bool:
-        start, stop = self._known[a], self._left_of(b)
-        return all(fits(start, stop, s, self._known[a + s * (b - a)]) for s in checks)
+    def _failing(
+        self, spans: list[tuple[float, float]], checks: Sequence[float], fits: Fits[T]
+    ) -> list[tuple[float, float]]:
+        """Those spans whose ends do not tell what lies between."""
+        inside = [(a, b, s, a + s * (b - a)) for a, b in spans for s in checks]
+        self._look([time for *_, time in inside])
+        listed = [(self._known[a], self._left_of(b), s, self._known[t]) for a, b, s, t in inside]
+        fit = list(fits(listed))
+        step = len(checks)
+        return [span for i, span in enumerate(spans) if not all(fit[i * step : (i + 1) * step])]
 
     def _left_of(self, time: float) -> T:
         return self._known[self._before.get(time, time)]

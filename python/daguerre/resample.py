@@ -17,7 +17,7 @@ import daguerre._core as _core
 from .checks import given_matrix
 from .flat_values import Flat, changes, flat
 from .motion import Dynamic
-from .pieces import MAX_BREAKS, MAX_KEYS, Pieces, some_breaks
+from .pieces import MAX_BREAKS, MAX_KEYS, Check, Pieces, some_breaks
 
 FloatArray = NDArray[np.float64]
 #: Of the change of a number, or of the radius of a mesh.
@@ -26,7 +26,6 @@ BOUND = 1e-4
 PATH_BOUND = 2e-5
 #: Of the size: what differs by less has not changed but for rounding.
 _STILL = 1e-12
-_ENDS = np.array([0.0, 1.0])
 
 
 def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[float], list[Any]]:
@@ -48,8 +47,8 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     if all(_near(v, first[0], first[0], 0.0, 1e-8 * limits) for v in first):
         return [open_s], [first[0].value]
 
-    def fits(a: Flat, b: Flat, s: float, value: Flat) -> bool:
-        return _near(value, a, b, s, BOUND * limits)
+    def fits(checks: list[Check[Flat]]) -> list[bool]:
+        return [_near(value, a, b, s, BOUND * limits) for a, b, s, value in checks]
 
     keys = pieces.keys(fits)
     times, values = [keys[0][0]], [keys[0][1].value]
@@ -101,10 +100,16 @@ def resample_transform(
     way = float(np.linalg.norm(np.ptp(middles, axis=0)))
     limit = max(BOUND * radius, PATH_BOUND * way)
 
-    def fits(a: FloatArray, b: FloatArray, s: float, value: FloatArray) -> bool:
-        between = _core.Motion.keys(_ENDS, np.array((a, b))).at(s)
-        gaps = (value - between)[:3] @ points
-        return bool((gaps * gaps).sum(axis=0).max() <= limit * limit)
+    def fits(checks: list[Check[FloatArray]]) -> list[bool]:
+        if not checks:
+            return []
+        # A row of pairs of keys; what lies between one pair and the next is not asked for.
+        pairs = np.array([key for a, b, _, _ in checks for key in (a, b)])
+        row = _core.Motion.keys(np.arange(float(len(pairs))), pairs)
+        between = row.many(2.0 * np.arange(len(checks)) + [s for _, _, s, _ in checks])
+        gaps = (np.array([value for *_, value in checks]) - between)[:, :3] @ points
+        near = (gaps * gaps).sum(axis=1).max(axis=1) <= limit * limit
+        return [bool(one) for one in near]
 
     keys = pieces.keys(fits)
     return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))

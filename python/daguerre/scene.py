@@ -267,19 +267,20 @@ class Scene:
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
         if _are_keys(transform):
             raise UsageError(f"{where}: transform: keys over time: wanted dg.keys(...), got a list")
-        world = matrix(self._now(transform), where)
+        motion, presence = _dynamic(transform), None if shown is True else _dynamic(shown)
+        world = matrix(transform if motion is None else motion.at(self.time), where)
+        visible = shown if presence is None else presence.at(self.time)
+        if not isinstance(visible, bool | np.bool_ | int | float):
+            raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
         if material is None:
             material = Material(Diffuse())
         if isinstance(material, Material | Kind):
             material = self.add_material(material)
         material = self._index(material, len(self.materials), f"{where}: material")
         index = len(self.instances)
-        if (motion := _dynamic(transform)) is not None:
+        if motion is not None:
             self.motion.instances[index] = motion
-        visible = self._now(shown)
-        if not isinstance(visible, bool | np.bool_ | int | float):
-            raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
-        if (presence := _dynamic(shown)) is not None:
+        if presence is not None:
             self.motion.shown[index] = presence
         self.instances.append(Instance(mesh, material, world, name, bool(visible)))
         if name:

@@ -66,6 +66,11 @@ class NodeOverTime:
         """The transform at a time, s, (4, 4)."""
         return np.asarray(self.many(np.array([time_s]))[0])
 
+    @property
+    def weight(self) -> int:
+        """How many nodes have to be looked at for it."""
+        return self.poses.depth(self.node)
+
     def many(self, times: FloatArray) -> Matrix:
         """Transforms at many times, (T, 4, 4)."""
         worlds = self.poses.worlds(self.node, times)

@@ -143,6 +143,10 @@ class Poses:
         """Likewise of keys that show or hide it."""
         return breaks_of([c for n in self._chain(node) for c in self._shown.get(n, ())], begin, end)
 
+    def depth(self, node: int) -> int:
+        """The node and its ancestors, counted."""
+        return len(self._chain(node))
+
     def _chain(self, node: int) -> list[int]:
         """The node and its ancestors."""
         chain = []
