@@ -138,6 +138,13 @@ TEST_CASE("an area light that spins, and shines to one side") {
         d.instances[1].motion =
             std::make_shared<const Motion>(Motion(turned(20, {0.3, 1, 0})).spinning(spin));
         check_all(d);
+        // Where light sampling found nothing the BSDF would have to find all, with the same mean.
+        const auto scene = Scene::build(d);
+        const Wavelengths wl = Wavelengths::sample(0.4f);
+        int found = 0;
+        for (int i = 0; i < 1000; ++i)
+            found += scene->sample_light(0.5f, {0.3f, 0.4f}, {}, (float(i) + 0.5f) / 1000, wl).has_value();
+        CHECK(found > 300);
     }
 }
 
