@@ -78,8 +78,8 @@ LightBounds bounds_of_way(const InstanceRecord& record, const Mesh& mesh) {
 
 bool place(const InstanceRecord& record, TriangleLight& light, float time) {
     if (!record.is_shown(time)) return false;
-    PlacementRoom made;
-    const Placement& now = record.placement(time, made);
+    if (!record.changes()) return true;
+    const Placement now = record.where(time);
     put(record, now, light);
     return now.world_from_local.determinant() != 0;  // or no ray would meet it
 }

@@ -135,13 +135,25 @@ Placement place(const Affine3d& m, bool flattened) {
 
 Placement InstanceRecord::at(float time) const {
     Placement p = motion ? place(motion->at(time), false) : still;
-    if (steps == 1) return p;
+    set_step(p, time);
+    return p;
+}
+
+Placement InstanceRecord::where(float time) const {
+    Placement p{};
+    p.world_from_local = motion ? motion->at(time) : still.world_from_local;
+    p.mirrored = p.world_from_local.determinant() < 0;
+    set_step(p, time);
+    return p;
+}
+
+void InstanceRecord::set_step(Placement& p, float time) const {
+    if (steps == 1) return;
     // In single precision, as the ray tracer finds its step.
     const float along = time * float(steps - 1);
     const float step = std::clamp(std::floor(along), 0.f, float(steps - 2));
     p.first_vertex = std::size_t(step) * vertex_count;
     p.step_share = along - step;
-    return p;
 }
 
 InstanceRecord make_record(const Mesh& mesh, const Material& material,

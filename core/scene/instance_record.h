@@ -47,6 +47,9 @@ struct InstanceRecord {
 
     bool is_shown(float time) const { return !shown || shown->at(time); }
     Placement at(float time) const;
+    /// The same, with no more than corners_at() needs: neither normals nor errors.
+    Placement where(float time) const;
+    void set_step(Placement& placement, float time) const;
     bool changes() const { return motion || steps > 1; }
     bool moves() const { return changes() || shown; }
 
