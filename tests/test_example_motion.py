@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.io.images import decode
 
 ROOT = Path(__file__).resolve().parent.parent
 #: What moves in each, by the name of its node or camera, and two times at which to look.
@@ -70,3 +71,24 @@ def test_the_racing_cars_wheels_roll(folder: Path) -> None:
 def test_the_street_zooms(folder: Path) -> None:
     cameras = [dg.load(folder / "street.glb", time=t).camera("zoom") for t in (0.0, 1.0)]
     assert [camera.focal_length for camera in cameras] == pytest.approx([28, 70])
+
+
+def test_propellers_agree_or_differ_as_their_interpolations_say(
+    folder: Path, tmp_path: Path
+) -> None:
+    script, sheet = ROOT / "examples" / "propellers.py", tmp_path / "sheet.png"
+    flags = ["--scene", folder / "plane.glb", "--size", "32", "--spp", "4"]
+    subprocess.run([sys.executable, script, sheet, *flags], check=True, capture_output=True)
+    pixels = decode(sheet.read_bytes(), "sheet").astype(float)
+    assert pixels.shape == (128, 128, 3)
+    cells = pixels.reshape(4, 32, 4, 32, 3).swapaxes(1, 2)  # angle, way
+
+    def unlike(row: int, a: int, b: int) -> float:
+        return float(np.abs(cells[row, a] - cells[row, b]).mean())
+
+    linear, twist, decomposed, spin = range(4)
+    for row in range(4):
+        assert unlike(row, twist, decomposed) < 0.5  # of 255: the same times, the same poses
+    assert unlike(0, linear, twist) < unlike(1, linear, twist) < unlike(2, linear, twist)
+    assert unlike(2, twist, spin) < 0.5  # 170 degrees, said in two ways
+    assert unlike(3, twist, spin) > 4  # three turns: between keys nothing turns

@@ -26,8 +26,8 @@ def make() -> Glb:
     _board(studio)
     _frame(studio)
     studio.glb.add_animation("swing", _balls(studio))
-    studio.softbox((-0.5, 1.0, 0.5), (0, 0.05, 0), (0.6, 0.6), 9, (1.0, 0.95, 0.88))
-    studio.softbox((1.1, 0.5, 0.6), (0, 0.1, 0), (0.5, 1.2), 2.0, (0.75, 0.87, 1.0))
+    studio.softbox((0.3, 0.8, -0.5), (0, 0.05, 0), (0.3, 0.3), 34, (1.0, 0.95, 0.88))
+    studio.softbox((-1.1, 0.5, 0.6), (0, 0.1, 0), (0.5, 1.2), 1.2, (0.75, 0.87, 1.0))
     studio.softbox((-0.1, 0.75, 1.9), (0, 0.1, 0), (3.5, 0.8), 0.9)
     studio.camera((0.12, 0.16, 0.62), (-0.02, 0.082, 0), 50, 8, (0, 0.05, 0))
     return studio.glb
@@ -37,7 +37,7 @@ def _board(studio: Studio) -> None:
     size = 512
     y, x = np.mgrid[0:size, 0:size] // (size // 8)
     check = ((x + y) % 2)[..., None]
-    color = np.where(check, (0.75, 0.68, 0.55), (0.05, 0.12, 0.2))
+    color = np.where(check, (0.78, 0.72, 0.6), (0.55, 0.5, 0.42))
     picture = studio.glb.add_picture("check", textures.png(color))
     gloss = {"clearcoat": {"clearcoatFactor": 1.0, "clearcoatRoughnessFactor": 0.03}}
     board = studio.matter(
@@ -61,7 +61,7 @@ def _frame(studio: Studio) -> None:
 
 def _balls(studio: Studio) -> list[Track]:
     glb = studio.glb
-    chrome = studio.matter("chrome", (0.86, 0.86, 0.88), 0.02, 1.0)
+    chrome = studio.matter("chrome", (0.86, 0.86, 0.88), 0.03, 1.0)
     thread = studio.matter("thread", (0.6, 0.6, 0.55), 0.7)
     ball = glb.add_mesh("ball", shapes.ball(RADIUS, 48, 96), chrome)
     two = [

@@ -1,4 +1,4 @@
-"""A bulb that swings over a still life and flickers ten times a second: 0 s to 2 s, one period.
+"""A bulb that swings over a still life and goes out five times a second: 0 s to 2 s, one period.
 
 What a long exposure sees: the bulb writes its way in dashes, and shadows sweep.
 """
@@ -14,7 +14,7 @@ from kit import shapes, textures
 from kit.glb import Glb, Track
 from kit.moves import swinging
 
-PERIOD_S, FLICKERS_PER_SECOND = 2.0, 10
+PERIOD_S, FLICKERS_PER_SECOND = 2.0, 5
 PIVOT, DROP = (0, 1.25, -0.12), 0.8
 LYING = (-math.sqrt(0.5), 0, 0, math.sqrt(0.5))
 
@@ -44,9 +44,9 @@ def _room(studio: Studio) -> None:
 
 def _still_life(studio: Studio) -> None:
     clay = studio.matter("clay", (0.55, 0.22, 0.12), 0.6)
-    glaze = studio.matter("glaze", (0.1, 0.25, 0.4), 0.15)
+    glaze = studio.matter("glaze", (0.1, 0.25, 0.4), 0.35)
     pear = studio.matter("pear", (0.6, 0.55, 0.1), 0.4)
-    brass = studio.matter("brass", (0.85, 0.65, 0.3), 0.25, 1.0)
+    brass = studio.matter("brass", (0.85, 0.65, 0.3), 0.42, 1.0)
     jug = [(0, 0), (0.06, 0), (0.085, 0.05), (0.08, 0.12), (0.04, 0.2), (0.035, 0.25), (0.05, 0.28)]
     studio.put("jug", shapes.lathe(shapes.smooth_profile(jug), 64), clay, (-0.3, 0, -0.1))
     bottle = [(0, 0), (0.045, 0), (0.048, 0.02), (0.046, 0.19), (0.016, 0.25), (0.015, 0.33)]
@@ -69,12 +69,12 @@ def _lamp(studio: Studio) -> list[Track]:
     studio.put("cord", line, cord, parent=pivot)
     socket = shapes.lathe([(0.016, 0.02), (0.016, 0.055), (0.006, 0.07), (0, 0.07)], 24)
     studio.put("socket", socket, cord, (0, -DROP, 0), parent=pivot)
-    bulb = studio.shining("bulb", (1.0, 0.72, 0.42), 2400)
+    bulb = studio.shining("bulb", (1.0, 0.72, 0.42), 1300)
     studio.put("bulb", shapes.ico_ball(0.024, 2), bulb, (0, -DROP, 0), parent=pivot)
     full = glb.json["materials"][bulb]["extensions"]["KHR_materials_emissive_strength"]
     count = round(2 * FLICKERS_PER_SECOND * PERIOD_S)
     times = np.arange(count) * PERIOD_S / count
-    levels = np.where(np.arange(count) % 2, 0.15, 1.0) * full["emissiveStrength"]
+    levels = np.where(np.arange(count) % 2, 0.0, 1.0) * full["emissiveStrength"]
     pointer = f"/materials/{bulb}/extensions/KHR_materials_emissive_strength/emissiveStrength"
     flicker = Track.to(pointer, times, levels, "STEP")
     return [swinging(pivot, (0, 0, 1), 28, PERIOD_S), flicker]

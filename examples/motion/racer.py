@@ -51,16 +51,13 @@ def _cameras(studio: Studio) -> list[Track]:
     times = np.linspace(0, END_S, 97)
     middle = np.array((0, 0.75, 0))
     camera("still", EYE, middle, 50, 8.2)
-    targets = {
-        name: [np.add(middle, (share * SPEED * (t - 0.5), 0, 0)) for t in times]
-        for name, share in (("pan", 1.0), ("slow", 0.5))
-    }
-    tracks = [
-        following(camera(name, EYE, middle, 50, 8.2), EYE, times, ways)
-        for name, ways in targets.items()
-    ]
+    tracks = []
+    for name, share, focal_mm in (("pan", 1.0, 50), ("slow", 0.5, 75)):
+        targets = [np.add(middle, (share * SPEED * (t - 0.5), 0, 0)) for t in times]
+        node = camera(name, EYE, middle, focal_mm, 8.2)
+        tracks.append(following(node, EYE, times, targets))
     beside = [(1.2 + SPEED * (t - 0.5), 0.55, 4.2) for t in (0, END_S)]
-    wheel = camera("wheel", beside[0], np.subtract(beside[0], (0, 0.15, 4.2)), 85, 3.5)
+    wheel = camera("wheel", beside[0], np.subtract(beside[0], (0, 0.17, 4.2)), 125, 3.5)
     return [*tracks, going(wheel, [0, END_S], beside)]
 
 
