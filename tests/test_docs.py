@@ -39,7 +39,10 @@ def test_command_line_page_names_every_command():
         assert f"daguerre {name}" in text
 
 
-@pytest.mark.parametrize("name", ["README.md", "examples/README.md", "script/demo"])
+@pytest.mark.parametrize(
+    "name",
+    ["README.md", "examples/README.md", "docs/motion.md", "docs/gallery/README.md", "script/demo"],
+)
 def test_commands_in_texts_use_flags_that_exist(name):
     lines = [s for s in (ROOT / name).read_text().splitlines() if "daguerre" in s or "--" in s]
     used = flags_in("\n".join(s for s in lines if "pip " not in s and "cmake" not in s))

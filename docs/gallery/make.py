@@ -5,7 +5,7 @@
 
 FOLDER holds the chess set (scenes/open_chess_set_512.glb) and the panorama
 (hdri/st_peters_square_night_1k.hdr) that the repository does not ship; without it those pictures
-stay as they are. --page writes the page alone.
+stay as they are. --page writes the page alone. What is shown is in pictures.py.
 """
 
 from __future__ import annotations
@@ -14,124 +14,29 @@ import argparse
 import shlex
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import OpenImageIO as oiio
+from numpy.typing import NDArray
+from pictures import MOTION, NIGHT, PICTURES, Picture
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-NIGHT = "out/night_table.glb"
-GAUSS = "--lens double-gauss-50mm-f2"
-COMMON = "--res 750x500 --tone soft"
+EXAMPLES = (["night_table.py", NIGHT], ["extensions.py"], ["motion.py"])
 
+INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
 
-@dataclass(frozen=True)
-class Picture:
-    """One picture: its file, what it shows, and the arguments of `daguerre render`."""
+ABOUT_MOTION = """## Motion
 
-    name: str
-    title: str
-    scene: str
-    flags: str
-    needs_data: bool = False
-
-
-PICTURES = [
-    Picture(
-        "night_table",
-        "The scene of the demo through a double Gauss at f/2.",
-        NIGHT,
-        f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
-    ),
-    Picture(
-        "pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 64 --denoise"
-    ),
-    Picture(
-        "focus_far",
-        "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",
-        NIGHT,
-        "--lens thin --f-stop 2 --focus 5.6 --spp 64 --denoise",
-    ),
-    Picture(
-        "focus_medium",
-        "The same, focal plane at medium distance: the garland, 2.4 m.",
-        NIGHT,
-        "--lens thin --f-stop 2 --focus 2.4 --spp 64 --denoise",
-    ),
-    Picture(
-        "focus_close",
-        "The same, focal plane close by: dice and bearings, 0.64 m.",
-        NIGHT,
-        "--lens thin --f-stop 2 --focus 0.64 --spp 64 --denoise",
-    ),
-    Picture(
-        "aperture_small",
-        "The double Gauss at f/16: a small aperture, great depth.",
-        NIGHT,
-        f"{GAUSS} --f-stop 16 --spp 64 --denoise",
-    ),
-    Picture(
-        "aperture_large",
-        "The double Gauss at f/2: a large aperture, a shallow plane.",
-        NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 64 --denoise",
-    ),
-    Picture(
-        "bokeh",
-        "Bokeh close up: lamps far behind the focus draw the pupil of the glass. In the middle it "
-        "is round; toward the edge of the field the rims of the lens cut it to a cat's eye.",
-        NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
-    ),
-    Picture(
-        "bokeh_blades",
-        "The same close-up through six straight blades at f/2.8.",
-        NIGHT,
-        f"{GAUSS} --f-stop 2.8 --focus 0.5 --blades 6 --blade-curvature 0 "
-        "--res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
-    ),
-    Picture(
-        "chess",
-        "Open chess set through the double Gauss at f/2, lit by a night panorama of a square.",
-        "DATA/scenes/open_chess_set_512.glb",
-        f"{GAUSS} --f-stop 2 --env DATA/hdri/st_peters_square_night_1k.hdr --spp 64 --denoise",
-        needs_data=True,
-    ),
-]
-
-EXTENSIONS = "out/extensions"
-SMALL = "--res 600x400 --spp 48 --denoise"
-PICTURES += [
-    Picture(
-        "octopus",
-        "Skins, morph targets and colours 3.4 s into their round, through the double Gauss.",
-        f"{EXTENSIONS}/octopus.glb",
-        f"{GAUSS} --time 3.4 {SMALL}",
-    ),
-    Picture(
-        "garden",
-        "Thousands of instances: grass, poppies and a hedge whose leaves let the low sun through.",
-        f"{EXTENSIONS}/garden.glb",
-        SMALL,
-    ),
-    Picture(
-        "street",
-        "Signs and neon tubes of thousands of emissive triangles, through a wide angle at f/2.",
-        f"{EXTENSIONS}/street.glb",
-        f"--lens wide-angle-35mm-f2 {SMALL}",
-    ),
-    Picture(
-        "glass",
-        "Cut stones and a prism that disperse, coloured glass, a lantern of paper around a bulb.",
-        f"{EXTENSIONS}/glass.glb",
-        SMALL,
-    ),
-]
+What moves while the shutter is open is blurred; [motion.md](../motion.md) tells how. A sheet of
+several pictures has a command for each.
+"""
 
 CREDITS = """
 The night table is made by [examples/night_table.py](../../examples/night_table.py), what lies in
-`out/extensions` by [examples/extensions.py](../../examples/extensions.py). The chess set is "Open
+`out/extensions` by [examples/extensions.py](../../examples/extensions.py), and in `out/motion`
+by [examples/motion.py](../../examples/motion.py). The chess set is "Open
 Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
 The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
 holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
@@ -140,53 +45,64 @@ holds them. Pictures are shown with `--tone soft`, which rolls highlights off; t
 """
 
 
-def arguments(picture: Picture, output: str) -> str:
-    """The command as it is printed under the picture."""
-    common = COMMON if "--res" not in picture.flags else "--tone soft"
-    return f"daguerre render {picture.scene} {picture.flags} {common} -o {output}"
+def run(command: str, data: Path | None) -> None:
+    """Runs one command of the page, in the root of the repository."""
+    program, *rest = shlex.split(command.replace("DATA", str(data)))
+    own = [sys.executable] if program == "python" else [sys.executable, "-m", "daguerre.cli"]
+    subprocess.run([*own, *rest], check=True, cwd=ROOT)
+
+
+def pixels_of(output: str) -> list[NDArray[np.uint8]]:
+    """The picture, or those of a sequence, that a command wrote."""
+    files = sorted(ROOT.glob(output.replace("#", "[0-9]")))
+    return [oiio.ImageBuf(str(file)).get_pixels(oiio.UINT8)[..., :3] for file in files]
 
 
 def render(picture: Picture, data: Path | None) -> None:
-    """Renders one picture and keeps it as a JPEG."""
-    output = ROOT / "out" / f"gallery_{picture.name}.png"
-    output.parent.mkdir(exist_ok=True)
-    command = shlex.split(arguments(picture, str(output)).replace("DATA", str(data)))
-    program = Path(sys.executable).parent / "daguerre"
-    subprocess.run([str(program), *command[1:]], check=True, cwd=ROOT)
-    pixels = oiio.ImageBuf(str(output))
-    pixels.specmod().erase_attribute(".*")
+    """Renders one picture, panel by panel, and keeps it as a JPEG."""
+    (ROOT / "out" / "gallery").mkdir(parents=True, exist_ok=True)
+    panels = []
+    for command, output in picture.commands("out/gallery"):
+        for old in ROOT.glob(output.replace("#", "[0-9]")):
+            old.unlink()
+        run(command, data)
+        panels += pixels_of(output)
+    rows = [panels[k : k + picture.columns] for k in range(0, len(panels), picture.columns)]
+    sheet = np.concatenate([np.concatenate(row, axis=1) for row in rows])
+    pixels = oiio.ImageBuf(np.ascontiguousarray(sheet))
     pixels.specmod().attribute("Compression", "jpeg:90")
     if not pixels.write(str(HERE / f"{picture.name}.jpg")):
         raise SystemExit(pixels.geterror())
 
 
-def page() -> str:
-    """The gallery page."""
-    parts = ["# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"]
-    for picture in PICTURES:
+def section(pictures: list[Picture]) -> list[str]:
+    """Pictures, titles and commands of those that have been rendered."""
+    parts = []
+    for picture in pictures:
         if (HERE / f"{picture.name}.jpg").exists():
-            command = arguments(picture, f"out/{picture.name}.png")
-            parts.append(
-                f"![{picture.title}]({picture.name}.jpg)\n\n{picture.title}\n\n```\n{command}\n```\n"
-            )
-    return "\n".join(parts) + CREDITS
+            typed = "\n".join(command for command, _ in picture.commands("out"))
+            shown = f"![{picture.title}]({picture.name}.jpg)"
+            parts.append(f"{shown}\n\n{picture.title}\n\n```\n{typed}\n```\n")
+    return parts
 
 
 def main() -> None:
     """Renders what was asked for, then writes the page."""
+    every = [*PICTURES, *MOTION]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
-    parser.add_argument("--only", action="append", choices=[p.name for p in PICTURES])
+    parser.add_argument("--only", action="append", choices=[p.name for p in every])
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     if not given.page:
-        subprocess.run([sys.executable, "examples/night_table.py", NIGHT], check=True, cwd=ROOT)
-        subprocess.run([sys.executable, "examples/extensions.py"], check=True, cwd=ROOT)
-        for picture in PICTURES:
+        for script, *rest in EXAMPLES:
+            subprocess.run([sys.executable, f"examples/{script}", *rest], check=True, cwd=ROOT)
+        for picture in every:
             wanted = not given.only or picture.name in given.only
             if wanted and (given.data or not picture.needs_data):
                 render(picture, given.data and given.data.resolve())
-    (HERE / "README.md").write_text(page())
+    page = [INTRODUCTION, *section(PICTURES), ABOUT_MOTION, *section(MOTION)]
+    (HERE / "README.md").write_text("\n".join(page) + CREDITS)
 
 
 if __name__ == "__main__":
