@@ -246,6 +246,71 @@ def glowing_cloth() -> Case:
     return case(scene, pinhole(), OPEN)
 
 
+def crowd() -> Case:
+    """One mesh, many ways: still, moving, spinning, mirrored, hidden for a while, with shadows."""
+    scene = sky()
+    floor(scene)
+    points, faces, normals = scenes.sphere(6, 0.2)
+    mesh = scene.add_mesh(points, faces, normals)
+    blink = dg.keys([(0.0, True), (0.95, False), (1.1, True)])
+    squashed = move(0.9, -0.4, -3) @ np.diag([-1.0, 0.4, 1, 1])
+    ways: list[tuple[Any, Any]] = [
+        (move(-0.9, -0.4, -3), True),
+        (across(move(-0.6, -0.5, -2.5), move(-0.4, 0.2, -2.5)), True),
+        (dg.spin((0, 1, 0), 4.7, (0.3, 0, 0), move(0, -0.4, -2.8)), True),
+        (across(squashed, squashed @ turn(120)), True),
+        (move(0.4, -0.5, -2.2), blink),
+    ]
+    for way, shown in ways:
+        scene.add_instance(mesh, dg.Diffuse((0.8, 0.6, 0.4)), way, shown=shown)
+    scene.add_light(dg.DirectionalLight((2, 2, 1)), turn(-60, (1, 0.3, 0)))
+    return case(scene, pinhole(), OPEN)
+
+
+def smoked_glass() -> Case:
+    """A body that colours light runs before a bright wall, and its paint thins."""
+    scene = sky()
+    card(scene, move(0, 0, -4), size=2.0)
+    body = Gltf(
+        transmission=1.0,
+        roughness=0.0,
+        metallic=0.0,
+        thickness=1.0,
+        attenuation_color=(0.2, 0.5, 0.9),
+        attenuation_distance=dg.keys([(0.75, 0.2), (1.25, 2.0)]),
+    )
+    ball(scene, body, across(move(-0.9, 0, -3), move(0.7, 0.2, -2.5)), 0.5)
+    return case(scene, pinhole(), OPEN, max_depth=8)
+
+
+def thin_air() -> Case:
+    """A pane that is there by chance, less and less, and a cut-out whose edge eats into it."""
+    scene = sky()
+    points, faces = scenes.quad(0.5)
+    fades = Gltf(
+        base_color=(0.9, 0.2, 0.1),
+        base_alpha=dg.keys([(0.75, 1.0), (1.25, 0.1)]),
+        alpha_mode="blend",
+        metallic=0.0,
+    )
+    scene.add_instance(
+        scene.add_mesh(points, faces), fades, across(move(-0.8, 0, -3), move(-0.2, 0, -3))
+    )
+    ramp = np.ones((1, 32, 4), np.float32)
+    ramp[..., 3] = np.linspace(0, 1, 32)
+    image = scene.add_texture(ramp)
+    eaten = Gltf(
+        base_color_texture=TextureSlot(image),
+        alpha_mode="mask",
+        alpha_cutoff=dg.keys([(0.75, 0.1), (1.25, 0.9)]),
+        metallic=0.0,
+    )
+    scene.add_instance(card_mesh(scene, 0.4), eaten, move(0.8, 0.2, -3) @ turn(20))
+    floor(scene)
+    scene.add_light(dg.PointLight((10, 10, 10)), move(0, 1.5, -2))
+    return case(scene, pinhole(), OPEN)
+
+
 # Cameras ---------------------------------------------------------------------------------------
 
 
@@ -340,6 +405,20 @@ def area_light() -> Case:
     down = turn(90, (1, 0, 0))
     path = across(move(-1.2, 0.4, -2.5) @ down, move(1.2, 0.8, -3) @ turn(80) @ down)
     scene.add_instance(scene.add_mesh(points, faces), lamp, path)
+    return case(scene, pinhole(), OPEN)
+
+
+def lamp_over_metal() -> Case:
+    """Lamps come down to a frosted floor, where light and floor both know where to look."""
+    scene = dark()
+    floor(scene, dg.Conductor((0.9, 0.8, 0.7), 0.35))
+    points, faces = scenes.quad(0.4)
+    lamp = dg.Material(dg.Diffuse((0, 0, 0)), emission=(3, 3, 2), two_sided_emission=True)
+    path = across(move(-1.5, 1.5, -4), move(0.6, -0.4, -2.8) @ turn(70, (1, 0, 0.4)))
+    scene.add_instance(scene.add_mesh(points, faces), lamp, path)
+    scene.add_light(
+        dg.SphereLight((4, 5, 6), 0.3), across(move(1.5, 1, -4), move(-0.5, -0.4, -2.5))
+    )
     return case(scene, pinhole(), OPEN)
 
 
@@ -498,6 +577,24 @@ def leaf() -> Case:
     return replace(made, still=stopped)
 
 
+def through(shutter: Callable[[], Case]) -> Callable[[], Case]:
+    """The same through a real lens; what is written for the thin one holds for it."""
+
+    def make() -> Case:
+        made = shutter()
+        still = made.still
+
+        def real(camera: dg.Camera) -> dg.Camera:
+            lens = {"lens": "double-gauss-50mm-f2", "f_stop": 2.0, "focus_distance": 1.2}
+            return replace(camera, focal_length=None, **lens)
+
+        return replace(
+            made, camera=real(made.camera), still=lambda t: (still(t)[0], real(still(t)[1]))
+        )
+
+    return make
+
+
 ALL: dict[str, Callable[[], Case]] = {
     "translation": translation,
     "170 degrees on the way": half_turn,
@@ -512,7 +609,11 @@ ALL: dict[str, Callable[[], Case]] = {
     "glowing cloth": glowing_cloth,
     "pan": pan,
     "dolly": dolly,
+    "crowd": crowd,
+    "smoked glass": smoked_glass,
+    "thin air": thin_air,
     "area light": area_light,
+    "lamp over metal": lamp_over_metal,
     **{f"rolling {order}": rolling(order) for order in ("top", "bottom", "left", "right")},
     "curve": curve,
     "leaf": leaf,
@@ -528,4 +629,10 @@ ALL: dict[str, Callable[[], Case]] = {
     "iris": iris_closing,
 }
 #: of what takes longer
-SLOW: dict[str, Callable[[], Case]] = {"exact": exact_pull}
+SLOW: dict[str, Callable[[], Case]] = {
+    "exact": exact_pull,
+    "exact, translation": through(translation),
+    "exact, pan": through(pan),
+    "exact, rolling": through(rolling("top")),
+    "exact, curve": through(curve),
+}
