@@ -208,6 +208,25 @@ def test_nothing_is_met_where_it_is_nothing():
     assert frame.rgb.mean() == pytest.approx(0.5, rel=0.03)
 
 
+def _many(value: Callable[[float], Any]) -> Over:
+    return Over(value, np.linspace(0.8, 1.2, 100_002)[1:-1])
+
+
+CROWDED: dict[str, Callable[[], dg.Scene]] = {
+    "instance 0 has": lambda: scene_of(_many(lambda t: move(t - 1, 0, -3))),
+    "instance 0: shown has": lambda: scene_of(shown=_many(lambda t: t < 1)),
+    "material 0 has": lambda: painted(dg.Diffuse(_many(lambda t: (t / 2, 0.1, 0.1)))),
+    "light 0 has": lambda: lit(dg.PointLight(_many(lambda t: (t, 1.0, 1.0)))),
+    "environment has": lambda: sky(_many(lambda t: t)),
+}
+
+
+@pytest.mark.parametrize("where", CROWDED)
+def test_more_keys_than_can_be_shown_are_counted(where):
+    session = dg.Session(CROWDED[where](), pinhole(shutter_time=0.4), resolution=(6, 4))
+    assert [w.split(" 100000 keys")[0] for w in session.warnings] == [where]
+
+
 def card(size: float) -> tuple[np.ndarray, np.ndarray]:
     points = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], float) * size
     return points, np.array([(0, 1, 2), (0, 2, 3)])

@@ -14,7 +14,7 @@ import daguerre._core as _core
 from .checks import given_matrix, given_up
 from .errors import InputError
 from .motion import Dynamic, Keys, Spin
-from .pieces import MAX_BREAKS
+from .pieces import MAX_BREAKS, MAX_KEYS
 from .resample import resample_shown, resample_transform
 from .resample_vertices import MAX_STEPS, resample_vertices, same_array
 from .scene import Instance, Mesh, Scene, vertices_of
@@ -39,7 +39,7 @@ class Moving:
     def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
         self._scene, self.interval, self._notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
-        self._crowded: list[tuple[str, int]] = []
+        self._crowded: list[tuple[str, int, int]] = []
         # What hangs at the end of a long chain costs as much as the whole of it.
         work = sum(getattr(d, "weight", 1) for d in scene.motion.instances.values())
         shared = MAX_ALL_BREAKS // max(1, work)
@@ -86,22 +86,33 @@ class Moving:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
         box, where = self._corners[instance.mesh], _where(instance, index)
         try:
-            many = len(dynamic.breaks(*self.interval))
-            if many > self._most:
-                self._crowded.append((where, many))
+            self._count(dynamic, where, self._most)
             return resample_transform(dynamic, *self.interval, box, self._most, where)
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"{where}: transform: {error}") from None
 
+    def _count(self, dynamic: Dynamic, where: str, most: int) -> None:
+        many = len(dynamic.breaks(*self.interval))
+        if many > most:
+            self._crowded.append((where, many, most))
+
     def finish(self) -> None:
         """Says once what has more keys than can be shown."""
+        motion = self._scene.motion
+        kinds = {"shown": motion.shown, "material": motion.materials, "light": motion.lights}
+        for kind, dynamics in kinds.items():
+            for i, dynamic in dynamics.items():
+                where = f"{kind} {i}" if kind != "shown" else f"instance {i}: shown"
+                self._count(dynamic, where, MAX_KEYS if kind == "shown" else MAX_BREAKS)
+        if motion.environment is not None:
+            self._count(motion.environment, "environment", MAX_BREAKS)
         if self._crowded:
-            where, many = self._crowded[0]
+            where, many, most = self._crowded[0]
             others = len(self._crowded) - 1
             self._notes.append(
-                f"{where} has {many} keys while the shutter is open; {self._most} at most show it"
+                f"{where} has {many} keys while the shutter is open; {most} at most show it"
                 + (f" ({others} others likewise)" if others else "")
             )
 

@@ -23,6 +23,8 @@ def read_curve(path: Path) -> list[tuple[float, float]]:
         InputError: The file cannot be read, or is no such table; the message names the line.
     """
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # it might never end
+            raise InputError(f"{path}: wanted a file, got a device or a pipe")
         if path.stat().st_size > _MAX_BYTES:
             raise InputError(f"{path}: wanted a table of at most {_MAX_BYTES >> 20} MiB")
         lines = path.read_text("utf-8-sig").splitlines()
