@@ -213,7 +213,6 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
     ray_hit.ray = embree_ray(ray);
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (!is_traceable(ray_hit.ray)) return std::nullopt;
     query(top_.get(), context.embree, ray_hit);
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return raw_hit(ray_hit.ray.tfar, ray_hit.hit);
@@ -225,7 +224,6 @@ bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
     context.ray = &ray;
     context.crossings = crossings;
     RTCRay shadow_ray = embree_ray(ray);
-    if (!is_traceable(shadow_ray)) return false;
     query(top_.get(), context.embree, shadow_ray);
     return shadow_ray.tfar < 0;  // Embree's sign for "something was met"
 }

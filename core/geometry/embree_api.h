@@ -17,7 +17,8 @@
 
 namespace dg::embree {
 
-/// Embree takes no others: no NaN, nothing infinite, and nothing at which its own numbers overflow.
+/// Whether Embree bears a ray that was taken into the space of an instance: no NaN, nothing infinite, and
+/// nothing at which its own numbers overflow.
 inline bool is_traceable(const RTCRay& ray) {
     constexpr float kFar = 1e18f;
     return std::abs(ray.org_x) + std::abs(ray.org_y) + std::abs(ray.org_z) +

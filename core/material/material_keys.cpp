@@ -170,4 +170,11 @@ Clear clearness(const MaterialRange& range) {
     return clearness(clearest);
 }
 
+MaterialAt::MaterialAt(const Keyed<Material>& keys, float time)
+    : now_(new Material(keys.at(time))), own_(now_) {}
+
+void MaterialAt::Delete::operator()(const Material* m) const {
+    delete m;
+}
+
 }  // namespace dg

@@ -1,7 +1,7 @@
 // material_keys.h -- materials that change while the shutter is open: every number goes linearly
 // from key to key; kind, textures and modes stay.
 #pragma once
-#include <optional>
+#include <memory>
 #include <span>
 
 #include "material/material.h"
@@ -34,15 +34,18 @@ Clear clearness(const MaterialRange& range);
 class MaterialAt {
   public:
     explicit MaterialAt(const Material* still) : now_(still) {}
-    explicit MaterialAt(Material blended) : own_(std::move(blended)), now_(&*own_) {}
+    MaterialAt(const Keyed<Material>& keys, float time);
     MaterialAt(const MaterialAt&) = delete;
     MaterialAt& operator=(const MaterialAt&) = delete;
     operator const Material&() const& { return *now_; }  // NOLINT: it is one
     operator const Material&() const&& = delete;         // it must outlive the reference
 
   private:
-    std::optional<Material> own_;
+    struct Delete {  // not inlined: the loop over vertices would grow by it, and slow down
+        void operator()(const Material* m) const;
+    };
     const Material* now_;
+    std::unique_ptr<const Material, Delete> own_;
 };
 
 }  // namespace dg

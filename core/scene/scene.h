@@ -120,7 +120,7 @@ class Scene {
     void hold(Vec3d point);
     MaterialAt material_at(std::uint32_t material, float time) const {
         if (const MaterialChange* change = change_of(material))
-            return MaterialAt(change->keys.at(time));
+            return MaterialAt(change->keys, time);
         return MaterialAt(&description_.materials[material]);
     }
     const MaterialChange* change_of(std::uint32_t material) const {
