@@ -92,3 +92,21 @@ def test_a_frozen_shutter_is_a_still_frame():
     a = picture(scene.at(0.3), camera.with_(**frozen), (0, 16))
     b = picture(still, camera.at(0.3).with_(**frozen), (0, 16))
     assert np.array_equal(a, b)
+
+
+def test_a_crop_of_a_rolling_frame_is_that_part_of_it():
+    """Lines have the times that they have in the whole frame."""
+    scene, camera = busy(0.0, 0.5)
+    box = {"filter": "box"}  # others reach over the edge of a crop
+    whole = picture(scene, camera, (0, 8), **box)
+    assert np.array_equal(
+        whole[9:15, 4:20], picture(scene, camera, (0, 8), crop=(4, 9, 20, 15), **box)
+    )
+
+
+def test_adaptive_rounds_keep_the_mean_of_what_moves():
+    scene, camera = busy(0.0, 0.5)
+    adaptive = dg.render(scene, camera, noise=0.02, spp=2048, **SMALL).rgb
+    even = dg.render(scene, camera, spp=1024, seed=7, **SMALL).rgb
+    assert np.sqrt(np.mean((adaptive - even) ** 2 / (even**2 + 0.01))) < 0.04
+    assert adaptive.mean() == pytest.approx(even.mean(), rel=0.01)
