@@ -40,11 +40,15 @@ def frame_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, floa
     return columns * scale, rows * scale
 
 
+#: Of a camera from the origin, m: rays from further away overflow in the ray tracer.
+MAX_DISTANCE = 1e15
+
+
 def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
     """The rotation and position of a transform: a camera has no scale.
 
     Raises:
-        UsageError: The matrix is no 4x4 of finite numbers, or is singular.
+        UsageError: The matrix is no 4x4 of finite numbers, is singular, or stands too far away.
     """
     try:
         matrix = np.asarray(transform, np.float64)
@@ -54,6 +58,11 @@ def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
         ) from None
     if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
         raise UsageError("camera: transform: wanted a finite 4x4 matrix")
+    if np.abs(matrix[:3, 3]).max() > MAX_DISTANCE:
+        raise UsageError(
+            f"camera: transform: wanted a position within {MAX_DISTANCE:g} m of the origin, "
+            f"got {matrix[:3, 3].tolist()}"
+        )
     forward, up = -matrix[:3, 2], matrix[:3, 1]
     right = np.cross(forward, up)
     if not (np.linalg.norm(forward) > 0 and np.linalg.norm(right) > 0):

@@ -29,6 +29,7 @@ MAX_KEYS = 1_000_000
 #: Far beyond any shot: more is a mistake, and doubles would lose the digits of a shutter or a turn.
 MAX_TIME = 1e12  # s
 MAX_SPEED = 1e9  # revolutions per second
+MAX_DISTANCE = 1e15  # of pivots and centres, m
 
 
 class Dynamic(Protocol):
@@ -307,6 +308,10 @@ def _point(values: ArrayLike, where: str) -> tuple[float, float, float]:
     numbers = to_numbers(values, where, "value", "three numbers")
     if numbers.shape != (3,) or not np.isfinite(numbers).all():
         raise InputError(f"{where}: wanted three finite numbers, got {short(values)}")
+    if np.abs(numbers).max() > MAX_DISTANCE:
+        raise InputError(
+            f"{where}: wanted numbers of at most {MAX_DISTANCE:g}, got {short(values)}"
+        )
     x, y, z = (float(v) for v in numbers)
     return x, y, z
 
