@@ -253,6 +253,7 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     ray.origin = vec(origin);
     ray.direction = normalize(vec(direction));
     ray.time = 0.5f;
+    if (!is_traceable(ray)) return std::nullopt;
     const auto hit = scene.intersect(ray);
     if (!hit) return std::nullopt;
     return std::tuple{hit->surface.t, hit->surface.instance};

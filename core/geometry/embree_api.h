@@ -17,15 +17,6 @@
 
 namespace dg::embree {
 
-/// Whether Embree bears a ray that was taken into the space of an instance: no NaN, nothing infinite, and
-/// nothing at which its own numbers overflow.
-inline bool is_traceable(const RTCRay& ray) {
-    constexpr float kFar = 1e18f;
-    return std::abs(ray.org_x) + std::abs(ray.org_y) + std::abs(ray.org_z) +
-               std::abs(ray.dir_x) + std::abs(ray.dir_y) + std::abs(ray.dir_z) <
-           kFar;
-}
-
 #if DG_EMBREE_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 inline void init_context(QueryContext& c) {

@@ -21,7 +21,9 @@ class MovingMesh {
     /// Where the transform has no inverse at the time of the ray, a ray that meets nothing.
     RTCRay to_local(const RTCRay& ray) const {
         const RTCRay local = transformed(ray, inverse(motion_.at(ray.time)));
-        return is_traceable(local) ? local : nowhere(ray);
+        const bool good = is_traceable({local.org_x, local.org_y, local.org_z},
+                                       {local.dir_x, local.dir_y, local.dir_z});
+        return good ? local : nowhere(ray);
     }
     Box box() const;  // at all times
     unsigned steps() const { return unsigned(boxes_.size()); }

@@ -1,5 +1,6 @@
 // ray.h -- a ray in the world (m) at one instant.
 #pragma once
+#include <cmath>
 #include <limits>
 
 #include "geometry/ray_cone.h"
@@ -15,5 +16,14 @@ struct Ray {
     float t_max = std::numeric_limits<float>::infinity();
     RayCone cone = {};  // about the ray; empty: no texture is averaged
 };
+
+/// What a ray tracer bears: no NaN, nothing infinite, and nothing at which its own numbers overflow.
+inline bool is_traceable(Vec3f origin, Vec3f direction) {
+    constexpr float kFar = 1e18f;
+    return std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + std::abs(direction.x) +
+               std::abs(direction.y) + std::abs(direction.z) <
+           kFar;
+}
+inline bool is_traceable(const Ray& ray) { return is_traceable(ray.origin, ray.direction); }
 
 }  // namespace dg

@@ -163,11 +163,6 @@ void record_first_hit(const Scene& scene, const Material& material, const Surfac
     aov.object_id = hit.instance + 1;
 }
 
-bool is_finite(const Ray& ray) {
-    const Vec3f o = ray.origin, d = ray.direction;
-    return std::isfinite(o.x + o.y + o.z + d.x + d.y + d.z);
-}
-
 /// False: the path ends. Only paths that carry less than kRouletteThreshold are at stake (without the
 /// 1/eta^2 of radiance inside glass): ending stronger ones saves little and was measured to cost more
 /// noise than time. What survives is raised by what was ended, so that the mean does not change.
@@ -191,7 +186,7 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
     walk.previous = ray.origin;
     std::uint64_t rays = 0;
     for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
-        if (!is_finite(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
+        if (!is_traceable(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
             return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
         ++rays;
         auto found = scene.intersect(walk.ray);
