@@ -41,7 +41,7 @@ def frame_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, floa
 
 
 #: Of a camera from the origin, m: rays from further away overflow in the ray tracer.
-MAX_DISTANCE = 1e15
+MAX_DISTANCE = 1e18
 
 
 def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -109,8 +109,8 @@ class Spin:
     @cached_property
     def motion(self) -> _core.Motion:
         """The same in the core."""
-        base = self.transform
-        base = base.motion if isinstance(base, Keys) else _core.Motion.still(base)
+        at_rest = self.transform
+        base = at_rest.motion if isinstance(at_rest, Keys) else _core.Motion.still(at_rest)
         return base.spinning(self.axis, self.revolutions_per_second, self.center, self.time)
 
     def at(self, time_s: float) -> NDArray[np.float64]:

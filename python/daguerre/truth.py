@@ -79,7 +79,7 @@ class GroundTruth:
         """
         now = self._shot(0)
         seen = _core.see(*now, self.crop)
-        planes: dict[str, NDArray[Any]] = {name: seen.plane(name) for name in PLANES}
+        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in PLANES}
         if not motion:
             return planes
         here = seen.places(*now)
@@ -102,7 +102,8 @@ class GroundTruth:
         settings = _core.RenderSettings()
         settings.resolution = self.resolution
         settings.sensor_size_mm = setup.frame_size
-        settings.sensor_center_mm = tuple(camera.at(scene.time).shift)
+        right, up = camera.at(scene.time).shift
+        settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
         return core_scene, setup.core, settings
