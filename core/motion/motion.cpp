@@ -59,6 +59,20 @@ std::optional<RotationStretch> split(const Affine3d& m, Interpolation how, std::
     return std::nullopt;
 }
 
+struct CosineSine {
+    double cosine, sine;
+};
+
+/// The first terms of the series are exact to rounding for small angles, and cheaper: a camera that pans
+/// asks for them at every ray.
+CosineSine cosine_sine(double angle) {
+    const double x2 = angle * angle;
+    if (x2 > 1.0 / 64) return {std::cos(angle), std::sin(angle)};
+    const double c = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90))));
+    const double s = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72)));
+    return {c, angle * s};
+}
+
 /// M(angle) p = base rot(axis, angle) stretch (p - about), for a linear base.
 Motion::Turn turn_about(const Affine3d& base, Vec3d axis, const Affine3d& stretch, Vec3d about) {
     Motion::Turn turn;
@@ -98,7 +112,7 @@ void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
 }  // namespace
 
 Affine3d Motion::Turn::at(double angle) const {
-    const double c = std::cos(angle), s = std::sin(angle);
+    const auto [c, s] = cosine_sine(angle);
     return {mean.x + cosine.x * c + sine.x * s, mean.y + cosine.y * c + sine.y * s,
             mean.z + cosine.z * c + sine.z * s, mean.origin + cosine.origin * c + sine.origin * s};
 }
