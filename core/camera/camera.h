@@ -40,8 +40,8 @@ inline LensSetting blend(const LensSetting& a, const LensSetting& b, float s) {
 struct Camera {
     Motion world_from_camera;   // rigid; metres; time: fraction of the scene's interval
     LensKind lens;              // as it is at mid-interval: what H0 is measured with
-    LensMotion lens_motion;
-    Keyed<LensSetting> setting; // empty: it stays
+    LensMotion lens_motion = {};
+    Keyed<LensSetting> setting = {};  // empty: it stays
 };
 
 /// Fills rays[i] (camera frame) for samples[i], with the lens as it is at their times; weight 0: stopped by

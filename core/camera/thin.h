@@ -14,7 +14,7 @@ struct ThinLens {
     double film_distance_mm = 50;
     double aperture_radius_mm = 4.5;   // of the round iris; other shapes have its area
     double focus_distance_m = 1;       // along the axis; infinity is allowed
-    Iris iris;                         // shape of unit radius
+    Iris iris = {};                    // shape of unit radius
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
 
     /// What of it changes evenly while it is on its way.
