@@ -64,7 +64,7 @@ void draw(const ExactLens& lens, FuzzInput& in) {
     for (CameraSample& s : samples) {
         s.film_mm = {10 * in.number(), 10 * in.number()};
         s.u_lens = {in.factor() * 0.99f, 0.5f};
-        s.time_s = 0;
+        s.time = 0;
         s.wavelength_nm = 550;
     }
     lens.generate(samples, rays);
