@@ -9,27 +9,9 @@ in examples/extensions/, whose first lines say what it uses, and holds its own c
 
 from __future__ import annotations
 
-import argparse
-import sys
-from importlib import import_module
-from pathlib import Path
+from kit.command import write_scenes
 
-HERE = Path(__file__).resolve().parent
 SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")
 
-
-def main() -> None:
-    """Writes the scenes into the folder on the command line."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("-o", "--output", type=Path, default=Path("out/extensions"))
-    parser.add_argument("--only", action="append", choices=SCENES)
-    given = parser.parse_args()
-    sys.path.insert(0, str(HERE))
-    for name in given.only or SCENES:
-        path = given.output / f"{name}.glb"
-        import_module(f"extensions.{name}").make().write(path)
-        print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
-
-
 if __name__ == "__main__":
-    main()
+    write_scenes("extensions", SCENES, __doc__)
