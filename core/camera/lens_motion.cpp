@@ -1,3 +1,4 @@
+// lens_motion.cpp -- rays through a lens that changes while the shutter is open, or through one that stays.
 #include <algorithm>
 
 #include "camera/camera.h"

@@ -5,20 +5,14 @@ namespace dg {
 
 Scene::Hit Scene::surface(const Ray& ray, const RawHit& raw) const {
     Hit hit;
-    SurfaceHit& s = hit.surface;
     if (raw.instance != RawHit::kSphere) {
-        find_surface(ray, raw, s);
+        find_surface(ray, raw, hit.surface);
         return hit;
     }
-    hit.sphere_light = raw.primitive;
-    s.wo = -ray.direction;
-    s.t = raw.t;
-    s.time = ray.time;
-    s.position = ray.origin + ray.direction * raw.t;
+    find_sphere(ray, raw, hit);
+    SurfaceHit& s = hit.surface;
     s.ng = s.ns =
         normalize(s.position - lights_.sphere_at(raw.primitive, ray.time).shape.center);
-    s.instance = RawHit::kSphere;
-    s.primitive = raw.primitive;
     return hit;
 }
 

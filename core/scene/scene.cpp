@@ -192,15 +192,19 @@ std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
         find_surface(ray, *raw, result->surface);
         return result;
     }
-    SurfaceHit& hit = result->surface;
-    hit.wo = -ray.direction;
-    hit.t = raw->t;
-    hit.time = ray.time;
-    hit.position = ray.origin + ray.direction * raw->t;
-    hit.instance = RawHit::kSphere;
-    hit.primitive = raw->primitive;
-    result->sphere_light = raw->primitive;
+    find_sphere(ray, *raw, *result);
     return result;
+}
+
+void Scene::find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const {
+    SurfaceHit& s = hit.surface;
+    s.wo = -ray.direction;
+    s.t = raw.t;
+    s.time = ray.time;
+    s.position = ray.origin + ray.direction * raw.t;
+    s.instance = RawHit::kSphere;
+    s.primitive = raw.primitive;
+    hit.sphere_light = raw.primitive;
 }
 
 float Scene::curvature(const SurfaceHit& hit) const {

@@ -116,6 +116,7 @@ class Scene {
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
+    void find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
     void hold(Vec3d point);
