@@ -8,6 +8,7 @@ namespace nb = nanobind;
 
 void bind_codec(nb::module_& m);
 void bind_motion(nb::module_& m);
+void bind_prescription(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
@@ -27,6 +28,7 @@ NB_MODULE(_core, m) {
     });
     bind_codec(m);
     bind_motion(m);
+    bind_prescription(m);
     bind_optics(m);
     bind_scene(m);
     bind_camera(m);

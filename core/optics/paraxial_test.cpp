@@ -122,8 +122,6 @@ TEST_CASE("prescriptions that cannot be are refused with surface and value") {
         change(lens);
         CHECK_THROWS_WITH_AS(validate(lens), doctest::Contains(says), Error);
     };
-    refused([](Prescription& l) { l.surfaces[3].kind = "aspheric"; },
-            "surface 3: kind of surface");
     refused([](Prescription& l) { l.surfaces[2].curvature = std::nan(""); },
             "surface 2: curvature");
     refused([](Prescription& l) { l.surfaces[2].thickness = -1; },

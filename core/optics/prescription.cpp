@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "math/error.h"
+#include "optics/lens_error.h"
 
 namespace dg {
 namespace {
@@ -23,10 +23,9 @@ void check_range(const std::string& where, const char* what, double value, doubl
 void check_surface(const Prescription& lens, int i) {
     const Surface& s = lens.surfaces[i];
     const std::string where = surface_name(lens, i);
-    if (s.kind != "spherical" && s.kind != "stop")
-        throw input_error(where, "kind of surface", "spherical or stop", s.kind);
-    if (s.kind == "stop" && s.curvature != 0)
-        throw input_error(where, "curvature of a stop", "a plane", number(s.curvature));
+    if (s.shape != Shape::conic || s.conic != 0 || !s.asphere.empty() || is_placed(s))
+        throw lens_error("lens-surface", i, where, "form",
+                         "a centred sphere or plane (so far)", "another");
     check_range(where, "curvature", s.curvature, -1e3, 1e3, "at most 1000 per mm");
     const bool last = i + 1 == int(lens.surfaces.size());
     check_range(where, "thickness", s.thickness, last ? -1e5 : 0, 1e5, "0 to 1e5 mm");
@@ -41,6 +40,12 @@ void check_surface(const Prescription& lens, int i) {
 }
 
 }  // namespace
+
+bool is_axially_symmetric(const Prescription& lens) {
+    for (const Surface& s : lens.surfaces)
+        if (!is_axially_symmetric(s)) return false;
+    return true;
+}
 
 std::string surface_name(const Prescription& lens, int surface) {
     return (lens.name.empty() ? "lens" : lens.name) + ": surface " +

@@ -91,8 +91,8 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
         t.curvature.push_back(float(s.curvature));
         t.gap.push_back(float(s.thickness));
         const bool bounded =
-            clear_apertures && std::isfinite(s.semi_diameter) && !(iris && i == t.stop);
-        t.semi2.push_back(bounded ? float(s.semi_diameter * s.semi_diameter) : FLT_MAX);
+            clear_apertures && std::isfinite(clear_radius(s)) && !(iris && i == t.stop);
+        t.semi2.push_back(bounded ? float(clear_radius(s) * clear_radius(s)) : FLT_MAX);
         add_index(s.glass);
         const bool same = refractive_index(before, 550) == refractive_index(s.glass, 550);
         const bool coated =

@@ -22,7 +22,6 @@ inline Prescription lens_from_rows(const char* name, const std::vector<Row>& row
         if (r.nd != 1 && r.vd > 0) s.glass.formula = AbbeGlass{r.nd, r.vd};
         if (r.nd != 1 && r.vd == 0) s.glass.formula = ConstantIndex{r.nd};
         s.stop = r.stop;
-        if (r.stop) s.kind = "stop";
         lens.surfaces.push_back(s);
     }
     return lens;

@@ -36,6 +36,10 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
     p = m + d * (q / (d.z + sign * cos1));
     const double r2 = p.x * p.x + p.y * p.y, toward_axis = 1 - c * p.z;
     if (!(toward_axis > 0)) return false;  // the far half of the sphere
+    const double n1 = n.index[sign > 0 ? i : i + 1], n2 = n.index[sign > 0 ? i + 1 : i];
+    const Vec3d met{p.x, p.y, p.z + vertices_[i]};
+    traced.optical_path += n1 * dot(met - traced.ray.origin, d);
+    traced.ray.origin = met;
     if (i == stop_) {
         traced.iris = {p.x, p.y};
         if (clip.iris) {
@@ -46,40 +50,48 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
         }
     }
     const bool iris_here = i == stop_ && clip.iris;
-    const double edge = surface.semi_diameter * clip.widened;
+    const double edge = clear_radius(surface) * clip.widened;
+    const double hole = surface.inner_semi_diameter / clip.widened;
     if (clip.clear_apertures && !iris_here && !(r2 <= edge * edge)) return false;
-    const double n1 = n.index[sign > 0 ? i : i + 1], n2 = n.index[sign > 0 ? i + 1 : i];
+    if (clip.clear_apertures && !(r2 >= hole * hole)) return false;
     const double mu = n1 / n2, cos2_squared = 1 - mu * mu * (1 - cos1_squared);
     if (!(cos2_squared >= 0)) return false;  // total reflection
     const double cos2 = std::sqrt(cos2_squared);
     const Vec3d normal{-c * p.x, -c * p.y, toward_axis};
     traced.ray.direction = mu * d + (sign * (cos2 - mu * cos1)) * normal;
-    traced.ray.origin = {p.x, p.y, p.z + vertices_[i]};
     traced.transmittance *=
         surface_transmittance(lens_.coating, n1, cos1, n2, cos2, n.wavelength_nm);
     return true;
 }
 
+int Tracer::follow(TracedRay& ray, bool toward_film, const LensIndices& n,
+                   const Clip& clip) const {
+    const int count = int(lens_.surfaces.size());
+    for (int k = 0; k < count; ++k) {
+        const int i = toward_film ? k : count - 1 - k;
+        if (!cross(i, toward_film ? 1 : -1, n, clip, ray)) return i;
+    }
+    return -1;
+}
+
 std::optional<TracedRay> Tracer::to_film(LensRay ray, const LensIndices& n,
                                          const Clip& clip) const {
-    TracedRay traced{ray, {}, 1};
-    for (int i = 0; i < int(lens_.surfaces.size()); ++i)
-        if (!cross(i, 1, n, clip, traced)) return std::nullopt;
+    TracedRay traced{ray};
+    if (follow(traced, true, n, clip) >= 0) return std::nullopt;
     return traced;
 }
 
 std::optional<TracedRay> Tracer::to_scene(LensRay ray, const LensIndices& n,
                                           const Clip& clip) const {
-    TracedRay traced{ray, {}, 1};
-    for (int i = int(lens_.surfaces.size()) - 1; i >= 0; --i)
-        if (!cross(i, -1, n, clip, traced)) return std::nullopt;
+    TracedRay traced{ray};
+    if (follow(traced, false, n, clip) >= 0) return std::nullopt;
     return traced;
 }
 
 std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n,
                                      double widened) const {
     const Clip clip{true, nullptr, 0, widened};
-    TracedRay traced{ray, {}, 1};
+    TracedRay traced{ray};
     for (int i = int(lens_.surfaces.size()) - 1; i >= stop_; --i)
         if (!cross(i, -1, n, clip, traced)) return std::nullopt;
     return traced.iris;
@@ -87,7 +99,7 @@ std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n,
 
 std::vector<Vec3d> Tracer::path_to_film(LensRay ray, const LensIndices& n,
                                         const Clip& clip) const {
-    TracedRay traced{ray, {}, 1};
+    TracedRay traced{ray};
     std::vector<Vec3d> points;
     for (int i = 0; i < int(lens_.surfaces.size()); ++i) {
         if (!cross(i, 1, n, clip, traced)) return {};

@@ -16,8 +16,9 @@ struct LensRay {
 
 struct TracedRay {
     LensRay ray;               // from the last surface that was met, refracted
-    Vec2d iris;                // mm, where the ray crossed the stop
+    Vec2d iris{};              // mm, where the ray crossed the stop
     double transmittance = 1;  // product over the surfaces, and the iris's
+    double optical_path = 0;   // mm: sum of n x distance, from the origin to there
 };
 
 /// What stops rays besides a miss or total reflection. The iris replaces the stop's clear
@@ -47,6 +48,10 @@ class Tracer {
     /// From the film side through the first surface.
     std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n,
                                       const Clip& clip) const;
+    /// The same, either way, with what is known of a ray that is stopped: the surface that
+    /// stopped it, or -1; `ray` is left at the last surface that it met.
+    int follow(TracedRay& ray, bool toward_film, const LensIndices& n,
+               const Clip& clip) const;
     /// From the film side to the stop: the iris point, mm. Clear apertures are widened by
     /// the factor.
     std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n, double widened) const;

@@ -1,0 +1,211 @@
+// bind_prescription.cpp -- glass, surfaces, prescriptions, first-order data and exact
+// traces of single rays.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <map>
+
+#include "bind/arrays.h"
+#include "math/error.h"
+#include "optics/paraxial.h"
+#include "optics/trace.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Column = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+dg::LensRay ray_at(const Rows3d& origins, const Rows3d& directions, std::size_t i) {
+    const dg::Vec3d d{directions(i, 0), directions(i, 1), directions(i, 2)};
+    return {{origins(i, 0), origins(i, 1), origins(i, 2)}, dg::normalize(d)};
+}
+
+std::size_t check_lengths(const dg::Prescription& lens, const Rows3d& origins,
+                          const Rows3d& directions, const Column& wavelength_nm) {
+    const std::size_t n = origins.shape(0);
+    if (directions.shape(0) != n || wavelength_nm.shape(0) != n)
+        throw dg::input_error(lens.name, "trace",
+                              "as many directions and wavelengths as origins",
+                              std::to_string(n) + " origins");
+    return n;
+}
+
+/// Points (N, 3) on the plane image_z, and unit directions there; NaN where a ray is
+/// stopped.
+auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
+           const Column& wavelength_nm, double image_z, bool clip) {
+    const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
+    const dg::Tracer tracer(lens);
+    std::vector<double> points(3 * n), exits(3 * n);
+    dg::LensIndices index{0, {}};
+    for (std::size_t i = 0; i < n; ++i) {
+        if (wavelength_nm(i) != index.wavelength_nm) index = tracer.at(wavelength_nm(i));
+        const auto out =
+            tracer.to_film(ray_at(origins, directions, i), index, {clip, nullptr, 0});
+        const dg::Vec3d p =
+            out ? dg::at_plane(out->ray, image_z) : dg::Vec3d{kNan, kNan, kNan};
+        const dg::Vec3d d = out ? out->ray.direction : dg::Vec3d{kNan, kNan, kNan};
+        for (int k = 0; k < 3; ++k) points[3 * i + k] = p[k], exits[3 * i + k] = d[k];
+    }
+    return nb::make_tuple(dg::bind::to_numpy(std::move(points), {n, 3}),
+                          dg::bind::to_numpy(std::move(exits), {n, 3}));
+}
+
+/// Every ray at the last surface that it met, and which one stopped it.
+auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
+          const Column& wavelength_nm, bool clip, bool toward_film) {
+    const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
+    const dg::Tracer tracer(lens);
+    std::vector<double> points, exits, iris, path, transmittance;
+    std::vector<std::int32_t> stopped;
+    dg::LensIndices index{0, {}};
+    for (std::size_t i = 0; i < n; ++i) {
+        if (wavelength_nm(i) != index.wavelength_nm) index = tracer.at(wavelength_nm(i));
+        dg::TracedRay out{ray_at(origins, directions, i)};
+        out.iris = {kNan, kNan};
+        stopped.push_back(tracer.follow(out, toward_film, index, {clip, nullptr, 0}));
+        const dg::Vec3d p = out.ray.origin, d = out.ray.direction;
+        points.insert(points.end(), {p.x, p.y, p.z});
+        exits.insert(exits.end(), {d.x, d.y, d.z});
+        iris.insert(iris.end(), {out.iris.x, out.iris.y});
+        path.push_back(out.optical_path);
+        transmittance.push_back(stopped.back() < 0 ? out.transmittance : 0);
+    }
+    using dg::bind::to_numpy;
+    return nb::make_tuple(to_numpy(std::move(points), {n, 3}),
+                          to_numpy(std::move(exits), {n, 3}),
+                          to_numpy(std::move(iris), {n, 2}), to_numpy(std::move(path), {n}),
+                          to_numpy(std::move(transmittance), {n}),
+                          to_numpy(std::move(stopped), {n}));
+}
+
+/// Points (K, 3) on the surfaces along one ray, object side first; empty if it is
+/// stopped.
+auto path(const dg::Prescription& lens, const Rows3d& origin, const Rows3d& direction,
+          double wavelength_nm, bool clip) {
+    const dg::Tracer tracer(lens);
+    std::vector<double> flat;
+    for (const dg::Vec3d p : tracer.path_to_film(
+             ray_at(origin, direction, 0), tracer.at(wavelength_nm), {clip, nullptr, 0}))
+        flat.insert(flat.end(), {p.x, p.y, p.z});
+    const std::size_t n = flat.size() / 3;
+    return dg::bind::to_numpy(std::move(flat), {n, 3});
+}
+
+}  // namespace
+
+void bind_prescription(nb::module_& m) {
+    using namespace dg;
+    nb::class_<Glass>(m, "Glass")
+        .def_static(
+            "constant",
+            [](double n) {
+                return Glass{ConstantIndex{n}, ""};
+            },
+            "n"_a)
+        .def_static(
+            "abbe",
+            [](double nd, double vd) {
+                return Glass{AbbeGlass{nd, vd}, ""};
+            },
+            "nd"_a, "vd"_a)
+        .def_static(
+            "table",
+            [](std::vector<double> nm, std::vector<double> n) {
+                return Glass{TableGlass{std::move(nm), std::move(n)}, ""};
+            },
+            "wavelength_nm"_a, "n"_a)
+        .def_static(
+            "sellmeier",
+            [](const std::vector<double>& b, const std::vector<double>& c) {
+                if (b.size() != 3 || c.size() != 3)
+                    throw Error("Sellmeier glass: wanted three b and three c");
+                return Glass{SellmeierGlass{{b[0], b[1], b[2]}, {c[0], c[1], c[2]}}, ""};
+            },
+            "b"_a, "c_um2"_a)
+        .def("index", &refractive_index, "wavelength_nm"_a);
+    nb::class_<Surface>(m, "Surface")
+        .def(
+            "__init__",
+            [](Surface* self, double curvature, double thickness, double semi_diameter,
+               const Glass& glass, bool stop, const std::string& kind, double conic,
+               const std::map<int, double>& asphere, double curvature_x, double conic_x,
+               double inner_semi_diameter, double semi_diameter_after,
+               std::array<double, 3> decenter, std::array<double, 3> tilt,
+               const std::string& coating) {
+                Surface s{curvature, thickness, semi_diameter, glass, stop};
+                s.conic = conic, s.curvature_x = curvature_x, s.conic_x = conic_x;
+                for (const auto& [power, a] : asphere) s.asphere.push_back({power, a});
+                s.inner_semi_diameter = inner_semi_diameter;
+                s.semi_diameter_after = semi_diameter_after;
+                s.decenter = {decenter[0], decenter[1], decenter[2]};
+                s.tilt = {tilt[0], tilt[1], tilt[2]};
+                s.coating = coating;
+                set_kind(s, kind);
+                new (self) Surface(std::move(s));
+            },
+            "curvature"_a, "thickness"_a, "semi_diameter"_a, "glass"_a, "stop"_a,
+            "kind"_a, nb::kw_only(), "conic"_a = 0.0,
+            "asphere"_a = std::map<int, double>(), "curvature_x"_a = 0.0,
+            "conic_x"_a = 0.0, "inner_semi_diameter"_a = 0.0,
+            "semi_diameter_after"_a = 0.0, "decenter"_a = std::array<double, 3>{},
+            "tilt"_a = std::array<double, 3>{}, "coating"_a = "",
+            "asphere: {power of r: coefficient}; tilt in degrees.");
+    nb::class_<Prescription>(m, "Prescription")
+        .def(
+            "__init__",
+            [](Prescription* self, const std::string& name,
+               const std::vector<Surface>& surfaces, const Glass& object_medium,
+               const std::string& coating, double nominal_f_number) {
+                Prescription lens{name, object_medium, surfaces,
+                                  coating_from_name(coating), nominal_f_number};
+                validate(lens);
+                new (self) Prescription(std::move(lens));
+            },
+            "name"_a, "surfaces"_a, "object_medium"_a, "coating"_a, "nominal_f_number"_a)
+        .def("vertices", &Prescription::vertices, "z of the vertices, mm.")
+        .def("first_order", &first_order, "wavelength_nm"_a)
+        .def(
+            "film_position",
+            [](const Prescription& lens, double distance_m, bool from_sensor) {
+                return film_position(lens, first_order(lens), distance_m,
+                                     from_sensor ? FocusFrom::sensor : FocusFrom::pupil);
+            },
+            "distance_m"_a, "from_sensor"_a)
+        .def("trace", &trace, "origins"_a, "directions"_a, "wavelength_nm"_a, "image_z"_a,
+             "clip"_a)
+        .def("rays", &rays, "origins"_a, "directions"_a, "wavelength_nm"_a, "clip"_a,
+             "toward_film"_a = true,
+             "Each ray at the last surface that it met: (points (N, 3), directions (N, 3), "
+             "iris (N, 2), optical path (N,), transmittance (N,), index of the surface "
+             "that stopped it (N,), -1: none).")
+        .def_prop_ro("is_axially_symmetric",
+                     [](const Prescription& lens) { return is_axially_symmetric(lens); })
+        .def("path", &path, "origin"_a, "direction"_a, "wavelength_nm"_a, "clip"_a);
+    nb::class_<FirstOrder>(m, "FirstOrder")
+        .def_ro("wavelength_nm", &FirstOrder::wavelength_nm)
+        .def_ro("efl", &FirstOrder::efl)
+        .def_ro("bfl", &FirstOrder::bfl)
+        .def_ro("ffl", &FirstOrder::ffl)
+        .def_ro("front_focal_z", &FirstOrder::front_focal_z)
+        .def_ro("back_focal_z", &FirstOrder::back_focal_z)
+        .def_ro("front_principal_z", &FirstOrder::front_principal_z)
+        .def_ro("back_principal_z", &FirstOrder::back_principal_z)
+        .def_ro("front_nodal_z", &FirstOrder::front_nodal_z)
+        .def_ro("back_nodal_z", &FirstOrder::back_nodal_z)
+        .def_ro("entrance_pupil_z", &FirstOrder::entrance_pupil_z)
+        .def_ro("exit_pupil_z", &FirstOrder::exit_pupil_z)
+        .def_ro("entrance_pupil_diameter", &FirstOrder::entrance_pupil_diameter)
+        .def_ro("exit_pupil_diameter", &FirstOrder::exit_pupil_diameter)
+        .def_ro("stop_semi_diameter", &FirstOrder::stop_semi_diameter)
+        .def_ro("f_number", &FirstOrder::f_number);
+}
+
