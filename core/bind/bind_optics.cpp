@@ -1,9 +1,12 @@
 // bind_optics.cpp -- the exact lens of a camera.
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include <cmath>
 #include <ctime>
+#include <limits>
 
 #include "bind/arrays.h"
 #include "camera/exact.h"
@@ -14,7 +17,12 @@ using namespace nb::literals;
 
 namespace {
 
+using Pair = std::pair<double, double>;
 using ColumnF = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+dg::Vec2d vec(Pair p) {
+    return {p.first, p.second};
+}
 
 std::vector<dg::CameraSample> camera_samples(const dg::bind::Rows2f& film_mm,
                                              const dg::bind::Rows2f& u_lens,
@@ -89,15 +97,28 @@ void bind_optics(nb::module_& m) {
             "__init__",
             [](ExactLens* self, const Prescription& lens, double f_stop, const Iris& iris,
                double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
-               bool only_slope_boxes) {
+               bool only_slope_boxes, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
+               Pair film_half_mm, const std::optional<nb::bytes>& cache) {
+                const std::string aim = cache ? std::string(cache->c_str(), cache->size()) : "";
                 nb::gil_scoped_release release;   // states of a lens are set up side by side
                 new (self) ExactLens(
                     lens, {f_stop, iris, focus_distance_m,
                            focus_from_sensor ? FocusFrom::sensor : FocusFrom::pupil,
-                           half_diagonal_mm, only_slope_boxes});
+                           half_diagonal_mm, only_slope_boxes,
+                           std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
+                           vec(tilt_deg), vec(film_center_mm), vec(film_half_mm), aim});
             },
             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
-            "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false)
+            "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
+            nb::kw_only(), "film_z_mm"_a = std::numeric_limits<double>::quiet_NaN(),
+            "tilt_deg"_a = Pair{0, 0}, "film_center_mm"_a = Pair{0, 0},
+            "film_half_mm"_a = Pair{0, 0}, "cache"_a = nb::none())
+        .def_prop_ro("aim_state",
+                     [](const ExactLens& lens) {
+                         const std::string state = lens.aim_state();
+                         return nb::bytes(state.data(), state.size());
+                     },
+                     "What the set-up found out, for `cache` of the same lens another time.")
         .def_prop_ro("h0", &ExactLens::h0)
         .def_prop_ro("transmittance", &ExactLens::transmittance)
         .def_prop_ro("f_stop", &ExactLens::f_stop)

@@ -77,7 +77,11 @@ struct ExactLens::State {
                 " the camera's origin");
         if (settings.f_stop == 0) settings.f_stop = order.f_number;
         iris_radius = dg::iris_radius(lens, order, settings.f_stop);
-        film_z = film_position(lens, order, s.focus_distance_m, s.focus_from);
+        if (length(s.tilt_deg) != 0)
+            throw input_error(lens.name, "tilt", "0 until tilted lenses can be aimed",
+                              std::to_string(length(s.tilt_deg)) + " degrees");
+        film_z = s.film_z ? *s.film_z
+                          : film_position(lens, order, s.focus_distance_m, s.focus_from);
         if (!(film_z > tracer.vertices().back()))
             throw Error(lens.name +
                         ": the film would lie inside the lens (back focal length " +
@@ -249,6 +253,9 @@ double ExactLens::film_distance_mm() const {
 }
 double ExactLens::half_diagonal_mm() const {
     return state_->settings.half_diagonal_mm;
+}
+std::string ExactLens::aim_state() const {
+    return {};
 }
 const FirstOrder& ExactLens::first_order() const {
     return state_->order;

@@ -3,7 +3,9 @@
 #pragma once
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "camera/camera_sample.h"
 #include "optics/paraxial.h"
@@ -19,6 +21,15 @@ struct ExactLensSettings {
     double half_diagonal_mm = 21.64;  // of the film that must be covered, shift included
     bool only_slope_boxes =
         false;  // exit-pupil boxes instead of the guided aim (comparison)
+    /// z of the film in the lens frame, mm, if focus was solved elsewhere; focus_distance_m is not used then.
+    std::optional<double> film_z;
+    /// The lens is turned about the centre of its entrance pupil: about x of the camera's frame, then
+    /// about y. The film stays where it is without.
+    Vec2d tilt_deg{};
+    /// The part of the film that will be asked for, mm, upright; half 0: all within half_diagonal_mm.
+    Vec2d film_center_mm{}, film_half_mm{};
+    /// aim_state() of an earlier lens; not used unless it was made for the same lens and settings.
+    std::string cache;
 };
 
 /// Where another wavelength of the same scene ray meets the film.
@@ -59,6 +70,8 @@ class ExactLens {
     double film_z_mm() const;         // in the lens frame
     double film_distance_mm() const;  // from the rear principal point
     double half_diagonal_mm() const;
+    /// What the set-up found out, as bytes: with them the same lens is ready at once, with the same bits.
+    std::string aim_state() const;
     const FirstOrder& first_order() const;  // design wavelength
     const Aim& aim() const;
     const Tracer& tracer() const;
