@@ -14,7 +14,7 @@ from .bases import ENDLESS, beside_scene
 from .case import DRAW, Case, keys_of
 
 COMMAND = ("render", "{folder}/scene.glb", "--lens", "{bad}", *DRAW, "--sky", "1,1,1")
-GOOD = json.loads((Path(lenses.__file__).parent / "tessar-50mm-f2.8.json").read_text())
+GOOD = json.loads((Path(lenses.__file__).parent / "library" / "tessar-50mm-f2.8.json").read_text())
 
 
 def change(path: str, value: Any) -> Any:
@@ -50,12 +50,33 @@ LENSES: dict[str, tuple[Any, str]] = {
     "no kind": (change("surfaces.0.kind", ...), S + "kind: missing"),
     "kind is 3": (change("surfaces.0.kind", 3), S + "kind: wrong type"),
     "kind is a mirror": (change("surfaces.0.kind", "mirror"), S + "kind: unknown value"),
-    "asphere": (change("surfaces.0.kind", "aspheric"), S + "kind: wanted spherical or stop"),
-    "conic": (change("surfaces.0.conic", -1), S + "conic: wanted a spherical surface"),
+    "asphere is a list": (change("surfaces.0.asphere", [1e-6]), S + "asphere: wrong type"),
+    "asphere of power 0": (change("surfaces.0.asphere", {"a0": 1}), S + r"asphere\.a0: wanted a"),
+    "asphere of power 1e9": (
+        change("surfaces.0.asphere", {"a1000000000": 1}),
+        S + r"asphere\.a1000000000: wanted a power",
+    ),
+    "asphere is text": (change("surfaces.0.asphere", {"a4": "x"}), S + r"asphere\.a4: wrong type"),
+    "conic is text": (change("surfaces.0.conic", "k"), S + "conic: wrong type"),
+    "tilt of two": (change("surfaces.0.tilt", [1, 2]), S + "tilt: wrong length"),
+    "tilt of a turn": (change("surfaces.0.tilt", [360, 0, 0]), S + r"tilt\[0\]: out of range"),
+    "coating of paint": (change("surfaces.0.coating", "paint"), S + "coating: unknown value"),
+    "obstruction too wide": (
+        change("surfaces.0.inner_semi_diameter", 50),
+        S + "inner_semi_diameter: wanted 0 mm",
+    ),
+    "groups is an object": (change("groups", {}), "groups: wrong type"),
+    "group beyond the table": (
+        change("groups", [{"surfaces": [0, 99]}]),
+        r"groups\[0\]\.surfaces\[1\]: out of range",
+    ),
+    "group backwards": (
+        change("groups", [{"surfaces": [3, 1]}]),
+        r"groups\[0\]\.surfaces: wanted \[first, last\]",
+    ),
     "radius 0": (change("surfaces.0.radius", 0), S + "radius: wanted a signed radius"),
     "radius is text": (change("surfaces.0.radius", "20"), S + "radius: wrong type"),
     "radius 1e-300": (change("surfaces.0.radius", 1e-300), "surface|radius"),
-    "radius of the stop": (change("surfaces.4.radius", 5), r"surfaces\[4\]\.radius: wanted null"),
     "thickness negative": (change("surfaces.0.thickness", -1), S + "thickness: wanted at least 0"),
     "thickness null": (change("surfaces.0.thickness", None), S + "thickness: wanted the distance"),
     "thickness 1e300": (change("surfaces.0.thickness", 1e300), "thickness"),

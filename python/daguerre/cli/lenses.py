@@ -20,19 +20,24 @@ DESIGN_NM = 587.56
 
 
 def lenses(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
-    """Lists the lenses of the library: name, focal length, f-stop wide open, source."""
+    """Lists the lenses of the library: name, year, focal length, f-stop, format, source."""
+    from dataclasses import asdict
     from json import dumps
 
-    from daguerre import lenses as library
+    from daguerre.lenses.library import entries
 
-    rows = [_summary(name, library.load(name)) for name in library.names()]
     if json:
-        print(dumps(rows, indent=2))
+        print(dumps([{**asdict(e), "source": e.patent} for e in entries()], indent=2))
         return 0
-    width = max((len(row["name"]) for row in rows), default=0)
+    rows = [
+        (e.name, f"{e.year or ''}", e.focal_length, f"f/{e.f_number:.3g}", e.format, e.patent)
+        for e in entries()
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
-        efl, stop = f"{row['efl_mm']:.1f} mm", f"f/{row['f_number']:.2g}"
-        print(f"{row['name']:{width}}  {efl:>9}  {stop:<6}  {row['title']}")
+        print(
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        )
     return 0
 
 
@@ -79,17 +84,6 @@ def lens(
         if key != "wavelength_nm":
             print(f"  {key.replace('_', ' '):22} {_show(value)}")
     return 0
-
-
-def _summary(name: str, item: Lens) -> dict[str, Any]:
-    order = item.first_order(DESIGN_NM)
-    return {
-        "name": name,
-        "title": item.name,
-        "efl_mm": order.efl,
-        "f_number": order.f_number,
-        "source": item.patent,
-    }
 
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,19 @@
 """Real lenses: the library, files of the schema ``daguerre-lens/0.1``, one lens on the bench."""
 
-from .lens import FirstOrder, Lens, LensSurface, Nominal, Pupil
+from .configurations import Configuration
+from .lens import FirstOrder, Lens, Nominal, Pupil
 from .library import load, names
 from .reader import read
+from .surface import LensSurface
 
-__all__ = ["FirstOrder", "Lens", "LensSurface", "Nominal", "Pupil", "load", "names", "read"]
+__all__ = [
+    "Configuration",
+    "FirstOrder",
+    "Lens",
+    "LensSurface",
+    "Nominal",
+    "Pupil",
+    "load",
+    "names",
+    "read",
+]

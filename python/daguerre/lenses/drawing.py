@@ -9,7 +9,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from .lens import DESIGN_WAVELENGTH_NM, Lens, LensSurface
+from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .surface import LensSurface
 
 WIDTH = 760.0  # px
 AXIAL, OBLIQUE = "#c0392b", "#2471a3"

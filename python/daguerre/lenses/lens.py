@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.errors import InputError
+
+from .configurations import Configuration
+from .groups import Group, placed
+from .surface import LensSurface
 
 DESIGN_WAVELENGTH_NM = 587.5618
 
@@ -33,6 +38,7 @@ class Nominal(_Fields):
     full_field_deg: float | None = None
     image_circle_mm: float | None = None
     projection: str | None = None
+    efl_x_mm: float | None = None  # in the x-z plane, of an anamorphic lens
 
 
 @dataclass(frozen=True)
@@ -68,23 +74,6 @@ class FirstOrder(_Fields):
     back_nodal_point: float
 
 
-@dataclass(frozen=True)
-class LensSurface:
-    """One surface as the file gives it. Radius None: plane; semi-diameter None: unknown."""
-
-    kind: str
-    radius: float | None
-    thickness: float | None
-    semi_diameter: float | None
-    glass: str
-    stop: bool
-    core_glass: _core.Glass = field(repr=False, compare=False)
-
-    def replaced(self, **changes: Any) -> LensSurface:
-        """A copy with some fields changed."""
-        return dataclasses.replace(self, **changes)
-
-
 @dataclass(frozen=True, repr=False, eq=False)
 class Lens:
     """A prescription that was read and checked.
@@ -102,6 +91,8 @@ class Lens:
         coating: Of surfaces between air and glass.
         prescription: The core's version.
         data: The file as parsed.
+        configurations: Zoom and focus positions of the file.
+        object_medium: Before the first surface.
     """
 
     name: str
@@ -113,6 +104,8 @@ class Lens:
     coating: str
     prescription: _core.Prescription
     data: dict[str, Any]
+    configurations: tuple[Configuration, ...]
+    object_medium: _core.Glass
 
     def first_order(self, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> FirstOrder:
         """Focal length, focal points, principal and nodal points, pupils.
@@ -156,6 +149,49 @@ class Lens:
         if last:
             return float(self.vertices[-1] + last)
         return self.first_order().back_focal_point
+
+    def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
+        """The lens with another table, and other fields changed."""
+        nominal = changes.get("nominal", self.nominal)
+        core = core_prescription(
+            self.name, surfaces, self.object_medium, self.coating, nominal.f_number
+        )
+        return dataclasses.replace(self, surfaces=tuple(surfaces), prescription=core, **changes)
+
+    def with_gaps(self, gaps: Mapping[int, float]) -> Lens:
+        """The lens with other thicknesses after some surfaces, by index, mm."""
+        surfaces = list(self.surfaces)
+        for i, gap in gaps.items():
+            surfaces[i] = surfaces[i].replaced(thickness=gap)
+        return self.rebuilt(surfaces)
+
+    def decentered(
+        self,
+        surfaces: tuple[int, int],
+        shift: tuple[float, float] = (0.0, 0.0),
+        tilt: tuple[float, float] = (0.0, 0.0),
+        pivot_mm: float = 0.0,
+    ) -> Lens:
+        """The lens with a group of surfaces off its axis.
+
+        Args:
+            surfaces: Indices of the first and the last one.
+            shift: Along x and y, mm.
+            tilt: About x, then y, degrees.
+            pivot_mm: Where the axis of the tilt crosses that of the lens, from the first vertex of
+                the group, mm.
+
+        Raises:
+            InputError: Indices that the lens does not have.
+        """
+        first, last = surfaces
+        if not 0 <= first <= last < len(self.surfaces):
+            raise InputError(
+                f"{self.name}: decentered: wanted surfaces of 0 .. {len(self.surfaces) - 1}, "
+                f"first to last, got {first} to {last}"
+            )
+        group = Group(first, last, (*shift, 0.0), (*tilt, 0.0), pivot_mm)
+        return self.rebuilt(placed(self.surfaces, group))
 
     def trace(
         self,
@@ -203,6 +239,19 @@ class Lens:
         from .drawing import draw
 
         return draw(self)
+
+
+def core_prescription(
+    name: str,
+    surfaces: Sequence[LensSurface],
+    object_medium: _core.Glass,
+    coating: str,
+    f_number: float | None,
+) -> _core.Prescription:
+    """The core's version of a table."""
+    return _core.Prescription(
+        name, [surface.core() for surface in surfaces], object_medium, coating, f_number or 0.0
+    )
 
 
 def _rays(

@@ -1,7 +1,14 @@
-"""The lenses that ship with Daguerre, by name."""
+"""The lenses that ship with Daguerre, by name.
+
+``library/sources.csv`` has one row for each: where its numbers come from, what that source claims,
+and what the table computes to. It is the index, so that a list of names parses no lens.
+"""
 
 from __future__ import annotations
 
+import csv
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from daguerre.errors import InputError, suggest
@@ -9,12 +16,66 @@ from daguerre.errors import InputError, suggest
 from .lens import Lens
 from .reader import read
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parent / "library"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One lens of the library, as its index says. Lengths in mm; computed unless "stated".
+
+    Attributes:
+        name: By which it is loaded.
+        title: Its own name.
+        maker: Empty if unknown.
+        year: Of product or patent.
+        patent: Patent, with the example, or book.
+        format: Film or sensor, mm x mm; empty if unknown.
+        type: Family of designs.
+        efl_mm: Focal length; of a zoom the shortest.
+        efl_long_mm: Longest focal length of a zoom; None: not a zoom.
+        f_number: Wide open; of a zoom at its shortest.
+        bfl_mm: Last vertex to paraxial focus; of a zoom at its shortest.
+        efl_stated: What the source claims; None: nothing.
+        efl_long_stated: What the source claims.
+        f_stated: What the source claims.
+        bfl_stated: What the source claims.
+        remark: Why the source's film is not compared.
+    """
+
+    name: str
+    title: str
+    maker: str
+    year: int | None
+    patent: str
+    format: str
+    type: str
+    efl_mm: float
+    efl_long_mm: float | None
+    f_number: float
+    bfl_mm: float
+    efl_stated: float | None
+    efl_long_stated: float | None
+    f_stated: float | None
+    bfl_stated: float | None
+    remark: str
+
+    @property
+    def focal_length(self) -> str:
+        """Such as ``50 mm`` or ``70-196 mm``."""
+        ends = [self.efl_mm] if self.efl_long_mm is None else [self.efl_mm, self.efl_long_mm]
+        return "-".join(f"{end:.0f}" if end >= 20 else f"{end:.3g}" for end in ends) + " mm"
+
+
+@cache
+def entries() -> tuple[Entry, ...]:
+    """The index, sorted by name."""
+    with (FOLDER / "sources.csv").open(encoding="utf-8", newline="") as file:
+        return tuple(_entry(row) for row in csv.DictReader(file))
 
 
 def names() -> list[str]:
     """Names of the library's lenses, sorted."""
-    return sorted(path.stem for path in FOLDER.glob("*.json"))
+    return [entry.name for entry in entries()]
 
 
 def load(name_or_path: str | Path, configuration: str | None = None) -> Lens:
@@ -36,4 +97,28 @@ def load(name_or_path: str | Path, configuration: str | None = None) -> Lens:
         return read(path, configuration)
     raise InputError(
         f"lens {text!r}: no lens of the library and no file has this name{suggest(text, names())}"
+    )
+
+
+def _entry(row: dict[str, str]) -> Entry:
+    def number(key: str) -> float | None:
+        return float(row[key]) if row[key] else None
+
+    return Entry(
+        name=row["name"],
+        title=row["title"],
+        maker=row["maker"],
+        year=int(row["year"]) if row["year"] else None,
+        patent=row["patent"],
+        format=row["format"],
+        type=row["type"],
+        efl_mm=float(row["efl_mm"]),
+        efl_long_mm=number("efl_long_mm"),
+        f_number=float(row["f_number"]),
+        bfl_mm=float(row["bfl_mm"]),
+        efl_stated=number("efl_stated"),
+        efl_long_stated=number("efl_long_stated"),
+        f_stated=number("f_stated"),
+        bfl_stated=number("bfl_stated"),
+        remark=row["remark"],
     )

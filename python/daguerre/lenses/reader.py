@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import itertools
+from collections.abc import Sequence
 from pathlib import Path
 
-import daguerre._core as _core
-from daguerre.errors import InputError, suggest
+from daguerre.errors import InputError
 from daguerre.io.json_item import Item, clean
 from daguerre.io.json_text import parse
 
-from .lens import Lens, LensSurface, Nominal
+from .configurations import Configuration, chosen, read_configurations
+from .errors import LensError, reported
+from .groups import Group, placed
+from .lens import Lens, Nominal, core_prescription
+from .reading import member, number, text, triple
+from .surface import LensSurface
+from .surface_reader import COATINGS, read_glass, read_surfaces
 
 SCHEMA = "daguerre-lens/0.1"
-KINDS = ("spherical", "stop")
-KNOWN_KINDS = (*KINDS, "aspheric", "cyl-x", "cyl-y")
-COATINGS = ("uncoated", "mgf2", "perfect")
 MAX_BYTES = 16_000_000
 
 
@@ -30,12 +32,8 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         InputError: With file and JSON path of what cannot be used.
     """
     root = _parse(Path(path))
-    try:
+    with reported(str(path)):
         return _lens(root, Path(path), configuration)
-    except InputError:
-        raise
-    except ValueError as error:  # the core's checks: lens and surface are in the message
-        raise InputError(f"{path}: {error}") from None
 
 
 def _parse(path: Path) -> Item:
@@ -54,7 +52,7 @@ def _parse(path: Path) -> Item:
     return parse(data, str(path))
 
 
-def _lens(root: Item, path: Path, configuration: str | None) -> Lens:
+def _lens(root: Item, path: Path, name: str | None) -> Lens:
     schema = root.need("schema")
     if schema.text() != SCHEMA:
         schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
@@ -62,169 +60,86 @@ def _lens(root: Item, path: Path, configuration: str | None) -> Lens:
     if not items:
         root.need("surfaces")
         root.fail("surfaces: wanted at least one surface, got none")
-    chosen = _configuration(root, configuration)
-    gaps = _gaps(chosen, len(items))
-    surfaces = [_surface(item, gaps.get(i), i == len(items) - 1) for i, item in enumerate(items)]
+    configurations = read_configurations(root, len(items))
+    configuration = chosen(root, configurations, name)
+    surfaces = read_surfaces(items, configuration.gaps)
     stops = [i for i, surface in enumerate(surfaces) if surface.stop]
     if len(stops) != 1:
-        root.need("surfaces").fail(f"wanted exactly one stop, got {len(stops)}")
-    override = _optional_number(chosen, "stop_semi_diameter", above=0) if chosen else None
-    if override is not None:
-        surfaces[stops[0]] = surfaces[stops[0]].replaced(semi_diameter=override)
-    medium = root.get("object_medium")
-    coating = root.get("coating")
-    name = _text(root, "name") or path.stem
-    nominal = _nominal(root, chosen)
-    coating_name = "mgf2" if coating is None or coating.value is None else coating.choice(COATINGS)
-    core = _core.Prescription(
-        clean(name),
-        [_core_surface(surface) for surface in surfaces],
-        _core.Glass.constant(1.0) if medium is None or medium.value is None else _glass(medium)[0],
-        coating_name,
-        nominal.f_number or 0.0,
-    )
+        code = "lens-two-stops" if stops else "lens-no-stop"
+        raise LensError(f"{path}: surfaces: wanted exactly one stop, got {len(stops)}", code)
+    if configuration.stop_semi_diameter is not None:
+        surfaces[stops[0]] = surfaces[stops[0]].replaced(
+            semi_diameter=configuration.stop_semi_diameter
+        )
+    for group in _groups(root, len(items), configurations):
+        surfaces = placed(surfaces, group)
+    return _assembled(root, path, surfaces, configurations, configuration)
+
+
+def _assembled(
+    root: Item,
+    path: Path,
+    surfaces: list[LensSurface],
+    configurations: tuple[Configuration, ...],
+    configuration: Configuration,
+) -> Lens:
+    coating = member(root, "coating")
+    coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
+    name = clean(text(root, "name") or path.stem)
+    nominal = _nominal(root, configuration)
+    medium, _ = read_glass(member(root, "object_medium"))
     return Lens(
-        name=clean(name),
+        name=name,
         source=str(path),
-        patent=_text(root, "patent"),
-        note=_text(root, "note"),
+        patent=text(root, "patent"),
+        note=text(root, "note"),
         nominal=nominal,
         surfaces=tuple(surfaces),
         coating=coating_name,
-        prescription=core,
+        prescription=core_prescription(name, surfaces, medium, coating_name, nominal.f_number),
         data=root.value,
+        configurations=configurations,
+        object_medium=medium,
     )
 
 
-def _configuration(root: Item, name: str | None) -> Item | None:
-    items = root.list_of("configurations")
-    if name is None:
-        return items[0] if items else None
-    known = [item.need("name").text() for item in items]
-    if name not in known:
-        root.fail(f"configurations: no configuration named {name!r}{suggest(name, known)}")
-    return items[known.index(name)]
+def _groups(root: Item, count: int, configurations: Sequence[Configuration]) -> list[Group]:
+    groups = member(root, "groups")
+    return [_group(item, count, configurations) for item in groups or ()]
 
 
-def _gaps(configuration: Item | None, count: int) -> dict[int, float]:
-    gaps = configuration.get("gaps") if configuration else None
-    out: dict[int, float] = {}
-    for item in gaps.members() if gaps and gaps.value is not None else []:
-        key = str(item.key)
-        if not key.isdecimal() or int(key) >= count:
-            item.fail(f"wanted the index of a surface, 0 to {count - 1}, got {key!r}")
-        out[int(key)] = item.number(-1e5, 1e5)
-    return out
-
-
-def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
-    kind = item.need("kind")
-    if kind.text() in KNOWN_KINDS and kind.value not in KINDS:
-        kind.fail(f"wanted spherical or stop (this version traces no others), got {kind.value!r}")
-    kind.choice(KINDS)
-    for shape, harmless in (("conic", 0), ("asphere", {})):
-        member = item.get(shape)
-        if member is not None and member.value not in (None, harmless):
-            member.fail("wanted a spherical surface (this version traces no aspheres)")
-    radius = _optional_number(item, "radius")
-    if radius == 0:
-        item.need("radius").fail("wanted a signed radius in mm, or null for a plane, got 0")
-    thickness = gap if gap is not None else _optional_number(item, "thickness")
-    if not last and thickness is None:
-        item.need("thickness").fail("wanted the distance to the next surface in mm, got null")
-    if not last and thickness is not None and thickness < 0:
-        item.need("thickness").fail(f"wanted at least 0 mm, got {thickness:g}")
-    stop = item.get("stop")
-    is_stop = kind.value == "stop" or (stop is not None and stop.value is not None and stop.flag())
-    if kind.value == "stop" and radius is not None:
-        item.need("radius").fail(f"wanted null (the stop is a plane), got {radius:g}")
-    semi_diameter = _optional_number(item, "semi_diameter", above=0)
-    if (
-        semi_diameter is not None
-        and radius is not None
-        and semi_diameter > abs(radius) * (1 + 1e-9)
-    ):
-        item.need("semi_diameter").fail(
-            f"wanted at most the radius, {abs(radius):g} mm, got {semi_diameter:g}"
-        )
-    glass = item.get("glass")
-    core, label = (
-        (_core.Glass.constant(1.0), "") if glass is None or glass.value is None else _glass(glass)
-    )
-    return LensSurface(
-        kind=str(kind.value),
-        radius=radius,
-        thickness=thickness,
-        semi_diameter=semi_diameter,
-        glass=label,
-        stop=is_stop,
-        core_glass=core,
+def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> Group:
+    span = item.need("surfaces")
+    first, last = (int(v) for v in span.numbers(2, 0, count - 1))
+    if last < first:
+        span.fail(f"wanted [first, last], got [{first}, {last}]")
+    inside = range(first, last)
+    for i in inside:
+        if len({c.gaps.get(i) for c in configurations}) > 1:
+            span.fail(f"wanted surfaces that keep their distances; the gap after {i} changes")
+    return Group(
+        first,
+        last,
+        triple(item, "decenter", 1e4),
+        triple(item, "tilt", 90),
+        number(item, "pivot_mm") or 0.0,
     )
 
 
-def _glass(item: Item) -> tuple[_core.Glass, str]:
-    """The glass and its label: its name, or nd/Vd."""
-    label = _text(item, "name") or ""
-    table = item.get("table")
-    if table is not None:
-        nodes = sorted(node.numbers(2, 0.5, 1e5) for node in table)
-        if not nodes:
-            table.fail("wanted [[nm, n], ...], got an empty list")
-        if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
-            table.fail("wanted one index for each wavelength, got two")
-        for node in table:
-            Item(node.value[1], 1, node).number(1, 5)
-        nm, n = zip(*nodes, strict=True)
-        return _core.Glass.table(list(nm), list(n)), label or "table"
-    nd = item.need("nd").number(1, 5)
-    vd = _optional_number(item, "vd", above=0)
-    if vd is None:
-        return _core.Glass.constant(nd), label or f"{nd:.5g}"
-    if vd < 5:
-        item.need("vd").fail(f"wanted an Abbe number of at least 5, got {vd:g}")
-    return _core.Glass.abbe(nd, vd), label or f"{nd:.5g}/{vd:.4g}"
-
-
-def _core_surface(surface: LensSurface) -> _core.Surface:
-    infinite = float("inf")
-    return _core.Surface(
-        0.0 if surface.radius is None else 1 / surface.radius,
-        surface.thickness or 0.0,
-        infinite if surface.semi_diameter is None else surface.semi_diameter,
-        surface.core_glass,
-        surface.stop,
-        surface.kind,
-    )
-
-
-def _nominal(root: Item, configuration: Item | None) -> Nominal:
-    nominal = root.get("nominal")
+def _nominal(root: Item, configuration: Configuration) -> Nominal:
+    nominal = member(root, "nominal")
 
     def value(key: str) -> float | None:
-        for item in (configuration, nominal):
-            if item is not None and item.value is not None:
-                number = _optional_number(item, key, above=0)
-                if number is not None:
-                    return number
-        return None
+        found = None if nominal is None else number(nominal, key)
+        if found is not None and found < 0:
+            root.need("nominal").need(key).fail(f"out of range: wanted at least 0, got {found:g}")
+        return found or None
 
-    projection = None
-    if nominal is not None and nominal.value is not None:
-        projection = _text(nominal, "projection")
     return Nominal(
-        efl_mm=value("efl_mm"),
-        f_number=value("f_number"),
+        efl_mm=configuration.efl_mm or value("efl_mm"),
+        f_number=configuration.f_number or value("f_number"),
         full_field_deg=value("full_field_deg"),
         image_circle_mm=value("image_circle_mm"),
-        projection=projection,
+        projection=None if nominal is None else text(nominal, "projection"),
+        efl_x_mm=value("efl_x_mm"),
     )
-
-
-def _optional_number(item: Item, key: str, *, above: float | None = None) -> float | None:
-    member = item.get(key)
-    return None if member is None or member.value is None else member.number(above=above)
-
-
-def _text(item: Item, key: str) -> str | None:
-    member = item.get(key)
-    return None if member is None or member.value is None else clean(member.text())

@@ -1,0 +1,90 @@
+"""Zoom and focus positions of a lens: the gaps that change, as its file gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from daguerre.errors import suggest
+from daguerre.io.json_item import Item, clean
+
+from .reading import member, number
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """One position of the moving groups. Lengths in mm.
+
+    Attributes:
+        name: Its name in the file.
+        gaps: Thickness after a surface, by the surface's index.
+        efl_mm: Focal length that the source claims.
+        f_number: f-number that the source claims.
+        object_distance_mm: The object's plane, before the first vertex; None: infinity.
+        object_to_image_mm: The object's plane, before the film; None: infinity.
+        stop_semi_diameter: Size of the open iris; None: that of the table.
+    """
+
+    name: str
+    gaps: dict[int, float] = field(default_factory=dict)
+    efl_mm: float | None = None
+    f_number: float | None = None
+    object_distance_mm: float | None = None
+    object_to_image_mm: float | None = None
+    stop_semi_diameter: float | None = None
+
+    @property
+    def at_infinity(self) -> bool:
+        """Focused at infinity: a position of the zoom."""
+        return self.object_distance_mm is None and self.object_to_image_mm is None
+
+    @property
+    def distance_mm(self) -> float:
+        """How far the object is; from where, the fields say. To sort by."""
+        return self.object_to_image_mm or self.object_distance_mm or float("inf")
+
+    def like(self, other: Configuration) -> int:
+        """How many gaps it has in common with another one."""
+        return sum(other.gaps.get(i) == gap for i, gap in self.gaps.items())
+
+
+def read_configurations(root: Item, count: int) -> tuple[Configuration, ...]:
+    """The list of a file whose table has ``count`` surfaces; one without gaps if it has none."""
+    items = root.list_of("configurations")
+    return tuple(_configuration(item, count) for item in items) or (Configuration("infinity"),)
+
+
+def chosen(root: Item, configurations: Sequence[Configuration], name: str | None) -> Configuration:
+    """The one of that name, the first if None."""
+    if name is None:
+        return configurations[0]
+    for configuration in configurations:
+        if configuration.name == name:
+            return configuration
+    known = [configuration.name for configuration in configurations]
+    root.fail(f"configurations: no configuration named {name!r}{suggest(name, known)}")
+
+
+def _configuration(item: Item, count: int) -> Configuration:
+    to_image = number(item, "object_to_image_m", above=0)
+    name = item.get("name")
+    return Configuration(
+        name=f"{item.key}" if name is None else clean(name.text()),
+        gaps=_gaps(item, count),
+        efl_mm=number(item, "efl_mm", above=0),
+        f_number=number(item, "f_number", above=0),
+        object_distance_mm=number(item, "object_distance_mm", above=0),
+        object_to_image_mm=None if to_image is None else 1000 * to_image,
+        stop_semi_diameter=number(item, "stop_semi_diameter", above=0),
+    )
+
+
+def _gaps(item: Item, count: int) -> dict[int, float]:
+    out: dict[int, float] = {}
+    gaps = member(item, "gaps")
+    for gap in gaps.members() if gaps else []:
+        key = str(gap.key)
+        if not key.isdecimal() or int(key) >= count:
+            gap.fail(f"wanted the index of a surface, 0 to {count - 1}, got {key!r}")
+        out[int(key)] = gap.number(0 if int(key) < count - 1 else -1e5, 1e5)
+    return out

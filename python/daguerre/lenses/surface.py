@@ -1,0 +1,90 @@
+"""One surface of a lens as the file gives it, and the core's version of it. Lengths in mm."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import daguerre._core as _core
+
+#: What ``kind`` may be.
+KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
+#: Kinds whose two sections have curvatures of their own.
+TWO_SECTIONS = ("biconic", "toroid")
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class LensSurface:
+    """One surface and what follows it. Lengths in mm, z along the axis toward the film.
+
+    Attributes:
+        kind: One of ``KINDS``. ``cyl-x``: a cylinder whose axis is along x.
+        radius: Signed radius of curvature, positive when the centre lies toward the film; None: a
+            plane. Of a cylinder: of its curved section. Of a biconic or toroid: in the y-z plane.
+        thickness: To the next vertex; of the last surface to the film, None or 0 if unknown.
+        semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
+        glass: What follows it, by name or nd/Vd; empty: air.
+        stop: The iris lies here.
+        core_glass: What follows it.
+        conic: k: 0 is a sphere, -1 a paraboloid.
+        asphere: Coefficients by power of r = hypot(x, y), added to the sag.
+        radius_x: Radius in the x-z plane of a biconic or toroid.
+        conic_x: k in the x-z plane of a biconic.
+        inner_semi_diameter: Of an obstruction in the middle; 0: none.
+        semi_diameter_after: Of the medium that follows, where elements differ; None: the same.
+        decenter: Shift of the vertex. The axis goes on as before.
+        tilt: Degrees about x, then y, then z, at the vertex.
+        coating: By name; empty: the lens's.
+        derived: The semi-diameter is not the source's: rays were traced for it.
+    """
+
+    kind: str
+    radius: float | None
+    thickness: float | None
+    semi_diameter: float | None
+    glass: str
+    stop: bool
+    core_glass: _core.Glass = field(repr=False, compare=False)
+    conic: float = 0.0
+    asphere: dict[int, float] = field(default_factory=dict)
+    radius_x: float | None = None
+    conic_x: float = 0.0
+    inner_semi_diameter: float = 0.0
+    semi_diameter_after: float | None = None
+    decenter: Triple = (0.0, 0.0, 0.0)
+    tilt: Triple = (0.0, 0.0, 0.0)
+    coating: str = ""
+    derived: bool = False
+
+    def replaced(self, **changes: Any) -> LensSurface:
+        """A copy with some fields changed."""
+        return dataclasses.replace(self, **changes)
+
+    def core(self) -> _core.Surface:
+        """The core's version."""
+        clear = math.inf if self.semi_diameter is None else self.semi_diameter
+        return _core.Surface(
+            _curvature(self.radius),
+            self.thickness or 0.0,
+            clear,
+            self.core_glass,
+            self.stop,
+            self.kind,
+            conic=self.conic,
+            asphere=self.asphere,
+            curvature_x=_curvature(self.radius_x),
+            conic_x=self.conic_x,
+            inner_semi_diameter=self.inner_semi_diameter,
+            semi_diameter_after=self.semi_diameter_after or 0.0,
+            decenter=self.decenter,
+            tilt=self.tilt,
+            coating=self.coating,
+        )
+
+
+def _curvature(radius: float | None) -> float:
+    return 0.0 if radius is None else 1 / radius

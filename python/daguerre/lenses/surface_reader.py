@@ -1,0 +1,129 @@
+"""Reads the surfaces of a lens file: their forms, apertures and glasses."""
+
+from __future__ import annotations
+
+import itertools
+
+import daguerre._core as _core
+from daguerre.io.json_item import Item
+
+from .reading import member, number, text, triple
+from .surface import KINDS, TWO_SECTIONS, LensSurface
+
+#: Coefficients of higher powers are no surfaces that anybody grinds.
+MAX_POWER = 40
+COATINGS = ("uncoated", "mgf2", "perfect")
+
+
+def read_surfaces(items: list[Item], gaps: dict[int, float]) -> list[LensSurface]:
+    """The surfaces with the gaps of one configuration."""
+    last = len(items) - 1
+    return [_surface(item, gaps.get(i), i == last) for i, item in enumerate(items)]
+
+
+def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
+    item.need("kind").text()
+    kind = item.need("kind").choice(KINDS)
+    radius = _radius(item, "radius")
+    radius_x = _radius(item, "radius_x") if kind in TWO_SECTIONS else None
+    flag = member(item, "stop")
+    semi_diameter = _semi_diameter(item, radius)
+    glass, label = read_glass(member(item, "glass"))
+    coating = member(item, "coating")
+    return LensSurface(
+        kind=kind,
+        radius=radius,
+        thickness=_thickness(item, gap, last),
+        semi_diameter=semi_diameter,
+        glass=label,
+        stop=kind == "stop" or (flag is not None and flag.flag()),
+        core_glass=glass,
+        conic=number(item, "conic") or 0.0,
+        asphere=_asphere(item),
+        radius_x=radius_x,
+        conic_x=(number(item, "conic_x") or 0.0) if kind == "biconic" else 0.0,
+        inner_semi_diameter=_inner(item, semi_diameter),
+        semi_diameter_after=number(item, "semi_diameter_after", above=0),
+        decenter=triple(item, "decenter", 1e4),
+        tilt=triple(item, "tilt", 90),
+        coating="" if coating is None else coating.choice(COATINGS),
+    )
+
+
+def _radius(item: Item, key: str) -> float | None:
+    radius = number(item, key)
+    if radius == 0:
+        item.need(key).fail("wanted a signed radius in mm, or null for a plane, got 0")
+    return radius
+
+
+def _thickness(item: Item, gap: float | None, last: bool) -> float | None:
+    thickness = gap if gap is not None else number(item, "thickness")
+    if not last and thickness is None:
+        item.need("thickness").fail("wanted the distance to the next surface in mm, got null")
+    if not last and thickness is not None and thickness < 0:
+        item.need("thickness").fail(f"wanted at least 0 mm, got {thickness:g}")
+    return thickness
+
+
+def _semi_diameter(item: Item, radius: float | None) -> float | None:
+    value = number(item, "semi_diameter", above=0)
+    round_form = not member(item, "conic") and not member(item, "asphere")
+    if value is None or radius is None or not round_form:
+        return value
+    if value > abs(radius) * (1 + 1e-9):
+        item.need("semi_diameter").fail(
+            f"wanted at most the radius, {abs(radius):g} mm, got {value:g}"
+        )
+    return value
+
+
+def _inner(item: Item, semi_diameter: float | None) -> float:
+    inner = number(item, "inner_semi_diameter") or 0.0
+    if inner < 0 or (semi_diameter is not None and inner >= semi_diameter):
+        item.need("inner_semi_diameter").fail(
+            f"wanted 0 mm to less than the semi-diameter, got {inner:g}"
+        )
+    return inner
+
+
+def _asphere(item: Item) -> dict[int, float]:
+    terms = member(item, "asphere")
+    out: dict[int, float] = {}
+    for term in terms.members() if terms else []:
+        key = str(term.key)
+        power = int(key[1:]) if key[:1] == "a" and key[1:].isdecimal() and len(key) < 6 else 0
+        if not 2 <= power <= MAX_POWER:
+            term.fail(f"wanted a power of r as a2 to a{MAX_POWER}, got {key!r}")
+        if (value := term.number()) != 0:
+            out[power] = value
+    return out
+
+
+def read_glass(item: Item | None) -> tuple[_core.Glass, str]:
+    """The medium and its label: its name, or nd/Vd; air has none."""
+    if item is None:
+        return _core.Glass.constant(1.0), ""
+    label = text(item, "name") or ""
+    table = item.get("table")
+    if table is not None:
+        return _table(table), label or "table"
+    nd = item.need("nd").number(1, 5)
+    vd = number(item, "vd", above=0)
+    if vd is None:
+        return _core.Glass.constant(nd), label or f"{nd:.5g}"
+    if vd < 5:
+        item.need("vd").fail(f"wanted an Abbe number of at least 5, got {vd:g}")
+    return _core.Glass.abbe(nd, vd), label or f"{nd:.5g}/{vd:.4g}"
+
+
+def _table(table: Item) -> _core.Glass:
+    nodes = sorted(node.numbers(2, 0.5, 1e5) for node in table)
+    if not nodes:
+        table.fail("wanted [[nm, n], ...], got an empty list")
+    if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
+        table.fail("wanted one index for each wavelength, got two")
+    for node in table:
+        Item(node.value[1], 1, node).number(1, 5)
+    nm, n = zip(*nodes, strict=True)
+    return _core.Glass.table(list(nm), list(n))
