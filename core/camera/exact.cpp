@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "math/error.h"
+#include "optics/lens_error.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -71,10 +71,11 @@ struct ExactLens::State {
             throw input_error(lens.name, "half diagonal of the film", "0 to 1e4 mm",
                               std::to_string(s.half_diagonal_mm));
         if (!std::isfinite(order.entrance_pupil_z))
-            throw Error(
+            throw LensError(
                 lens.name +
-                ": the entrance pupil lies at infinity: this lens has no place for"
-                " the camera's origin");
+                    ": the entrance pupil lies at infinity: this lens has no place for"
+                    " the camera's origin",
+                "lens-pupil");
         if (settings.f_stop == 0) settings.f_stop = order.f_number;
         iris_radius = dg::iris_radius(lens, order, settings.f_stop);
         if (length(s.tilt_deg) != 0)
@@ -83,9 +84,10 @@ struct ExactLens::State {
         film_z = s.film_z ? *s.film_z
                           : film_position(lens, order, s.focus_distance_m, s.focus_from);
         if (!(film_z > tracer.vertices().back()))
-            throw Error(lens.name +
-                        ": the film would lie inside the lens (back focal length " +
-                        std::to_string(order.bfl) + " mm)");
+            throw LensError(lens.name +
+                                ": the film would lie inside the lens (back focal length " +
+                                std::to_string(order.bfl) + " mm)",
+                            "lens-film");
         // A little more than the frame: pixel filters reach beyond its corners.
         aim = make_aim(tracer, {film_z, 1.02 * s.half_diagonal_mm, s.iris, iris_radius,
                                 s.only_slope_boxes});
@@ -106,8 +108,9 @@ struct ExactLens::State {
         }
         h0 /= weights, transmittance /= weights;
         if (!(h0 > 0))
-            throw Error(tracer.prescription().name +
-                        ": no light reaches the film's centre");
+            throw LensError(tracer.prescription().name +
+                                ": no light reaches the film's centre",
+                            "lens-no-light");
     }
 };
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "math/error.h"
+#include "optics/lens_error.h"
 
 namespace dg {
 namespace {
@@ -50,8 +50,8 @@ FirstOrder first_order(const Prescription& lens, double nm) {
     const Matrix m = system(lens, nm, 0, last, true);
     const double power = -m.c, z1 = lens.last_vertex();
     if (!(std::abs(power) > 1e-9))
-        throw input_error(lens.name, "power", "a lens that is not afocal",
-                          std::to_string(power) + " per mm");
+        throw lens_error("lens-afocal", -1, lens.name, "power",
+                         "a lens that is not afocal", std::to_string(power) + " per mm");
     FirstOrder f{};
     f.wavelength_nm = nm;
     f.efl = n1 / power;
@@ -96,7 +96,7 @@ double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop)
         wanted.precision(3), got.precision(4);
         wanted << "f/" << widest << " or narrower (the widest of this lens)";
         got << "f/" << f_stop;
-        throw input_error(lens.name, "f-stop", wanted.str(), got.str());
+        throw lens_error("lens-f-stop", -1, lens.name, "f-stop", wanted.str(), got.str());
     }
     return std::abs(0.5 * f.efl / f_stop / f.entrance_magnification);
 }
@@ -104,8 +104,8 @@ double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop)
 double film_position(const Prescription& lens, const FirstOrder& f, double distance_m,
                      FocusFrom from) {
     if (!(f.efl > 0))
-        throw input_error(lens.name, "focal length", "a converging lens",
-                          std::to_string(f.efl) + " mm");
+        throw lens_error("lens-afocal", -1, lens.name, "focal length",
+                         "a converging lens", std::to_string(f.efl) + " mm");
     if (std::isnan(distance_m) || distance_m <= 0)
         throw input_error(lens.name, "focus distance", "a positive number of metres",
                           std::to_string(distance_m));
@@ -126,8 +126,8 @@ double film_position(const Prescription& lens, const FirstOrder& f, double dista
         x = t >= 2 * x_min ? 0.5 * (t + std::sqrt(t * t - 4 * focal2)) : 0;
     }
     if (!(x >= x_min * (1 - 1e-9)))
-        throw input_error(
-            lens.name, "focus distance",
+        throw lens_error(
+            "lens-focus-near", -1, lens.name, "focus distance",
             metres(std::max(0.0, nearest) * 1e-3) + " or more (the nearest possible)",
             metres(distance_m));
     return f.back_focal_z + focal2 / x;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "math/error.h"
+#include "optics/lens_error.h"
 #include "optics/pupil_region.h"
 
 namespace dg {
@@ -124,8 +124,9 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
     const auto slope = tracer.to_iris(
         {{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})}, tracer.at(nm), 1);
     if (!film || !slope || slope->x == 0)
-        throw Error(tracer.prescription().name +
-                    ": no ray leads from the film's centre to the iris");
+        throw LensError(tracer.prescription().name +
+                            ": no ray leads from the film's centre to the iris",
+                        "lens-no-light");
     rear_ = {film->x / h, slope->x / h};
 }
 

@@ -20,6 +20,8 @@ CODES = {
     "lens-two-stops": "more than one surface is the stop",
     "lens-no-light": "no ray passes",
     "lens-afocal": "the lens has no focal length",
+    "lens-pupil": "the entrance pupil lies at infinity",
+    "lens-film": "the film would lie inside the lens",
     "lens-f-stop": "the lens does not open that far",
     "lens-focus-near": "the lens does not focus that near",
     "lens-zoom": "the lens does not have that focal length",
