@@ -100,6 +100,18 @@ auto path(const dg::Prescription& lens, const Rows3d& origin, const Rows3d& dire
     return dg::bind::to_numpy(std::move(flat), {n, 3});
 }
 
+auto jacobian(const dg::Prescription& lens, std::array<double, 3> origin,
+              std::array<double, 3> direction, double wavelength_nm, double image_z) {
+    const dg::Tracer tracer(lens);
+    const dg::LensRay ray{
+        {origin[0], origin[1], origin[2]},
+        dg::normalize(dg::Vec3d{direction[0], direction[1], direction[2]})};
+    std::vector<double> flat(16, kNan);
+    if (const auto j = tracer.jacobian(ray, tracer.at(wavelength_nm), image_z))
+        for (int i = 0; i < 16; ++i) flat[i] = (*j)[i / 4][i % 4];
+    return dg::bind::to_numpy(std::move(flat), {4, 4});
+}
+
 }  // namespace
 
 void bind_prescription(nb::module_& m) {
@@ -187,6 +199,10 @@ void bind_prescription(nb::module_& m) {
              "Each ray at the last surface that it met: (points (N, 3), directions (N, 3), "
              "iris (N, 2), optical path (N,), transmittance (N,), index of the surface "
              "that stopped it (N,), -1: none).")
+        .def("jacobian", &jacobian, "origin"_a, "direction"_a, "wavelength_nm"_a,
+             "image_z"_a,
+             "d(x, y, n L, n M) on the plane image_z / at the ray's origin, (4, 4); NaN if "
+             "the ray is stopped.")
         .def_prop_ro("is_axially_symmetric",
                      [](const Prescription& lens) { return is_axially_symmetric(lens); })
         .def("path", &path, "origin"_a, "direction"_a, "wavelength_nm"_a, "clip"_a);

@@ -27,7 +27,7 @@ struct Prescription {
 bool is_axially_symmetric(const Prescription& lens);
 
 /// Throws LensError naming lens, surface and value: no or two stops, a clear diameter
-/// beyond the sphere, NaN, negative gaps, absurd indices.
+/// beyond the form, NaN, negative gaps, absurd sizes and indices.
 void validate(const Prescription& lens);
 
 /// "name: surface 3", the place in messages.

@@ -3,6 +3,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "optics/lens_error.h"
+
 namespace dg {
 namespace {
 
@@ -87,6 +89,9 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
     add_index(lens.object_medium);
     for (int i = 0; i < t.surfaces; ++i) {
         const Surface& s = lens.surfaces[i];
+        if (!tracer.form(i).sphere || is_placed(s))
+            throw LensError(surface_name(lens, i) + ": a form that the kernels trace not yet",
+                            "lens-surface", i);
         const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
         t.curvature.push_back(float(s.curvature));
         t.gap.push_back(float(s.thickness));

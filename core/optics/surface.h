@@ -28,7 +28,8 @@ struct AsphereTerm {
 
 /// One surface and what follows it toward the film.
 struct Surface {
-    double curvature = 0;  // 1/mm; 0 is a plane. Of the y-z section, unless shape is conic
+    double curvature =
+        0;  // 1/mm; 0 is a plane. Of the y-z section, unless shape is conic
     double thickness = 0;  // mm to the next vertex; of the last surface: to the film at
                            // infinity focus, 0 unknown
     double semi_diameter = std::numeric_limits<double>::infinity();  // mm, clear
@@ -36,14 +37,15 @@ struct Surface {
     bool stop = false;                                               // the iris lies here
 
     Shape shape = Shape::conic;
-    double conic = 0;                          // k: 0 sphere, -1 paraboloid
-    double curvature_x = 0, conic_x = 0;       // x-z section of biconic and toroid
-    std::vector<AsphereTerm> asphere{};        // added to the sag
-    double inner_semi_diameter = 0;            // mm, of a central obstruction
-    double semi_diameter_after = 0;            // mm, of the medium behind; 0: the same
-    Vec3d decenter{}, tilt{};                  // mm; degrees about x, then y, then z, at the
-                                               // vertex. The axis goes on as before
-    std::string coating{};                     // empty: the lens's
+    double conic = 0;                     // k: 0 sphere, -1 paraboloid
+    double curvature_x = 0, conic_x = 0;  // x-z section of biconic and toroid
+    std::vector<AsphereTerm> asphere{};   // added to the sag
+    double inner_semi_diameter = 0;       // mm, of a central obstruction
+    double semi_diameter_after = 0;       // mm, of the medium behind; 0: the same
+    /// mm, and degrees at the vertex: about x, then about the y that turned with it, then
+    /// about that z. This surface and its apertures alone; the axis goes on as before.
+    Vec3d decenter{}, tilt{};
+    std::string coating{};  // empty: the lens's
 };
 
 /// Light passes the smaller of both sides, mm.

@@ -2,12 +2,16 @@
 
 #include <cmath>
 
+#include "optics/intersect.h"
+
 namespace dg {
 
 Tracer::Tracer(const Prescription& lens) : lens_(lens) {
     validate(lens);
     vertices_ = lens.vertices();
     stop_ = lens.stop_index();
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+        forms_.emplace_back(lens_.surfaces[i], vertices_[i]);
 }
 
 LensIndices Tracer::at(double wavelength_nm) const {
@@ -17,31 +21,29 @@ LensIndices Tracer::at(double wavelength_nm) const {
     return n;
 }
 
-// Intersection and refraction in curvature form (planes and spheres alike), from the
-// point M of the ray nearest to the vertex; `sign` is +1 toward the film. Source: Feder
-// 1951, Optical Calculations with Automatic Computing Machinery, JOSA 41(9), eqs. 1-9;
-// also valid for rays at and beyond 90 degrees.
+namespace {
+
+bool within_apertures(const Surface& s, const Vec3d& p, const Clip& clip, bool iris_here) {
+    const double r2 = p.x * p.x + p.y * p.y;
+    const double edge = clear_radius(s) * clip.widened;
+    const double hole = s.inner_semi_diameter / clip.widened;
+    return (iris_here || r2 <= edge * edge) && r2 >= hole * hole;
+}
+
+}  // namespace
+
 bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
                    TracedRay& traced) const {
-    const Surface& surface = lens_.surfaces[i];
-    const double c = surface.curvature;
-    Vec3d p = traced.ray.origin, d = traced.ray.direction;
-    p.z -= vertices_[i];
-    const double e = -dot(p, d);
-    const Vec3d m = p + e * d;
-    const double q = c * dot(m, m) - 2 * m.z;
-    const double cos1_squared = d.z * d.z - c * q;
-    if (!(cos1_squared >= 0)) return false;  // missed
-    const double cos1 = std::sqrt(cos1_squared);
-    p = m + d * (q / (d.z + sign * cos1));
-    const double r2 = p.x * p.x + p.y * p.y, toward_axis = 1 - c * p.z;
-    if (!(toward_axis > 0)) return false;  // the far half of the sphere
+    const SurfaceFrame& place = forms_[i].place;
+    const Vec3d start = place.into(traced.ray.origin);
+    const Vec3d d = place.turn_in(traced.ray.direction);
+    const auto hit = meet(forms_[i], start, d, sign);
+    if (!hit) return false;
     const double n1 = n.index[sign > 0 ? i : i + 1], n2 = n.index[sign > 0 ? i + 1 : i];
-    const Vec3d met{p.x, p.y, p.z + vertices_[i]};
-    traced.optical_path += n1 * dot(met - traced.ray.origin, d);
-    traced.ray.origin = met;
+    traced.optical_path += n1 * dot(hit->point - start, d);
+    traced.ray.origin = place.out_of(hit->point);
     if (i == stop_) {
-        traced.iris = {p.x, p.y};
+        traced.iris = {hit->point.x, hit->point.y};
         if (clip.iris) {
             const double open =
                 clip.iris->transmission(traced.iris * (1 / clip.iris_radius));
@@ -49,18 +51,15 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
             traced.transmittance *= open;
         }
     }
-    const bool iris_here = i == stop_ && clip.iris;
-    const double edge = clear_radius(surface) * clip.widened;
-    const double hole = surface.inner_semi_diameter / clip.widened;
-    if (clip.clear_apertures && !iris_here && !(r2 <= edge * edge)) return false;
-    if (clip.clear_apertures && !(r2 >= hole * hole)) return false;
-    const double mu = n1 / n2, cos2_squared = 1 - mu * mu * (1 - cos1_squared);
-    if (!(cos2_squared >= 0)) return false;  // total reflection
-    const double cos2 = std::sqrt(cos2_squared);
-    const Vec3d normal{-c * p.x, -c * p.y, toward_axis};
-    traced.ray.direction = mu * d + (sign * (cos2 - mu * cos1)) * normal;
+    if (clip.clear_apertures &&
+        !within_apertures(lens_.surfaces[i], hit->point, clip, i == stop_ && clip.iris))
+        return false;
+    double cos2 = 0;
+    const auto bent = refract(d, *hit, sign, n1 / n2, cos2);
+    if (!bent) return false;  // total reflection
+    traced.ray.direction = place.turn_out(*bent);
     traced.transmittance *=
-        surface_transmittance(lens_.coating, n1, cos1, n2, cos2, n.wavelength_nm);
+        surface_transmittance(lens_.coating, n1, hit->cosine, n2, cos2, n.wavelength_nm);
     return true;
 }
 

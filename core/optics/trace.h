@@ -1,9 +1,11 @@
 // trace.h -- exact tracing through every surface, in double: the reference. Both
 // directions.
 #pragma once
+#include <array>
 #include <optional>
 #include <vector>
 
+#include "optics/form.h"
 #include "optics/prescription.h"
 #include "optics/stop.h"
 
@@ -30,6 +32,9 @@ struct Clip {
     double widened = 1;      // factor on the clear diameters
 };
 
+/// d(x, y, n L, n M) out / in: rows are outputs. L and M are the direction's x and y.
+using RayJacobian = std::array<std::array<double, 4>, 4>;
+
 /// The indices of all media at one wavelength: index[i] before surface i.
 struct LensIndices {
     double wavelength_nm;
@@ -48,8 +53,8 @@ class Tracer {
     /// From the film side through the first surface.
     std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n,
                                       const Clip& clip) const;
-    /// The same, either way, with what is known of a ray that is stopped: the surface that
-    /// stopped it, or -1; `ray` is left at the last surface that it met.
+    /// The same, either way, with what is known of a ray that is stopped: the surface
+    /// that stopped it, or -1; `ray` is left at the last surface that it met.
     int follow(TracedRay& ray, bool toward_film, const LensIndices& n,
                const Clip& clip) const;
     /// From the film side to the stop: the iris point, mm. Clear apertures are widened by
@@ -61,8 +66,14 @@ class Tracer {
     std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n,
                                     const Clip& clip) const;
 
+    /// Between the plane of the ray's origin and the plane image_z, through the whole
+    /// lens toward the film, whatever the clear apertures. Analytic.
+    std::optional<RayJacobian> jacobian(const LensRay& ray, const LensIndices& n,
+                                        double image_z) const;
+
     const Prescription& prescription() const { return lens_; }
     const std::vector<double>& vertices() const { return vertices_; }
+    const SurfaceForm& form(int surface) const { return forms_[surface]; }
     int stop() const { return stop_; }
 
   private:
@@ -71,6 +82,7 @@ class Tracer {
 
     Prescription lens_;
     std::vector<double> vertices_;
+    std::vector<SurfaceForm> forms_;
     int stop_;
 };
 

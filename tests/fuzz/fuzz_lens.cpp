@@ -51,7 +51,6 @@ Prescription any_lens(FuzzInput& in) {
         if (in.below(4) != 0) s.semi_diameter = length(in);
         s.glass = any_glass(in);
         s.stop = i == stop;
-        if (i == stop) s.kind = "stop";
         lens.surfaces.push_back(s);
     }
     lens.nominal_f_number = in.number();

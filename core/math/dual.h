@@ -1,0 +1,63 @@
+// dual.h -- forward automatic differentiation: a value with its derivatives for N inputs.
+#pragma once
+#include <array>
+#include <cmath>
+
+namespace dg {
+
+template <int N>
+struct Dual {
+    double value = 0;
+    std::array<double, N> d{};
+
+    Dual() = default;
+    Dual(double constant) : value(constant) {}  // NOLINT: constants mix with duals
+    static Dual input(double value, int index) {
+        Dual x(value);
+        x.d[index] = 1;
+        return x;
+    }
+
+    friend Dual operator+(Dual a, const Dual& b) {
+        a.value += b.value;
+        for (int i = 0; i < N; ++i) a.d[i] += b.d[i];
+        return a;
+    }
+    friend Dual operator-(Dual a, const Dual& b) {
+        a.value -= b.value;
+        for (int i = 0; i < N; ++i) a.d[i] -= b.d[i];
+        return a;
+    }
+    friend Dual operator-(const Dual& a) { return a.mapped(-a.value, -1); }
+    friend Dual operator*(const Dual& a, const Dual& b) {
+        Dual r(a.value * b.value);
+        for (int i = 0; i < N; ++i) r.d[i] = a.d[i] * b.value + a.value * b.d[i];
+        return r;
+    }
+    friend Dual operator/(const Dual& a, const Dual& b) {
+        Dual r(a.value / b.value);
+        for (int i = 0; i < N; ++i) r.d[i] = (a.d[i] - r.value * b.d[i]) / b.value;
+        return r;
+    }
+    /// At 0 the derivative is taken as 0: what is a root there (a radius on the axis) comes
+    /// multiplied by a power of itself.
+    friend Dual sqrt(const Dual& a) {
+        const double root = std::sqrt(a.value);
+        return a.mapped(root, root > 0 ? 0.5 / root : 0);
+    }
+
+  private:
+    Dual mapped(double f, double slope) const {
+        Dual r(f);
+        for (int i = 0; i < N; ++i) r.d[i] = slope * d[i];
+        return r;
+    }
+};
+
+inline double value_of(double x) { return x; }
+template <int N>
+double value_of(const Dual<N>& x) {
+    return x.value;
+}
+
+}  // namespace dg
