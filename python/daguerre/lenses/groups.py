@@ -19,7 +19,7 @@ class Group:
         first: Index of the first surface.
         last: Index of the last surface.
         decenter: Shift, mm, after the turn.
-        tilt: Degrees about x, then y, then z.
+        tilt: Degrees about x, then the turned y, then the turned z.
         pivot_mm: The point on the axis that the turn leaves alone, from the first one's vertex.
     """
 
@@ -46,19 +46,19 @@ def placed(surfaces: Sequence[LensSurface], group: Group) -> list[LensSurface]:
 
 
 def rotation(tilt: Triple) -> NDArray[np.float64]:
-    """Matrix (3, 3) of turns about x, then y, then z, in degrees."""
+    """Matrix (3, 3) of turns about x, then the turned y, then the turned z, in degrees."""
     (cx, cy, cz), (sx, sy, sz) = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
-    return np.asarray(about_z @ about_y @ about_x)
+    return np.asarray(about_x @ about_y @ about_z)
 
 
 def angles(matrix: NDArray[np.float64]) -> Triple:
-    """The turns about x, then y, then z, in degrees, that make the matrix."""
-    x = np.arctan2(matrix[2, 1], matrix[2, 2])
-    y = np.arctan2(-matrix[2, 0], np.hypot(matrix[2, 1], matrix[2, 2]))
-    z = np.arctan2(matrix[1, 0], matrix[0, 0])
+    """The turns that make the matrix, in degrees."""
+    x = np.arctan2(-matrix[1, 2], matrix[2, 2])
+    y = np.arctan2(matrix[0, 2], np.hypot(matrix[1, 2], matrix[2, 2]))
+    z = np.arctan2(-matrix[0, 1], matrix[0, 0])
     return _triple(np.degrees([x, y, z]))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from daguerre.errors import InputError
 from .configurations import Configuration
 from .groups import Group, placed
 from .surface import LensSurface
+
+if TYPE_CHECKING:
+    from .focus import By, Focused, MeasuredFrom
 
 DESIGN_WAVELENGTH_NM = 587.5618
 
@@ -93,6 +96,7 @@ class Lens:
         data: The file as parsed.
         configurations: Zoom and focus positions of the file.
         object_medium: Before the first surface.
+        zoom_mm: Focal length at which a zoom stands; None: not a zoom.
     """
 
     name: str
@@ -106,6 +110,7 @@ class Lens:
     data: dict[str, Any]
     configurations: tuple[Configuration, ...]
     object_medium: _core.Glass
+    zoom_mm: float | None = None
 
     def first_order(self, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> FirstOrder:
         """Focal length, focal points, principal and nodal points, pupils.
@@ -164,6 +169,60 @@ class Lens:
         for i, gap in gaps.items():
             surfaces[i] = surfaces[i].replaced(thickness=gap)
         return self.rebuilt(surfaces)
+
+    @property
+    def zoom_range_mm(self) -> tuple[float, float] | None:
+        """Shortest and longest focal length; None: not a zoom."""
+        from .zoom import zoom_range
+
+        return zoom_range(self)
+
+    def at_zoom(self, zoom_mm: float) -> Lens:
+        """The lens at one focal length, focused at infinity, film and focus as its file has them.
+
+        Raises:
+            LensError: A focal length that the lens does not have; code ``lens-zoom``.
+        """
+        from .zoom import at_zoom
+
+        return at_zoom(self, zoom_mm)
+
+    def focused(
+        self,
+        distance_m: float,
+        *,
+        zoom_mm: float | None = None,
+        f_stop: float | None = None,
+        by: By = "paraxial",
+        measured_from: MeasuredFrom = "pupil",
+    ) -> Focused:
+        """The lens and its film, focused on a plane across the axis.
+
+        Where the file has configurations for near objects, the gaps go along their way and the
+        film stays; else the whole lens moves. An anamorphic lens is focused halfway between its
+        two sections.
+
+        Args:
+            distance_m: To the plane, infinity allowed.
+            zoom_mm: Focal length of a zoom; as it stands if None.
+            f_stop: Whose rays count, for the best focus; wide open if None.
+            by: The paraxial image, or the smallest root-mean-square spot on the axis.
+            measured_from: Centre of the entrance pupil, or film.
+
+        Raises:
+            LensError: Nearer than it can (the nearest is named, ``lens-focus-near``), or a focal
+                length that it does not have (``lens-zoom``).
+        """
+        from .focus import focused
+
+        return focused(
+            self,
+            distance_m,
+            zoom_mm=zoom_mm,
+            f_stop=f_stop,
+            by=by,
+            measured_from=measured_from,
+        )
 
     def decentered(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from .lens import Lens, Nominal, core_prescription
 from .reading import member, number, text, triple
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_glass, read_surfaces
+from .zoom import standing_mm
 
 SCHEMA = "daguerre-lens/0.1"
 MAX_BYTES = 16_000_000
@@ -73,7 +75,8 @@ def _lens(root: Item, path: Path, name: str | None) -> Lens:
         )
     for group in _groups(root, len(items), configurations):
         surfaces = placed(surfaces, group)
-    return _assembled(root, path, surfaces, configurations, configuration)
+    lens = _assembled(root, path, surfaces, configurations, configuration)
+    return dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
 
 
 def _assembled(
@@ -87,6 +90,8 @@ def _assembled(
     coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
     name = clean(text(root, "name") or path.stem)
     nominal = _nominal(root, configuration)
+    if configuration is not configurations[0]:  # the field is that of the first
+        nominal = dataclasses.replace(nominal, full_field_deg=None)
     medium, _ = read_glass(member(root, "object_medium"))
     return Lens(
         name=name,

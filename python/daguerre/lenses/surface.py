@@ -37,7 +37,7 @@ class LensSurface:
         inner_semi_diameter: Of an obstruction in the middle; 0: none.
         semi_diameter_after: Of the medium that follows, where elements differ; None: the same.
         decenter: Shift of the vertex. The axis goes on as before.
-        tilt: Degrees about x, then y, then z, at the vertex.
+        tilt: Degrees about x, then the turned y, then the turned z, at the vertex.
         coating: By name; empty: the lens's.
         derived: The semi-diameter is not the source's: rays were traced for it.
     """

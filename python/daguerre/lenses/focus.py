@@ -1,0 +1,223 @@
+"""Focus: the groups that a file names move, or else the whole lens does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from .errors import LensError, reported
+from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .zoom import Position, at_zoom, bracket, positions
+
+By = Literal["paraxial", "best"]
+MeasuredFrom = Literal["pupil", "sensor"]
+
+#: Groups may go beyond infinity by this share of their way, as those of real lenses do.
+BEYOND = 0.05
+
+
+@dataclass(frozen=True)
+class Focused:
+    """A lens whose film shows a plane of the scene sharply. Lengths in mm, z in the lens frame.
+
+    Attributes:
+        lens: With the gaps of this focus.
+        film_z_mm: Where the film is.
+        efl_mm: Focal length at this focus: groups that move change it, and so the framing.
+        entrance_pupil_z: Centre of the entrance pupil.
+    """
+
+    lens: Lens
+    film_z_mm: float
+    efl_mm: float
+    entrance_pupil_z: float
+
+
+@dataclass(frozen=True)
+class Path:
+    """How the gaps of a lens change from infinity (0) to its nearest focus (1)."""
+
+    lens: Lens  # at infinity
+    changes: list[dict[int, float]]  # of gaps, mm, at equal steps of the way
+
+    def at(self, way: float) -> Lens:
+        """The lens at one place of the way."""
+        step = 1 / (len(self.changes) - 1)
+        k = min(max(int(way / step), 0), len(self.changes) - 2)
+        share = way / step - k
+        gaps = {}
+        for i, first in self.changes[k].items():
+            change = first + share * (self.changes[k + 1][i] - first)
+            gap = (self.lens.surfaces[i].thickness or 0.0) + change
+            gaps[i] = max(gap, 0.0) if i + 1 < len(self.lens.surfaces) else gap
+        return self.lens.with_gaps(gaps)
+
+
+def focused(
+    lens: Lens,
+    distance_m: float,
+    *,
+    zoom_mm: float | None = None,
+    f_stop: float | None = None,
+    by: By = "paraxial",
+    measured_from: MeasuredFrom = "pupil",
+) -> Focused:
+    """See ``Lens.focused``."""
+    if zoom_mm is not None:
+        lens = at_zoom(lens, zoom_mm)
+    if not distance_m > 0:
+        raise LensError(
+            f"{lens.source}: focus distance: wanted a positive number of metres, got {distance_m}",
+            "lens-focus-near",
+        )
+    path = path_of(lens)
+    sharp = _sharp(distance_m, f_stop, by, measured_from)
+    with reported(lens.source):
+        if path is None:
+            return _done(lens, _whole(lens, distance_m, f_stop, by, measured_from))
+        moved = _solved(path, sharp, distance_m, measured_from)
+        return _done(moved, sharp(moved))
+
+
+def path_of(lens: Lens) -> Path | None:
+    """The way of the groups at the lens's zoom position; None: the whole lens moves."""
+    if all(c.at_infinity for c in lens.configurations):
+        return None
+    found = positions(lens)
+    if lens.zoom_mm is None:
+        low, high, share = found[0], found[0], 0.0
+    else:
+        low, high, share = bracket(lens, lens.zoom_mm)
+    ways = [_waypoints(lens, low, found), _waypoints(lens, high, found)]
+    known = [way for way in ways if len(way) > 1]
+    if not known:
+        return None
+    base = at_zoom(lens, lens.zoom_mm) if lens.zoom_mm is not None else lens.with_gaps(low.gaps)
+    first, last = known[0], known[-1]
+    count = max(len(first), len(last))
+    changes = []
+    for way in np.linspace(0, 1, count):
+        a, b = _along(first, way), _along(last, way)
+        changes.append({i: (1 - share) * a[i] + share * b[i] for i in low.gaps})
+    return Path(base, changes)
+
+
+def _waypoints(lens: Lens, position: Position, found: list[Position]) -> list[dict[int, float]]:
+    """Changes of the gaps from infinity to the nearest focus that the file gives there."""
+    near = [c for c in lens.configurations if not c.at_infinity]
+    mine = [c for c in near if max(found, key=lambda p: c.like(p.configuration)) == position]
+    mine.sort(key=lambda c: -c.distance_mm)
+    zero = dict.fromkeys(position.gaps, 0.0)
+    return [zero, *({i: c.gaps.get(i, g) - g for i, g in position.gaps.items()} for c in mine)]
+
+
+def _along(points: list[dict[int, float]], way: float) -> dict[int, float]:
+    grid = np.linspace(0, 1, len(points))
+    return {i: float(np.interp(way, grid, [p[i] for p in points])) for i in points[0]}
+
+
+def image_z(lens: Lens, object_z: float) -> float:
+    """The paraxial image of a plane of the scene, mm; infinite if it is not behind the lens.
+
+    Newton's x x' = f f'. Where the sections of an anamorphic lens differ: halfway between.
+    """
+    orders = [lens.prescription.first_order(DESIGN_WAVELENGTH_NM)]
+    if not lens.prescription.is_axially_symmetric:
+        orders.append(lens.prescription.first_order(DESIGN_WAVELENGTH_NM, "x"))
+    images = []
+    for f in orders:
+        focal2 = f.efl * (f.front_principal_z - f.front_focal_z)
+        x = f.front_focal_z - object_z
+        images.append(f.back_focal_z + focal2 / x if x > 0 else math.inf)
+    return float(np.mean(images))
+
+
+def _sharp(
+    distance_m: float, f_stop: float | None, by: By, measured_from: MeasuredFrom
+) -> Callable[[Lens], float]:
+    """Where the film ought to be, for a lens whose film is where its table says."""
+
+    def film(lens: Lens) -> float:
+        pupil = lens.first_order().entrance_pupil.z
+        start = pupil if measured_from == "pupil" else lens.image_z
+        object_z = start - 1e3 * distance_m
+        if by == "paraxial":
+            return image_z(lens, object_z)
+        stop = f_stop or lens.first_order().f_number
+        best, _ = lens.prescription.best_focus(stop, (pupil - object_z) * 1e-3, False)
+        return float(best)
+
+    return film
+
+
+def _whole(
+    lens: Lens, distance_m: float, f_stop: float | None, by: By, measured_from: MeasuredFrom
+) -> float:
+    from_sensor = measured_from == "sensor"
+    paraxial = lens.prescription.film_position(distance_m, from_sensor)
+    if by == "best":
+        stop = f_stop or lens.first_order().f_number
+        best, _ = lens.prescription.best_focus(stop, distance_m, from_sensor)
+        return float(best)
+    return float(paraxial)
+
+
+def _solved(
+    path: Path, sharp: Callable[[Lens], float], distance_m: float, measured_from: MeasuredFrom
+) -> Lens:
+    """The place on the way at which the image lies on the film."""
+
+    def miss(way: float) -> float:
+        lens = path.at(way)
+        return sharp(lens) - lens.image_z
+
+    grid = [-BEYOND, *np.linspace(0, 1, 2 * len(path.changes) + 3)]
+    values = [miss(way) for way in grid]
+    for k in range(len(grid) - 1):
+        if values[k] == 0 or values[k] * values[k + 1] < 0:
+            return path.at(_root(miss, grid[k], grid[k + 1], values[k], values[k + 1]))
+    if values[-1] < 0:  # beyond infinity, as the file's own film is a little off: the film moves
+        return path.at(0.0)
+    nearest = _nearest(path.at(1.0), measured_from)
+    raise LensError(
+        f"{path.lens.source}: focus distance: wanted {nearest:.4g} m or more (the nearest "
+        f"possible), got {distance_m:.4g} m",
+        "lens-focus-near",
+    )
+
+
+def _nearest(lens: Lens, measured_from: MeasuredFrom) -> float:
+    """The distance, m, whose paraxial image lies on the film."""
+    order = lens.first_order()
+    focal2 = order.efl * (order.front_principal_point - order.front_focal_point)
+    object_z = order.front_focal_point - focal2 / (lens.image_z - order.back_focal_point)
+    start = order.entrance_pupil.z if measured_from == "pupil" else lens.image_z
+    return (start - object_z) * 1e-3
+
+
+def _root(function: Callable[[float], float], a: float, b: float, fa: float, fb: float) -> float:
+    """A root between a and b, by the Illinois form of the rule of false position."""
+    for _ in range(80):
+        if fa == 0 or abs(b - a) < 1e-14:
+            return a
+        middle = (a * fb - b * fa) / (fb - fa) if math.isfinite(fa - fb) else (a + b) / 2
+        value = function(middle)
+        if abs(value) < 1e-10:
+            return middle
+        if value * fb < 0:
+            a, fa = b, fb
+        else:
+            fa /= 2
+        b, fb = middle, value
+    return b
+
+
+def _done(lens: Lens, film_z: float) -> Focused:
+    order = lens.first_order()
+    if not math.isfinite(film_z):
+        raise LensError(f"{lens.source}: focus: no image", "lens-focus-near")
+    return Focused(lens, film_z, order.efl, order.entrance_pupil.z)

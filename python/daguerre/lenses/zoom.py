@@ -1,0 +1,175 @@
+"""Zoom: the gaps between the positions that a file gives, film and focus where they are there."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .configurations import Configuration
+from .errors import LensError
+from .lens import DESIGN_WAVELENGTH_NM, Lens
+
+#: Beyond the ends of its range by this much, a zoom stands at its end: printed lengths are rounded.
+TOLERANCE = 0.005
+_STEP = 1e-4  # mm, of differences
+
+
+@dataclass(frozen=True)
+class Position:
+    """The lens as one configuration at infinity has it; lengths in mm."""
+
+    configuration: Configuration
+    gaps: dict[int, float]
+    efl: float
+    f_number: float | None
+    stop: float | None
+
+
+def positions(lens: Lens) -> list[Position]:
+    """The configurations at infinity, from the shortest focal length to the longest."""
+    at_infinity = [c for c in lens.configurations if c.at_infinity]
+    moving = sorted({i for c in lens.configurations for i in c.gaps})
+    found = []
+    for c in at_infinity:
+        gaps = {i: c.gaps.get(i, _table_gap(lens, i)) for i in moving}
+        stop = c.stop_semi_diameter or _table_stop(lens)
+        efl = lens.with_gaps(gaps).first_order().efl
+        found.append(Position(c, gaps, efl, c.f_number, stop))
+    return sorted(found, key=lambda position: position.efl)
+
+
+def zoom_range(lens: Lens) -> tuple[float, float] | None:
+    """Shortest and longest focal length, mm; None: not a zoom."""
+    if sum(c.at_infinity for c in lens.configurations) < 2:
+        return None
+    ends = positions(lens)
+    return ends[0].efl, ends[-1].efl
+
+
+def standing_mm(lens: Lens, configuration: Configuration) -> float | None:
+    """Focal length of the zoom position to which a configuration belongs; None: not a zoom."""
+    if sum(c.at_infinity for c in lens.configurations) < 2:
+        return None
+    return max(positions(lens), key=lambda p: configuration.like(p.configuration)).efl
+
+
+def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
+    """The lens at one focal length, focused at infinity as its file has it.
+
+    Between two positions of the file all moving gaps change by the least that gives the focal
+    length and leaves film and focus between theirs; so the lens is exact at each of them.
+
+    Raises:
+        LensError: A focal length that the lens does not have; ``lens-zoom``.
+    """
+    low, high, share = bracket(lens, zoom_mm)
+    if share in (0, 1):
+        return _standing(lens, high if share else low, zoom_mm)
+    gaps = _between(lens, low, high, zoom_mm)
+    f_number = _mix(low.f_number, high.f_number, share)
+    moved = lens.with_gaps(gaps)
+    stop = _mix(low.stop, high.stop, share)
+    if f_number is not None and stop is not None:  # first order: the pupil grows with the iris
+        stop *= with_stop(moved, stop).first_order().f_number / f_number
+    return _named(with_stop(moved, stop), zoom_mm, f_number)
+
+
+def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
+    """The positions around a focal length, and how far it is from the first to the second."""
+    found = positions(lens)
+    short, long = found[0].efl, found[-1].efl
+    if not short * (1 - TOLERANCE) <= zoom_mm <= long * (1 + TOLERANCE):
+        wanted = f"{short:.4g} mm" if len(found) == 1 else f"{short:.4g} to {long:.4g} mm"
+        raise LensError(f"{lens.source}: zoom: wanted {wanted}, got {zoom_mm:g} mm", "lens-zoom")
+    mm = min(max(zoom_mm, short), long)
+    for low, high in itertools.pairwise(found):
+        if low.efl <= mm <= high.efl:
+            return low, high, math.log(mm / low.efl) / math.log(high.efl / low.efl)
+    return found[0], found[0], 0.0
+
+
+def with_stop(lens: Lens, semi_diameter: float | None) -> Lens:
+    """The lens with another size of its open iris, mm."""
+    if semi_diameter is None:
+        return lens
+    i = next(i for i, s in enumerate(lens.surfaces) if s.stop)
+    surfaces = list(lens.surfaces)
+    surfaces[i] = surfaces[i].replaced(semi_diameter=semi_diameter)
+    return lens.rebuilt(surfaces)
+
+
+def _standing(lens: Lens, position: Position, zoom_mm: float) -> Lens:
+    moved = with_stop(lens.with_gaps(position.gaps), position.stop)
+    return _named(moved, zoom_mm, position.f_number)
+
+
+def _named(lens: Lens, zoom_mm: float, f_number: float | None) -> Lens:
+    nominal = dataclasses.replace(
+        lens.nominal,
+        efl_mm=zoom_mm,
+        f_number=f_number or lens.nominal.f_number,
+        full_field_deg=None,
+    )
+    return lens.rebuilt(lens.surfaces, nominal=nominal, zoom_mm=zoom_mm)
+
+
+def _between(lens: Lens, low: Position, high: Position, zoom_mm: float) -> dict[int, float]:
+    """Newton's method in all moving gaps, with the smallest steps that meet the conditions."""
+    moving = [i for i in low.gaps if low.gaps[i] != high.gaps[i]]
+    ends = np.array([[p.gaps[i] for i in moving] for p in (low, high)])
+    share = math.log(zoom_mm / low.efl) / math.log(high.efl / low.efl)
+    gaps = ends[0] + share * (ends[1] - ends[0])
+    goal = np.array([zoom_mm, 0.0])
+    goal[1] = (1 - share) * _state(lens, moving, ends[0])[1]
+    goal[1] += share * _state(lens, moving, ends[1])[1]
+    for _ in range(40):
+        miss = _state(lens, moving, gaps) - goal
+        if np.abs(miss).max() < 1e-10 * zoom_mm:
+            break
+        gaps = gaps - np.linalg.pinv(_slopes(lens, moving, gaps)) @ miss
+        gaps = np.maximum(gaps, 0.0)
+    else:
+        raise LensError(
+            f"{lens.source}: zoom: no path from {low.efl:.4g} to {high.efl:.4g} mm through "
+            f"{zoom_mm:g} mm keeps the focus",
+            "lens-zoom",
+        )
+    return {**low.gaps, **dict(zip(moving, (float(g) for g in gaps), strict=True))}
+
+
+def _state(lens: Lens, moving: list[int], gaps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Focal length, and the paraxial focus behind the film, mm."""
+    moved = lens.with_gaps(dict(zip(moving, (float(g) for g in gaps), strict=True)))
+    order = moved.prescription.first_order(DESIGN_WAVELENGTH_NM)
+    return np.array([order.efl, order.bfl - (moved.surfaces[-1].thickness or 0.0)])
+
+
+def _slopes(lens: Lens, moving: list[int], gaps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """By differences, shape (2, gaps)."""
+    columns = []
+    for i in range(len(moving)):
+        ahead, behind = gaps.copy(), gaps.copy()
+        ahead[i] += _STEP
+        behind[i] = max(behind[i] - _STEP, 0.0)
+        change = _state(lens, moving, ahead) - _state(lens, moving, behind)
+        columns.append(change / (ahead[i] - behind[i]))
+    return np.stack(columns, axis=1)
+
+
+def _mix(low: float | None, high: float | None, share: float) -> float | None:
+    return None if low is None or high is None else (1 - share) * low + share * high
+
+
+def _table_gap(lens: Lens, i: int) -> float:
+    return float(lens.data["surfaces"][i].get("thickness") or 0.0)
+
+
+def _table_stop(lens: Lens) -> float | None:
+    i = next(i for i, s in enumerate(lens.surfaces) if s.stop)
+    size = lens.data["surfaces"][i].get("semi_diameter")
+    return None if size is None else float(size)
