@@ -4,6 +4,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
@@ -86,9 +88,15 @@ void change_lens(dg::Camera& camera, const Column& times, const std::vector<cons
     for (const dg::Camera* at : cameras) {
         if (at->lens.index() != camera.lens.index())
             throw dg::Error("camera: lenses: wanted all of one kind");
-        const auto* exact = std::get_if<dg::ExactLens>(&at->lens);
-        motion.lenses.push_back(
-            exact ? dg::LensKind(exact->in_the_body_of(std::get<dg::ExactLens>(camera.lens))) : at->lens);
+        motion.lenses.push_back(std::visit(
+            [&](const auto& kind) -> dg::LensKind {
+                using Kind = std::decay_t<decltype(kind)>;
+                if constexpr (requires { kind.in_the_body_of(kind); })
+                    return kind.in_the_body_of(std::get<Kind>(camera.lens));
+                else
+                    return kind;
+            },
+            at->lens));
     }
     camera.lens_motion = std::move(motion);
 }
@@ -103,14 +111,14 @@ void change_setting(dg::Camera& camera, const Column& times, const Column& openi
     camera.setting = std::move(setting);
 }
 
-std::tuple<double, double, double> lens_numbers(const dg::Camera& camera) {
+std::array<double, 5> lens_numbers(const dg::Camera& camera) {
     if (const auto* pinhole = std::get_if<dg::Pinhole>(&camera.lens))
-        return {pinhole->film_distance_mm, 0, 0};
+        return {pinhole->film_distance_mm, 0, 0, 0, 0};
     if (const auto* thin = std::get_if<dg::ThinLens>(&camera.lens)) {
         const auto n = thin->numbers();
-        return {n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus};
+        return {n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus, n.tilt_deg.x, n.tilt_deg.y};
     }
-    throw dg::Error("camera: lens numbers: wanted an ideal lens");
+    throw dg::Error("camera: lens numbers: wanted a pinhole or a thin lens");
 }
 
 }  // namespace
@@ -124,6 +132,25 @@ void bind_camera(nb::module_& m) {
             return Iris::image(int(p.shape(1)), int(p.shape(0)),
                                std::vector<float>(p.data(), p.data() + p.size()));
         });
+    nb::class_<ThickLens>(m, "ThickLens")
+        .def("__init__",
+             [](ThickLens* self, const Prescription& lens, double f_stop, const Iris& iris,
+                double focus_distance_m, bool focus_from_sensor, double film_z_mm,
+                const std::array<double, 2>& tilt_deg) {
+                 new (self) ThickLens(
+                     lens, {f_stop, iris, focus_distance_m,
+                            focus_from_sensor ? FocusFrom::sensor : FocusFrom::pupil,
+                            std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
+                            {tilt_deg[0], tilt_deg[1]}});
+             },
+             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
+             "focus_from_sensor"_a = false,
+             "film_z_mm"_a = std::numeric_limits<double>::quiet_NaN(),
+             "tilt_deg"_a = std::array<double, 2>{0, 0})
+        .def_prop_ro("h0", &ThickLens::h0)
+        .def_prop_ro("transmittance", &ThickLens::transmittance)
+        .def_prop_ro("f_stop", &ThickLens::f_stop)
+        .def_prop_ro("film_z_mm", &ThickLens::film_z_mm, "On the lens's axis, in its frame.");
     nb::class_<ChiefRays>(m, "ChiefRays")
         .def("rays", &chief_rays, "film_mm"_a,
              "(origins, directions), m, of the chief rays of film points (N, 2) (mm, upright).")
@@ -138,13 +165,20 @@ void bind_camera(nb::module_& m) {
                     "world_from_camera"_a, "film_distance_mm"_a, "natural_vignetting"_a = false)
         .def_static("thin",
                     [](const Motion& world, double film_distance_mm, double aperture_radius_mm,
-                       double focus_distance_m, const Iris& iris, bool natural_vignetting) {
-                        return Camera{world,
-                                      ThinLens{film_distance_mm, aperture_radius_mm,
-                                               focus_distance_m, iris, natural_vignetting}};
+                       double focus_distance_m, const Iris& iris, bool natural_vignetting,
+                       const std::array<double, 2>& tilt_deg) {
+                        return Camera{world, ThinLens{film_distance_mm, aperture_radius_mm,
+                                                      focus_distance_m, iris, natural_vignetting,
+                                                      {tilt_deg[0], tilt_deg[1]}}};
                     },
                     "world_from_camera"_a, "film_distance_mm"_a, "aperture_radius_mm"_a,
-                    "focus_distance_m"_a, "iris"_a, "natural_vignetting"_a = false)
+                    "focus_distance_m"_a, "iris"_a, "natural_vignetting"_a = false,
+                    "tilt_deg"_a = std::array<double, 2>{0, 0})
+        .def_static("thick",
+                    [](const Motion& world, const ThickLens& lens) {
+                        return Camera{world, lens};
+                    },
+                    "world_from_camera"_a, "lens"_a)
         .def_static("exact",
                     [](const Motion& world, const ExactLens& lens) {
                         return Camera{world, lens};
@@ -155,7 +189,7 @@ void bind_camera(nb::module_& m) {
         .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,
              "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")
         .def_prop_ro("lens_numbers", &lens_numbers,
-                     "Film distance (mm), iris radius (mm), 1 / focus distance (1/m) of an ideal lens.")
+                     "Film distance (mm), iris radius (mm), 1 / focus distance (1/m), tilts (deg) of a pinhole or thin lens.")
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
              "(origins, directions, weights) in the world for explicit film points (mm, upright).")
         .def("chief_rays", [](const Camera& camera) { return ChiefRays(camera.lens); },

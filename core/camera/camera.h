@@ -10,6 +10,7 @@
 
 #include "camera/exact.h"
 #include "camera/pinhole.h"
+#include "camera/thick.h"
 #include "camera/thin.h"
 #include "geometry/ray.h"
 #include "motion/keyed.h"
@@ -17,13 +18,13 @@
 
 namespace dg {
 
-using LensKind = std::variant<Pinhole, ThinLens, ExactLens>;
+using LensKind = std::variant<Pinhole, ThinLens, ThickLens, ExactLens>;
 
 /// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Ideal
-/// lenses change evenly from one to the next; of exact ones each sample takes the nearest in time.
+/// lenses change evenly from one to the next; of thick and exact ones each sample takes the nearest in time.
 struct LensMotion {
     std::vector<float> times;       // empty: it stays as it is
-    std::vector<LensKind> lenses;   // exact ones relative to the camera's own (ExactLens::in_the_body_of)
+    std::vector<LensKind> lenses;   // real ones relative to the camera's own (in_the_body_of)
 };
 
 /// What else changes behind and in the lens: the iris's radius, as a fraction of the lens's own, and how

@@ -85,6 +85,7 @@ ChiefRays::ChiefRays(const LensKind& kind) {
             film_distance_mm_ = pinhole->film_distance_mm;
         if (const auto* thin = std::get_if<ThinLens>(&kind))
             film_distance_mm_ = thin->film_distance_mm;
+        if (const auto* thick = std::get_if<ThickLens>(&kind)) thick_ = *thick;
         return;
     }
     step_mm_ = lens->half_diagonal_mm() / kSteps;
@@ -128,6 +129,7 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
 }
 
 ChiefRay ChiefRays::at(Vec2d film_mm) const {
+    if (thick_) return {{0, 0, thick_->pupil_offset_m()}, thick_->chief_direction(film_mm)};
     const double radius = length(film_mm);
     const Meridional m = at_radius(radius);
     const Vec2d out = radius > 0 ? film_mm * (1 / radius) : Vec2d{1, 0};
@@ -171,6 +173,7 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
 }
 
 std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
+    if (thick_) return thick_->film_point({p.x, p.y, p.z - w * thick_->pupil_offset_m()});
     if (film_distance_mm_ > 0) {
         if (!(p.z < 0)) return std::nullopt;
         return Vec2d{p.x, p.y} * (film_distance_mm_ / -p.z);

@@ -5,7 +5,7 @@
 // across it in the middle of what the film point sees of that plane. So it goes through
 // the point in focus exactly, and through the middle of the blur elsewhere; mounts that
 // cut the pupil move it, but never darken it. Ideal lenses: through the centre of the
-// lens. Exact lenses: the mean at the design wavelength, with the iris turned to all
+// lens, or of a thick one's pupils. Exact lenses: the mean at the design wavelength, with the iris turned to all
 // sides, so that it depends on the distance from the axis alone.
 #pragma once
 #include <optional>
@@ -47,7 +47,8 @@ class ChiefRays {
     Meridional at_radius(double mm) const;
     std::optional<double> solve(double outward, double z, double w) const;
 
-    double film_distance_mm_ = 0;    // of an ideal lens, else 0
+    double film_distance_mm_ = 0;    // of a pinhole or a thin lens, else 0
+    std::optional<ThickLens> thick_;
     std::vector<Meridional> table_;  // of an exact one, by film radius
     double step_mm_ = 0;
 };

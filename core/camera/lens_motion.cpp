@@ -31,12 +31,13 @@ std::vector<T> taken(std::span<const T> from, std::span<const std::uint32_t> mem
     return some;
 }
 
-void generate_exact(const LensMotion& motion, std::span<const CameraSample> samples,
+void generate_states(const LensMotion& motion, std::span<const CameraSample> samples,
                     std::span<CameraRay> rays) {
     by_state(motion, samples.size(), [&](std::size_t i) { return samples[i].time; },
              [&](const LensKind& lens, const auto& members) {
                  std::vector<CameraRay> drawn(members.size());
-                 std::get<ExactLens>(lens).generate(taken(samples, members), drawn);
+                 const std::vector<CameraSample> some = taken(samples, members);
+                 std::visit([&](const auto& kind) { kind.generate(some, drawn); }, lens);
                  for (std::size_t i = 0; i < members.size(); ++i) rays[members[i]] = drawn[i];
              });
 }
@@ -74,8 +75,9 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
     const LensMotion& motion = camera.lens_motion;
     if (motion.times.empty()) {
         std::visit([&](const auto& lens) { lens.generate(samples, rays); }, camera.lens);
-    } else if (std::holds_alternative<ExactLens>(camera.lens)) {
-        generate_exact(motion, samples, rays);
+    } else if (std::holds_alternative<ExactLens>(camera.lens) ||
+               std::holds_alternative<ThickLens>(camera.lens)) {
+        generate_states(motion, samples, rays);
     } else {
         generate_ideal(camera, samples, rays);
     }

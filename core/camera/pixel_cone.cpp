@@ -8,6 +8,7 @@ namespace {
 
 /// View direction of a film point on +x.
 Vec3d chief(const ExactLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
+Vec3d chief(const ThickLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
 template <typename Ideal>
 Vec3d chief(const Ideal& lens, double x_mm) {
     return normalize(Vec3d{x_mm, 0, -lens.film_distance_mm});

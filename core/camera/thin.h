@@ -3,6 +3,7 @@
 #include <span>
 
 #include "camera/camera_sample.h"
+#include "camera/tilt.h"
 #include "optics/stop.h"
 
 namespace dg {
@@ -10,20 +11,26 @@ namespace dg {
 /// film_distance_mm is that of the equivalent pinhole: the focal length, or the image distance
 /// f s / (s - f) when the lens breathes. The circle of confusion of a point at distance s is then
 /// 2 aperture_radius |s - focus| / s * film_distance / focus on the film.
+///
+/// Tilted, the film lies film_distance_mm behind the centre along the camera's axis, and focus_distance_m runs
+/// along the lens's; rays through the centre go straight on, so the framing is the pinhole's. The plane in
+/// focus meets film and lens in one line (Scheimpflug).
 struct ThinLens {
     double film_distance_mm = 50;
     double aperture_radius_mm = 4.5;   // of the round iris; other shapes have its area
     double focus_distance_m = 1;       // along the axis; infinity is allowed
     Iris iris = {};                    // shape of unit radius
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
+    Vec2d tilt_deg{0, 0};              // see tilt.h
 
     /// What of it changes evenly while it is on its way.
     struct Numbers {
         double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
         double exposure = 1;                                          // factor on weights
+        Vec2d tilt_deg{0, 0};
     };
     Numbers numbers() const {
-        return {film_distance_mm, aperture_radius_mm, 1 / focus_distance_m};
+        return {film_distance_mm, aperture_radius_mm, 1 / focus_distance_m, 1, tilt_deg};
     }
 
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
@@ -32,12 +39,20 @@ struct ThinLens {
     /// With other numbers than its own.
     void generate(const Numbers& numbers, std::span<const CameraSample> samples,
                   std::span<CameraRay> rays) const;
+
+  private:
+    Vec2f iris_point(Vec2f u, double covered, float& weight) const;
+    void generate_tilted(const Numbers& numbers, std::span<const CameraSample> samples,
+                         std::span<CameraRay> rays) const;
 };
 
 inline ThinLens::Numbers blend(const ThinLens::Numbers& a, const ThinLens::Numbers& b, double s) {
     const auto mix = [&](double x, double y) { return x + s * (y - x); };
     return {mix(a.film_distance_mm, b.film_distance_mm),
-            mix(a.aperture_radius_mm, b.aperture_radius_mm), mix(a.inverse_focus, b.inverse_focus)};
+            mix(a.aperture_radius_mm, b.aperture_radius_mm),
+            mix(a.inverse_focus, b.inverse_focus),
+            1,
+            {mix(a.tilt_deg.x, b.tilt_deg.x), mix(a.tilt_deg.y, b.tilt_deg.y)}};
 }
 
 }  // namespace dg
