@@ -33,11 +33,12 @@ LIMITS = {
     "sensor_size": (1e-3, 1e5),  # mm
     "focus_distance": (1e-6, 1e12),  # m, or infinite
     "shift": (-1e5, 1e5),  # mm
+    "tilt": (-60, 60),  # degrees
 }
 #: what may change while the shutter is open
 MOVABLE = (
     *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
-    *("blades", "blade_rotation", "blade_curvature", "shift"),
+    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt"),
 )
 
 
@@ -59,7 +60,7 @@ class Camera:
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
-        lens_model: exact, thin or pinhole; None: exact if a prescription is named.
+        lens_model: exact, thick, thin or pinhole; None: exact if a prescription is named.
         focal_length: mm, of an ideal lens; None: 50. A prescription has its own and takes no other.
         sensor_size: Width and height, mm.
         sensor_fit: horizontal, vertical, auto or fill: which side of the sensor the picture spans.
@@ -78,6 +79,9 @@ class Camera:
         aperture_image: Grey picture (H, W) of the iris opening; None: by blades.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Film shift, mm.
+        tilt: The lens is turned about its entrance pupil: degrees about the camera's x (up is
+            positive), then about its y (left). The film stays across the camera's axis and keeps
+            what is straight ahead in its middle; the focus distance runs along the lens's axis.
         shutter_time: How long a point of the film is exposed, s; 0 freezes. Or
         shutter_angle: the same in degrees of a frame, 360 fps shutter_time. None of both: the
             file's, else 180 degrees.
@@ -112,6 +116,7 @@ class Camera:
     aperture_image: NDArray[np.float32] | None = None
     natural_vignetting: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
+    tilt: tuple[float, float] = (0.0, 0.0)
     shutter_time: float | None = None
     shutter_angle: float | None = None
     fps: float = 24.0

@@ -11,11 +11,11 @@ from .camera import IDEAL, LIMITS, Camera
 from .checks import number, numbers, short, whole
 from .errors import UsageError, suggest
 
-MODELS = ("exact", "thin", "pinhole")
+MODELS = ("exact", "thick", "thin", "pinhole")
 
 
 def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
-    """The prescription, if any, and exact, thin or pinhole."""
+    """The prescription, if any, and exact, thick, thin or pinhole."""
     model = camera.lens_model
     if model is not None and model not in MODELS:
         raise UsageError(
@@ -28,9 +28,9 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
         )
     if camera.lens is None or camera.lens in IDEAL:
         kind = str(camera.lens or "thin")
-        if model == "exact":
+        if model in ("exact", "thick"):
             raise UsageError(
-                "camera: lens_model exact: wanted the name or file of a lens, got none"
+                f"camera: lens_model {model}: wanted the name or file of a lens, got none"
             )
         return None, model or kind
     lens = camera.lens if isinstance(camera.lens, lenses.Lens) else lenses.load(camera.lens)
@@ -50,6 +50,8 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
     number(camera.exposure_compensation, "camera: exposure_compensation")
     for shift in numbers(camera.shift, "camera: shift", 2, "two finite numbers (mm)"):
         number(shift, "camera: shift", *LIMITS["shift"])
+    for tilt in numbers(camera.tilt, "camera: tilt", 2, "two finite angles (degrees)"):
+        number(tilt, "camera: tilt", *LIMITS["tilt"])
     whole(camera.blades, "camera: blades", 0, 64, "0 (round) or 3 .. 64")
     number(camera.blade_rotation, "camera: blade_rotation")
     number(camera.blade_curvature, "camera: blade_curvature", -1)
@@ -73,8 +75,8 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
         )
     if camera.blades and camera.aperture_image is not None:
         raise UsageError("camera: wanted either blades or aperture_image, got both")
-    if model == "exact" and camera.natural_vignetting:
-        raise UsageError("camera: natural_vignetting: the exact lens has its own vignetting")
+    if model in ("exact", "thick") and camera.natural_vignetting:
+        raise UsageError(f"camera: natural_vignetting: the {model} lens has its own vignetting")
 
 
 def _positive(name: str, value: Any, hint: str = "", *, infinite: bool = False) -> None:

@@ -5,9 +5,8 @@ All lengths in mm unless the name says otherwise. Distances of focus are m.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import lenses, shutter
+from . import camera_prescription, lenses, shutter, tilt
 from .camera import Camera
 from .camera_checks import check, lens_and_model
 from .camera_parts import frame_size, iris_facts, iris_of
@@ -29,7 +28,6 @@ from .lens_motion import LensMotion
 from .scene import Scene
 
 DEFAULT_FOCAL_LENGTH = 50.0
-DEFAULT_F_STOP = 5.6
 
 
 @dataclass
@@ -94,8 +92,9 @@ def set_up(
     if changing:
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
         lens_motion = LensMotion(moving, changing, begin, end, *parts, lens_of)
-        efl = setup.facts["effective_focal_length_mm"] if model == "exact" else None
-        note = lens_motion.apply(setup.core, efl, size[0] / resolution[0])
+        states = model in ("exact", "thick")  # as opposed to ideal lenses, which blend
+        efl = setup.facts["effective_focal_length_mm"] if states else None
+        note = lens_motion.apply(setup.core, efl, size, size[0] / resolution[0])
         setup.notes += [note] if note else []
     setup.facts |= {
         "lens_model": model,
@@ -103,6 +102,7 @@ def set_up(
         "frame_size_mm": list(size),
         "sensor_fit": camera.sensor_fit,
         "shift_mm": list(camera.shift),
+        "tilt_deg": list(camera.tilt),
         "world_from_camera": np.asarray(world).tolist(),
         "iso": camera.iso,
         "exposure_compensation": camera.exposure_compensation,
@@ -121,7 +121,9 @@ def _set_up_lens(
     focus: Focus,
 ) -> None:
     if lens is not None:
-        _set_up_prescription(setup, camera, lens, model, pose, focus)
+        real = camera_prescription.set_up(camera, lens, model, setup.frame_size, pose, focus)
+        setup.core, setup.pinhole_focal_length = real.core, real.pinhole_focal_length
+        setup.facts |= real.facts
     elif model == "pinhole":
         _set_up_pinhole(setup, camera, pose)
     else:
@@ -137,20 +139,15 @@ def _set_up_pinhole(setup: CameraSetup, camera: Camera, pose: _core.Motion) -> N
 
 def _set_up_thin(setup: CameraSetup, camera: Camera, pose: _core.Motion, focus: Focus) -> None:
     f = camera.focal_length or DEFAULT_FOCAL_LENGTH
-    diameter = camera.aperture_diameter or f / (camera.f_stop or DEFAULT_F_STOP)
-    distance = focus.distance(ideal_direction(f))
+    diameter = camera.aperture_diameter or f / (camera.f_stop or camera_prescription.DEFAULT_F_STOP)
+    if any(camera.tilt):
+        focus.sharp_at = _sharp_when_tilted(camera, f)
+    distance = focus.settled(lambda s: ideal_direction(_film_distance(camera, f, s)))
     if camera.focus_from == "sensor" and camera.focus_distance is not None:
         distance = _from_pupil(distance, f)
-    film = f
-    if camera.focus_breathing:
-        if not distance * 1e3 > f:
-            raise InputError(
-                f"camera: focus_distance: a {f:g} mm lens wanted more than {f * 1e-3:g} m, "
-                f"got {distance:g} m"
-            )
-        film = f if math.isinf(distance) else f * distance * 1e3 / (distance * 1e3 - f)
+    film = _film_distance(camera, f, distance)
     setup.core = _core.Camera.thin(
-        pose, film, diameter / 2, distance, iris_of(camera), camera.natural_vignetting
+        pose, film, diameter / 2, distance, iris_of(camera), camera.natural_vignetting, camera.tilt
     )
     setup.pinhole_focal_length = film
     setup.facts |= {
@@ -162,6 +159,25 @@ def _set_up_thin(setup: CameraSetup, camera: Camera, pose: _core.Motion, focus: 
         "focus_breathing": camera.focus_breathing,
         **iris_facts(camera),
     }
+
+
+def _film_distance(camera: Camera, f: float, distance: float) -> float:
+    """Along the camera's axis, mm: that of the pinhole with the same framing."""
+    if not camera.focus_breathing:
+        return f
+    if not distance * 1e3 > f:
+        raise InputError(
+            f"camera: focus_distance: a {f:g} mm lens wanted more than {f * 1e-3:g} m, "
+            f"got {distance:g} m"
+        )
+    film = f if math.isinf(distance) else f * distance * 1e3 / (distance * 1e3 - f)
+    return film * tilt.cosine(camera.tilt)  # where the lens's axis meets it
+
+
+def _sharp_when_tilted(camera: Camera, f: float) -> Callable[[NDArray[np.float64]], float]:
+    if camera.focus_breathing:
+        return lambda point: tilt.focus_on(tilt.Imaging.thin(f), camera.tilt, point)
+    return lambda point: tilt.focus_still(f, camera.tilt, point)
 
 
 def _from_pupil(total_m: float, f: float) -> float:
@@ -179,91 +195,3 @@ def _from_pupil(total_m: float, f: float) -> float:
         )
     image = (total - math.sqrt(total * (total - 4 * f))) / 2
     return (total - image) * 1e-3
-
-
-def _set_up_prescription(
-    setup: CameraSetup,
-    camera: Camera,
-    lens: lenses.Lens,
-    model: str,
-    pose: _core.Motion,
-    focus: Focus,
-) -> None:
-    """A real lens: traced exactly, or replaced by the ideal lens of the same framing and blur."""
-    order = lens.first_order()
-    f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
-    from_sensor = camera.focus_from == "sensor" and camera.focus_distance is not None
-    direction = ideal_direction(order.efl)
-    if camera.focus_at is not None and model == "exact":
-        far = _exact_lens(lens, camera, setup.frame_size, f_stop, math.inf, False)
-
-        def direction(x: float, y: float) -> NDArray[np.float64]:
-            return np.array(far.chief_direction(x, y))
-
-    distance = focus.distance(direction)
-    exact = _exact_lens(lens, camera, setup.frame_size, f_stop, distance, from_sensor)
-    if from_sensor:  # the film's place is known now, and with it the way to the pupil
-        distance -= (exact.film_z_mm - order.entrance_pupil.z) * 1e-3
-    film = framing_distance(order, exact.film_distance_mm, distance)
-    if model == "exact":
-        setup.core = _core.Camera.exact(pose, exact)
-    elif model == "thin":
-        radius = order.efl / f_stop / 2
-        setup.core = _core.Camera.thin(
-            pose, film, radius, distance, iris_of(camera), camera.natural_vignetting
-        )
-    else:
-        setup.core = _core.Camera.pinhole(pose, film, camera.natural_vignetting)
-    setup.pinhole_focal_length = film
-    setup.facts |= {
-        "lens": lens.name,
-        "lens_sha256": _hash_lens(lens),
-        "coating": lens.coating,
-        "focal_length_mm": lens.nominal.efl_mm or order.efl,
-        "effective_focal_length_mm": order.efl,
-        "f_stop": f_stop,
-        "focus_distance_m": distance,
-        "entrance_pupil_offset_mm": exact.film_z_mm - order.entrance_pupil.z,
-        "h0": exact.h0,
-        "transmittance": exact.transmittance,
-        **iris_facts(camera),
-    }
-
-
-def framing_distance(
-    order: lenses.FirstOrder, film_distance: float, focus_distance_m: float
-) -> float:
-    """Film distance (mm) of the pinhole, at the entrance pupil, with the framing of a real lens.
-
-    A chief ray of slope t crosses the plane of focus at height t s_pupil and the film at
-    t s_pupil s' / s, with s and s' measured from the principal points.
-    """
-    if math.isinf(focus_distance_m):
-        return order.efl
-    from_pupil = focus_distance_m * 1e3
-    from_principal = from_pupil + order.front_principal_point - order.entrance_pupil.z
-    return film_distance * from_pupil / from_principal
-
-
-def _exact_lens(
-    lens: lenses.Lens,
-    camera: Camera,
-    frame: tuple[float, float],
-    f_stop: float,
-    distance: float,
-    from_sensor: bool,
-) -> _core.ExactLens:
-    half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
-    # The reconstruction filter reaches over the frame's edge.
-    half_diagonal = 1.02 * math.hypot(*half)
-    try:
-        return _core.ExactLens(
-            lens.prescription, f_stop, iris_of(camera), distance, from_sensor, half_diagonal
-        )
-    except ValueError as error:
-        raise InputError(f"{lens.source}: {error}") from None
-
-
-def _hash_lens(lens: lenses.Lens) -> str:
-    text = json.dumps(lens.data, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -16,6 +16,7 @@ from .errors import InputError, UsageError, suggest
 from .scene import Scene
 
 _VERTICES_AT_ONCE = 1 << 18
+_ROUNDS = 4
 
 
 @dataclass
@@ -29,6 +30,8 @@ class Focus:
     world: NDArray[np.float64]
     core_scene: _core.Scene | None
     notes: list[str]
+    #: focus distance (m) at which a point of the camera's frame is sharp; None: its depth
+    sharp_at: Callable[[NDArray[np.float64]], float] | None = None
 
     def distance(self, direction_of: Callable[[float, float], NDArray[np.float64]]) -> float:
         """The focus distance, m (may be infinite).
@@ -56,6 +59,23 @@ class Focus:
         what = f"pixel {x:g},{y:g}" if camera.focus_at else "centre ray"
         return self._along(direction_of(film_x, film_y), what)
 
+    def settled(
+        self, direction_at: Callable[[float], Callable[[float, float], NDArray[np.float64]]]
+    ) -> float:
+        """The focus distance of a lens whose view follows its focus where that matters: tilted.
+
+        Args:
+            direction_at: View directions of film points, given a focus distance in m.
+        """
+        kept = len(self.notes)
+        distance = self.distance(direction_at(math.inf))
+        if self.sharp_at is None:
+            return distance
+        for _ in range(_ROUNDS):
+            del self.notes[kept:]
+            distance = self.distance(direction_at(distance))
+        return distance
+
     def _along(self, direction: NDArray[np.float64], what: str) -> float:
         hit = None
         if self.core_scene is not None:
@@ -69,7 +89,7 @@ class Focus:
             self.notes.append(f"autofocus: {what} begins on a surface; focus at infinity")
             return math.inf
         self.notes.append(f"autofocus: {what} meets a surface {depth:.4g} m away")
-        return depth
+        return depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
 
     def _on_node(self, name: str) -> float:
         """Depth of the visible surface in the middle of the node, else of its nearest vertex."""
@@ -83,31 +103,34 @@ class Focus:
             place = scene.node_positions.get(name)
             if place is None:
                 raise InputError(f"camera: focus_on: node {name!r} is hidden at {scene.time:g} s")
-            depth = float((place - eye) @ axis)
-            return self._in_front(name, depth, "is")
+            return self._in_front(name, float((place - eye) @ axis), "is", place - eye)
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         nearest, farthest = math.inf, -math.inf
+        vertex = eye
         for points in _world_vertices(scene, instances):
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
             depths = (points - eye) @ axis
-            nearest = min(nearest, float(np.where(depths > 0, depths, math.inf).min()))
+            ahead = np.where(depths > 0, depths, math.inf)
+            if ahead.min() < nearest:
+                nearest, vertex = float(ahead.min()), points[ahead.argmin()]
             farthest = max(farthest, float(depths.max()))
         middle = (low + high) / 2 - eye
         if self.core_scene is not None and middle @ axis > 0:
             hit = self.core_scene.first_hit(tuple(eye), tuple(middle))
             if hit is not None and hit[1] in instances:
                 depth = hit[0] * float(middle @ axis) / float(np.linalg.norm(middle))
-                return self._in_front(name, depth, "has its visible middle")
+                place = hit[0] / float(np.linalg.norm(middle)) * middle
+                return self._in_front(name, depth, "has its visible middle", place)
         depth = nearest if nearest < math.inf else farthest
-        return self._in_front(name, depth, "has its nearest vertex")
+        return self._in_front(name, depth, "has its nearest vertex", vertex - eye)
 
-    def _in_front(self, name: str, depth: float, verb: str) -> float:
+    def _in_front(self, name: str, depth: float, verb: str, from_eye: NDArray[np.float64]) -> float:
         if not depth > 0:
             raise InputError(
                 f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)"
             )
         self.notes.append(f"focus: node {name!r} {verb} {depth:.4g} m away")
-        return depth
+        return depth if self.sharp_at is None else self.sharp_at(self.world[:3, :3].T @ from_eye)
 
 
 def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:

@@ -1,14 +1,15 @@
 """Focus, zoom, iris and film shift that change while the shutter is open.
 
 An ideal lens is keyed so that its numbers are within the bound of :mod:`daguerre.resample` at all
-times. An exact lens is set up in states, each drawn by the samples that are nearest to it in time:
-so many that focusing blurs by less than ``STATE_BLUR`` of a pixel from what it should be, and the
-iris turns and bends by less than 1 % of its radius. Its f-stop needs no states: the widest iris is
-closed as far as it is at each moment.
+times. A thick or exact lens is set up in states, each drawn by the samples that are nearest to it
+in time: so many that focusing and tilting blur by less than ``STATE_BLUR`` of a pixel from what it
+should be, and the iris turns and bends by less than 1 % of its radius. Its f-stop needs no states:
+the widest iris is closed as far as it is at each moment.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -30,7 +31,7 @@ _STATE_TURN = 0.01
 MAX_STATES = 129
 _LOOKS = 1024
 _IRIS = ("blades", "blade_rotation", "blade_curvature")
-_LENS = ("focal_length", "f_stop", "aperture_diameter", "focus_distance", *_IRIS)
+_LENS = ("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", *_IRIS)
 
 
 @dataclass
@@ -55,12 +56,15 @@ class LensMotion:
     f_stop: float | None
     make: Callable[[Camera], _core.Camera]
 
-    def apply(self, core: _core.Camera, efl: float | None, pitch: float) -> str | None:
+    def apply(
+        self, core: _core.Camera, efl: float | None, frame: tuple[float, float], pitch: float
+    ) -> str | None:
         """Hands over what changes to the core's camera of mid-exposure.
 
         Args:
             core: The camera.
-            efl: Focal length of a lens that is traced exactly, mm; None: an ideal lens.
+            efl: Focal length of a lens that is set up in states, mm; None: an ideal lens.
+            frame: What the picture covers of the film, mm.
             pitch: Of the pixels, mm.
 
         Returns:
@@ -79,7 +83,7 @@ class LensMotion:
             if self.changing & {*_LENS}:
                 self._change_ideal(core)
         elif self.changing & {*_LENS, "shift"}:
-            note = self._change_exact(core, efl, pitch)
+            note = self._change_states(core, efl, frame, pitch)
         if "shift" in self.changing or (efl is not None and "f_stop" in self.changing):
             self._change_setting(core, exact=efl is not None)
         return note
@@ -120,11 +124,14 @@ class LensMotion:
             times = sorted({*times, *self._looks()[:: _LOOKS // (MAX_STATES - 1)]})
         core.change_lens(self._fractions(times), [lens(t) for t in times])
 
-    def _change_exact(self, core: _core.Camera, efl: float, pitch: float) -> str | None:
+    def _change_states(
+        self, core: _core.Camera, efl: float, frame: tuple[float, float], pitch: float
+    ) -> str | None:
         cameras = [self._at(t) for t in self._looks()]
         widest = min(self._stop(c) for c in cameras)
         shifts = np.abs([c.shift for c in cameras]).max(axis=0)
-        times, needed = self._state_times(cameras, efl, STATE_BLUR * pitch * widest)
+        reach = math.hypot(*(size / 2 + s for size, s in zip(frame, shifts, strict=True)))
+        times, needed = self._state_times(cameras, efl, reach, STATE_BLUR * pitch * widest)
         states = [
             replace(self._at(t), f_stop=widest, shift=(float(shifts[0]), float(shifts[1])))
             for t in times
@@ -145,15 +152,18 @@ class LensMotion:
         return self.f_stop
 
     def _state_times(
-        self, cameras: list[Camera], efl: float, film_mm: float
+        self, cameras: list[Camera], efl: float, reach: float, film_mm: float
     ) -> tuple[list[float], int]:
         """Times of the states, and how many the bounds ask for.
 
         Focusing at s moves the film by about f^2 / s; a state serves as much to either side of it.
+        Tilting moves what is sharp by as much as the film's edge turns (``reach`` from the axis).
         """
         # inf counts as 0, so does a focus that stays
         inverse = [1e-3 / c.focus_distance if c.focus_distance else 0.0 for c in cameras]
         steps = efl**2 * np.abs(np.diff(inverse)) / (2 * film_mm)
+        tilts = np.radians([c.tilt for c in cameras])
+        steps += reach * np.abs(np.diff(tilts, axis=0)).sum(axis=1) / (2 * film_mm)
         turns = np.radians([c.blade_rotation for c in cameras])
         bends = np.array([c.blade_curvature for c in cameras])
         blades = np.diff([c.blades for c in cameras]) != 0

@@ -34,7 +34,7 @@ class CameraFlags:
         Text,
         option(
             "--lens-model",
-            metavar="exact|thin|pinhole",
+            metavar="exact|thick|thin|pinhole",
             help="How the lens is computed [exact if --lens names one].",
             panel=_CAMERA,
         ),
@@ -125,6 +125,15 @@ class CameraFlags:
     shift: Annotated[
         Text, option("--shift", metavar="X,Y", help="Film shift right and up, mm.", panel=_CAMERA)
     ] = None
+    tilt: Annotated[
+        Text,
+        option(
+            "--tilt",
+            metavar="X,Y",
+            help="Turn the lens about x (up) and y (left), degrees.",
+            panel=_CAMERA,
+        ),
+    ] = None
     iso: Annotated[
         float | None,
         option("--iso", metavar="N", help="For metadata and development only.", panel=_CAMERA),
@@ -153,6 +162,7 @@ class CameraFlags:
             "blade_rotation": ("blade_rotation", "--blade-rotation", q.angle_deg),
             "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
+            "tilt": ("tilt", "--tilt", lambda f, t: q.numbers(f, t, 2, "0,6")),
         }
         plain = {
             "lens": "lens",

@@ -1,0 +1,221 @@
+"""A camera with a real lens: traced exactly, as a thick lens, or replaced by an ideal one.
+
+All lengths in mm unless the name says otherwise. Distances of focus are m.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from . import lenses, tilt
+from .aim_cache import exact_lens
+from .camera import Camera
+from .camera_parts import iris_facts, iris_of
+from .errors import InputError
+from .focusing import Focus, ideal_direction
+
+DEFAULT_F_STOP = 5.6
+
+
+Directions = Callable[[float, float], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class RealLens:
+    """A prescription as a camera uses it.
+
+    Attributes:
+        core: The core's camera.
+        pinhole_focal_length: Film distance of the pinhole with the same framing.
+        facts: For metadata and hashes, JSON-able.
+    """
+
+    core: _core.Camera
+    pinhole_focal_length: float
+    facts: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class _InFocus:
+    """A lens, its film and its iris.
+
+    Attributes:
+        lens: With the gaps of its zoom and focus.
+        order: Of that lens.
+        film_z: Film on the lens's axis, in its frame.
+        distance: From the entrance pupil along the lens's axis, m.
+        f_stop: Focal length / entrance pupil diameter.
+    """
+
+    lens: lenses.Lens
+    order: lenses.FirstOrder
+    film_z: float
+    distance: float
+    f_stop: float
+
+
+def set_up(
+    camera: Camera,
+    lens: lenses.Lens,
+    model: str,
+    frame: tuple[float, float],
+    pose: _core.Motion,
+    focus: Focus,
+) -> RealLens:
+    """Focuses a lens and makes the camera of the model: exact, thick, thin or pinhole.
+
+    Raises:
+        UsageError: Autofocus on a pixel outside of the frame.
+        InputError: The lens cannot focus or open so far.
+    """
+    order = lens.first_order()
+    f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+    if any(camera.tilt):
+        imaging = _imaging(order)
+        focus.sharp_at = lambda point: tilt.focus_on(imaging, camera.tilt, point)
+    distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
+    sharp = _focused(camera, lens, distance, f_stop)
+    film = framing_distance(sharp) * tilt.cosine(camera.tilt)
+    core, h0, transmittance = _core_camera(camera, model, sharp, frame, pose, film)
+    facts = {
+        "lens": lens.name,
+        "lens_sha256": _hash_lens(lens),
+        "coating": lens.coating,
+        "focal_length_mm": lens.nominal.efl_mm or order.efl,
+        "effective_focal_length_mm": sharp.order.efl,
+        "f_stop": f_stop,
+        "focus_distance_m": sharp.distance,
+        "entrance_pupil_offset_mm": (sharp.film_z - sharp.order.entrance_pupil.z)
+        * tilt.cosine(camera.tilt),
+        "h0": h0,
+        "transmittance": transmittance,
+        **iris_facts(camera),
+    }
+    return RealLens(core, film, facts)
+
+
+def _focused(camera: Camera, lens: lenses.Lens, distance: float, f_stop: float) -> _InFocus:
+    from_sensor = camera.focus_from == "sensor" and camera.focus_distance is not None
+    order = lens.first_order()
+    try:
+        film_z = lens.prescription.film_position(distance, from_sensor)
+    except ValueError as error:
+        raise InputError(f"{lens.source}: {error}") from None
+    if from_sensor:  # the film's place is known now, and with it the way to the pupil
+        distance -= (film_z - order.entrance_pupil.z) * 1e-3
+    return _InFocus(lens, order, film_z, distance, f_stop)
+
+
+def _core_camera(
+    camera: Camera,
+    model: str,
+    sharp: _InFocus,
+    frame: tuple[float, float],
+    pose: _core.Motion,
+    film: float,
+) -> tuple[_core.Camera, float, float]:
+    """The camera, its H0 and the transmittance on the axis."""
+    if model == "exact":
+        exact = _exact_lens(camera, sharp, frame)
+        return _core.Camera.exact(pose, exact), exact.h0, exact.transmittance
+    try:
+        thick = _core.ThickLens(
+            sharp.lens.prescription,
+            sharp.f_stop,
+            iris_of(camera),
+            sharp.distance,
+            film_z_mm=sharp.film_z,
+            tilt_deg=camera.tilt,
+        )
+    except ValueError as error:
+        raise InputError(f"{sharp.lens.source}: {error}") from None
+    radius = sharp.order.efl / sharp.f_stop / 2
+    vignetting = camera.natural_vignetting
+    if model == "thick":
+        core = _core.Camera.thick(pose, thick)
+    elif model == "thin":
+        core = _core.Camera.thin(
+            pose, film, radius, sharp.distance, iris_of(camera), vignetting, camera.tilt
+        )
+    else:
+        core = _core.Camera.pinhole(pose, film, vignetting)
+    return core, thick.h0, thick.transmittance
+
+
+def _directions(
+    camera: Camera,
+    lens: lenses.Lens,
+    model: str,
+    frame: tuple[float, float],
+    f_stop: float,
+    distance: float,
+) -> Directions:
+    """View directions of film points at a focus distance that may not be the last one."""
+    if camera.focus_at is None or model != "exact" or any(camera.tilt):
+        film = framing_distance(_focused(camera, lens, distance, f_stop))
+        return ideal_direction(film * tilt.cosine(camera.tilt))
+    far = _exact_lens(camera, _focused(camera, lens, math.inf, f_stop), frame)
+
+    def direction(x: float, y: float) -> NDArray[np.float64]:
+        return np.array(far.chief_direction(x, y))
+
+    return direction
+
+
+def _imaging(order: lenses.FirstOrder) -> tilt.Imaging:
+    front = order.front_principal_point - order.front_focal_point
+    return tilt.Imaging(
+        order.front_focal_point,
+        order.back_focal_point,
+        order.efl * front,
+        front,
+        order.entrance_pupil.z,
+    )
+
+
+def framing_distance(sharp: _InFocus) -> float:
+    """Film distance (mm) of the pinhole, at the entrance pupil, with the framing of a real lens.
+
+    A chief ray of slope t crosses the plane of focus at height t s_pupil and the film at
+    t s_pupil s' / s, with s and s' measured from the principal points.
+    """
+    order = sharp.order
+    if math.isinf(sharp.distance):
+        return order.efl
+    from_pupil = sharp.distance * 1e3
+    from_principal = from_pupil + order.front_principal_point - order.entrance_pupil.z
+    return (sharp.film_z - order.back_principal_point) * from_pupil / from_principal
+
+
+def _exact_lens(camera: Camera, sharp: _InFocus, frame: tuple[float, float]) -> _core.ExactLens:
+    half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
+    try:
+        return exact_lens(
+            sharp.lens.prescription,
+            sharp.f_stop,
+            iris_of(camera),
+            sharp.distance,
+            # The reconstruction filter reaches over the frame's edge.
+            1.02 * math.hypot(*half),
+            film_z_mm=sharp.film_z,
+            tilt_deg=camera.tilt,
+            film_center_mm=camera.shift,
+            film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
+        )
+    except ValueError as error:
+        raise InputError(f"{sharp.lens.source}: {error}") from None
+
+
+def _hash_lens(lens: lenses.Lens) -> str:
+    text = json.dumps(lens.data, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()

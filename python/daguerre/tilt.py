@@ -1,0 +1,90 @@
+"""Where a tilted lens has to focus for a point to be sharp.
+
+The lens is turned about the centre of its entrance pupil (``core/camera/tilt.h``); the film stays
+across the camera's -z, and a focus distance runs along the lens's axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+def turn(tilt_deg: tuple[float, float]) -> FloatArray:
+    """Camera from lens, shape (3, 3): about the camera's x, then about its y."""
+    a, b = np.radians(tilt_deg)
+    about_x = np.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
+    about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
+    return np.asarray(about_y @ about_x)
+
+
+def cosine(tilt_deg: tuple[float, float]) -> float:
+    """Of the angle between the axes of lens and camera."""
+    return float(turn(tilt_deg)[2, 2])
+
+
+@dataclass(frozen=True)
+class Imaging:
+    """What of a lens decides where images lie: z in the lens's frame, mm, as in ``FirstOrder``.
+
+    Attributes:
+        front_focal_z: Front focal point.
+        back_focal_z: Rear focal point.
+        focal_squared: Product of both focal lengths, mm^2.
+        front_focal: Front focal length, mm.
+        pupil_z: Centre of the entrance pupil.
+    """
+
+    front_focal_z: float
+    back_focal_z: float
+    focal_squared: float
+    front_focal: float
+    pupil_z: float
+
+    @classmethod
+    def thin(cls, focal_length: float) -> Imaging:
+        """Of a thin lens."""
+        return cls(-focal_length, focal_length, focal_length**2, focal_length, 0)
+
+
+def focus_on(imaging: Imaging, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
+    """Focus distance (m, along the lens's axis) at which a point of the camera's frame is sharp.
+
+    The point's image (Newton's x x' = f f') lies on the film; so the film's place is known, and
+    with it what is sharp on the axis.
+
+    Args:
+        imaging: The lens.
+        tilt_deg: About x and y.
+        point_m: Shape (3,), camera frame, m.
+    """
+    rotation = turn(tilt_deg)
+    p = 1e3 * rotation.T @ point_m
+    before = imaging.front_focal_z - (p[2] + imaging.pupil_z)  # of the front focus
+    if not before > 0:
+        return math.inf
+    image_z = imaging.back_focal_z + imaging.focal_squared / before - imaging.pupil_z
+    scale = -imaging.front_focal / before
+    depth = float((rotation @ [scale * p[0], scale * p[1], image_z])[2])  # of the film
+    behind = depth / rotation[2, 2] + imaging.pupil_z - imaging.back_focal_z
+    if not behind > 0:
+        return math.inf
+    return 1e-3 * float(imaging.focal_squared / behind - imaging.front_focal_z + imaging.pupil_z)
+
+
+def focus_still(film_mm: float, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
+    """The same of a thin lens whose film stays where it is when it focuses (``ThinLens``).
+
+    With c the chief ray of depth 1, a the axis and D the film's distance, the point in focus has
+    the depth t with 1 / t = (c . a) (a_z / D + 1 / focus) - 1 / D.
+    """
+    axis = -turn(tilt_deg)[:, 2]
+    depth, film = -point_m[2], film_mm * 1e-3
+    along = float(point_m / depth @ axis)
+    inverse = (1 / depth + 1 / film) / along + float(axis[2]) / film
+    return 1 / inverse if inverse > 0 else math.inf
