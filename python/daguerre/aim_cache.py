@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from daguerre import _core
+import daguerre._core as _core
 
 
 def exact_lens(
