@@ -1,4 +1,4 @@
-// bind_prescription.cpp -- glass, surfaces, prescriptions, first-order data and exact
+// bind_prescription.cpp -- surfaces, prescriptions, first-order data and exact
 // traces of single rays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
@@ -116,34 +116,6 @@ auto jacobian(const dg::Prescription& lens, std::array<double, 3> origin,
 
 void bind_prescription(nb::module_& m) {
     using namespace dg;
-    nb::class_<Glass>(m, "Glass")
-        .def_static(
-            "constant",
-            [](double n) {
-                return Glass{ConstantIndex{n}, ""};
-            },
-            "n"_a)
-        .def_static(
-            "abbe",
-            [](double nd, double vd) {
-                return Glass{AbbeGlass{nd, vd}, ""};
-            },
-            "nd"_a, "vd"_a)
-        .def_static(
-            "table",
-            [](std::vector<double> nm, std::vector<double> n) {
-                return Glass{TableGlass{std::move(nm), std::move(n)}, ""};
-            },
-            "wavelength_nm"_a, "n"_a)
-        .def_static(
-            "sellmeier",
-            [](const std::vector<double>& b, const std::vector<double>& c) {
-                if (b.size() != 3 || c.size() != 3)
-                    throw Error("Sellmeier glass: wanted three b and three c");
-                return Glass{SellmeierGlass{{b[0], b[1], b[2]}, {c[0], c[1], c[2]}}, ""};
-            },
-            "b"_a, "c_um2"_a)
-        .def("index", &refractive_index, "wavelength_nm"_a);
     nb::class_<Surface>(m, "Surface")
         .def(
             "__init__",

@@ -8,6 +8,7 @@ namespace nb = nanobind;
 
 void bind_codec(nb::module_& m);
 void bind_motion(nb::module_& m);
+void bind_glass(nb::module_& m);
 void bind_prescription(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_scene(nb::module_& m);
@@ -28,6 +29,7 @@ NB_MODULE(_core, m) {
     });
     bind_codec(m);
     bind_motion(m);
+    bind_glass(m);
     bind_prescription(m);
     bind_optics(m);
     bind_scene(m);

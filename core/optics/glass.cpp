@@ -59,37 +59,117 @@ double index_of(const TableGlass& glass, double nm) {
 
 double index_of(const SellmeierGlass& glass, double nm) {
     const double l2 = 1 / inverse_square(nm);
-    double n2 = 1;
-    for (int i = 0; i < 3; ++i) n2 += glass.b[i] * l2 / (l2 - glass.c[i]);
+    double n2 = 1 + glass.constant;
+    for (std::size_t i = 0; i < glass.b.size(); ++i)
+        n2 += glass.b[i] * l2 / (l2 - glass.c[i]);
     return std::sqrt(n2);
+}
+
+double index_of(const PolynomialGlass& glass, double nm) {
+    double n2 = 0;
+    for (std::size_t i = 0; i < glass.coefficient.size(); ++i)
+        n2 += glass.coefficient[i] * std::pow(1e-3 * nm, glass.power[i]);
+    return std::sqrt(n2);
+}
+
+bool ascending(const std::vector<double>& nm) {
+    return std::is_sorted(nm.begin(), nm.end(), std::less_equal<>()) && nm.front() > 0;
+}
+
+void check_pairs(const std::string& where, const char* what, std::size_t a,
+                 std::size_t b) {
+    if (a == 0 || a != b)
+        throw Error(where + ": " + what + ", got " + std::to_string(b) + " and " +
+                    std::to_string(a));
+}
+
+void check_formula(const ConstantIndex&, const std::string&) {}
+
+void check_formula(const AbbeGlass& glass, const std::string& where) {
+    if (!(glass.vd >= 5))
+        throw input_error(where, "Abbe number", "at least 5", std::to_string(glass.vd));
+}
+
+void check_formula(const TableGlass& glass, const std::string& where) {
+    check_pairs(where, "glass table: wanted as many indices as wavelengths",
+                glass.nm.size(), glass.n.size());
+    if (!ascending(glass.nm))
+        throw Error(where +
+                    ": glass table: wanted positive, ascending wavelengths in nm");
+}
+
+void check_formula(const SellmeierGlass& glass, const std::string& where) {
+    check_pairs(where, "Sellmeier glass: wanted as many b as c, at least one",
+                glass.c.size(), glass.b.size());
+}
+
+void check_formula(const PolynomialGlass& glass, const std::string& where) {
+    check_pairs(where,
+                "polynomial glass: wanted as many coefficients as powers, at least one",
+                glass.power.size(), glass.coefficient.size());
+}
+
+void check_absorption(const Absorption& a, const std::string& where) {
+    if (a.nm.empty() && a.per_mm.empty()) return;
+    check_pairs(where, "absorption: wanted as many coefficients as wavelengths",
+                a.nm.size(), a.per_mm.size());
+    if (!ascending(a.nm))
+        throw Error(where + ": absorption: wanted positive, ascending wavelengths in nm");
+    for (const double k : a.per_mm)
+        if (!(k >= 0 && k <= 1e3))
+            throw input_error(where, "absorption", "0 to 1000 per mm", std::to_string(k));
 }
 
 }  // namespace
 
+// Standard air of 15 C: Ciddor 1996, Refractive index of air, Appl. Opt. 35(9), eq. 1 (its
+// terms of 450 ppm CO2). The density's change to 20 C: Schott TIE-29, eq. for n_air.
+double air_index(double wavelength_nm) {
+    const double s2 = inverse_square(wavelength_nm);
+    const double at_15 = 0.05792105 / (238.0185 - s2) + 0.00167917 / (57.362 - s2);
+    return 1 + at_15 / (1 + 3.4785e-3 * (20 - 15));
+}
+
 double refractive_index(const Glass& glass, double wavelength_nm) {
-    return std::visit(
+    const double n = std::visit(
         [&](const auto& formula) { return index_of(formula, wavelength_nm); },
         glass.formula);
+    return glass.against_vacuum ? n / air_index(wavelength_nm) : n;
+}
+
+double absorption_per_mm(const Glass& glass, double wavelength_nm) {
+    const std::vector<double>&nm = glass.absorption.nm, &per_mm = glass.absorption.per_mm;
+    if (nm.empty()) return 0;
+    const auto above = std::upper_bound(nm.begin(), nm.end(), wavelength_nm);
+    if (above == nm.begin()) return per_mm.front();
+    if (above == nm.end()) return per_mm.back();
+    const std::size_t i = above - nm.begin();
+    const double u = (wavelength_nm - nm[i - 1]) / (nm[i] - nm[i - 1]);
+    return per_mm[i - 1] + u * (per_mm[i] - per_mm[i - 1]);
+}
+
+// Daimon and Masumura 2007, Measurement of the refractive index of distilled water, Appl.
+// Opt. 46(18), at 20 C; 1.33335 at 589.3 nm, against vacuum.
+Glass water() {
+    return {
+        SellmeierGlass{{5.684027565e-1, 1.726177391e-1, 2.086189578e-2, 1.130748688e-1},
+                       {5.101829712e-3, 1.821153936e-2, 2.620722293e-2, 1.069792721e1}},
+        "water",
+        {},
+        true};
+}
+
+Glass vacuum() {
+    return {ConstantIndex{1}, "vacuum", {}, true};
 }
 
 void check_glass(const Glass& glass, const std::string& where) {
-    if (const auto* table = std::get_if<TableGlass>(&glass.formula)) {
-        if (table->nm.empty() || table->nm.size() != table->n.size())
-            throw Error(where +
-                        ": glass table: wanted as many indices as wavelengths, got " +
-                        std::to_string(table->n.size()) + " and " +
-                        std::to_string(table->nm.size()));
-        if (!std::is_sorted(table->nm.begin(), table->nm.end(), std::less_equal<>()) ||
-            !(table->nm.front() > 0))
-            throw Error(where +
-                        ": glass table: wanted positive, ascending wavelengths in nm");
-    }
-    if (const auto* abbe = std::get_if<AbbeGlass>(&glass.formula);
-        abbe && !(abbe->vd >= 5))
-        throw input_error(where, "Abbe number", "at least 5", std::to_string(abbe->vd));
+    std::visit([&](const auto& formula) { check_formula(formula, where); },
+               glass.formula);
+    check_absorption(glass.absorption, where);
     for (double nm = 380; nm <= 780; nm += 25) {
         const double n = refractive_index(glass, nm);
-        if (!(n >= 1 && n <= 5))
+        if (!(n >= 0.99 && n <= 5))
             throw input_error(where,
                               "refractive index at " + std::to_string(int(nm)) + " nm",
                               "1 to 5", std::to_string(n));

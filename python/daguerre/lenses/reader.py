@@ -12,11 +12,12 @@ from daguerre.io.json_text import parse
 
 from .configurations import Configuration, chosen, read_configurations
 from .errors import LensError, reported
+from .glass_json import glass_from_json
 from .groups import Group, placed
 from .lens import Lens, Nominal, core_prescription
 from .reading import member, number, text, triple
 from .surface import LensSurface
-from .surface_reader import COATINGS, read_glass, read_surfaces
+from .surface_reader import COATINGS, read_surfaces
 from .zoom import standing_mm
 
 SCHEMA = "daguerre-lens/0.1"
@@ -92,7 +93,7 @@ def _assembled(
     nominal = _nominal(root, configuration)
     if configuration is not configurations[0]:  # the field is that of the first
         nominal = dataclasses.replace(nominal, full_field_deg=None)
-    medium, _ = read_glass(member(root, "object_medium"))
+    medium, _ = glass_from_json(member(root, "object_medium"))
     return Lens(
         name=name,
         source=str(path),

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
-
-import daguerre._core as _core
 from daguerre.io.json_item import Item
 
-from .reading import member, number, text, triple
+from .glass_json import glass_from_json
+from .reading import member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
 
 #: Coefficients of higher powers are no surfaces that anybody grinds.
@@ -28,7 +26,7 @@ def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
     radius_x = _radius(item, "radius_x") if kind in TWO_SECTIONS else None
     flag = member(item, "stop")
     semi_diameter = _semi_diameter(item, radius)
-    glass, label = read_glass(member(item, "glass"))
+    glass, label = glass_from_json(member(item, "glass"))
     coating = member(item, "coating")
     return LensSurface(
         kind=kind,
@@ -98,32 +96,3 @@ def _asphere(item: Item) -> dict[int, float]:
         if (value := term.number()) != 0:
             out[power] = value
     return out
-
-
-def read_glass(item: Item | None) -> tuple[_core.Glass, str]:
-    """The medium and its label: its name, or nd/Vd; air has none."""
-    if item is None:
-        return _core.Glass.constant(1.0), ""
-    label = text(item, "name") or ""
-    table = item.get("table")
-    if table is not None:
-        return _table(table), label or "table"
-    nd = item.need("nd").number(1, 5)
-    vd = number(item, "vd", above=0)
-    if vd is None:
-        return _core.Glass.constant(nd), label or f"{nd:.5g}"
-    if vd < 5:
-        item.need("vd").fail(f"wanted an Abbe number of at least 5, got {vd:g}")
-    return _core.Glass.abbe(nd, vd), label or f"{nd:.5g}/{vd:.4g}"
-
-
-def _table(table: Item) -> _core.Glass:
-    nodes = sorted(node.numbers(2, 0.5, 1e5) for node in table)
-    if not nodes:
-        table.fail("wanted [[nm, n], ...], got an empty list")
-    if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
-        table.fail("wanted one index for each wavelength, got two")
-    for node in table:
-        Item(node.value[1], 1, node).number(1, 5)
-    nm, n = zip(*nodes, strict=True)
-    return _core.Glass.table(list(nm), list(n))

@@ -1,0 +1,93 @@
+"""What a JSON glass says of its own numbers: dispersion formula, internal transmittance."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import daguerre._core as _core
+from daguerre.io.json_item import Item
+
+#: Members that give the index by themselves.
+FORMULAS = ("table", "sellmeier", "polynomial")
+MAX_TERMS = 32
+
+
+def formula_of(item: Item) -> tuple[_core.Glass, str] | None:
+    """The glass of ``table``, ``sellmeier`` or ``polynomial`` and which of them; None: without.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used.
+    """
+    for kind, read in zip(FORMULAS, (_table, _sellmeier, _polynomial), strict=True):
+        member = item.get(kind)
+        if member is not None and member.value is not None:
+            try:
+                glass = read(member)
+                vacuum = item.get("against_vacuum")
+                if vacuum is not None and vacuum.flag():
+                    glass = glass.against_vacuum()
+                return glass, kind
+            except ValueError as error:
+                if hasattr(error, "exit_code"):
+                    raise
+                member.fail(str(error))  # the core's words: an index that is no index
+    return None
+
+
+def absorption_of(item: Item) -> tuple[list[float], list[float]] | None:
+    """Nodes (nm) and coefficients (1/mm, base e) of ``internal_transmittance``; None: without.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used.
+    """
+    member = item.get("internal_transmittance")
+    if member is None or member.value is None:
+        return None
+    thickness = member.need("thickness_mm").number(0, 1e4, above=0)
+    nodes = _nodes(member.need("table"), "tau", above=0, high=1)
+    return [nm for nm, _ in nodes], [-math.log(tau) / thickness for _, tau in nodes]
+
+
+def _table(member: Item) -> _core.Glass:
+    nm, n = zip(*_nodes(member, "n", low=1, high=5), strict=True)
+    return _core.Glass.table(list(nm), list(n))
+
+
+def _sellmeier(member: Item) -> _core.Glass:
+    b, c = _terms(member, "b", "c")
+    return _core.Glass.sellmeier(b, c, member.number_of("constant", 0.0, -10, 10))
+
+
+def _polynomial(member: Item) -> _core.Glass:
+    coefficients, powers = _terms(member, "coefficients", "powers")
+    return _core.Glass.polynomial(coefficients, powers)
+
+
+def _terms(member: Item, first: str, second: str) -> tuple[list[float], list[float]]:
+    """Two lists of one length."""
+    a = [x.number(-1e6, 1e6) for x in member.need(first)]
+    b = [x.number(-1e6, 1e6) for x in member.need(second)]
+    if not a or len(a) != len(b) or len(a) > MAX_TERMS:
+        member.fail(
+            f"wanted as many {second} as {first}, 1 to {MAX_TERMS}, got {len(b)} and {len(a)}"
+        )
+    return a, b
+
+
+def _nodes(
+    table: Item, what: str, *, low: float = 0, high: float, above: float | None = None
+) -> list[tuple[float, float]]:
+    """[[nm, value], ...] in ascending order; no wavelength twice."""
+    nodes = []
+    for row in table:
+        nm, _ = row.numbers(2)
+        Item(nm, 0, row).number(1, 1e5)
+        nodes.append((nm, Item(row.value[1], 1, row).number(low, high, above=above)))
+    if not nodes:
+        table.fail(f"wanted [[nm, {what}], ...], got an empty list")
+    nodes.sort()
+    if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
+        value = "index" if what == "n" else "value"
+        table.fail(f"wanted one {value} for each wavelength, got two")
+    return nodes

@@ -1,0 +1,65 @@
+"""A glass of a lens file: ``{nd, vd, name}``, ``{name}``, ``{table}``, ``{sellmeier}``, ..."""
+
+from __future__ import annotations
+
+import daguerre._core as _core
+from daguerre.io.json_item import Item
+
+from . import glasses
+from .errors import LensError
+from .glass_formula import absorption_of, formula_of
+from .reading import member, number, text
+
+
+def glass_from_json(item: Item | None) -> tuple[_core.Glass, str]:
+    """The glass and its label: its name, or nd/Vd. None and null are air.
+
+    Numbers decide the index: a formula or a table, else nd and vd; only a name alone asks the
+    makers' catalogues. Absorption is what ``internal_transmittance`` says, else that of the
+    catalogue's glass of this name, if its nd agrees within 5e-4.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used; LensError (lens-glass) for a
+            name that no catalogue has.
+    """
+    if item is None or item.value is None:
+        return _core.Glass.constant(1.0), ""
+    label = text(item, "name") or ""
+    formula = formula_of(item)
+    if formula is not None:
+        glass, default = formula
+    elif label and member(item, "nd") is None:
+        return _of_catalogue(item, label)
+    else:
+        glass, default = _abbe(item)
+    return _with_absorption(item, glass, label), label or default
+
+
+def _abbe(item: Item) -> tuple[_core.Glass, str]:
+    nd = item.need("nd").number(1, 5)
+    vd = number(item, "vd", above=0)
+    if vd is None:
+        return _core.Glass.constant(nd), f"{nd:.5g}"
+    if vd < 5:
+        item.need("vd").fail(f"wanted an Abbe number of at least 5, got {vd:g}")
+    return _core.Glass.abbe(nd, vd), f"{nd:.5g}/{vd:.4g}"
+
+
+def _of_catalogue(item: Item, label: str) -> tuple[_core.Glass, str]:
+    if member(item, "vd") is not None:
+        item.need("nd")  # says that it is missing
+    try:
+        found = glasses.find(label, text(item, "maker"))
+    except LensError as error:
+        name = item.need("name")
+        raise LensError(f"{name.file}: {name.path}: {error}", error.code) from None
+    own = absorption_of(item)
+    return found.core.with_absorption(*own) if own else found.core, found.name
+
+
+def _with_absorption(item: Item, glass: _core.Glass, label: str) -> _core.Glass:
+    own = absorption_of(item)
+    if own is not None:
+        return glass.with_absorption(*own)
+    known = glasses.similar(label, glass.index(587.5618)) if label else None
+    return glass.with_absorption_of(known.core) if known else glass

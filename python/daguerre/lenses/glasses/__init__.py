@@ -1,0 +1,9 @@
+"""The makers' glasses by name: ``find("N-BK7").index(587.56)``.
+
+Indices are relative to air of 20 C and 101.325 kPa, as the catalogues state them; Ohara measures
+at 25 C, Hikari at 23 C. Data: refractiveindex.info (CC0), see ``script/make-glass-catalogue``.
+"""
+
+from .catalogue import MAKERS, GlassData, find, names, similar
+
+__all__ = ["MAKERS", "GlassData", "find", "names", "similar"]

@@ -1,0 +1,201 @@
+"""Finds glasses by name, as makers, patents and old lens files write them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+from daguerre.errors import suggest
+from daguerre.io.json_item import Item
+from daguerre.lenses.errors import LensError
+from daguerre.lenses.glass_formula import absorption_of, formula_of
+
+FOLDER = Path(__file__).parent
+#: In the order in which an ambiguous name is looked up.
+MAKERS = ("Schott", "Ohara", "Hoya", "Hikari", "CDGM", "Sumita", "Corning", "LZOS", "materials")
+#: What makers put before the names of their newer melts; the first that exists is taken.
+PREFIXES = ("N", "S", "J", "H", "E", "K", "L", "P", "M", "Q", "D")
+_OTHER_NAMES = {"FLUORITE": "CaF2", "CALCIUMFLUORIDE": "CaF2", "FUSEDSILICA": "SiO2"} | {
+    "SILICA": "SiO2",
+    "QUARTZGLASS": "SiO2",
+    "ACRYLIC": "PMMA",
+    "PLEXIGLAS": "PMMA",
+    "POLYCARBONATE": "PC",
+    "POLYSTYRENE": "PS",
+    "NIKON": "Hikari",
+}
+_WITH_MAKER = re.compile(r"^(.*?)\s*\(([A-Za-z]+)\)$")
+_WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:-[A-Za-z0-9]+)*")
+LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725  # nm
+
+
+@dataclass(frozen=True, eq=False)
+class GlassData:
+    """One glass of a catalogue.
+
+    Attributes:
+        name: As its maker writes it.
+        maker: One of ``MAKERS``, or ``core`` for air, water and vacuum.
+        core: The core's version: index and absorption.
+        stated_nd: Index at 587.56 nm in the maker's own words; None: not stated.
+        stated_vd: Abbe number likewise.
+        note: What was taken instead of the name that was asked for; empty: that very glass.
+    """
+
+    name: str
+    maker: str
+    core: _core.Glass
+    stated_nd: float | None = None
+    stated_vd: float | None = None
+    note: str = ""
+
+    @property
+    def nd(self) -> float:
+        """Index at 587.56 nm by the formula."""
+        return float(self.core.index(LINE_D))
+
+    @property
+    def vd(self) -> float:
+        """Abbe number (nd - 1) / (nF - nC) by the formula."""
+        spread = self.core.index(LINE_F) - self.core.index(LINE_C)
+        return float((self.nd - 1) / spread) if spread else float("inf")
+
+    def index(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
+        """Index relative to air, the shape of the wavelengths (nm)."""
+        return np.asarray(np.vectorize(self.core.index)(wavelength_nm), np.float64)
+
+    def internal_transmittance(
+        self, wavelength_nm: ArrayLike, thickness_mm: float = 10.0
+    ) -> NDArray[np.float64]:
+        """What a plate lets through between its faces, 0 to 1, the shape of the wavelengths."""
+        per_mm = np.vectorize(self.core.absorption_per_mm)(wavelength_nm)
+        return np.asarray(np.exp(-thickness_mm * per_mm), np.float64)
+
+
+def names(maker: str | None = None) -> list[str]:
+    """Names of all glasses, or of one maker's, sorted."""
+    found = {entry.name for entry in _entries(maker)}
+    return sorted(found)
+
+
+def find(name: str, maker: str | None = None) -> GlassData:
+    """A glass by name; case, spaces and hyphens do not matter.
+
+    A name with its maker in parentheses is taken apart. A name of an older catalogue that is
+    gone finds its successor (BK7: N-BK7), and ``note`` says so.
+
+    Args:
+        name: Such as ``N-BK7``, ``SF6 (Schott)``, ``CaF2``, ``water``.
+        maker: One of ``MAKERS``; any if None, in that order.
+
+    Raises:
+        LensError: No glass has this name (lens-glass); the nearest are suggested.
+    """
+    key, maker = _key(name), _maker(name, maker)
+    exact = _by_key(maker).get(key)
+    if exact is not None:
+        return _load(exact)
+    tail = _WITH_MAKER.match(name.strip())
+    if tail and maker is None and tail[2].upper() in {m.upper() for m in (*MAKERS, "Nikon")}:
+        return find(tail[1], "Hikari" if tail[2].upper() == "NIKON" else tail[2])
+    other = _by_key(maker).get(_key(_OTHER_NAMES.get(key, "")))
+    if other is None:
+        found = (_by_key(maker).get(prefix + key) for prefix in PREFIXES)
+        other = next((entry for entry in found if entry is not None), None)
+    if other is None:
+        whose = f" of {maker}" if maker else ""
+        raise LensError(
+            f"glass {name!r}: no glass{whose} in the catalogues has this name"
+            f"{suggest(name, names(maker))}",
+            "lens-glass",
+        )
+    return _load(other, f"{name}: took {other.name} ({other.maker})")
+
+
+def similar(label: str, nd: float, tolerance: float = 5e-4) -> GlassData | None:
+    """The catalogue's glass that a label of a lens file names, if its nd agrees.
+
+    Labels hold more than names (``N-SK16 / SK16 class (Schott, 620/603)``): the words are tried
+    one after the other.
+    """
+    for word in _WORD.findall(label):
+        key = _key(word)
+        if len(key) < 2:
+            continue
+        for maker in MAKERS:
+            for candidate in (key, *(prefix + key for prefix in PREFIXES)):
+                entry = _by_key(maker).get(candidate)
+                if entry is not None and abs(_load(entry).nd - nd) <= tolerance:
+                    return _load(entry)
+    return None
+
+
+@dataclass(frozen=True)
+class _Entry:
+    name: str
+    maker: str
+    file: str
+
+
+def _key(name: str) -> str:
+    return re.sub(r"[^A-Z0-9]", "", name.upper())
+
+
+def _maker(name: str, maker: str | None) -> str | None:
+    if maker is None:
+        return None
+    for known in MAKERS:
+        if known.upper() == maker.upper():
+            return known
+    raise LensError(
+        f"glass {name!r}: no catalogue of the maker {maker!r}{suggest(maker, MAKERS)}",
+        "lens-glass",
+    )
+
+
+@cache
+def _catalogue(maker: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads((FOLDER / f"{maker.lower()}.json").read_text("utf-8"))
+    return data
+
+
+def _entries(maker: str | None) -> Iterator[_Entry]:
+    if maker is None:
+        yield from (_Entry(name, "core", "") for name in ("air", "water", "vacuum"))
+    for one in MAKERS if maker is None else (maker,):
+        for name in _catalogue(one)["glasses"]:
+            yield _Entry(name, one, f"{one.lower()}.json")
+
+
+@cache
+def _by_key(maker: str | None) -> dict[str, _Entry]:
+    table: dict[str, _Entry] = {}
+    for entry in _entries(maker):
+        table.setdefault(_key(entry.name), entry)
+    return table
+
+
+@cache
+def _load(entry: _Entry, note: str = "") -> GlassData:
+    if entry.maker == "core":
+        core = {"water": _core.Glass.water, "vacuum": _core.Glass.vacuum}.get(entry.name)
+        made = core() if core else _core.Glass.constant(1.0)
+        return GlassData(entry.name, "core", made, note=note)
+    item = Item(_catalogue(entry.maker)["glasses"][entry.name], entry.name, Item({}, entry.file))
+    formula = formula_of(item)
+    assert formula is not None, entry
+    glass = formula[0]
+    absorption = absorption_of(item)
+    if absorption is not None:
+        glass = glass.with_absorption(*absorption)
+    stated = item.value.get("catalogue", {})
+    return GlassData(entry.name, entry.maker, glass, stated.get("nd"), stated.get("vd"), note)
