@@ -1,9 +1,8 @@
 #include "optics/pupil_tables.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
-
-#include "optics/lens_error.h"
 
 namespace dg {
 namespace {
@@ -66,6 +65,46 @@ void fill_iris(IrisTables& t, const Iris& iris, double radius) {
         t.support_x.push_back(mm(p.x)), t.support_y.push_back(mm(p.y));
 }
 
+MetAs met_as(const Surface& s) {
+    const bool sphere =
+        s.shape == Shape::conic && s.conic == 0 && s.asphere.empty() && !is_placed(s);
+    return !sphere ? MetAs::other : s.curvature == 0 ? MetAs::plane : MetAs::sphere;
+}
+
+void fill_asphere(ShapeTables& t, const SurfaceForm& f, double scale) {
+    t.has_asphere = !f.even.empty() || !f.odd.empty();
+    t.inverse_scale2 = float(1 / (scale * scale));
+    for (std::size_t j = 0; j < f.even.size(); ++j) {
+        const double a = f.even[j] * std::pow(scale, 2.0 * double(j) + 2);
+        t.even.push_back(float(a)), t.even_slope.push_back(float(2 * double(j + 1) * a));
+    }
+    for (std::size_t j = 0; j < f.odd.size(); ++j) {
+        const double a = f.odd[j] * std::pow(scale, 2.0 * double(j) + 1);
+        t.odd.push_back(float(a)), t.odd_slope.push_back(float((2 * double(j) + 1) * a));
+    }
+}
+
+ShapeTables shape_tables(const Surface& s, const SurfaceForm& f) {
+    ShapeTables t;
+    t.shape = f.shape, t.quadric = f.quadric, t.placed = is_placed(s);
+    const bool start = f.quadric || f.shape == Shape::conic;  // others: from the plane
+    t.c = start ? float(f.c) : 0, t.wz = float(1 + f.k);
+    t.wx = float(f.wx), t.wy = float(f.wy);
+    t.cx = float(f.cx), t.cy = float(f.cy);
+    t.px = float((1 + f.kx) * f.cx * f.cx), t.py = float((1 + f.ky) * f.cy * f.cy);
+    const double scale = std::isfinite(f.clear) ? f.clear : 10;
+    fill_asphere(t, f, scale);
+    t.tolerance = float(1e-6 * scale), t.stride = float(scale);
+    const SurfaceFrame& place = f.place;
+    const Vec3d axes[3] = {place.x, place.y, place.z};
+    const Vec3d shift = s.decenter;
+    for (int i = 0; i < 3; ++i) {
+        t.shift[i] = float(shift[i]);
+        for (int j = 0; j < 3; ++j) t.axis[i][j] = float(axes[i][j]);
+    }
+    return t;
+}
+
 }  // namespace
 
 WavelengthScale WavelengthScale::visible() {
@@ -89,17 +128,21 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
     add_index(lens.object_medium);
     for (int i = 0; i < t.surfaces; ++i) {
         const Surface& s = lens.surfaces[i];
-        if (!tracer.form(i).sphere || is_placed(s))
-            throw LensError(surface_name(lens, i) + ": a form that the kernels trace not yet",
-                            "lens-surface", i);
         const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
         t.curvature.push_back(float(s.curvature));
         t.gap.push_back(float(s.thickness));
+        t.met.push_back(met_as(s));
+        t.shape.push_back(shape_tables(s, tracer.form(i)));
         const bool bounded =
             clear_apertures && std::isfinite(clear_radius(s)) && !(iris && i == t.stop);
         t.semi2.push_back(bounded ? float(clear_radius(s) * clear_radius(s)) : FLT_MAX);
+        const bool holed = clear_apertures && s.inner_semi_diameter > 0;
+        t.inner2.push_back(
+            holed ? float(s.inner_semi_diameter * s.inner_semi_diameter) : 0);
         add_index(s.glass);
-        const bool same = refractive_index(before, 550) == refractive_index(s.glass, 550);
+        const auto after = t.index.end() - (t.index_degree + 1);
+        const bool same = std::equal(after, t.index.end(), after - (t.index_degree + 1));
+        t.refracts.push_back(!same);
         const bool coated =
             lens.coating == Coating::mgf2 && (is_air(before) || is_air(s.glass));
         t.light.push_back(same || lens.coating == Coating::perfect ? SurfaceLight::none

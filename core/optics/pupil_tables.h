@@ -33,10 +33,31 @@ struct WavelengthScale {
 /// How a surface treats light in the kernel.
 enum class SurfaceLight : int { none, bare, film };
 
+/// By which formula rays meet a surface.
+enum class MetAs : int { plane, sphere, other };
+
+/// A form that is no centred plane or sphere (form.h), in float. The asphere is a
+/// polynomial in (r / scale)^2, so that its coefficients are lengths.
+struct ShapeTables {
+    Shape shape = Shape::conic;
+    bool quadric = true, has_asphere = false, placed = false;
+    float c = 0, wx = 1, wy = 1, wz = 1;  // c (wx x^2 + wy y^2 + wz z^2) = 2 z
+    float cx = 0, cy = 0;                 // both sections
+    float px = 0, py = 0;                 // (1 + k) c^2 of both
+    float inverse_scale2 = 1;             // 1/mm^2
+    std::vector<float> even, even_slope, odd, odd_slope;
+    float tolerance = 0, stride = 0;  // mm: of the last step of a search, of any
+    float shift[3] = {0, 0, 0};
+    float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+
 struct LensTables {
     int surfaces = 0, stop = 0;
     float film_gap = 0;  // last vertex to film, mm
-    std::vector<float> curvature, semi2, gap;
+    std::vector<float> curvature, semi2, inner2, gap;
+    std::vector<MetAs> met;
+    std::vector<char> refracts;      // or rays go straight on
+    std::vector<ShapeTables> shape;  // of those met as other
     std::vector<SurfaceLight> light;
     int index_degree = 0;
     std::vector<float> index;  // [medium][power of l]

@@ -8,6 +8,7 @@
 #endif
 
 #include "hwy/highway.h"
+#include "optics/meet-inl.h"
 #include "optics/pupil_tables.h"
 #include "optics/transmission-inl.h"
 
@@ -75,57 +76,112 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     return hn::IfThenElseZero(inside, constant(1));
 }
 
-/// Tracer::cross in lanes; kSign is +1 toward the film.
+/// What is left of Tracer::cross after the meeting: stops, and Snell's law.
 template <int kSign>
-HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& r) {
-    const D d;
-    const V c = constant(lens.curvature[i]), zero = hn::Zero(d), one = constant(1);
-    // Nearest point of the ray to the vertex.
-    const V e = hn::MulAdd(r.x, r.dx, hn::MulAdd(r.y, r.dy, hn::Mul(r.z, r.dz)));
-    const V mx = hn::NegMulAdd(e, r.dx, r.x), my = hn::NegMulAdd(e, r.dy, r.y);
-    const V mz = hn::NegMulAdd(e, r.dz, r.z);
-    const V m2 = hn::MulAdd(mx, mx, hn::MulAdd(my, my, hn::Mul(mz, mz)));
-    const V q = hn::MulSub(c, m2, hn::Add(mz, mz));
-    const V cos1_squared = hn::NegMulAdd(c, q, hn::Mul(r.dz, r.dz));
-    const V cos1 = hn::Sqrt(cos1_squared);
-    const V t = hn::Div(q, kSign > 0 ? hn::Add(r.dz, cos1) : hn::Sub(r.dz, cos1));
-    r.x = hn::MulAdd(t, r.dx, mx);
-    r.y = hn::MulAdd(t, r.dy, my);
-    r.z = hn::MulAdd(t, r.dz, mz);
-    const V toward_axis = hn::NegMulAdd(c, r.z, one);
-    const V r2 = hn::MulAdd(r.x, r.x, hn::Mul(r.y, r.y));
-    M ok = hn::And(hn::Ge(cos1_squared, zero), hn::Gt(toward_axis, zero));
-    ok = hn::And(ok, hn::Le(r2, constant(lens.semi2[i])));
+HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
+                             LaneRays& r) {
+    const V one = constant(1), x = hit.point.x, y = hit.point.y;
+    r.x = x, r.y = y, r.z = hit.point.z;
+    const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
+    M ok = hn::And(hit.ok, hn::Le(r2, constant(lens.semi2[i])));
+    if (lens.inner2[i] > 0) ok = hn::And(ok, hn::Ge(r2, constant(lens.inner2[i])));
     if (i == lens.stop) {
-        r.iris_x = r.x;
-        r.iris_y = r.y;
+        r.iris_x = x, r.iris_y = y;
         if (lens.iris.radius > 0) {
-            const V open = iris_transmission(lens.iris, r.x, r.y);
-            ok = hn::And(ok, hn::Gt(open, zero));
+            const V open = iris_transmission(lens.iris, x, y);
+            ok = hn::And(ok, hn::Gt(open, hn::Zero(D())));
             r.transmittance = hn::Mul(r.transmittance, open);
         }
     }
     const V n2 = index_of(lens, kSign > 0 ? i + 1 : i, r.l);
-    if (lens.light[i] != SurfaceLight::none || lens.curvature[i] != 0) {
+    if (lens.refracts[i]) {
         const V mu = hn::Div(r.n, n2);
         const V cos2_squared =
-            hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, cos1_squared), one);
+            hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, hit.cos1_squared), one);
         const V cos2 = hn::Sqrt(cos2_squared);
-        ok = hn::And(ok, hn::Ge(cos2_squared, zero));
+        ok = hn::And(ok, hn::Ge(cos2_squared, hn::Zero(D())));
         if (lens.light[i] != SurfaceLight::none) {
-            const LaneCrossing at{r.n, cos1, cos1_squared, n2, cos2, r.l, r.inv_um};
+            const LaneCrossing at{r.n,  hit.cos1, hit.cos1_squared, n2,
+                                  cos2, r.l,      r.inv_um};
             r.transmittance =
                 hn::Mul(r.transmittance, transmission_lanes<kSign>(lens, i, at));
         }
-        const V bend = hn::NegMulAdd(mu, cos1, cos2);
-        const V g = kSign > 0 ? bend : hn::Neg(bend);
-        const V gc = hn::Mul(g, c);
-        r.dx = hn::NegMulAdd(gc, r.x, hn::Mul(mu, r.dx));
-        r.dy = hn::NegMulAdd(gc, r.y, hn::Mul(mu, r.dy));
-        r.dz = hn::MulAdd(g, toward_axis, hn::Mul(mu, r.dz));
+        const V g = signed_by<kSign>(hn::NegMulAdd(mu, hit.cos1, cos2));
+        r.dx = hn::NegMulAdd(hn::Mul(g, hit.bend_x), x, hn::Mul(mu, r.dx));
+        r.dy = hn::NegMulAdd(hn::Mul(g, hit.bend_y), y, hn::Mul(mu, r.dy));
+        r.dz = hn::MulAdd(g, hit.axial, hn::Mul(mu, r.dz));
     }
     r.n = n2;
     r.alive = hn::And(r.alive, ok);
+}
+
+/// Rays into the frame of a surface that is moved or turned, and back.
+HWY_INLINE void enter_frame(const ShapeTables& s, LaneRays& r) {
+    const auto turn = [&](V& x, V& y, V& z) {
+        const auto row = [&](const float* a) {
+            return hn::MulAdd(constant(a[0]), x,
+                              hn::MulAdd(constant(a[1]), y, hn::Mul(constant(a[2]), z)));
+        };
+        const V u = row(s.axis[0]), v = row(s.axis[1]), w = row(s.axis[2]);
+        x = u, y = v, z = w;
+    };
+    r.x = hn::Sub(r.x, constant(s.shift[0])), r.y = hn::Sub(r.y, constant(s.shift[1]));
+    r.z = hn::Sub(r.z, constant(s.shift[2]));
+    turn(r.x, r.y, r.z), turn(r.dx, r.dy, r.dz);
+}
+
+HWY_INLINE void leave_frame(const ShapeTables& s, LaneRays& r) {
+    const auto turn = [&](V& x, V& y, V& z) {
+        const auto column = [&](int k) {
+            return hn::MulAdd(constant(s.axis[0][k]), x,
+                              hn::MulAdd(constant(s.axis[1][k]), y,
+                                         hn::Mul(constant(s.axis[2][k]), z)));
+        };
+        const V u = column(0), v = column(1), w = column(2);
+        x = u, y = v, z = w;
+    };
+    turn(r.x, r.y, r.z), turn(r.dx, r.dy, r.dz);
+    r.x = hn::Add(r.x, constant(s.shift[0])), r.y = hn::Add(r.y, constant(s.shift[1]));
+    r.z = hn::Add(r.z, constant(s.shift[2]));
+}
+
+/// Forms other than centred planes and spheres, apart so that those keep their speed.
+template <int kSign>
+HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
+    const ShapeTables& s = lens.shape[i];
+    if (s.placed) enter_frame(s, a), enter_frame(s, b);
+    const LaneVec p[2] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}};
+    const LaneVec d[2] = {{a.dx, a.dy, a.dz}, {b.dx, b.dy, b.dz}};
+    LaneHit hit[2];
+    if (s.quadric) {
+        for (int v = 0; v < 2; ++v) hit[v] = meet_quadric<kSign>(s, p[v], d[v]);
+    } else {
+        const M alive[2] = {a.alive, b.alive};
+        meet_searched<kSign>(s, p, d, alive, hit);
+    }
+    pass_surface<kSign>(lens, i, hit[0], a);
+    pass_surface<kSign>(lens, i, hit[1], b);
+    if (s.placed) leave_frame(s, a), leave_frame(s, b);
+}
+
+/// Tracer::cross in lanes; kSign is +1 toward the film.
+template <int kSign>
+HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
+    const auto both = [&](auto meet) {
+        pass_surface<kSign>(lens, i, meet({a.x, a.y, a.z}, {a.dx, a.dy, a.dz}), a);
+        pass_surface<kSign>(lens, i, meet({b.x, b.y, b.z}, {b.dx, b.dy, b.dz}), b);
+    };
+    switch (lens.met[i]) {
+        case MetAs::plane:
+            return both([](const LaneVec& p, const LaneVec& d)
+                            HWY_ATTR { return meet_plane<kSign>(p, d); });
+        case MetAs::sphere:
+            return both([&](const LaneVec& p, const LaneVec& d) HWY_ATTR {
+                return meet_sphere<kSign>(lens.curvature[i], p, d);
+            });
+        default:
+            cross_other<kSign>(lens, i, a, b);
+    }
 }
 
 /// Two vectors of rays at once, so that one's long chains of dependent operations hide
@@ -142,8 +198,7 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
             a.z = hn::Add(a.z, constant(lens.gap[i]));
             b.z = hn::Add(b.z, constant(lens.gap[i]));
         }
-        cross_surface<-1>(lens, i, a);
-        cross_surface<-1>(lens, i, b);
+        cross_surface<-1>(lens, i, a, b);
     }
 }
 
@@ -158,8 +213,7 @@ HWY_INLINE void lanes_to_film(const LensTables& lens, LaneRays& a, LaneRays& b) 
             a.z = hn::Sub(a.z, constant(lens.gap[i - 1]));
             b.z = hn::Sub(b.z, constant(lens.gap[i - 1]));
         }
-        cross_surface<1>(lens, i, a);
-        cross_surface<1>(lens, i, b);
+        cross_surface<1>(lens, i, a, b);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "optics/paraxial.h"
 #include "optics/pupil.h"
 #include "optics/test_lenses.h"
+#include "optics/test_shapes.h"
 
 using namespace dg;
 
@@ -57,62 +58,99 @@ bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iri
 
 }  // namespace
 
+namespace {
+
+/// A lens with its film, to be traced both ways.
+struct Case {
+    Prescription lens;
+    double film_z, size, iris_radius;  // size: focal length, or what stands for it
+};
+
+std::vector<Case> patent_lenses() {
+    std::vector<Case> cases;
+    for (const Prescription& lens : test::all_lenses()) {
+        const FirstOrder f = first_order(lens);
+        cases.push_back(
+            {lens, film_position(lens, f, 4), f.efl, 0.8 * f.stop_semi_diameter});
+    }
+    return cases;
+}
+
+std::vector<Case> singlets_of_every_form() {
+    std::vector<Case> cases;
+    test::Random u(21);
+    for (int form = 0; form < test::kForms; ++form)
+        for (bool placed : {false, true})
+            cases.push_back({test::singlet_of_form(form, u, placed), 50, 50, 7});
+    return cases;
+}
+
+void aim_at_the_rear(const Case& c, test::Random& u, FilmRays& film) {
+    const double rear = c.lens.surfaces.back().semi_diameter;
+    const double gap = c.film_z - c.lens.last_vertex();
+    for (int i = 0; i < kLensBatch; ++i) {
+        film.x[i] = float(15 * u()), film.y[i] = float(12 * u());
+        film.mx[i] = float(-(rear * u() - film.x[i]) / gap);
+        film.my[i] = float(-(rear * u() - film.y[i]) / gap);
+        film.nm[i] = float(580 + 200 * u());
+    }
+}
+
+/// Traces film -> scene -> film in lanes, and film -> scene exactly; number that passed.
+int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
+    Bench b;
+    const Tracer t(c.lens);
+    const LensTables tables = make_lens_tables(t, c.film_z, true, &iris, c.iris_radius);
+    aim_at_the_rear(c, u, *b.film);
+    const FilmRays start = *b.film;
+    trace_to_scene(tables, *b.film, *b.scene, kLensBatch);
+    const SceneRays out = *b.scene;
+    trace_to_film(tables, *b.scene, *b.film, kLensBatch);
+    int passed = 0;
+    for (int i = 0; i < kLensBatch; ++i) {
+        const LensIndices n = t.at(start.nm[i]);
+        const LensRay ray{{start.x[i], start.y[i], c.film_z},
+                          normalize(Vec3d{-start.mx[i], -start.my[i], -1})};
+        const auto exact = t.to_scene(ray, n, {true, &iris, c.iris_radius});
+        if ((out.pass[i] > 0) != exact.has_value()) {
+            CHECK(grazes(t, ray, n, iris, c.iris_radius));
+            continue;
+        }
+        if (!exact) continue;
+        ++passed;
+        const Vec3d d{out.dx[i], out.dy[i], out.dz[i]}, o{out.x[i], out.y[i], out.z[i]};
+        CHECK(length(d - exact->ray.direction) < 4e-6);
+        CHECK(length(o - exact->ray.origin) < 2e-6 * c.size + 2e-5);
+        CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(2e-5));
+        CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) < 1e-4);
+        // And back to the same film point, unless an edge is grazed.
+        if (b.scene->pass[i] > 0) {
+            CHECK(std::abs(b.film->x[i] - start.x[i]) < 2e-5 * c.size + 2e-4);
+            CHECK(std::abs(b.film->mx[i] - start.mx[i]) < 2e-5);
+        } else {
+            CHECK(grazes(t, ray, n, iris, c.iris_radius));
+        }
+    }
+    return passed;
+}
+
+}  // namespace
+
 TEST_CASE("lanes equal the scalar reference on every target, both directions") {
     for_each_target([] {
-        std::mt19937 random(11);
-        std::uniform_real_distribution<double> u(-1, 1);
-        Bench b;
-        for (const Prescription& lens : test::all_lenses())
-            for (const Iris& iris : irises()) {
-                const Tracer t(lens);
-                const FirstOrder f = first_order(lens);
-                const double film_z = film_position(lens, f, 4),
-                             radius = 0.8 * f.stop_semi_diameter;
-                const LensTables tables =
-                    make_lens_tables(t, film_z, true, &iris, radius);
-                const double rear = lens.surfaces.back().semi_diameter;
-                for (int i = 0; i < kLensBatch; ++i) {
-                    b.film->x[i] = float(15 * u(random)),
-                    b.film->y[i] = float(12 * u(random));
-                    const double gap = film_z - lens.last_vertex();
-                    b.film->mx[i] = float(-(rear * u(random) - b.film->x[i]) / gap);
-                    b.film->my[i] = float(-(rear * u(random) - b.film->y[i]) / gap);
-                    b.film->nm[i] = float(580 + 200 * u(random));
-                }
-                const FilmRays start = *b.film;
-                trace_to_scene(tables, *b.film, *b.scene, kLensBatch);
-                const SceneRays out = *b.scene;
-                trace_to_film(tables, *b.scene, *b.film, kLensBatch);
-                int passed = 0;
-                for (int i = 0; i < kLensBatch; ++i) {
-                    const LensIndices n = t.at(start.nm[i]);
-                    const LensRay ray{{start.x[i], start.y[i], film_z},
-                                      normalize(Vec3d{-start.mx[i], -start.my[i], -1})};
-                    const auto exact = t.to_scene(ray, n, {true, &iris, radius});
-                    if ((out.pass[i] > 0) != exact.has_value()) {
-                        CHECK(grazes(t, ray, n, iris, radius));
-                        continue;
-                    }
-                    if (!exact) continue;
-                    ++passed;
-                    const Vec3d d{out.dx[i], out.dy[i], out.dz[i]},
-                        o{out.x[i], out.y[i], out.z[i]};
-                    CHECK(length(d - exact->ray.direction) < 4e-6);
-                    CHECK(length(o - exact->ray.origin) < 2e-6 * f.efl + 2e-5);
-                    CHECK(out.pass[i] ==
-                          doctest::Approx(exact->transmittance).epsilon(2e-5));
-                    CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) <
-                          1e-4);
-                    // And back to the same film point, unless an edge is grazed.
-                    if (b.scene->pass[i] > 0) {
-                        CHECK(std::abs(b.film->x[i] - start.x[i]) < 2e-5 * f.efl + 2e-4);
-                        CHECK(std::abs(b.film->mx[i] - start.mx[i]) < 2e-5);
-                    } else {
-                        CHECK(grazes(t, ray, n, iris, radius));
-                    }
-                }
-                CHECK(passed > 3);
-            }
+        test::Random u(11);
+        for (const Case& c : patent_lenses())
+            for (const Iris& iris : irises()) CHECK(compare_lanes(c, iris, u) > 3);
+    });
+}
+
+TEST_CASE("lanes equal the scalar reference for surfaces of every form, moved and turned") {
+    for_each_target([] {
+        test::Random u(12);
+        for (const Case& c : singlets_of_every_form()) {
+            CAPTURE(c.lens.name);
+            CHECK(compare_lanes(c, Iris(), u) > 40);
+        }
     });
 }
 
