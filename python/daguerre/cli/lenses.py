@@ -87,7 +87,7 @@ def lens(
 
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
-    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop")
+    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
     surfaces = [{name: getattr(s, name) for name in names} for s in item.surfaces]
     return {
         "name": item.name,

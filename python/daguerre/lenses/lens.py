@@ -350,10 +350,12 @@ def _table(lens: Lens) -> list[str]:
         cells = [
             "plane" if s.radius is None else f"{s.radius:.3f}",
             "" if s.thickness is None else f"{s.thickness:.3f}",
-            "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}",
+            "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}" + "*" * s.derived,
         ]
         mark = "stop" if s.stop else ""
         rows.append(
             f"{i:3} {mark:5} {cells[0]:>10} {cells[1]:>10} {cells[2]:>10}  {s.glass}".rstrip()
         )
+    if any(s.derived for s in lens.surfaces):
+        rows.append("* not the source's: derived from rays of the full field")
     return rows

@@ -11,6 +11,7 @@ from daguerre.io.json_item import Item, clean
 from daguerre.io.json_text import parse
 
 from .configurations import Configuration, chosen, read_configurations
+from .diameters import with_derived_diameters
 from .errors import LensError, reported
 from .glass_json import glass_from_json
 from .groups import Group, placed
@@ -77,7 +78,8 @@ def _lens(root: Item, path: Path, name: str | None) -> Lens:
     for group in _groups(root, len(items), configurations):
         surfaces = placed(surfaces, group)
     lens = _assembled(root, path, surfaces, configurations, configuration)
-    return dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
+    lens = dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
+    return with_derived_diameters(lens)
 
 
 def _assembled(

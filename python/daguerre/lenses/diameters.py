@@ -1,0 +1,148 @@
+"""Clear diameters where a source gives none: those that the rays of the full field need.
+
+The stop's size is known, from the table or from the f-number. From points of the film out to the
+corner, rays are aimed at the rim of the stop and traced to the scene; each surface is then as wide
+as the farthest of them, so that nothing but the mounts that the source names shades a corner.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .zoom import positions, with_stop
+
+#: Fields between the axis and the corner, and points on half the rim of the stop.
+FIELDS, RIM = 6, 9
+#: Mounts are wider than the light by this factor.
+MARGIN = 1.01
+
+Array = NDArray[np.float64]
+
+
+def with_derived_diameters(lens: Lens) -> Lens:
+    """The lens with semi-diameters where it has none; marked as derived.
+
+    Unchanged where that cannot be done: all are known, neither the stop's size nor an f-number is
+    known, no field is known, or the lens is not symmetric about its axis.
+    """
+    missing = [i for i, s in enumerate(lens.surfaces) if s.semi_diameter is None]
+    if not missing or not lens.prescription.is_axially_symmetric:
+        return lens
+    lens = _with_stop(lens)
+    corner = image_radius(lens)
+    if corner is None or any(s.stop and s.semi_diameter is None for s in lens.surfaces):
+        return lens
+    variants = [lens]
+    if lens.zoom_mm is not None:
+        variants = [with_stop(lens.with_gaps(p.gaps), p.stop) for p in positions(lens)]
+    fields = np.linspace(0, corner, FIELDS)
+    heights = np.max([_heights(at, y) for at in variants for y in fields], axis=0)
+    surfaces = list(lens.surfaces)
+    for i in missing:
+        if not surfaces[i].stop and heights[i] > 0:
+            size = min(MARGIN * float(heights[i]), _widest(surfaces[i].radius, surfaces[i].conic))
+            surfaces[i] = surfaces[i].replaced(semi_diameter=size, derived=True)
+    return lens.rebuilt(surfaces)
+
+
+def image_radius(lens: Lens) -> float | None:
+    """Half the image circle, mm: the source's, or that of its field; None: it names neither."""
+    nominal = lens.nominal
+    if nominal.image_circle_mm:
+        return nominal.image_circle_mm / 2
+    if not nominal.full_field_deg:
+        return None
+    half, efl = math.radians(nominal.full_field_deg / 2), lens.first_order().efl
+    if nominal.projection == "equisolid":
+        return 2 * efl * math.sin(half / 2)
+    if nominal.projection == "equidistant" or half > math.radians(70):
+        return efl * half
+    return efl * math.tan(half)
+
+
+def _with_stop(lens: Lens) -> Lens:
+    """The open iris of the f-number, where the table does not say its size."""
+    surfaces = list(lens.surfaces)
+    (i,) = (i for i, s in enumerate(surfaces) if s.stop)
+    if surfaces[i].semi_diameter is not None or lens.nominal.f_number is None:
+        return lens
+    surfaces[i] = surfaces[i].replaced(semi_diameter=1.0)
+    size = lens.rebuilt(surfaces).first_order().f_number / lens.nominal.f_number
+    surfaces[i] = surfaces[i].replaced(semi_diameter=size, derived=True)
+    return lens.rebuilt(surfaces)
+
+
+def _widest(radius: float | None, conic: float) -> float:
+    """Where the surface turns vertical, and a little less."""
+    return math.inf if radius is None or conic <= -1 else 0.998 * abs(radius) / math.sqrt(1 + conic)
+
+
+def _heights(lens: Lens, y: float) -> Array:
+    """How far off the axis light from a film point meets each surface, shape (surfaces,)."""
+    film = np.array([0.0, y, lens.image_z])
+    (stop,) = (s.semi_diameter or 0.0 for s in lens.surfaces if s.stop)
+    angle = np.linspace(-np.pi / 2, np.pi / 2, RIM)
+    rim = stop * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    slopes = np.tile(_chief_guess(lens, film), (RIM, 1))
+    out = np.zeros(len(lens.surfaces))
+    for share in (0.0, 0.5, 1.0):
+        slopes, points, directions = _aimed(lens, film, share * rim, slopes)
+        for point, direction in zip(points, directions, strict=True):
+            if np.isfinite(point).all():
+                path = lens.prescription.path(
+                    point[None] - direction, -direction[None], DESIGN_WAVELENGTH_NM, False
+                )
+                if len(path) == len(out):
+                    out = np.maximum(out, np.hypot(path[:, 0], path[:, 1]))
+    return out
+
+
+def _chief_guess(lens: Lens, film: Array) -> Array:
+    """Slope (dx/dz, dy/dz) toward the centre of the paraxial exit pupil."""
+    z = lens.first_order().exit_pupil.z
+    return np.array([0.0, -film[1] / (z - film[2]) if math.isfinite(z) else 0.0])
+
+
+def _aimed(lens: Lens, film: Array, targets: Array, slopes: Array) -> tuple[Array, Array, Array]:
+    """Newton's method to points of the stop, by exact rays.
+
+    Returns:
+        Slopes (N, 2), and the rays as they leave for the scene (N, 3); NaN where none gets there.
+    """
+    size = 1e-6 * (np.abs(targets).max() + 1e-3)
+    points = directions = np.full((len(targets), 3), np.nan)
+    for _ in range(20):
+        iris, points, directions = _iris(lens, film, slopes)
+        miss = iris - targets
+        if np.nanmax(np.abs(miss), initial=0.0) < size:
+            break
+        steps = []
+        for axis in np.eye(2) * 1e-5:
+            steps.append((_iris(lens, film, slopes + axis)[0] - iris) / 1e-5)
+        (a, c), (b, d) = steps[0].T, steps[1].T
+        det = a * d - b * c
+        move = np.stack([d * miss[:, 0] - b * miss[:, 1], a * miss[:, 1] - c * miss[:, 0]], 1)
+        move = np.nan_to_num(move / det[:, None])
+        reach = 0.2 * (1 + np.abs(slopes))  # no leaps into the unknown
+        slopes = slopes - np.clip(move, -reach, reach)
+    bad = ~(np.abs(iris - targets).max(axis=1) < 1e3 * size)
+    points, directions = points.copy(), directions.copy()
+    points[bad] = np.nan
+    return slopes, points, directions
+
+
+def _iris(lens: Lens, film: Array, slopes: Array) -> tuple[Array, Array, Array]:
+    """Where rays from the film cross the stop (N, 2), and how they leave; NaN if they do not."""
+    directions = -np.column_stack([slopes, np.ones(len(slopes))])
+    origins = np.tile(film, (len(slopes), 1))
+    nm = np.full(len(slopes), DESIGN_WAVELENGTH_NM)
+    points, out, iris, _, _, stopped = lens.prescription.rays(
+        origins, np.ascontiguousarray(directions), nm, False, False
+    )
+    out = np.asarray(out).copy()
+    out[np.asarray(stopped) >= 0] = np.nan
+    return np.asarray(iris), np.asarray(points), out
