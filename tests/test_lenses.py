@@ -54,7 +54,7 @@ def test_unknown_names_get_the_nearest() -> None:
         lenses.load("zzz")
     with pytest.raises(InputError, match="cannot be read"):
         lenses.load("nowhere/lens.json")
-    with pytest.raises(InputError, match=r"wanted \.json"):
+    with pytest.raises(InputError, match="cannot be read"):
         lenses.load("lens.zmx")
 
 

@@ -137,7 +137,7 @@ TEXTS: dict[str, tuple[str, bytes, str]] = {
     "doubled": ("lens.json", b'{"schema": 1, "schema": 2}', "schema: .*twice"),
     "huge float": ("lens.json", b'{"schema": 1e999}', "wanted|JSON"),
     "of 20 MB": ("lens.json", b" " * 20_000_000, "lens file: wanted at most"),
-    "no json": ("lens.zmx", b"SURF 0", "lens file: wanted .json"),
+    "no lens": ("lens.lens", b"SURF 0", r"lens file: wanted \.json, .*got \.lens"),
 }
 
 

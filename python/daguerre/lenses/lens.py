@@ -97,6 +97,7 @@ class Lens:
         configurations: Zoom and focus positions of the file.
         object_medium: Before the first surface.
         zoom_mm: Focal length at which a zoom stands; None: not a zoom.
+        notes: What is not as the file says: what could not be honoured, what was found wrong.
     """
 
     name: str
@@ -111,6 +112,7 @@ class Lens:
     configurations: tuple[Configuration, ...]
     object_medium: _core.Glass
     zoom_mm: float | None = None
+    notes: tuple[str, ...] = ()
 
     def first_order(self, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> FirstOrder:
         """Focal length, focal points, principal and nodal points, pupils.

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from daguerre.errors import InputError, suggest
 
+from .formats import SUFFIXES
 from .lens import Lens
 from .reader import read
 
@@ -93,7 +94,7 @@ def load(name_or_path: str | Path, configuration: str | None = None) -> Lens:
     looks_like_file = isinstance(name_or_path, Path) or path.suffix != "" or len(path.parts) > 1
     if text in names():
         return read(FOLDER / f"{text}.json", configuration)
-    if path.is_file() or (looks_like_file and path.suffix.lower() in (".json", ".zmx", ".seq")):
+    if path.is_file() or (looks_like_file and path.suffix.lower() in (".json", *SUFFIXES)):
         return read(path, configuration)
     raise InputError(
         f"lens {text!r}: no lens of the library and no file has this name{suggest(text, names())}"

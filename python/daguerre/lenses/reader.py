@@ -1,15 +1,19 @@
-"""Reads lens files: JSON of the schema ``daguerre-lens/0.1``, lengths in mm."""
+"""Reads lens files: JSON of the schema ``daguerre-lens/0.1`` (mm), and those of other programs."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from daguerre.errors import InputError
 from daguerre.io.json_item import Item, clean
 from daguerre.io.json_text import parse
 
+from . import formats
+from .checking import checked
 from .configurations import Configuration, chosen, read_configurations
 from .diameters import with_derived_diameters
 from .errors import LensError, reported
@@ -35,25 +39,44 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
     Raises:
         InputError: With file and JSON path of what cannot be used.
     """
-    root = _parse(Path(path))
+    path = Path(path)
+    root, notes = _root(path)
     with reported(str(path)):
-        return _lens(root, Path(path), configuration)
+        return checked(replace(_lens(root, path, configuration), notes=tuple(notes)))
 
 
-def _parse(path: Path) -> Item:
-    if path.suffix.lower() != ".json":
-        raise InputError(
-            f"{path}: lens file: wanted .json ({SCHEMA}), got {path.suffix or 'no suffix'}"
-        )
+def lens_of(data: dict[str, Any], source: str, configuration: str | None = None) -> Lens:
+    """The lens of a lens file's value, parsed or made by a program.
+
+    Raises:
+        InputError: With JSON path of what cannot be used.
+    """
+    with reported(source):
+        return _lens(Item(data, source), Path(source), configuration)
+
+
+def _root(path: Path) -> tuple[Item, list[str]]:
+    """The file's value, and what could not be honoured of another program's."""
+    data = _bytes(path)
+    if formats.is_foreign(path):
+        value, notes = formats.parse(data, path)
+        return Item(value, str(path)), notes
+    return parse(data, str(path)), []
+
+
+def _bytes(path: Path) -> bytes:
+    if path.suffix.lower() not in (".json", *formats.SUFFIXES):
+        known = ", ".join((".json", *formats.SUFFIXES))
+        got = path.suffix or "no suffix"
+        raise LensError(f"{path}: lens file: wanted {known}, got {got}", "lens-format")
     try:
         if path.exists() and not path.is_file():  # a pipe or a device would never end
             raise InputError(f"{path}: lens file: wanted an ordinary file")
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path}: lens file: wanted at most {MAX_BYTES} bytes")
-        data = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    return parse(data, str(path))
 
 
 def _lens(root: Item, path: Path, name: str | None) -> Lens:

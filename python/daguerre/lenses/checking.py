@@ -1,0 +1,208 @@
+"""Whether a lens can be built, and lets light through. Shipped and imported ones alike.
+
+Two surfaces that cross within the beam on the axis make no lens. Where they cross only near the
+rim, the element ends there, and so do the clear diameters. Tables of patents let surfaces touch
+just within the widest beam (none of a hundred below 0.97 of it), which is taken for rounding.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .errors import LensError, reported
+from .lens import Lens
+from .sag import sag
+from .surface import LensSurface
+
+#: Surfaces that touch at the rim by this much (mm) are a patent's rounding.
+TOUCH = 2e-3
+#: And so is a crossing at this share of the beam on the axis, or farther out.
+ROUNDING = 0.9
+_RADII = 129
+_DESIGN_NM = 587.5618
+
+
+def checked(lens: Lens) -> Lens:
+    """The lens with clear diameters that its elements have, and notes of what was found.
+
+    Raises:
+        LensError: It has no focal length, surfaces cross within the beam on the axis, or no light
+            passes; with the index of the surface.
+    """
+    order = lens.first_order()
+    if not all(map(math.isfinite, (order.efl, order.bfl))):
+        raise LensError(f"{lens.source}: focal length: wanted some, got {order.efl}", "lens-afocal")
+    beam = _beam(lens)
+    surfaces, notes = list(lens.surfaces), list(lens.notes)
+    for i, j in _neighbours(surfaces):
+        crossing = _crossing(lens, i, j, beam)
+        if crossing is None:
+            continue
+        inner = min(beam[i], beam[j])
+        where = f"surfaces {i} and {j}{_numbers(lens, i, j)}"
+        if crossing < ROUNDING * inner:
+            raise LensError(
+                f"{lens.source}: {where}: edge: wanted a gap within the beam on the axis "
+                f"({inner:.4g} mm), got a crossing {crossing:.4g} mm off the axis",
+                "lens-edge",
+                i,
+            )
+        end = max(crossing, inner)
+        notes.append(
+            f"{where} cross {crossing:.4g} mm off the axis: their clear radii end at {end:.4g} mm"
+        )
+        for k in (i, j):
+            semi = surfaces[k].semi_diameter
+            surfaces[k] = surfaces[k].replaced(semi_diameter=min(end, semi or end))
+    _check_light(lens)
+    if list(lens.notes) == notes:
+        return lens
+    with reported(lens.source):
+        return lens.rebuilt(surfaces, notes=tuple(notes))
+
+
+def _numbers(lens: Lens, *indices: int) -> str:
+    """The foreign file's own numbers of surfaces, in parentheses."""
+    rows = lens.data.get("surfaces", [])
+    numbers = [rows[i].get("from") for i in indices if i < len(rows)]
+    if any(n is None for n in numbers):
+        return ""
+    return f" (of the file: {' and '.join(str(n) for n in numbers)})"
+
+
+def _neighbours(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
+    """Pairs that bound one piece of glass or one gap of air; planes of air have no body."""
+    solid = [
+        i
+        for i, s in enumerate(surfaces)
+        if not any(s.decenter) and not any(s.tilt) and not (s.kind == "stop" and not s.glass)
+    ]
+    placed = {i for i, s in enumerate(surfaces) if any(s.decenter) or any(s.tilt)}
+    return [(i, j) for i, j in itertools.pairwise(solid) if not placed & set(range(i, j + 1))]
+
+
+def _crossing(lens: Lens, i: int, j: int, beam: NDArray[np.float64]) -> float | None:
+    """Distance from the axis (mm) where the later surface runs into the earlier one, or None."""
+    a, b = lens.surfaces[i], lens.surfaces[j]
+    gap = float(lens.vertices[j] - lens.vertices[i])
+    known = [s for s in (a.semi_diameter_after, a.semi_diameter, b.semi_diameter) if s is not None]
+    reach = max(min([*known, math.inf]), min(beam[i], beam[j]))
+    if not math.isfinite(reach):
+        reach = min(beam[i], beam[j])
+    r = np.linspace(0, reach, _RADII)
+    nearest = math.inf
+    round_form = all(s.kind not in ("biconic", "toroid", "cyl-x", "cyl-y") for s in (a, b))
+    for angle in (0.0,) if round_form else (0.0, 45.0, 90.0):
+        x, y = r * math.cos(math.radians(angle)), r * math.sin(math.radians(angle))
+        left = gap + sag(b, x, y) - sag(a, x, y)
+        below = np.flatnonzero(left < -TOUCH)
+        if below.size:
+            k = int(below[0])
+            share = (left[k - 1] / (left[k - 1] - left[k])) if k else 0.0
+            first = r[k - 1] + share * (r[k] - r[k - 1]) if k else 0.0
+            nearest = min(nearest, float(first))
+    return nearest if nearest < math.inf else None
+
+
+def _beam(lens: Lens) -> NDArray[np.float64]:
+    """How far off the axis the beam on the axis meets each surface, mm, shape (surfaces,)."""
+    order = lens.first_order()
+    radius = 0.5 * order.entrance_pupil.diameter
+    out = np.zeros(len(lens.surfaces))
+    if not math.isfinite(radius) or not math.isfinite(order.entrance_pupil.z):
+        return out
+    for share in (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1):
+        origin, direction = _ray(lens, order.entrance_pupil.z, 0.0, share * radius)
+        path = lens.prescription.path(origin[None], direction[None], _DESIGN_NM, False)
+        if len(path) == len(out):
+            return np.asarray(np.hypot(path[:, 0], path[:, 1]), np.float64)
+    return out
+
+
+def _ray(
+    lens: Lens, pupil_z: float, x: float, y: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """From the object on the axis to a point of the entrance pupil."""
+    start = -(50.0 + abs(pupil_z) + 10 * math.hypot(x, y))
+    configuration = lens.configurations[0] if lens.configurations else None
+    distance = configuration.object_distance_mm if configuration else None
+    if distance is None:
+        return np.array([x, y, start]), np.array([0.0, 0.0, 1.0])
+    direction = np.array([x, y, pupil_z + distance])
+    return np.array([0.0, 0.0, -distance]), direction / np.linalg.norm(direction)
+
+
+def _check_light(lens: Lens) -> None:
+    """Some ray of the beam on the axis must reach the film."""
+    order = lens.first_order()
+    radius = 0.5 * order.entrance_pupil.diameter
+    if not math.isfinite(radius) or radius <= 0 or not math.isfinite(order.entrance_pupil.z):
+        return
+    share = (np.arange(9) - 4) / 4.5
+    rays = [
+        _ray(lens, order.entrance_pupil.z, radius * x, radius * y)
+        for x in share
+        for y in share
+        if x * x + y * y <= 1
+    ]
+    origins, directions = (np.ascontiguousarray(part) for part in zip(*rays, strict=True))
+    nm = np.full(len(rays), _DESIGN_NM)
+    stopped = lens.prescription.rays(origins, directions, nm, True)[-1]
+    if (stopped < 0).any():
+        return
+    worst = int(np.bincount(stopped).argmax())
+    raise LensError(
+        f"{lens.source}: surface {worst}{_numbers(lens, worst)}: wanted rays of the beam on the "
+        f"axis to pass, got {np.count_nonzero(stopped == worst)} of {len(rays)} stopped there",
+        "lens-no-light",
+        worst,
+    )
+
+
+def frame_notes(
+    exact: _core.ExactLens, name: str, frame_mm: tuple[float, float], shift_mm: tuple[float, float]
+) -> list[str]:
+    """What of the frame lies outside the image circle, in one sentence; none if nothing does.
+
+    Raises:
+        LensError: All of it does.
+    """
+    count, draws = 15, 64
+    x, y = (
+        s + size * ((np.arange(count) + 0.5) / count - 0.5)
+        for s, size in zip(shift_mm, frame_mm, strict=True)
+    )
+    film = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
+    dark = ~_lit(exact, film, draws)
+    if dark.all():
+        raise LensError(
+            f"{name}: frame: wanted some of {frame_mm[0]:g} x {frame_mm[1]:g} mm in the light, "
+            "got none of it (a shift beyond the image circle?)",
+            "lens-no-light",
+        )
+    if not dark.any():
+        return []
+    reach = np.linspace(0, 1.01 * float(np.hypot(*np.abs(film).max(axis=0))), 129)
+    lit = _lit(exact, np.column_stack([reach, 0 * reach]), draws)
+    circle = 2 * float(reach[lit].max()) if lit.any() else 0.0
+    return [
+        f"the image circle of {name} is {circle:.3g} mm across: {100 * dark.mean():.0f} % of the "
+        f"frame of {frame_mm[0]:g} x {frame_mm[1]:g} mm stays dark"
+    ]
+
+
+def _lit(exact: _core.ExactLens, film: NDArray[np.float64], draws: int) -> NDArray[np.bool_]:
+    """Whether light reaches points of the film (N, 2), mm."""
+    side = round(math.sqrt(draws))
+    grid = (np.stack(np.meshgrid(*[np.arange(side)] * 2), -1).reshape(-1, 2) + 0.5) / side
+    points = np.repeat(film, len(grid), axis=0).astype(np.float32)
+    u = np.tile(grid, (len(film), 1)).astype(np.float32)
+    nm = np.full(len(points), 550, np.float32)
+    weights = np.asarray(exact.generate(points, u, nm)[2]).reshape(len(film), -1)
+    return np.asarray((weights > 0).any(axis=1))

@@ -1,0 +1,61 @@
+"""Lens files of other programs, as ``daguerre-lens/0.1`` and notes of what is not honoured."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from daguerre.lenses.errors import LensError
+
+from . import optical_bench, pbrt, seq, zmx
+from .text import decoded
+
+Parse = Callable[[str, str], tuple[dict[str, Any], list[str]]]
+
+#: What files of a suffix are, if their text does not say otherwise.
+SUFFIXES: dict[str, Parse | None] = {
+    ".zmx": zmx.parse,
+    ".seq": seq.parse,
+    ".txt": None,
+    ".dat": None,
+}
+_ZEMAX = re.compile(r"^\s*SURF\s+\d", re.MULTILINE)
+_BENCH = re.compile(r"^\s*\[lens data\]", re.MULTILINE | re.IGNORECASE)
+_CODE_V = re.compile(r"^\s*(S[O0]\s+[-+.\d]|RDM\b|LEN\b)", re.MULTILINE | re.IGNORECASE)
+
+
+def is_foreign(path: Path) -> bool:
+    """Whether a path is that of another program's lens file."""
+    return path.suffix.lower() in SUFFIXES
+
+
+def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
+    """The lens file that a foreign file comes to, and what it could not honour.
+
+    Raises:
+        LensError: With the line, and the surface where there is one.
+    """
+    text = decoded(data, str(path))
+    return _parser(text, path)(text, str(path))
+
+
+def _parser(text: str, path: Path) -> Parse:
+    """By what the text says, else by the suffix: names of files are often wrong."""
+    if _BENCH.search(text):
+        return optical_bench.parse
+    if _ZEMAX.search(text):
+        return zmx.parse
+    of_suffix = SUFFIXES.get(path.suffix.lower())
+    if of_suffix is not None:
+        return of_suffix
+    if _CODE_V.search(text):
+        return seq.parse
+    if path.suffix.lower() == ".dat" or pbrt.looks_like(text):
+        return pbrt.parse
+    raise LensError(
+        f"{path}: lens file: wanted text of Zemax (SURF), CODE V (SO, S, SI), the Optical Bench "
+        "([lens data]) or pbrt (rows of four numbers), got none of them",
+        "lens-format",
+    )

@@ -1,0 +1,68 @@
+"""Glasses of foreign files: by name from the catalogue, by code, or by nd and Vd."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from .catalogue import find, nearest
+from .text import Line, Unread
+
+Glass = dict[str, Any]
+
+
+def model(line: Line, surface: int, nd: float, vd: float, name: str = "") -> Glass | None:
+    """A glass of nd and Vd; Vd 0 is an index without dispersion, nd 1 is air."""
+    if nd == 1:
+        return None
+    if not 1 <= nd <= 5:
+        line.fail(f"glass: nd: out of range: wanted 1 .. 5, got {nd:g}", "lens-glass", surface)
+    if vd != 0 and not 5 <= vd <= 1000:
+        line.fail(f"glass: Vd: out of range: wanted 5 .. 1000, got {vd:g}", "lens-glass", surface)
+    out: Glass = {"nd": nd}
+    if vd:
+        out["vd"] = vd
+    if name:
+        out["name"] = name
+    return out
+
+
+def coded(word: str) -> tuple[float, float] | None:
+    """Nd and Vd of ``517642`` or ``517000.642000``, or None.
+
+    The digits before the point are those of nd - 1 behind its point, those after it are Vd with
+    two digits before its point (CODE V's fictitious glasses; the military code without a point).
+    """
+    if re.fullmatch(r"\d{6}", word):
+        return 1 + int(word[:3]) / 1000, int(word[3:]) / 10
+    match = re.fullmatch(r"(\d{3,12})\.(\d{2,12})", word)
+    if match is None:
+        return None
+    n, v = match.groups()
+    return 1 + int(n) / 10 ** len(n), int(v) / 10 ** (len(v) - 2)
+
+
+def named(
+    line: Line,
+    surface: int,
+    name: str,
+    unread: Unread,
+    embedded: tuple[float, float] | None = None,
+    makers: tuple[str, ...] = (),
+) -> Glass | None:
+    """A glass by name: the catalogue's, else that of its code, else the file's own nd and Vd."""
+    if name.upper() in ("AIR", "VACUUM"):
+        return None
+    found = find(name, makers)
+    if found is not None:
+        glass, instead = found
+        if instead:
+            unread.add(f"glass {instead}", f"surface {surface}")
+        return glass
+    numbers = coded(name)
+    if numbers is not None:
+        return model(line, surface, *numbers)
+    if embedded is not None:
+        unread.add(f"glass {name}: in no catalogue, nd and Vd of the file", f"surface {surface}")
+        return model(line, surface, *embedded, name)
+    line.fail(f"glass: wanted a known glass, got {name!r}{nearest(name)}", "lens-glass", surface)
