@@ -228,8 +228,9 @@ std::vector<bool> AimMaker::visible(double r, const std::vector<Vec2d>& points,
 /// Up to where the columns of the iris are visible from one film radius: a coarse search upward from the
 /// meridian, then a fine one in the step where visibility ends.
 AimMaker::Visible AimMaker::visible_iris(double r) const {
-    constexpr int kRows = 12, kFine = 8, kPoints = Outline::kPoints;
-    Visible v{{unit(outer_), {}}, true};
+    constexpr int kRows = 12, kFine = 8, kPoints = 97;
+    Visible v{Outline::dark(unit(outer_), kPoints), true};
+    std::array<double, kPoints> half{};
     std::array<double, kPoints> low{}, step{};
     for (int i = 0; i < kPoints; ++i) {
         const double x = v.outline.x(i);
@@ -245,18 +246,18 @@ AimMaker::Visible AimMaker::visible_iris(double r) const {
             int last = rows;
             while (last >= 0 && !seen[i * (rows + 1) + last]) --last;
             // Up to the first row that is not seen: conservative.
-            if (last >= 0) v.outline.half[i] = low[i] + std::min(last + 1, rows) * step[i];
+            if (last >= 0) half[i] = low[i] + std::min(last + 1, rows) * step[i];
             low[i] += std::max(last, 0) * step[i];
         }
     };
     search(kRows);
     for (int i = 0; i < kPoints; ++i) {
-        step[i] = (v.outline.half[i] - low[i]) / kFine;
+        step[i] = (half[i] - low[i]) / kFine;
     }
-    const Outline coarse = v.outline;
+    const std::array<double, kPoints> coarse = half;
     search(kFine);
     for (int i = 0; i < kPoints; ++i)
-        if (!(coarse.half[i] > 0)) v.outline.half[i] = 0;
+        if (coarse[i] > 0) v.outline.low[i] = -half[i], v.outline.high[i] = half[i];
     return v;
 }
 
@@ -324,7 +325,7 @@ void AimMaker::set_region(int segment, AimRegion region, const Columns& columns)
     for (int k = 0; k <= kColumns; ++k) {
         const int at = segment * (kColumns + 1) + k;
         t.column_x[at] = float(columns.x[k]);
-        t.column_half[at] = k < kColumns ? float(columns.half[k]) : 0;
+        t.column_half[at] = k < kColumns ? float(columns.high[k]) : 0;
     }
     if (region != AimRegion::shape) t.all_shape = false;
 }
@@ -434,7 +435,7 @@ Aim AimMaker::make() {
         box.add(box_at(i + 1));
         box.grow(0.01 * (box.x1 - box.x0), 0.01 * box.half);
         set_region(i, AimRegion::slopes,
-                   box.empty() ? Columns{} : rectangle(box.x0, box.x1, box.half));
+                   box.empty() ? Columns{} : rectangle(box.x0, box.x1, -box.half, box.half));
         ++aim_.fallback_segments;
     }
     return aim_;

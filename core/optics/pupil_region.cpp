@@ -6,54 +6,93 @@
 namespace dg {
 namespace {
 
+struct Range {
+    double low = 1e30, high = -1e30;
+    void add(double a, double b) { low = std::min(low, a), high = std::max(high, b); }
+    double length() const { return std::max(0.0, high - low); }
+};
+
+/// All y of the outline on [a, b].
+Range range(const Outline& o, double a, double b) {
+    const int points = o.points();
+    const double per_step = (points - 1) / (2 * o.reach);
+    const auto place = [&](double at) {
+        return std::clamp((at + o.reach) * per_step, 0.0, double(points - 1));
+    };
+    Range r;
+    const auto add = [&](double p) {
+        const int i = std::min(int(p), points - 2);
+        const double t = p - i;
+        if (o.lit(i) && o.lit(i + 1))
+            r.add(o.low[i] + (o.low[i + 1] - o.low[i]) * t,
+                  o.high[i] + (o.high[i + 1] - o.high[i]) * t);
+        else if (o.lit(i) || o.lit(i + 1))   // it ends somewhere between the two
+            r.add(o.low[o.lit(i) ? i : i + 1], o.high[o.lit(i) ? i : i + 1]);
+    };
+    const double from = place(a), to = place(b);
+    add(from), add(to);
+    for (int i = int(from) + 1; i <= int(to); ++i)
+        if (o.lit(i)) r.add(o.low[i], o.high[i]);
+    return r;
+}
+
 /// Where a column that begins at `x` ends if it has this area; it may go beyond the outline's `end`.
 double column_end(const Outline& o, double x, double end, double area) {
-    const double rest = o.largest(x, std::max(x, end));
-    if (x >= end || rest * 2 * (end - x) < area) return x + 0.5 * area / std::max(rest, 1e-9);
+    const double rest = range(o, x, std::max(x, end)).length();
+    if (x >= end || rest * (end - x) < area) return x + area / std::max(rest, 1e-9);
     double low = x, high = end;
     for (int i = 0; i < 24; ++i) {
         const double middle = 0.5 * (low + high);
-        (o.largest(x, middle) * 2 * (middle - x) < area ? low : high) = middle;
+        (range(o, x, middle).length() * (middle - x) < area ? low : high) = middle;
     }
     return high;
 }
 
 }  // namespace
 
-double Outline::largest(double a, double b) const {
-    const double per_step = (kPoints - 1) / (2 * reach);
-    const auto place = [&](double at) {
-        return std::clamp((at + reach) * per_step, 0.0, double(kPoints - 1));
-    };
-    const auto value = [&](double p) {
-        const int i = std::min(int(p), kPoints - 2);
-        return half[i] + (half[i + 1] - half[i]) * (p - i);
-    };
-    const double from = place(a), to = place(b);
-    double found = std::max(value(from), value(to));
-    for (int i = int(from) + 1; i <= int(to); ++i) found = std::max(found, half[i]);
-    return found;
+Outline Outline::dark(double reach, int points) {
+    return {reach, std::vector<double>(points, 1e30), std::vector<double>(points, -1e30)};
+}
+
+bool Outline::empty() const {
+    for (int i = 0; i < points(); ++i)
+        if (lit(i)) return false;
+    return true;
 }
 
 Outline Outline::joined(const Outline& other, double margin) const {
-    Outline both{reach, {}}, o{reach, {}};
-    for (int i = 0; i < kPoints; ++i) both.half[i] = std::max(half[i], other.half[i]);
-    int first = 0, last = kPoints - 1;
-    while (first < kPoints && !(both.half[first] > 0)) ++first;
-    while (last > first && !(both.half[last] > 0)) --last;
-    if (first == kPoints) return o;
-    // A round outline bulges over its chords by an eighth of the second difference.
+    Outline both = *this;
+    for (int i = 0; i < points(); ++i) {
+        both.low[i] = std::min(low[i], other.low[i]);
+        both.high[i] = std::max(high[i], other.high[i]);
+    }
+    return margin > 0 ? both.grown(margin) : both;
+}
+
+Outline Outline::grown(double margin) const {
+    Outline o = dark(reach, points());
+    int first = 0, last = points() - 1;
+    while (first < points() && !lit(first)) ++first;
+    while (last > first && !lit(last)) --last;
+    if (first == points()) return o;
+    // A round rim bulges over its chords by an eighth of the second difference.
+    const auto bulge = [](double left, double here, double right) {
+        return std::max(0.0, 2 * here - left - right) / 4;
+    };
     for (int i = first; i <= last; ++i) {
-        const double left = both.half[std::max(i - 1, first)], here = both.half[i],
-                     right = both.half[std::min(i + 1, last)];
-        o.half[i] = here + std::max(0.0, 2 * here - left - right) / 4 + margin;
+        if (!lit(i)) continue;
+        const int l = i > first && lit(i - 1) ? i - 1 : i, r = i < last && lit(i + 1) ? i + 1 : i;
+        o.high[i] = high[i] + bulge(high[l], high[i], high[r]) + margin;
+        o.low[i] = low[i] - bulge(-low[l], -low[i], -low[r]) - margin;
     }
     // At its ends it is too steep for that, and ends somewhere before the next point.
     const auto close = [&](int end, int inward) {
         const int inner = std::clamp(end + inward, first, last),
-                  beyond = std::clamp(end - inward, 0, kPoints - 1);
-        o.half[end] = std::max(o.half[end], o.half[inner]);
-        o.half[beyond] = std::max(o.half[beyond], o.half[end]);
+                  beyond = std::clamp(end - inward, 0, points() - 1);
+        for (const auto [to, from] : {std::pair{end, inner}, std::pair{beyond, end}}) {
+            o.high[to] = std::max(o.high[to], o.high[from]);
+            o.low[to] = std::min(o.low[to], o.low[from]);
+        }
     };
     close(first, 1);
     close(last, -1);
@@ -64,28 +103,33 @@ bool Columns::contain(double at_x, double at_y) const {
     if (!(area > 0) || at_x < x.front() || at_x > x.back()) return false;
     const auto after = std::upper_bound(x.begin(), x.end(), at_x);
     const std::ptrdiff_t k = std::clamp<std::ptrdiff_t>(after - x.begin() - 1, 0, kColumns - 1);
-    return std::abs(at_y) <= half[k];
+    return at_y >= low[k] && at_y <= high[k];
 }
 
 Columns cover(const Outline& outline) {
     Columns c;
     if (outline.empty()) return c;
-    int first = 0, last = Outline::kPoints - 1;
-    while (!(outline.half[first] > 0)) ++first;
-    while (!(outline.half[last] > 0)) --last;
+    const int points = outline.points();
+    int first = 0, last = points - 1;
+    while (!outline.lit(first)) ++first;
+    while (!outline.lit(last)) --last;
     const double begin = outline.x(std::max(first - 1, 0));
-    const double end = outline.x(std::min(last + 1, Outline::kPoints - 1));
+    const double end = outline.x(std::min(last + 1, points - 1));
     // Each column is as wide as its area allows; the area for which the last one reaches the end is found
     // by bisection.
     const auto fill = [&](double area) {
         c.x[0] = begin;
         for (int k = 0; k < kColumns; ++k) {
             c.x[k + 1] = column_end(outline, c.x[k], end, area);
-            c.half[k] = 0.5 * area / (c.x[k + 1] - c.x[k]);
+            const Range y = range(outline, c.x[k], c.x[k + 1]);
+            const double middle = y.length() > 0 ? 0.5 * (y.low + y.high) : 0,
+                         half = 0.5 * area / (c.x[k + 1] - c.x[k]);
+            c.low[k] = middle - half, c.high[k] = middle + half;
         }
         return c.x[kColumns] >= end;
     };
-    double low = 0, high = outline.largest(begin, end) * 2.02 * (end - begin) / kColumns;
+    const Range all = range(outline, begin, end);
+    double low = 0, high = all.length() * 1.01 * (end - begin) / kColumns;
     for (int i = 0; i < 14; ++i) {
         const double middle = 0.5 * (low + high);
         (fill(middle) ? high : low) = middle;
@@ -95,11 +139,11 @@ Columns cover(const Outline& outline) {
     return c;
 }
 
-Columns rectangle(double x0, double x1, double half) {
+Columns rectangle(double x0, double x1, double y0, double y1) {
     Columns c;
     for (int k = 0; k <= kColumns; ++k) c.x[k] = x0 + (x1 - x0) * k / kColumns;
-    c.half.fill(half);
-    c.area = 2 * half * (x1 - x0);
+    c.low.fill(y0), c.high.fill(y1);
+    c.area = (y1 - y0) * (x1 - x0);
     return c;
 }
 

@@ -15,8 +15,8 @@ double cats_eye(double x, double shift) {
 }
 
 Outline outline_of(double shift) {
-    Outline o{1.02, {}};
-    for (int i = 0; i < Outline::kPoints; ++i) o.half[i] = cats_eye(o.x(i), shift);
+    Outline o = Outline::dark(1.02, 97);
+    for (int i = 0; i < o.points(); ++i) o.high[i] = cats_eye(o.x(i), shift), o.low[i] = -o.high[i];
     return o;
 }
 
@@ -32,7 +32,7 @@ TEST_CASE("columns of equal area hold the whole cat's eye, and little else") {
         const Outline o = outline_of(shift).joined(outline_of(shift), 0.005);
         const Columns c = cover(o);
         for (int k = 0; k < kColumns; ++k)
-            CHECK((c.x[k + 1] - c.x[k]) * 2 * c.half[k] * kColumns == doctest::Approx(c.area));
+            CHECK((c.x[k + 1] - c.x[k]) * (c.high[k] - c.low[k]) * kColumns == doctest::Approx(c.area));
         int outside = 0;
         for (int i = 0; i < 20000; ++i) {
             const double x = -1 + 2 * (i + 0.5) / 20000, h = cats_eye(x, shift);
@@ -57,9 +57,9 @@ TEST_CASE("a margin that is missing shows at the rim") {
 }
 
 TEST_CASE("nothing visible: no columns; a rectangle is itself") {
-    CHECK(cover(Outline{}).area == 0);
-    CHECK_FALSE(cover(Outline{}).contain(0, 0));
-    const Columns r = rectangle(-1, 3, 0.5);
+    CHECK(cover(Outline::dark(1, 97)).area == 0);
+    CHECK_FALSE(cover(Outline::dark(1, 97)).contain(0, 0));
+    const Columns r = rectangle(-1, 3, -0.5, 0.5);
     CHECK(r.area == doctest::Approx(4));
     CHECK(r.contain(2.9, -0.5));
     CHECK_FALSE(r.contain(2.9, 0.51));
