@@ -10,6 +10,8 @@ namespace dg {
 namespace {
 
 constexpr double kMetre = 1e-3;  // per mm
+// A little more than the frame is aimed at: pixel filters reach beyond its corners.
+constexpr double kFilmMargin = 1.02;
 
 /// A ray from the film's centre under sin^2(theta) = s2: iris radius and transmittance.
 std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n,
@@ -55,11 +57,38 @@ double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening
     return kPiD * low * sum / kSteps;
 }
 
+namespace {
+
+/// The lens's own axes in the camera's frame: turned about x, then about y.
+struct Turn {
+    Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    bool none = true;
+
+    Turn() = default;
+    explicit Turn(Vec2d degrees) : none(degrees == Vec2d{}) {
+        const auto at = [&](Vec3d v) {
+            const double a = degrees.x * kPiD / 180, b = degrees.y * kPiD / 180;
+            const Vec3d about_x{v.x, std::cos(a) * v.y - std::sin(a) * v.z,
+                                std::sin(a) * v.y + std::cos(a) * v.z};
+            return Vec3d{std::cos(b) * about_x.x + std::sin(b) * about_x.z, about_x.y,
+                         std::cos(b) * about_x.z - std::sin(b) * about_x.x};
+        };
+        if (!none) x = at(x), y = at(y), z = at(z);
+    }
+    Vec3d camera_from_lens(Vec3d v) const { return v.x * x + v.y * y + v.z * z; }
+    Vec3d lens_from_camera(Vec3d v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+};
+
+constexpr double kMaxTilt = 45;  // degrees
+
+}  // namespace
+
 struct ExactLens::State {
     ExactLensSettings settings;
     Tracer tracer;
     FirstOrder order;
     double iris_radius, film_z;
+    Turn turn;
     Aim aim;
     LensTables tables;
     double h0 = 0, transmittance = 0;
@@ -78,8 +107,8 @@ struct ExactLens::State {
                 "lens-pupil");
         if (settings.f_stop == 0) settings.f_stop = order.f_number;
         iris_radius = dg::iris_radius(lens, order, settings.f_stop);
-        if (length(s.tilt_deg) != 0)
-            throw input_error(lens.name, "tilt", "0 until tilted lenses can be aimed",
+        if (!(length(s.tilt_deg) <= kMaxTilt))
+            throw input_error(lens.name, "tilt", "at most 45 degrees",
                               std::to_string(length(s.tilt_deg)) + " degrees");
         film_z = s.film_z ? *s.film_z
                           : film_position(lens, order, s.focus_distance_m, s.focus_from);
@@ -88,11 +117,24 @@ struct ExactLens::State {
                                 ": the film would lie inside the lens (back focal length " +
                                 std::to_string(order.bfl) + " mm)",
                             "lens-film");
-        // A little more than the frame: pixel filters reach beyond its corners.
-        aim = make_aim(tracer, {film_z, 1.02 * s.half_diagonal_mm, s.iris, iris_radius,
-                                s.only_slope_boxes});
-        tables = make_lens_tables(tracer, film_z, true, &settings.iris, iris_radius);
+        turn = Turn(s.tilt_deg);
+        AimRequest request{film_z, kFilmMargin * s.half_diagonal_mm, s.iris, iris_radius,
+                           s.only_slope_boxes};
+        if (!turn.none) request.tilted = film_plane();
+        // The image is upside down on the film.
+        request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
+        aim = make_aim(tracer, request);
+        tables = make_lens_tables(tracer, film_plane(), true, &settings.iris, iris_radius);
         set_exposure();
+    }
+
+    /// In the lens's frame: the film stays while the lens turns about the middle of its entrance pupil.
+    FilmPlane film_plane() const {
+        const double pupil = order.entrance_pupil_z;
+        const Vec3d center = turn.lens_from_camera({0, 0, film_z - pupil});
+        return {{center.x, center.y, turn.none ? film_z : center.z + pupil},
+                turn.lens_from_camera({1, 0, 0}),
+                turn.lens_from_camera({0, 1, 0})};
     }
 
     /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly.
@@ -150,6 +192,8 @@ void ExactLens::generate(std::span<const CameraSample> samples,
     DG_CHECK(samples.size(), ==, rays.size());
     thread_local Buffers b;
     const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
+    const Turn& turn = state_->turn;
+    const double pupil = state_->order.entrance_pupil_z;
     for (std::size_t begin = 0; begin < samples.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, samples.size() - begin));
         for (int i = 0; i < count; ++i) {
@@ -177,6 +221,13 @@ void ExactLens::generate(std::span<const CameraSample> samples,
             out.ray.origin = {b.scene.x[i] * float(kMetre), b.scene.y[i] * float(kMetre),
                               (b.scene.z[i] - origin) * float(kMetre)};
             out.ray.direction = {b.scene.dx[i], b.scene.dy[i], b.scene.dz[i]};
+            if (!turn.none) {
+                const Vec3d p = turn.camera_from_lens(
+                    {b.scene.x[i], b.scene.y[i], b.scene.z[i] - pupil});
+                out.ray.origin = to_float(kMetre * (p + Vec3d{0, 0, pupil - origin_z_}));
+                out.ray.direction =
+                    to_float(turn.camera_from_lens(to_double(out.ray.direction)));
+            }
             out.ray.time = samples[begin + i].time;
             out.iris_opening = samples[begin + i].iris_opening;
         }
@@ -190,6 +241,8 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
     DG_CHECK(rays.size(), ==, out.size());
     thread_local Buffers b;
     const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
+    const Turn& turn = state_->turn;
+    const double pupil = state_->order.entrance_pupil_z;
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
         const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
@@ -200,6 +253,14 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             b.scene.z[i] = 1e3f * ray.origin.z + origin;
             b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
             b.scene.dz[i] = ray.direction.z;
+            if (!turn.none) {
+                const Vec3d o = to_double(ray.origin) / kMetre;
+                const Vec3d p = turn.lens_from_camera(o + Vec3d{0, 0, origin_z_ - pupil});
+                const Vec3d d = turn.lens_from_camera(to_double(ray.direction));
+                b.scene.x[i] = float(p.x), b.scene.y[i] = float(p.y);
+                b.scene.z[i] = float(p.z + pupil);
+                b.scene.dx[i] = float(d.x), b.scene.dy[i] = float(d.y), b.scene.dz[i] = float(d.z);
+            }
             b.film.nm[i] = wavelength_nm[from];
         }
         trace_to_film(state_->tables, b.scene, b.film, padded);

@@ -15,21 +15,21 @@ namespace dg {
 
 struct ExactLensSettings {
     double f_stop = 0;  // 0: as wide as the lens opens
-    Iris iris;
+    Iris iris{};
     double focus_distance_m = std::numeric_limits<double>::infinity();
     FocusFrom focus_from = FocusFrom::pupil;
     double half_diagonal_mm = 21.64;  // of the film that must be covered, shift included
     bool only_slope_boxes =
         false;  // exit-pupil boxes instead of the guided aim (comparison)
     /// z of the film in the lens frame, mm, if focus was solved elsewhere; focus_distance_m is not used then.
-    std::optional<double> film_z;
+    std::optional<double> film_z{};
     /// The lens is turned about the centre of its entrance pupil: about x of the camera's frame, then
     /// about y. The film stays where it is without.
     Vec2d tilt_deg{};
     /// The part of the film that will be asked for, mm, upright; half 0: all within half_diagonal_mm.
     Vec2d film_center_mm{}, film_half_mm{};
     /// aim_state() of an earlier lens; not used unless it was made for the same lens and settings.
-    std::string cache;
+    std::string cache{};
 };
 
 /// Where another wavelength of the same scene ray meets the film.

@@ -6,8 +6,12 @@
 #include <memory>
 #include <optional>
 
+#include "optics/free_aim.h"
 #include "optics/lens_error.h"
 #include "optics/pupil_region.h"
+#include "optics/quasi_random.h"
+#include "optics/pupil_region.h"
+#include "optics/quasi_random.h"
 
 namespace dg {
 namespace {
@@ -24,23 +28,6 @@ constexpr double kWidened = 1.2;
 constexpr int kCoverageRays = 16384;
 // What is drawn reaches so far beyond what was seen from the two ends of a segment, in iris radii.
 constexpr double kOutlineMargin = 0.005;
-
-/// Point n of a low-discrepancy sequence in four dimensions: multiples of powers of 1/g,
-/// g^5 = g + 1. Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom
-/// Sequences.
-struct Quad {
-    double u[4];
-};
-Quad quasi_random(int n) {
-    Quad q;
-    double step = 1;
-    for (double& u : q.u) {
-        step /= 1.1673039782614187;
-        u = 0.5 + step * (n + 1);
-        u -= std::floor(u);
-    }
-    return q;
-}
 
 /// First order on the film's side of the stop: iris = by_film f + by_slope m.
 struct RearHalf {
@@ -140,9 +127,9 @@ std::vector<SlopeSample> AimMaker::training(int count, int first) const {
     std::vector<SlopeSample> samples;
     const AimTables& t = aim_.tables;
     for (int n = first; int(samples.size()) < count && n < first + 8 * count; ++n) {
-        const Quad q = quasi_random(n);
-        const double r = std::sqrt(q.u[0]) * t.film_radius, nm = 380 + 400 * q.u[3];
-        const Vec2d target = 1.3 * outer_ * concentric_disc({q.u[1], q.u[2]});
+        const auto q = quasi_random<4>(n);
+        const double r = std::sqrt(q[0]) * t.film_radius, nm = 380 + 400 * q[3];
+        const Vec2d target = 1.3 * outer_ * concentric_disc({q[1], q[2]});
         const Vec2d m{rear_.slope_for(target.x, r), rear_.slope_for(target.y, 0)};
         const auto iris = trace_iris(r, m, nm);
         if (!iris) continue;
@@ -156,11 +143,11 @@ std::vector<SlopeSample> AimMaker::training(int count, int first) const {
 double AimMaker::lit_radius() const {
     double lit = 0;
     for (int n = 0; n < kCoverageRays; ++n) {
-        const Quad q = quasi_random(n);
-        const double r = q.u[0] * request_.film_radius;
-        const Vec2d target = 1.3 * outer_ * concentric_disc({q.u[1], q.u[2]});
+        const auto q = quasi_random<4>(n);
+        const double r = q[0] * request_.film_radius;
+        const Vec2d target = 1.3 * outer_ * concentric_disc({q[1], q[2]});
         const Vec2d m{rear_.slope_for(target.x, r), rear_.slope_for(target.y, 0)};
-        if (r > lit && trace_iris(r, m, 380 + 400 * q.u[3])) lit = r;
+        if (r > lit && trace_iris(r, m, 380 + 400 * q[3])) lit = r;
     }
     return lit;
 }
@@ -378,21 +365,21 @@ std::vector<bool> AimMaker::uncovered_segments() const {
     for (int n = 0; n < kCoverageRays; n += kLensBatch) {
         std::array<double, kLensBatch> radius, azimuth;
         for (int i = 0; i < kLensBatch; ++i) {
-            const Quad q = quasi_random(200000 + n + i);
-            radius[i] = t.film_radius * q.u[0];
-            azimuth[i] = 2 * kPiD * std::fmod(q.u[1] * 97, 1.0);
+            const auto q = quasi_random<4>(200000 + n + i);
+            radius[i] = t.film_radius * q[0];
+            azimuth[i] = 2 * kPiD * std::fmod(q[1] * 97, 1.0);
             // Half of the rays crowd at the rim of the iris, where coverage is lost
             // first.
-            Vec2d target = concentric_disc({q.u[1], q.u[2]});
+            Vec2d target = concentric_disc({q[1], q[2]});
             if (i % 2) target = target * (1 / std::max(1e-9, length(target)));
-            target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q.u[2] : 1.2));
+            target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q[2] : 1.2));
             const Vec2d m{rear_.slope_for(target.x, radius[i]),
                           rear_.slope_for(target.y, 0)};
             const double c = std::cos(azimuth[i]), s = std::sin(azimuth[i]);
             film->x[i] = float(c * radius[i]), film->y[i] = float(s * radius[i]);
             film->mx[i] = float(c * m.x - s * m.y),
             film->my[i] = float(s * m.x + c * m.y);
-            film->nm[i] = float(380 + 400 * q.u[3]);
+            film->nm[i] = float(380 + 400 * q[3]);
         }
         trace_to_scene(real_, *film, *out, kLensBatch);
         for (int i = 0; i < kLensBatch; ++i) {
@@ -444,6 +431,8 @@ Aim AimMaker::make() {
 }  // namespace
 
 Aim make_aim(const Tracer& tracer, const AimRequest& request) {
+    if (request.tilted || !is_axially_symmetric(tracer.prescription()))
+        return make_free_aim(tracer, request);
     return AimMaker(tracer, request).make();
 }
 

@@ -6,6 +6,10 @@
 // density is that of the polynomial, m being one-to-one in a: so the fit's error costs
 // efficiency and never bias.
 #pragma once
+#include <optional>
+
+#include "optics/chief_map.h"
+#include "optics/free_polynomial.h"
 #include "optics/polynomial.h"
 #include "optics/trace_simd.h"
 
@@ -20,13 +24,16 @@ struct AimRequest {
     double iris_radius = 0;  // mm
     bool only_slope_boxes =
         false;  // skip the polynomial: exit-pupil boxes everywhere (comparison)
+    std::optional<FilmPlane> tilted{};  // instead of film_z
+    FilmRectangle film{};  // its part that is asked for; half 0: all within film_radius
 };
 
 struct Aim {
     SlopePolynomial slopes;  // in units of tables.film_radius, tables.iris_scale
+    FreePolynomial free_slopes;  // of a lens without symmetry, or with a tilted film
     AimTables tables;
     double fit_error = 0;       // largest |error| of m on fresh rays
-    int fallback_segments = 0;  // film radii at which exit-pupil boxes are drawn instead
+    int fallback_segments = 0;  // film radii or cells where exit-pupil boxes are drawn instead
     bool covered = true;
 };
 

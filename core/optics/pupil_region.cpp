@@ -89,7 +89,7 @@ Outline Outline::grown(double margin) const {
     const auto close = [&](int end, int inward) {
         const int inner = std::clamp(end + inward, first, last),
                   beyond = std::clamp(end - inward, 0, points() - 1);
-        for (const auto [to, from] : {std::pair{end, inner}, std::pair{beyond, end}}) {
+        for (const auto& [to, from] : {std::pair{end, inner}, std::pair{beyond, end}}) {
             o.high[to] = std::max(o.high[to], o.high[from]);
             o.low[to] = std::min(o.low[to], o.low[from]);
         }

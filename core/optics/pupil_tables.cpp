@@ -153,4 +153,13 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
     return t;
 }
 
+LensTables make_lens_tables(const Tracer& tracer, const FilmPlane& film, bool clear_apertures,
+                            const Iris* iris, double iris_radius) {
+    LensTables t = make_lens_tables(tracer, film.center.z, clear_apertures, iris, iris_radius);
+    const bool across = film.x == Vec3d{1, 0, 0} && film.y == Vec3d{0, 1, 0} &&
+                        film.center.x == 0 && film.center.y == 0;
+    if (!across) t.film = FilmTables(film);
+    return t;
+}
+
 }  // namespace dg

@@ -1,8 +1,9 @@
-// pupil_tables.h -- flat float tables that the SIMD kernels read: the lens, its iris and
-// its aim.
+// pupil_tables.h -- flat float tables that the SIMD kernels read: the lens and its iris.
 #pragma once
 #include <vector>
 
+#include "optics/aim_tables.h"
+#include "optics/film_plane.h"
 #include "optics/stop.h"
 #include "optics/trace.h"
 
@@ -53,7 +54,8 @@ struct ShapeTables {
 
 struct LensTables {
     int surfaces = 0, stop = 0;
-    float film_gap = 0;  // last vertex to film, mm
+    float film_gap = 0;  // last vertex to film, mm; to its centre if it is tilted
+    FilmTables film;
     std::vector<float> curvature, semi2, inner2, gap;
     std::vector<MetAs> met;
     std::vector<char> refracts;      // or rays go straight on
@@ -66,33 +68,10 @@ struct LensTables {
     WavelengthScale scale = WavelengthScale::visible();
 };
 
-inline constexpr int kRadialSegments = 64;
-
-/// Columns that cover what is visible of the iris (pupil_region.h); what they cover in vain falls as one
-/// over their number.
-inline constexpr int kColumns = 64;
-
-/// What is drawn at a film radius: points of the iris shape, of the visible part of the iris, or slopes.
-enum class AimRegion : int { shape, visible, slopes };
-
-/// The film slope m(f, a, l) of pupil.h: polynomials in U = 2u-1, s, W = 2w-1, l, and
-/// where to draw a.
-struct AimTables {
-    int degree = 3;                   // k
-    std::vector<float> coefficients;  // A and B in turn, in the order of for_each_term()
-    float film_radius = 1,
-          iris_scale = 1;  // mm: f = film_radius * f^, a = iris_scale * a^
-    float enlargement = 1.01f;
-    float shape_area = 0;  // of the enlarged iris / iris_scale^2
-    bool all_shape = true;
-    float region[kRadialSegments];  // AimRegion as a number
-    float area[kRadialSegments];    // of what is drawn there; 0: nothing
-    // Columns in the meridional frame, a^ or slopes: edges, and half heights (the last is not used).
-    float column_x[kRadialSegments * (kColumns + 1)];
-    float column_half[kRadialSegments * (kColumns + 1)];
-};
-
 LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,
+                            const Iris* iris, double iris_radius);
+/// The same with the film in any place.
+LensTables make_lens_tables(const Tracer& tracer, const FilmPlane& film, bool clear_apertures,
                             const Iris* iris, double iris_radius);
 
 }  // namespace dg

@@ -5,11 +5,38 @@
 #include "optics/trace_simd.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "optics/free_pupil-inl.h"
 #include "optics/pupil-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
+
+/// A point of a tilted film in the lens frame, z from the film's centre.
+HWY_INLINE void film_to_lens(const FilmTables& f, V x, V y, LaneRays& r) {
+    r.x = hn::MulAdd(x, constant(f.x[0]), hn::MulAdd(y, constant(f.y[0]), constant(f.center_x)));
+    r.y = hn::MulAdd(x, constant(f.x[1]), hn::MulAdd(y, constant(f.y[1]), constant(f.center_y)));
+    r.z = hn::MulAdd(x, constant(f.x[2]), hn::Mul(y, constant(f.y[2])));
+}
+
+HWY_INLINE V dot3(const float (&a)[3], V x, V y, V z) {
+    return hn::MulAdd(constant(a[0]), x,
+                      hn::MulAdd(constant(a[1]), y, hn::Mul(constant(a[2]), z)));
+}
+
+/// Where a ray with slopes (mx, my) meets a tilted film, in the film's coordinates; z of the ray from
+/// the last vertex. `toward`: whether it is on its way there.
+HWY_INLINE void lens_to_film(const LensTables& lens, const LaneRays& r, V mx, V my, V& x, V& y,
+                             M& toward) {
+    const FilmTables& f = lens.film;
+    const V one = constant(1), px = hn::Sub(r.x, constant(f.center_x)),
+            py = hn::Sub(r.y, constant(f.center_y)), pz = hn::Sub(r.z, constant(lens.film_gap));
+    const V along = dot3(f.normal, mx, my, one);
+    const V go = hn::Neg(hn::Div(dot3(f.normal, px, py, pz), along));
+    const V qx = hn::MulAdd(mx, go, px), qy = hn::MulAdd(my, go, py), qz = hn::Add(go, pz);
+    x = dot3(f.x, qx, qy, qz), y = dot3(f.y, qx, qy, qz);
+    toward = hn::Gt(along, hn::Zero(D()));
+}
 
 /// Film rays into lanes: unit directions toward the scene.
 HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm,
@@ -17,6 +44,7 @@ HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm
     const V one = constant(1);
     const V inv = hn::Div(one, hn::Sqrt(hn::MulAdd(mx, mx, hn::MulAdd(my, my, one))));
     r.x = x, r.y = y, r.z = hn::Zero(D());
+    if (!lens.film.across) film_to_lens(lens.film, x, y, r);
     r.dx = hn::Neg(hn::Mul(mx, inv)), r.dy = hn::Neg(hn::Mul(my, inv)),
     r.dz = hn::Neg(inv);
     set_wavelength(lens, nm, r);
@@ -72,10 +100,15 @@ void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
             const V inv = hn::Div(constant(1), r[h].dz);
             const V mx = hn::Mul(r[h].dx, inv), my = hn::Mul(r[h].dy, inv);
             const V go = hn::Sub(constant(lens.film_gap), r[h].z);
-            hn::Store(hn::MulAdd(mx, go, r[h].x), d, out.x + at);
-            hn::Store(hn::MulAdd(my, go, r[h].y), d, out.y + at);
+            V x = hn::MulAdd(mx, go, r[h].x), y = hn::MulAdd(my, go, r[h].y);
+            M ok = hn::And(r[h].alive, hn::Gt(r[h].dz, hn::Zero(d)));
+            if (!lens.film.across) {
+                M toward;
+                lens_to_film(lens, r[h], mx, my, x, y, toward);
+                ok = hn::And(ok, toward);
+            }
+            hn::Store(x, d, out.x + at), hn::Store(y, d, out.y + at);
             hn::Store(mx, d, out.mx + at), hn::Store(my, d, out.my + at);
-            const M ok = hn::And(r[h].alive, hn::Gt(r[h].dz, hn::Zero(d)));
             hn::Store(hn::IfThenElseZero(ok, r[h].transmittance), d, in.pass + at);
             hn::Store(r[h].iris_x, d, in.iris_x + at),
                 hn::Store(r[h].iris_y, d, in.iris_y + at);
@@ -95,8 +128,10 @@ void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
             const V nm = hn::Load(d, in.nm + at);
             LaneRays scale;
             set_wavelength(lens, nm, scale);
-            const LaneAim m = draw_lanes(lens, aim, x, y, hn::Load(d, in.u + at),
-                                         hn::Load(d, in.v + at), scale.l);
+            const V u = hn::Load(d, in.u + at), v = hn::Load(d, in.v + at);
+            const LaneAim m = aim.free.degree > 0
+                                  ? draw_free_lanes(lens, aim, x, y, u, v, scale.l)
+                                  : draw_lanes(lens, aim, x, y, u, v, scale.l);
             start_on_film(lens, x, y, m.mx, m.my, nm, r[h]);
             hn::Store(m.weight, d, weight + at);
             if (slopes) {
@@ -116,10 +151,12 @@ void Weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
     for (int i = 0; i < count; i += int(hn::Lanes(d))) {
         LaneRays scale;
         set_wavelength(lens, hn::Load(d, rays.nm + i), scale);
-        const V w = weight_lanes(aim, hn::Load(d, rays.x + i), hn::Load(d, rays.y + i),
-                                 hn::Load(d, rays.mx + i), hn::Load(d, rays.my + i),
-                                 hn::Load(d, traced.iris_x + i),
-                                 hn::Load(d, traced.iris_y + i), scale.l);
+        const V x = hn::Load(d, rays.x + i), y = hn::Load(d, rays.y + i),
+                mx = hn::Load(d, rays.mx + i), my = hn::Load(d, rays.my + i),
+                qx = hn::Load(d, traced.iris_x + i), qy = hn::Load(d, traced.iris_y + i);
+        const V w = aim.free.degree > 0
+                        ? weight_free_lanes(aim, x, y, mx, my, qx, qy, scale.l)
+                        : weight_lanes(aim, x, y, mx, my, qx, qy, scale.l);
         const M ok = hn::Gt(hn::Load(d, traced.pass + i), hn::Zero(d));
         hn::Store(hn::IfThenElseZero(ok, w), d, weight + i);
     }
@@ -134,11 +171,18 @@ void Slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
         const V nm = hn::Load(d, in.nm + i), x = hn::Load(d, in.x + i),
                 y = hn::Load(d, in.y + i);
         set_wavelength(lens, nm, scale);
-        const Meridian f = meridian_of(aim, x, y);
-        const LaneSlope s = slope_at(aim, f.r, hn::Mul(to_unit, hn::Load(d, in.u + i)),
-                                     hn::Mul(to_unit, hn::Load(d, in.v + i)), scale.l);
+        const V ax = hn::Mul(to_unit, hn::Load(d, in.u + i)),
+                ay = hn::Mul(to_unit, hn::Load(d, in.v + i));
         hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i),
             hn::Store(nm, d, out.nm + i);
+        if (aim.free.degree > 0) {
+            const LaneSlope s = free_slope_at(aim.free, free_film(aim.free, x, y), ax, ay, scale.l);
+            hn::Store(s.mx, d, out.mx + i), hn::Store(s.my, d, out.my + i);
+            hn::Store(jacobian(s), d, j + i);
+            continue;
+        }
+        const Meridian f = meridian_of(aim, x, y);
+        const LaneSlope s = slope_at(aim, f.r, ax, ay, scale.l);
         hn::Store(hn::MulSub(s.mx, f.ex, hn::Mul(s.my, f.ey)), d, out.mx + i);
         hn::Store(hn::MulAdd(s.mx, f.ey, hn::Mul(s.my, f.ex)), d, out.my + i);
         hn::Store(jacobian(s), d, j + i);
