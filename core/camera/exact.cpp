@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "camera/tilt.h"
 #include "optics/lens_error.h"
 #include "spectrum/wavelengths.h"
 
@@ -13,73 +14,32 @@ constexpr double kMetre = 1e-3;  // per mm
 // A little more than the frame is aimed at: pixel filters reach beyond its corners.
 constexpr double kFilmMargin = 1.02;
 
-/// A ray from the film's centre under sin^2(theta) = s2: iris radius and transmittance.
-std::optional<TracedRay> axial_ray(const Tracer& tracer, const LensIndices& n,
-                                   double film_z, double s2) {
-    const LensRay ray{{0, 0, film_z}, {-std::sqrt(s2), 0, -std::sqrt(1 - s2)}};
-    return tracer.to_scene(ray, n, {true, nullptr, 0});
-}
-
 /// The stop's own clear diameter must not count: the iris stands in its place.
 Prescription without_stop_aperture(const Prescription& lens) {
     Prescription open = lens;
     open.surfaces[lens.stop_index()].semi_diameter =
         std::numeric_limits<double>::infinity();
+    open.surfaces[lens.stop_index()].semi_diameter_after = 0;
     return open;
 }
 
-}  // namespace
-
-// E = integral L cos dw = pi * integral L d(sin^2 theta): the lens is round, so one
-// meridional ray per angle and the iris's open fraction on its circle. Midpoints in sin^2
-// up to the widest ray that passes.
-double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
-                        double iris_radius, double wavelength_nm, bool perfect) {
-    const LensIndices n = tracer.at(wavelength_nm);
-    const double outer = opening.outer() * iris_radius;
-    const auto inside = [&](double s2) {
-        const auto ray = axial_ray(tracer, n, film_z, s2);
-        return ray && std::abs(ray->iris.x) <= outer;
-    };
-    double low = 0, high = 0.999;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (inside(middle) ? low : high) = middle;
-    }
-    constexpr int kSteps = 256;
-    double sum = 0;
-    for (int i = 0; i < kSteps; ++i) {
-        const auto ray = axial_ray(tracer, n, film_z, low * (i + 0.5) / kSteps);
-        if (!ray) continue;
-        const double open = opening.at(std::abs(ray->iris.x) / iris_radius);
-        sum += (perfect ? 1 : ray->transmittance) * open;
-    }
-    return kPiD * low * sum / kSteps;
-}
-
-namespace {
-
-/// The lens's own axes in the camera's frame: turned about x, then about y.
-struct Turn {
-    Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    bool none = true;
-
-    Turn() = default;
-    explicit Turn(Vec2d degrees) : none(degrees == Vec2d{}) {
-        const auto at = [&](Vec3d v) {
-            const double a = degrees.x * kPiD / 180, b = degrees.y * kPiD / 180;
-            const Vec3d about_x{v.x, std::cos(a) * v.y - std::sin(a) * v.z,
-                                std::sin(a) * v.y + std::cos(a) * v.z};
-            return Vec3d{std::cos(b) * about_x.x + std::sin(b) * about_x.z, about_x.y,
-                         std::cos(b) * about_x.z - std::sin(b) * about_x.x};
-        };
-        if (!none) x = at(x), y = at(y), z = at(z);
-    }
-    Vec3d camera_from_lens(Vec3d v) const { return v.x * x + v.y * y + v.z * z; }
-    Vec3d lens_from_camera(Vec3d v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
-};
-
 constexpr double kMaxTilt = 45;  // degrees
+
+/// Where the chief ray from straight ahead (camera frame: -z) meets the plane at `depth` behind the middle
+/// of the entrance pupil, camera frame, mm: a tilted lens does not move the middle of the picture.
+Vec2d straight_ahead(const Tracer& tracer, const Affine3d& turn, double pupil_z, double depth) {
+    const Vec3d d = inverse(turn).vector({0, 0, 1});
+    const LensRay chief{Vec3d{0, 0, pupil_z} - d * ((pupil_z + 1) / d.z), d};
+    const auto ray = tracer.to_film(chief, tracer.at(kDesignWavelength), {false, nullptr, 0});
+    const Vec3d out = ray ? turn.vector(ray->ray.direction) : Vec3d{};
+    if (!(out.z > 0))
+        throw LensError(tracer.prescription().name +
+                            ": tilt: the film would not see straight ahead",
+                        "lens-no-light");
+    const Vec3d p = turn.vector(ray->ray.origin - Vec3d{0, 0, pupil_z});
+    const Vec3d at = p + out * ((depth - p.z) / out.z);
+    return {at.x, at.y};
+}
 
 }  // namespace
 
@@ -88,7 +48,9 @@ struct ExactLens::State {
     Tracer tracer;
     FirstOrder order;
     double iris_radius, film_z;
-    Turn turn;
+    bool tilted;
+    Affine3d turn;   // camera from lens, about the middle of the entrance pupil
+    Vec2d ahead{};   // camera frame, mm: the middle of the film
     Aim aim;
     LensTables tables;
     double h0 = 0, transmittance = 0;
@@ -117,10 +79,14 @@ struct ExactLens::State {
                                 ": the film would lie inside the lens (back focal length " +
                                 std::to_string(order.bfl) + " mm)",
                             "lens-film");
-        turn = Turn(s.tilt_deg);
+        tilted = s.tilt_deg != Vec2d{};
+        if (tilted) {
+            turn = lens_turn(s.tilt_deg);
+            ahead = straight_ahead(tracer, turn, order.entrance_pupil_z, film_depth());
+        }
         AimRequest request{film_z, kFilmMargin * s.half_diagonal_mm, s.iris, iris_radius,
                            s.only_slope_boxes};
-        if (!turn.none) request.tilted = film_plane();
+        if (tilted) request.tilted = film_plane();
         // The image is upside down on the film.
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
         aim = make_aim(tracer, request);
@@ -128,23 +94,34 @@ struct ExactLens::State {
         set_exposure();
     }
 
-    /// In the lens's frame: the film stays while the lens turns about the middle of its entrance pupil.
+    /// From the middle of the entrance pupil along the camera's axis: the lens's own axis meets the film at
+    /// film_z.
+    double film_depth() const { return (film_z - order.entrance_pupil_z) * turn.z.z; }
+
+    /// In the lens's frame. The camera's own stays as it is while the lens turns about the middle of its
+    /// entrance pupil.
     FilmPlane film_plane() const {
-        const double pupil = order.entrance_pupil_z;
-        const Vec3d center = turn.lens_from_camera({0, 0, film_z - pupil});
-        return {{center.x, center.y, turn.none ? film_z : center.z + pupil},
-                turn.lens_from_camera({1, 0, 0}),
-                turn.lens_from_camera({0, 1, 0})};
+        if (!tilted) return {{0, 0, film_z}};
+        const Affine3d back = inverse(turn);
+        const Vec3d center = back.vector({ahead.x, ahead.y, film_depth()});
+        return {center + Vec3d{0, 0, order.entrance_pupil_z}, back.x, back.y};
     }
 
-    /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly.
+    /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly. On the lens's own axis,
+    /// whatever its tilt.
     void set_exposure() {
+        const bool symmetric = is_axially_symmetric(tracer.prescription());
         const RadialOpening opening(settings.iris);
+        const Vec2d chief =
+            symmetric ? Vec2d{} : ChiefMap(tracer, {{0, 0, film_z}}, {{}, {1, 1}}).slope({}, {});
+        const LensRay axis{{0, 0, film_z}, normalize(Vec3d{-chief.x, -chief.y, -1})};
         double weights = 0;
-        for (double nm = 390; nm <= 770; nm += 20) {
+        for (double nm = 390; nm <= 770; nm += symmetric ? 20 : 40) {
             const double w = cie_y(nm) * d65(nm);
-            h0 += w * axial_irradiance(tracer, film_z, opening, iris_radius, nm);
-            if (const auto ray = axial_ray(tracer, tracer.at(nm), film_z, 0))
+            h0 += w * (symmetric ? axial_irradiance(tracer, film_z, opening, iris_radius, nm)
+                                 : axial_irradiance(tracer, film_z, settings.iris, iris_radius,
+                                                    chief, nm));
+            if (const auto ray = tracer.to_scene(axis, tracer.at(nm), {true, nullptr, 0}))
                 transmittance += w * ray->transmittance;
             weights += w;
         }
@@ -158,12 +135,13 @@ struct ExactLens::State {
 
 ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
     : state_(std::make_shared<State>(lens, settings)),
-      origin_z_(state_->order.entrance_pupil_z),
       unit_(state_->h0) {}
 
 ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     ExactLens lens = *this;
-    lens.origin_z_ = middle.origin_z_ + state_->film_z - middle.state_->film_z;
+    lens.advance_ = middle.advance_ + middle.state_->film_depth() - state_->film_depth();
+    const Vec2d film = middle.state_->ahead - state_->ahead;
+    lens.film_shift_ = middle.film_shift_ + Vec2f{float(film.x), float(film.y)};
     lens.unit_ = middle.unit_;
     return lens;
 }
@@ -191,15 +169,16 @@ void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
-    const Turn& turn = state_->turn;
+    const float inv_h0 = float(1 / unit_), origin = float(state_->order.entrance_pupil_z - advance_);
+    const Vec2f shift = film_shift_;
+    const bool tilted = state_->tilted;
     const double pupil = state_->order.entrance_pupil_z;
     for (std::size_t begin = 0; begin < samples.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, samples.size() - begin));
         for (int i = 0; i < count; ++i) {
             const CameraSample& s = samples[begin + i];
-            b.samples.x[i] = -s.film_mm.x,
-            b.samples.y[i] = -s.film_mm.y;  // the image is upside down
+            b.samples.x[i] = shift.x - s.film_mm.x,
+            b.samples.y[i] = shift.y - s.film_mm.y;  // the image is upside down
             b.samples.u[i] = s.u_lens.x, b.samples.v[i] = s.u_lens.y;
             b.samples.nm[i] = s.wavelength_nm;
         }
@@ -221,12 +200,11 @@ void ExactLens::generate(std::span<const CameraSample> samples,
             out.ray.origin = {b.scene.x[i] * float(kMetre), b.scene.y[i] * float(kMetre),
                               (b.scene.z[i] - origin) * float(kMetre)};
             out.ray.direction = {b.scene.dx[i], b.scene.dy[i], b.scene.dz[i]};
-            if (!turn.none) {
-                const Vec3d p = turn.camera_from_lens(
-                    {b.scene.x[i], b.scene.y[i], b.scene.z[i] - pupil});
-                out.ray.origin = to_float(kMetre * (p + Vec3d{0, 0, pupil - origin_z_}));
-                out.ray.direction =
-                    to_float(turn.camera_from_lens(to_double(out.ray.direction)));
+            if (tilted) {
+                const Affine3d& turn = state_->turn;
+                const Vec3d p = turn.vector({b.scene.x[i], b.scene.y[i], b.scene.z[i] - pupil});
+                out.ray.origin = to_float(kMetre * (p + Vec3d{0, 0, advance_}));
+                out.ray.direction = to_float(turn.vector(to_double(out.ray.direction)));
             }
             out.ray.time = samples[begin + i].time;
             out.iris_opening = samples[begin + i].iris_opening;
@@ -240,9 +218,11 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / unit_), origin = float(origin_z_);
-    const Turn& turn = state_->turn;
+    const float inv_h0 = float(1 / unit_), origin = float(state_->order.entrance_pupil_z - advance_);
+    const Vec2f shift = film_shift_;
+    const bool tilted = state_->tilted;
     const double pupil = state_->order.entrance_pupil_z;
+    const Affine3d back = inverse(state_->turn);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
         const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
@@ -253,10 +233,10 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             b.scene.z[i] = 1e3f * ray.origin.z + origin;
             b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
             b.scene.dz[i] = ray.direction.z;
-            if (!turn.none) {
+            if (tilted) {
                 const Vec3d o = to_double(ray.origin) / kMetre;
-                const Vec3d p = turn.lens_from_camera(o + Vec3d{0, 0, origin_z_ - pupil});
-                const Vec3d d = turn.lens_from_camera(to_double(ray.direction));
+                const Vec3d p = back.vector(o - Vec3d{0, 0, advance_});
+                const Vec3d d = back.vector(to_double(ray.direction));
                 b.scene.x[i] = float(p.x), b.scene.y[i] = float(p.y);
                 b.scene.z[i] = float(p.z + pupil);
                 b.scene.dx[i] = float(d.x), b.scene.dy[i] = float(d.y), b.scene.dz[i] = float(d.z);
@@ -272,7 +252,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
                 b.scene.pass[i] * leaf_transmission(rays[begin + i].iris_opening,
                                                     b.scene.iris_x[i], b.scene.iris_y[i]);
             const bool passed = pass > 0 && aim > 0 && std::isfinite(aim);
-            out[begin + i] = {{-b.film.x[i], -b.film.y[i]},
+            out[begin + i] = {{shift.x - b.film.x[i], shift.y - b.film.y[i]},
                               passed ? pass : 0,
                               passed ? aim : 0};
         }
@@ -320,6 +300,9 @@ double ExactLens::half_diagonal_mm() const {
 }
 std::string ExactLens::aim_state() const {
     return {};
+}
+FilmPlane ExactLens::film_plane() const {
+    return state_->film_plane();
 }
 const FirstOrder& ExactLens::first_order() const {
     return state_->order;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "camera/axial.h"
 #include "camera/camera_sample.h"
 #include "optics/paraxial.h"
 #include "optics/pupil.h"
@@ -23,8 +24,8 @@ struct ExactLensSettings {
         false;  // exit-pupil boxes instead of the guided aim (comparison)
     /// z of the film in the lens frame, mm, if focus was solved elsewhere; focus_distance_m is not used then.
     std::optional<double> film_z{};
-    /// The lens is turned about the centre of its entrance pupil: about x of the camera's frame, then
-    /// about y. The film stays where it is without.
+    /// The lens is turned about the centre of its entrance pupil, see tilt.h. Its axis meets the film at
+    /// film_z, and (0, 0) on the film is where the chief ray from straight ahead lands.
     Vec2d tilt_deg{};
     /// The part of the film that will be asked for, mm, upright; half 0: all within half_diagonal_mm.
     Vec2d film_center_mm{}, film_half_mm{};
@@ -68,6 +69,7 @@ class ExactLens {
     double f_stop() const;
     double iris_radius_mm() const;
     double film_z_mm() const;         // in the lens frame
+    FilmPlane film_plane() const;     // in the lens frame; coordinates upside down
     double film_distance_mm() const;  // from the rear principal point
     double half_diagonal_mm() const;
     /// What the set-up found out, as bytes: with them the same lens is ready at once, with the same bits.
@@ -83,12 +85,9 @@ class ExactLens {
     /// whole one: a leaf shutter on its way.
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
     std::shared_ptr<const State> state_;
-    double origin_z_, unit_;   // of the camera's frame in the lens's, mm; the exposure of weight 1
+    double unit_;            // the exposure of weight 1
+    double advance_ = 0;     // camera frame, mm: z of the middle of the entrance pupil
+    Vec2f film_shift_{0, 0};   // mm: of the body's film against this lens's own
 };
-
-/// E / L on the axis at one wavelength, by quadrature in double; with T = 1 if `perfect`.
-/// For a perfect lens this is pi sin^2(theta') (uniform radiance, on the axis).
-double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
-                        double iris_radius, double wavelength_nm, bool perfect = false);
 
 }  // namespace dg

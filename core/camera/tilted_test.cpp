@@ -61,6 +61,14 @@ struct Rotation {
     }
 };
 
+/// Where the film's (0, 0) lies across the camera's axis, mm.
+Vec2d middle_of_film(const ExactLens& lens, const Rotation& turn) {
+    const Vec3d c = lens.film_plane().center - Vec3d{0, 0, lens.first_order().entrance_pupil_z};
+    Vec2d ahead{};
+    for (int k = 0; k < 3; ++k) ahead.x += turn.row[0][k] * c[k], ahead.y += turn.row[1][k] * c[k];
+    return ahead;
+}
+
 /// E / L by points uniform on a disc behind the tilted lens's rear, in double: G = cos cos / d^2, with
 /// the cosine at the film raised to `film_power`.
 Estimate rear_disc(const ExactLens& lens, const ExactLensSettings& s, Vec2d film, double nm,
@@ -72,9 +80,11 @@ Estimate rear_disc(const ExactLens& lens, const ExactLensSettings& s, Vec2d film
     const double pupil = lens.first_order().entrance_pupil_z;
     const double last = tracer.vertices().back();
     const double disc = 1.25 * tracer.prescription().surfaces.back().semi_diameter;
-    Vec3d from = turn.to_lens({-film.x, -film.y, lens.film_z_mm() - pupil});
-    from.z += pupil;
+    const Vec2d ahead = middle_of_film(lens, turn);
     const Vec3d normal = turn.to_lens({0, 0, 1});
+    Vec3d from = turn.to_lens(
+        {ahead.x - film.x, ahead.y - film.y, (lens.film_z_mm() - pupil) * normal.z});
+    from.z += pupil;
     const LensIndices n = tracer.at(nm);
     const Clip clip{true, &s.iris, lens.iris_radius_mm()};
     double sum = 0, squares = 0, passed = 0;
@@ -137,6 +147,18 @@ TEST_CASE("tilted: guided = boxes = rear disc in double; a cosine that is missin
     CHECK(accepted(guided, 1e-3));
     CHECK(accepted(boxed, 1e-3));
     CHECK_FALSE(accepted(no_cosine, 1e-3));
+}
+
+TEST_CASE("tilted: the lens's axis meets the film where it was, and the middle looks straight ahead") {
+    for (const Prescription& prescription : test::all_lenses()) {
+        const Vec2d tilt{-4, 6};
+        const ExactLens lens(prescription, tilted(4 * first_order(prescription).f_number, tilt));
+        const FilmPlane film = lens.film_plane();
+        CHECK(std::abs(dot(Vec3d{0, 0, lens.film_z_mm()} - film.center, film.normal())) < 1e-9);
+        CHECK(length(film.normal() - Rotation(tilt).to_lens({0, 0, 1})) < 1e-12);
+        CHECK(length(lens.chief_direction({0, 0}) - Vec3d{0, 0, -1}) < 0.004);
+        CHECK(lens.h0() > 0);
+    }
 }
 
 TEST_CASE("tilted: rays lead back to their film points with their weights") {
@@ -206,8 +228,9 @@ TEST_CASE("tilted: the plane of focus leans as Scheimpflug's rule says") {
     // film points in the lens's frame, their images, and the line between them.
     const auto image = [&](double x) {
         const double c = std::cos(tilt * kDegree), si = std::sin(tilt * kDegree);
-        const double depth = lens.film_z_mm() - order.entrance_pupil_z;
-        const double lx = c * -x - si * depth, lz = si * -x + c * depth + order.entrance_pupil_z;
+        const double depth = (lens.film_z_mm() - order.entrance_pupil_z) * c;
+        const double at = middle_of_film(lens, Rotation({0, tilt})).x - x;
+        const double lx = c * at - si * depth, lz = si * at + c * depth + order.entrance_pupil_z;
         const double x_image = lz - order.back_focal_z;   // Newton: x x' = f^2
         const double z = order.front_focal_z - order.efl * order.efl / x_image;
         const double h = lx * -order.efl / x_image;
