@@ -40,7 +40,7 @@ class Entry:
         efl_long_stated: What the source claims.
         f_stated: What the source claims.
         bfl_stated: What the source claims.
-        remark: Why the source's film is not compared.
+        remark: Why a number of the source is not compared.
     """
 
     name: str
