@@ -2,17 +2,21 @@
 
 The stop's size is known, from the table or from the f-number. From points of the film out to the
 corner, rays are aimed at the rim of the stop and traced to the scene; each surface is then as wide
-as the farthest of them, so that nothing but the mounts that the source names shades a corner.
+as the farthest of them, so that nothing but the mounts that the source names shades a corner; but
+no wider than where it would run into its neighbour.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .sag import sag
+from .surface import LensSurface
 from .zoom import positions, with_stop
 
 #: Fields between the axis and the corner, and points on half the rim of the stop.
@@ -46,7 +50,7 @@ def with_derived_diameters(lens: Lens) -> Lens:
         if not surfaces[i].stop and heights[i] > 0:
             size = min(MARGIN * float(heights[i]), _widest(surfaces[i].radius, surfaces[i].conic))
             surfaces[i] = surfaces[i].replaced(semi_diameter=size, derived=True)
-    return lens.rebuilt(surfaces)
+    return lens.rebuilt(_trimmed(surfaces, variants))
 
 
 def image_radius(lens: Lens) -> float | None:
@@ -79,6 +83,23 @@ def _with_stop(lens: Lens) -> Lens:
 def _widest(radius: float | None, conic: float) -> float:
     """Where the surface turns vertical, and a little less."""
     return math.inf if radius is None or conic <= -1 else 0.998 * abs(radius) / math.sqrt(1 + conic)
+
+
+def _trimmed(surfaces: list[LensSurface], variants: list[Lens]) -> list[LensSurface]:
+    """Derived sizes end where a surface would run into the next one."""
+    solid = [i for i, s in enumerate(surfaces) if s.kind != "stop" or s.glass]
+    for i, j in itertools.pairwise(solid):
+        a, b = surfaces[i], surfaces[j]
+        gap = min(float(at.vertices[j] - at.vertices[i]) for at in variants)
+        r = np.linspace(0, min(a.semi_diameter or 0.0, b.semi_diameter or 0.0), 513)
+        crossed = np.flatnonzero(gap + sag(b, r, 0 * r) - sag(a, r, 0 * r) < 0)
+        if len(crossed):
+            end = float(r[max(crossed[0] - 1, 1)])
+            for k in (i, j):
+                if surfaces[k].derived:
+                    size = min(end, surfaces[k].semi_diameter or end)
+                    surfaces[k] = surfaces[k].replaced(semi_diameter=size)
+    return surfaces
 
 
 def _heights(lens: Lens, y: float) -> Array:
