@@ -9,8 +9,8 @@
 #include <map>
 
 #include "bind/arrays.h"
+#include "bind/bind_first_order.h"
 #include "math/error.h"
-#include "optics/paraxial.h"
 #include "optics/trace.h"
 
 namespace nb = nanobind;
@@ -143,8 +143,8 @@ void bind_prescription(nb::module_& m) {
             "semi_diameter_after"_a = 0.0, "decenter"_a = std::array<double, 3>{},
             "tilt"_a = std::array<double, 3>{}, "coating"_a = "",
             "asphere: {power of r: coefficient}; tilt in degrees.");
-    nb::class_<Prescription>(m, "Prescription")
-        .def(
+    nb::class_<Prescription> lens(m, "Prescription");
+    lens.def(
             "__init__",
             [](Prescription* self, const std::string& name,
                const std::vector<Surface>& surfaces, const Glass& object_medium,
@@ -156,14 +156,6 @@ void bind_prescription(nb::module_& m) {
             },
             "name"_a, "surfaces"_a, "object_medium"_a, "coating"_a, "nominal_f_number"_a)
         .def("vertices", &Prescription::vertices, "z of the vertices, mm.")
-        .def("first_order", &first_order, "wavelength_nm"_a)
-        .def(
-            "film_position",
-            [](const Prescription& lens, double distance_m, bool from_sensor) {
-                return film_position(lens, first_order(lens), distance_m,
-                                     from_sensor ? FocusFrom::sensor : FocusFrom::pupil);
-            },
-            "distance_m"_a, "from_sensor"_a)
         .def("trace", &trace, "origins"_a, "directions"_a, "wavelength_nm"_a, "image_z"_a,
              "clip"_a)
         .def("rays", &rays, "origins"_a, "directions"_a, "wavelength_nm"_a, "clip"_a,
@@ -178,22 +170,6 @@ void bind_prescription(nb::module_& m) {
         .def_prop_ro("is_axially_symmetric",
                      [](const Prescription& lens) { return is_axially_symmetric(lens); })
         .def("path", &path, "origin"_a, "direction"_a, "wavelength_nm"_a, "clip"_a);
-    nb::class_<FirstOrder>(m, "FirstOrder")
-        .def_ro("wavelength_nm", &FirstOrder::wavelength_nm)
-        .def_ro("efl", &FirstOrder::efl)
-        .def_ro("bfl", &FirstOrder::bfl)
-        .def_ro("ffl", &FirstOrder::ffl)
-        .def_ro("front_focal_z", &FirstOrder::front_focal_z)
-        .def_ro("back_focal_z", &FirstOrder::back_focal_z)
-        .def_ro("front_principal_z", &FirstOrder::front_principal_z)
-        .def_ro("back_principal_z", &FirstOrder::back_principal_z)
-        .def_ro("front_nodal_z", &FirstOrder::front_nodal_z)
-        .def_ro("back_nodal_z", &FirstOrder::back_nodal_z)
-        .def_ro("entrance_pupil_z", &FirstOrder::entrance_pupil_z)
-        .def_ro("exit_pupil_z", &FirstOrder::exit_pupil_z)
-        .def_ro("entrance_pupil_diameter", &FirstOrder::entrance_pupil_diameter)
-        .def_ro("exit_pupil_diameter", &FirstOrder::exit_pupil_diameter)
-        .def_ro("stop_semi_diameter", &FirstOrder::stop_semi_diameter)
-        .def_ro("f_number", &FirstOrder::f_number);
+    bind_first_order(m, lens);
 }
 

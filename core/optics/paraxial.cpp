@@ -19,15 +19,18 @@ struct Matrix {
 
 /// From just before surface `first` to surface `last`, with or without the refraction
 /// there.
-Matrix system(const Prescription& lens, double nm, int first, int last,
+Matrix system(const Prescription& lens, double nm, Section section, int first, int last,
               bool refract_last) {
+    const auto curvature = [&](const Surface& s) {
+        return section == Section::x ? vertex_curvature_x(s) : vertex_curvature_y(s);
+    };
     Matrix m;
     double n =
         refractive_index(first ? lens.surfaces[first - 1].glass : lens.object_medium, nm);
     for (int i = first; i <= last; ++i) {
         const double after = refractive_index(lens.surfaces[i].glass, nm);
         if (i < last || refract_last)
-            m = Matrix{1, 0, -(after - n) * lens.surfaces[i].curvature, 1} * m;
+            m = Matrix{1, 0, -(after - n) * curvature(lens.surfaces[i]), 1} * m;
         n = after;
         if (i < last) m = Matrix{1, lens.surfaces[i].thickness / n, 0, 1} * m;
     }
@@ -43,11 +46,11 @@ std::string metres(double m) {
 
 }  // namespace
 
-FirstOrder first_order(const Prescription& lens, double nm) {
+FirstOrder first_order(const Prescription& lens, double nm, Section section) {
     const int last = int(lens.surfaces.size()) - 1, stop = lens.stop_index();
     const double n0 = refractive_index(lens.object_medium, nm);
     const double n1 = refractive_index(lens.surfaces[last].glass, nm);
-    const Matrix m = system(lens, nm, 0, last, true);
+    const Matrix m = system(lens, nm, section, 0, last, true);
     const double power = -m.c, z1 = lens.last_vertex();
     if (!(std::abs(power) > 1e-9))
         throw lens_error("lens-afocal", -1, lens.name, "power",
@@ -65,13 +68,13 @@ FirstOrder first_order(const Prescription& lens, double nm) {
     f.back_nodal_z = f.back_focal_z - n0 / power;
     // Pupils: images of the stop's centre through the halves before and after its
     // aperture.
-    const Matrix front = system(lens, nm, 0, stop, false);
-    const Matrix rear = system(lens, nm, stop, last, true);
+    const Matrix front = system(lens, nm, section, 0, stop, false);
+    const Matrix rear = system(lens, nm, section, stop, last, true);
     f.entrance_pupil_z = n0 * front.b / front.a;
     f.entrance_magnification = 1 / front.a;
     f.exit_pupil_z = z1 - n1 * rear.b / rear.d;
     f.exit_magnification = 1 / rear.d;
-    f.stop_semi_diameter = lens.surfaces[stop].semi_diameter;
+    f.stop_semi_diameter = clear_radius(lens.surfaces[stop]);
     if (!std::isfinite(f.stop_semi_diameter) && lens.nominal_f_number > 0)
         f.stop_semi_diameter =
             std::abs(0.5 * f.efl / lens.nominal_f_number / f.entrance_magnification);

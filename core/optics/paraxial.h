@@ -5,6 +5,9 @@
 
 namespace dg {
 
+/// The plane of a meridional section. Lenses with axial symmetry are alike in both.
+enum class Section { y, x };
+
 /// All z in the lens frame (mm, z = 0 at the first vertex), lengths in mm. With the same
 /// medium on both sides the nodal points are the principal points.
 struct FirstOrder {
@@ -23,10 +26,27 @@ struct FirstOrder {
 };
 
 /// By two paraxial rays (height, n x slope) through the system: the ABCD matrix of each
-/// half. Source: Smith, Modern Optical Engineering, 4th ed., ch. 3-4. Error if the lens
-/// is afocal.
+/// half. Surfaces that are decentred or tilted count as if they were not. Source: Smith,
+/// Modern Optical Engineering, 4th ed., ch. 3-4. Error if the lens is afocal.
 FirstOrder first_order(const Prescription& lens,
-                       double wavelength_nm = kDesignWavelength);
+                       double wavelength_nm = kDesignWavelength,
+                       Section section = Section::y);
+
+/// Exit pupil diameter / entrance pupil diameter, signed as the pupils' images are.
+inline double pupil_magnification(const FirstOrder& f) {
+    return f.exit_magnification / f.entrance_magnification;
+}
+
+/// Image size / object size of what is sharp on a film at film_z; negative: upside down.
+inline double magnification(const FirstOrder& f, double film_z) {
+    return (f.back_focal_z - film_z) / f.efl;
+}
+
+/// 1 / (2 n' |u'|) of the marginal ray: what exposure feels when the film is not at
+/// infinity focus. Source: Smith, Modern Optical Engineering, 4th ed., sec. 9.
+inline double working_f_number(const FirstOrder& f, double f_stop, double magnification) {
+    return f_stop * (1 - magnification / pupil_magnification(f));
+}
 
 /// Radius of the iris (mm, circle of equal area) for an f-stop = efl / entrance pupil
 /// diameter. Error naming the widest f-stop if the lens does not open that far (1 % is

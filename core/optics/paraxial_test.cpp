@@ -135,3 +135,63 @@ TEST_CASE("prescriptions that cannot be are refused with surface and value") {
         "plate", {{0, 5, 1.5, 60, 10}, {0, 5, 1, 0, 10}, {0, 0, 1, 0, 5, true}});
     CHECK_THROWS_WITH_AS(first_order(plane), doctest::Contains("afocal"), Error);
 }
+
+TEST_CASE("a cylinder has power in one section only") {
+    Prescription lens = test::tessar();
+    for (Surface& s : lens.surfaces) {
+        s.curvature_x = s.curvature, s.shape = Shape::biconic;
+        s.curvature = 0;
+    }
+    const FirstOrder f = first_order(lens, kDesignWavelength, Section::x);
+    CHECK(f.efl == doctest::Approx(first_order(test::tessar()).efl));
+    CHECK_THROWS_WITH_AS(first_order(lens), doctest::Contains("afocal"), Error);
+}
+
+TEST_CASE("in water the nodal points leave the principal points") {
+    Prescription lens = test::tessar();
+    lens.object_medium.formula = ConstantIndex{1.333};
+    const FirstOrder f = first_order(lens);
+    CHECK(f.back_nodal_z - f.back_principal_z ==
+          doctest::Approx(f.efl - 1.333 * f.efl).epsilon(1e-9));
+    CHECK(f.front_nodal_z - f.front_principal_z ==
+          doctest::Approx(f.back_nodal_z - f.back_principal_z));
+    // A ray aimed at the front nodal point leaves with the same slope from the rear one.
+    const Tracer tracer(lens);
+    const auto ray = tracer.to_film({{0, 0, f.front_nodal_z}, normalize(Vec3d{1e-5, 0, 1})},
+                                    tracer.at(kDesignWavelength), {false, nullptr, 0});
+    REQUIRE(ray);
+    const double slope = ray->ray.direction.x / ray->ray.direction.z;
+    CHECK(slope == doctest::Approx(1e-5).epsilon(1e-6));
+    CHECK(ray->ray.origin.z - ray->ray.origin.x / slope ==
+          doctest::Approx(f.back_nodal_z).epsilon(1e-6));
+}
+
+TEST_CASE("a stop inside glass: pupils seen through the media on its own sides") {
+    // A ball of glass with the stop in its middle: rays to the middle are not bent, so both
+    // pupils lie there, n times larger.
+    Prescription ball = test::lens_from_rows(
+        "ball", {{10, 10, 1.5, 0, 9.9}, {0, 10, 1.5, 0, 2, true}, {-10, 0, 1, 0, 9.9}});
+    const FirstOrder f = first_order(ball);
+    CHECK(f.entrance_pupil_z == doctest::Approx(10));
+    CHECK(f.exit_pupil_z == doctest::Approx(10));
+    CHECK(f.entrance_magnification == doctest::Approx(1.5));
+    CHECK(f.exit_magnification == doctest::Approx(1.5));
+    CHECK(pupil_magnification(f) == doctest::Approx(1));
+}
+
+TEST_CASE("the working f-number is that of the marginal ray") {
+    for (const Prescription& lens : test::all_lenses()) {
+        const FirstOrder f = first_order(lens);
+        const double film = film_position(lens, f, 0.8), m = magnification(f, film);
+        const double z = f.entrance_pupil_z - 800;
+        const Tracer tracer(lens);
+        const double h = 1e-4;  // in the entrance pupil, of a lens at f / (2 h)
+        const auto ray = tracer.to_film({{0, 0, z}, normalize(Vec3d{h / 800, 0, 1})},
+                                        tracer.at(kDesignWavelength), {false, nullptr, 0});
+        REQUIRE(ray);
+        const double slope = std::abs(ray->ray.direction.x / ray->ray.direction.z);
+        CHECK(working_f_number(f, f.efl / (2 * h), m) ==
+              doctest::Approx(1 / (2 * slope)).epsilon(1e-6));
+        CHECK(m < 0);
+    }
+}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,7 +59,8 @@ class FirstOrder(_Fields):
     Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the
     film. ``bfl`` runs from the last vertex to the rear focal point, ``ffl`` from the first vertex
     to the front focal point (negative as a rule). ``f_number`` is efl / entrance pupil diameter,
-    wide open.
+    wide open. ``pupil_magnification`` is exit pupil / entrance pupil, signed. Lenses with cylinders
+    have two sections, y-z and x-z, each with its own data.
     """
 
     wavelength_nm: float
@@ -75,6 +76,8 @@ class FirstOrder(_Fields):
     back_principal_point: float
     front_nodal_point: float
     back_nodal_point: float
+    pupil_magnification: float
+    stop_semi_diameter: float
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -114,18 +117,21 @@ class Lens:
     zoom_mm: float | None = None
     notes: tuple[str, ...] = ()
 
-    def first_order(self, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> FirstOrder:
+    def first_order(
+        self, wavelength_nm: float = DESIGN_WAVELENGTH_NM, section: Literal["x", "y"] = "y"
+    ) -> FirstOrder:
         """Focal length, focal points, principal and nodal points, pupils.
 
         Args:
             wavelength_nm: Wavelength, nm.
+            section: The plane of a lens with cylinders: y-z or x-z.
 
         Raises:
             InputError: The lens is afocal.
         """
         _check_wavelength(np.asarray(wavelength_nm, np.float64))
         try:
-            f = self.prescription.first_order(float(wavelength_nm))
+            f = self.prescription.first_order(float(wavelength_nm), section)
         except ValueError as error:
             raise InputError(f"{self.source}: {error}") from None
         return FirstOrder(
@@ -142,6 +148,8 @@ class Lens:
             back_principal_point=f.back_principal_z,
             front_nodal_point=f.front_nodal_z,
             back_nodal_point=f.back_nodal_z,
+            pupil_magnification=f.pupil_magnification,
+            stop_semi_diameter=f.stop_semi_diameter,
         )
 
     @property

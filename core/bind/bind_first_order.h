@@ -1,0 +1,7 @@
+// bind_first_order.h -- what bind_first_order.cpp adds to the class of prescriptions.
+#pragma once
+#include <nanobind/nanobind.h>
+
+#include "optics/prescription.h"
+
+void bind_first_order(nanobind::module_& m, nanobind::class_<dg::Prescription>& lens);
