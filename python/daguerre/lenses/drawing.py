@@ -1,21 +1,26 @@
-"""A lens in section: elements, stop, film and a few rays, as plain SVG."""
+"""A lens in section: elements, stop, film and rays of three fields, as plain SVG."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .lens import DESIGN_WAVELENGTH_NM, Lens
-from .surface import LensSurface
+from .outline import Points, clear_heights, element_outlines
+
+if TYPE_CHECKING:
+    from daguerre.analysis.bench import Bench
+    from daguerre.analysis.pencil import Pencil
 
 WIDTH = 760.0  # px
-AXIAL, OBLIQUE = "#c0392b", "#2471a3"
-
-Points = list[tuple[float, float]]
+RAYS = 5  # of each fan
+#: on the axis, at 0.7 of the field, at its edge
+COLOURS = ("#c0392b", "#1e8449", "#2471a3")
+FIELDS = (0.0, 0.7, 1.0)
 
 
 @dataclass(frozen=True)
@@ -53,25 +58,35 @@ def draw(lens: Lens) -> str:
     return to_svg(section(lens))
 
 
-def section(lens: Lens) -> Drawing:
-    """The meridional section: elements, stop, film and rays."""
-    heights = _heights(lens)
-    z = lens.vertices
-    image_z = lens.image_z
-    rays, low_z = _rays(lens, image_z)
-    top = 1.15 * max(heights)
-    left = min(low_z, -0.25 * top)
-    right = image_z + 0.1 * top
-    film = min(top, 21.6)
+def section(lens: Lens, film_z: float | None = None, half_image: float | None = None) -> Drawing:
+    """The meridional section: elements, stop, film and rays of three fields.
+
+    Args:
+        lens: With the gaps of its zoom and focus.
+        film_z: Place of the film, mm; that of the table if None.
+        half_image: Half of the image circle, mm; as the lens says, or 36 x 24's, if None.
+    """
+    # The rays are aimed on the bench, a floor above.
+    from daguerre.analysis.bench import at_film
+    from daguerre.analysis.bench import half_image as stated
+
+    heights = [max(pair) for pair in clear_heights(lens)]
+    order = lens.first_order()
+    image_z = lens.image_z if film_z is None else film_z
+    half = half_image or stated(lens, order)
+    top = 1.08 * max(max(heights), half)
+    length = image_z - min(0.0, float(lens.vertices[0]))
+    left, right = -0.3 * length, image_z + 0.04 * length
+    glass = [Polygon(points, _fill(n)) for points, n in element_outlines(lens)]
+    left = min(left, 1.1 * min((z for g in glass for z, _ in g.points), default=0.0))
     shapes: list[Line | Polygon] = [
-        *rays,
-        Line([(left, 0), (right, 0)], "#999999", 0.6, "4 3"),
-        *_elements(lens, z, heights),
-        *_stop(lens, z, heights),
-        Line([(image_z, -film), (image_z, film)], "#333333", 1.5),
+        Line([(left, 0), (right, 0)], "#999999", 0.6, "8 3 2 3"),
+        *glass,
+        *_rays(at_film(lens, image_z, half), left, top),
+        *_stop(lens, heights),
+        Line([(image_z, -half), (image_z, half)], "#333333", 1.8),
     ]
-    title = f"{lens.name} ({lens.first_order().efl:.1f} mm)"
-    return Drawing(title, left, right, top, shapes)
+    return Drawing(f"{lens.name} ({order.efl:.1f} mm)", left, right, top, shapes)
 
 
 def to_svg(drawing: Drawing) -> str:
@@ -90,7 +105,7 @@ def _svg_shape(shape: Line | Polygon) -> str:
     text = " ".join(f"{z:.3f},{-y:.3f}" for z, y in shape.points)
     if isinstance(shape, Polygon):
         return (
-            f'<polygon points="{text}" fill="{shape.fill}" fill-opacity="0.35" '
+            f'<polygon points="{text}" fill="{shape.fill}" fill-opacity="0.45" '
             f'stroke="{shape.stroke}" stroke-width="1" vector-effect="non-scaling-stroke" '
             'stroke-linejoin="round"/>'
         )
@@ -101,61 +116,52 @@ def _svg_shape(shape: Line | Polygon) -> str:
     )
 
 
-def _heights(lens: Lens) -> list[float]:
-    known = [s.semi_diameter for s in lens.surfaces if s.semi_diameter is not None]
-    pupil = 0.5 * lens.first_order().entrance_pupil.diameter
-    fallback = max(known) if known else (pupil if math.isfinite(pupil) else 10.0)
-    out = []
-    for s in lens.surfaces:
-        height = fallback if s.semi_diameter is None else s.semi_diameter
-        out.append(min(height, 0.999 * abs(s.radius)) if s.radius is not None else height)
-    return out
+def _fill(n: float) -> str:
+    """Blue, deeper for a higher index."""
+    share = min(max((n - 1.43) / 0.6, 0.0), 1.0)
+    light, deep = (205, 228, 243), (86, 145, 189)
+    return "#" + "".join(
+        f"{round(a + share * (b - a)):02x}" for a, b in zip(light, deep, strict=True)
+    )
 
 
-def _profile(surface: LensSurface, z: float, height: float) -> Points:
-    """Points (z, y) from bottom to top."""
-    y = np.linspace(-height, height, 41)
-    c = 0.0 if surface.radius is None else 1 / surface.radius
-    sag = c * y**2 / (1 + np.sqrt(np.maximum(0.0, 1 - (c * y) ** 2)))
-    return list(zip((z + sag).tolist(), y.tolist(), strict=True))
-
-
-def _elements(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[Polygon]:
-    out = []
-    for i in range(len(lens.surfaces) - 1):
-        if lens.surfaces[i].core_glass.index(DESIGN_WAVELENGTH_NM) == 1:
-            continue
-        front = _profile(lens.surfaces[i], float(z[i]), heights[i])
-        back = _profile(lens.surfaces[i + 1], float(z[i + 1]), heights[i + 1])
-        out.append(Polygon([*front, *reversed(back)]))
-    return out
-
-
-def _stop(lens: Lens, z: NDArray[np.float64], heights: list[float]) -> list[Line]:
+def _stop(lens: Lens, heights: list[float]) -> list[Line]:
     i = next(k for k, s in enumerate(lens.surfaces) if s.stop)
-    edge, outer = heights[i], 1.08 * max(heights)
-    at = float(z[i])
+    edge, at = heights[i], float(lens.vertices[i])
+    outer = max(edge + 0.12 * max(heights), min(1.08 * max(heights), 1.6 * edge))
     return [Line([(at, side * edge), (at, side * outer)], "#000000", 2.5) for side in (-1, 1)]
 
 
-def _rays(lens: Lens, image_z: float) -> tuple[list[Line], float]:
-    """Parallel fans on the axis and under half of the field, through the entrance pupil."""
-    order = lens.first_order()
-    pupil, radius = order.entrance_pupil.z, 0.5 * order.entrance_pupil.diameter
-    start = -0.35 * max(_heights(lens))
-    if not (math.isfinite(pupil) and math.isfinite(radius)):
-        return [], start
-    field = math.atan(0.6 * 21.6 / abs(order.efl))
+def _rays(bench: Bench, left: float, top: float) -> list[Line]:
+    """Fans of three fields, from the rim to the rim of the light that passes."""
+    from daguerre.analysis.pencil import pencil
+
     out = []
-    for angle, colour in ((0.0, AXIAL), (min(field, math.radians(35)), OBLIQUE)):
-        direction = np.array([[0.0, math.sin(angle), math.cos(angle)]])
-        for share in (-0.9, -0.45, 0.0, 0.45, 0.9):
-            at_pupil = np.array([[0.0, share * radius, pupil]])
-            origin = at_pupil + direction * ((start - pupil) / direction[0, 2])
-            path = lens.prescription.path(origin, direction, DESIGN_WAVELENGTH_NM, True)
-            if len(path) == 0:
-                continue
-            end = lens.trace(origin, direction, image_z=image_z)
-            points = [origin[0], *path, end[0]]
-            out.append(Line([(float(p[2]), float(p[1])) for p in points], colour, 0.8))
-    return out, start
+    for share, colour in zip(FIELDS, COLOURS, strict=True):
+        light = pencil(bench, -share * bench.field_mm)
+        if light is None:
+            continue
+        scan = np.linspace(light.low[1], light.high[1], 161)
+        lit = scan[light.trace(np.column_stack([0 * scan, scan])).passed]
+        for y in np.linspace(lit[0], lit[-1], RAYS) if len(lit) else []:
+            out.extend(_ray(light, float(y), left, top, colour))
+    return out
+
+
+def _ray(light: Pencil, y: float, left: float, top: float, colour: str) -> list[Line]:
+    through = light.center + y * light.tangential
+    direction = light.direction if light.source is None else through - light.source
+    direction = direction / np.linalg.norm(direction)
+    start = through - 1e3 * direction
+    lens, film_z = light.bench.lens, light.bench.film_z
+    path = lens.prescription.path(start[None], direction[None], DESIGN_WAVELENGTH_NM, False)
+    if len(path) == 0:
+        return []
+    # Back to the edge of the picture, whichever is reached first.
+    first = path[0]
+    to_left = (first[2] - left) / direction[2] if direction[2] > 1e-6 else math.inf
+    side = math.copysign(top, -direction[1])
+    to_side = (first[1] - side) / direction[1] if abs(direction[1]) > 1e-6 else math.inf
+    begin = first - max(0.0, min(to_left, to_side)) * direction
+    end = lens.trace(start, direction, image_z=film_z)[0]
+    return [Line([(float(p[2]), float(p[1])) for p in (begin, *path, end)], colour, 0.7)]

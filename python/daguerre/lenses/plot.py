@@ -4,28 +4,38 @@ from __future__ import annotations
 
 import io
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 from daguerre.errors import UsageError
 
-from .drawing import Drawing, Polygon, section, to_svg
-from .lens import Lens
+from .drawing import Drawing, Line, Polygon, section, to_svg
 
-FORMATS = (".svg", ".png", ".pdf")
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from daguerre.analysis.bench import Bench
+
 WIDTH_INCHES = 8.0
 
 
-def check_available(suffix: str) -> None:
-    """Refuses a format whose package is missing, before anything is computed."""
-    if suffix != ".svg" and find_spec("matplotlib") is None:
+def check_available(suffix: str, *, needed: bool) -> None:
+    """Refuses a format whose package is missing, before anything is computed.
+
+    Args:
+        suffix: Of the file.
+        needed: Whether an SVG needs the package, too, as that of a data sheet does.
+    """
+    if (needed or suffix != ".svg") and find_spec("matplotlib") is None:
+        other = "--drawing FILE.svg" if needed else ".svg"
         raise UsageError(
-            f'a drawing as {suffix} needs matplotlib: pip install "daguerre[plot]"; '
-            ".svg needs nothing"
+            f'a plot as {suffix} needs matplotlib: pip install "daguerre[plot]"; '
+            f"{other} needs nothing"
         )
 
 
-def picture(lens: Lens, suffix: str) -> bytes:
+def picture(bench: Bench, suffix: str) -> bytes:
     """The meridional section of a lens with rays, as the bytes of a file."""
-    drawing = section(lens)
+    drawing = section(bench.lens, bench.film_z, bench.field_mm)
     if suffix == ".svg":
         return to_svg(drawing).encode()
     return _by_matplotlib(drawing, suffix[1:])
@@ -45,18 +55,23 @@ def _by_matplotlib(drawing: Drawing, kind: str) -> bytes:
     axes.set_ylim(-half, half)
     axes.set_aspect("equal")
     for shape in drawing.shapes:
-        z, y = zip(*shape.points, strict=True)
-        if isinstance(shape, Polygon):
-            axes.fill(z, y, facecolor=(*_rgb(shape.fill), 0.35), edgecolor=shape.stroke, lw=0.8)
-        else:
-            style = (0, tuple(float(v) for v in shape.dash.split())) if shape.dash else "-"
-            axes.plot(z, y, color=shape.stroke, lw=0.8 * shape.width, ls=style)
+        add_shape(axes, shape)
     out = io.BytesIO()
     facts = {"Title": drawing.title}
     if kind == "pdf":
         facts |= {"Creator": "daguerre"}
     figure.savefig(out, format=kind, dpi=150, metadata=facts)
     return out.getvalue()
+
+
+def add_shape(axes: Axes, shape: Line | Polygon, scale: float = 0.8) -> None:
+    """One shape of a drawing on a matplotlib plot; scale: points per px of its lines."""
+    z, y = zip(*shape.points, strict=True)
+    if isinstance(shape, Polygon):
+        axes.fill(z, y, facecolor=(*_rgb(shape.fill), 0.45), edgecolor=shape.stroke, lw=scale)
+        return
+    style = (0, tuple(float(v) for v in shape.dash.split())) if shape.dash else "-"
+    axes.plot(z, y, color=shape.stroke, lw=scale * shape.width, ls=style)
 
 
 def _rgb(colour: str) -> tuple[float, float, float]:

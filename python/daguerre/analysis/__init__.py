@@ -1,0 +1,52 @@
+"""A lens on the bench: spots, wavefronts, PSF, MTF, field figures, and a page of all of them.
+
+Everything is made of exact rays through the prescription; docs/lens-bench.md has the formulas.
+"""
+
+from .bench import Bench, set_up
+from .chief import chief_rays, film_heights
+from .field import (
+    axial_colour,
+    distortion,
+    field_curvature,
+    lateral_colour,
+    spherical_aberration,
+)
+from .illumination import pupil_outline, relative_illumination
+from .mtf import diffraction_mtf, geometric_mtf, perfect_mtf
+from .pencil import Pencil, pencil
+from .psf import Psf, diffraction_psf, geometric_psf, point_spread, strehl_ratio
+from .seidel import SeidelSums, seidel_sums
+from .spots import Spot, best_film_z, spot
+from .wavefront import Wavefront, wavefront
+
+__all__ = [
+    "Bench",
+    "Pencil",
+    "Psf",
+    "SeidelSums",
+    "Spot",
+    "Wavefront",
+    "axial_colour",
+    "best_film_z",
+    "chief_rays",
+    "diffraction_mtf",
+    "diffraction_psf",
+    "distortion",
+    "field_curvature",
+    "film_heights",
+    "geometric_mtf",
+    "geometric_psf",
+    "lateral_colour",
+    "pencil",
+    "perfect_mtf",
+    "point_spread",
+    "pupil_outline",
+    "relative_illumination",
+    "seidel_sums",
+    "set_up",
+    "spherical_aberration",
+    "spot",
+    "strehl_ratio",
+    "wavefront",
+]

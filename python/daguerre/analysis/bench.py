@@ -1,0 +1,237 @@
+"""A lens on the bench: its iris set, the film in its place, and exact rays both ways.
+
+Lens frame: mm, +z from the object to the film, z = 0 at the first vertex.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.lenses import FirstOrder, Lens
+from daguerre.lenses.errors import LensError
+from daguerre.lenses.focus import By
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+#: F, d and C, nm, and what the eye makes of them (CIE 1924 V)
+FDC_NM = (486.1327, 587.5618, 656.2725)
+FDC_WEIGHTS = (0.181, 0.783, 0.072)
+
+
+@dataclass(frozen=True)
+class Rays:
+    """What became of rays, each at the last surface that it met.
+
+    Attributes:
+        points: There, mm, shape (N, 3).
+        directions: Unit vectors behind it, shape (N, 3).
+        iris: Where they crossed the stop, mm, shape (N, 2); NaN: never.
+        path: Optical path from the origins to ``points``, mm, shape (N,).
+        transmittance: Of the surfaces passed, shape (N,).
+        passed: Neither missed, nor reflected, nor stopped; shape (N,).
+    """
+
+    points: FloatArray
+    directions: FloatArray
+    iris: FloatArray
+    path: FloatArray
+    transmittance: FloatArray
+    passed: BoolArray
+
+    def at(self, z: float) -> FloatArray:
+        """Points (N, 2) on the plane z, mm; NaN for rays that did not pass."""
+        t = (z - self.points[:, 2]) / self.directions[:, 2]
+        out = self.points[:, :2] + t[:, None] * self.directions[:, :2]
+        out[~self.passed] = np.nan
+        return np.asarray(out)
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A lens as it is used: focused, its iris set.
+
+    Attributes:
+        lens: With the gaps of its zoom and focus.
+        f_stop: As engraved: at infinity focus.
+        film_z: Place of the film, mm.
+        focus_mm: Distance of the object in focus from the entrance pupil, mm; may be infinite.
+        field_mm: Half of the image circle, mm: the largest image height of the figures.
+    """
+
+    lens: Lens
+    f_stop: float
+    iris_radius: float
+    film_z: float
+    focus_mm: float
+    field_mm: float
+    order: FirstOrder
+
+    def rays(
+        self,
+        origins: FloatArray,
+        directions: FloatArray,
+        wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+        *,
+        to_film: bool = True,
+        clip: bool = True,
+    ) -> Rays:
+        """Traces rays exactly, in double.
+
+        Args:
+            origins: Before the first surface (or behind the last one), shape (N, 3), mm.
+            directions: Toward the lens, shape (N, 3).
+            wavelength_nm: One wavelength, nm.
+            to_film: From the object to the film, or back.
+            clip: Whether clear apertures and the iris stop rays.
+        """
+        nm = np.full(len(origins), float(wavelength_nm))
+        points, out, iris, path, transmittance, stopped = self.lens.prescription.rays(
+            np.ascontiguousarray(origins), np.ascontiguousarray(directions), nm, clip, to_film
+        )
+        passed = stopped < 0
+        if clip:
+            with np.errstate(invalid="ignore"):
+                passed &= np.hypot(iris[:, 0], iris[:, 1]) <= self.iris_radius * (1 + 1e-12)
+        return Rays(points, out, iris, path, transmittance, passed)
+
+    def moved(self, film_z: float) -> Bench:
+        """The same with the film elsewhere, mm."""
+        return replace(self, film_z=film_z)
+
+    def stopped(self, f_stop: float) -> Bench:
+        """The same at another f-stop."""
+        return replace(self, f_stop=f_stop, iris_radius=_iris_radius(self.lens, self.order, f_stop))
+
+    @property
+    def pupil_diameter(self) -> float:
+        """Of the paraxial entrance pupil at this f-stop, mm."""
+        if math.isinf(self.order.stop_semi_diameter):
+            return abs(self.order.efl) / self.f_stop
+        open_share = self.iris_radius / self.order.stop_semi_diameter
+        return self.order.entrance_pupil.diameter * open_share
+
+    @property
+    def magnification(self) -> float:
+        """Image size / object size of what is in focus; negative: upside down."""
+        return (self.order.back_focal_point - self.film_z) / self.order.efl
+
+    @property
+    def projection(self) -> str:
+        """Of the lens by its own statement: rectilinear unless a fisheye says its law."""
+        return self.lens.nominal.projection or "rectilinear"
+
+    @property
+    def is_fisheye(self) -> bool:
+        """Whether straight lines are not meant to stay straight."""
+        return self.projection != "rectilinear"
+
+
+def set_up(
+    lens: Lens,
+    *,
+    f_stop: float | None = None,
+    focus_m: float = math.inf,
+    zoom_mm: float | None = None,
+    by: By = "best",
+    field_mm: float | None = None,
+) -> Bench:
+    """Puts a lens on the bench.
+
+    Args:
+        lens: Of the library or a file.
+        f_stop: Wide open if None.
+        focus_m: Distance in focus, m from the entrance pupil; may be infinite.
+        zoom_mm: Focal length of a zoom, mm.
+        by: ``best``: the film where the spot on the axis is smallest; ``paraxial``: where rays
+            close to the axis meet.
+        field_mm: Half of the image circle, mm; what the lens is made for if None.
+
+    Raises:
+        InputError: A focus, zoom or f-stop that the lens does not have.
+    """
+    if zoom_mm is not None:
+        lens = lens.at_zoom(zoom_mm)
+    far = lens.first_order()
+    stop = far.f_number if f_stop is None else f_stop
+    radius = _iris_radius(lens, far, stop)
+    focused = lens.focused(focus_m, f_stop=stop, by=by)
+    order = focused.lens.first_order()
+    return Bench(
+        lens=focused.lens,
+        f_stop=stop,
+        iris_radius=radius,
+        film_z=focused.film_z_mm,
+        focus_mm=1e3 * focus_m,
+        field_mm=field_mm or half_image(lens, order),
+        order=order,
+    )
+
+
+def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
+    """A lens wide open, its film at a place (mm), the object where that is in paraxial focus."""
+    order = lens.first_order()
+    x = film_z - order.back_focal_point
+    front = order.front_principal_point - order.front_focal_point
+    focus = order.entrance_pupil.z - order.front_focal_point + order.efl * front / x if x else 0.0
+    return Bench(
+        lens=lens,
+        f_stop=order.f_number,
+        iris_radius=order.stop_semi_diameter,
+        film_z=film_z,
+        focus_mm=focus if 0 < focus < 200 * abs(order.efl) else math.inf,
+        field_mm=field_mm,
+        order=order,
+    )
+
+
+def half_image(lens: Lens, order: FirstOrder) -> float:
+    """Half of the image circle, mm: as stated, else from the stated field, else 36 x 24's."""
+    if lens.nominal.image_circle_mm:
+        return 0.5 * lens.nominal.image_circle_mm
+    field = lens.nominal.full_field_deg
+    if field and field > 1:
+        if lens.nominal.projection in (None, "rectilinear") and field < 160:
+            return abs(order.efl) * math.tan(math.radians(0.5 * field))
+        law = lens.nominal.projection or ""
+        return float(abs(projected(law, order.efl, math.radians(0.5 * field))))
+    return 0.5 * math.hypot(36, 24) * min(1.0, abs(order.efl) / 40)
+
+
+def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
+    """Image height of an ideal lens of a projection at an angle (rad) from the axis, mm.
+
+    Source: Miyamoto 1964, Fish Eye Lens, JOSA 54(8).
+    """
+    theta = np.asarray(angle, np.float64)
+    match projection:
+        case "rectilinear":
+            return np.asarray(efl * np.tan(theta))
+        case "fisheye-equisolid":
+            return np.asarray(2 * efl * np.sin(0.5 * theta))
+        case "fisheye-stereographic":
+            return np.asarray(2 * efl * np.tan(0.5 * theta))
+        case "fisheye-orthographic":
+            return np.asarray(efl * np.sin(theta))
+        case _:
+            return np.asarray(efl * theta)
+
+
+def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
+    # The pupil's diameter is focal length / f-stop, and so the stop's in proportion.
+    if not (math.isfinite(f_stop) and f_stop > 0):
+        raise LensError(
+            f"{lens.name}: f-stop: wanted a positive number, got {f_stop:g}", "lens-f-stop"
+        )
+    if f_stop < 0.99 * order.f_number:
+        raise LensError(
+            f"{lens.name}: f-stop: wanted f/{order.f_number:.3g} or narrower "
+            f"(the widest of this lens), got f/{f_stop:g}",
+            "lens-f-stop",
+        )
+    return float(order.stop_semi_diameter * order.f_number / f_stop)

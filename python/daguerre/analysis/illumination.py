@@ -1,0 +1,147 @@
+"""How bright the film is over the field, and the shape of the pupil that each point of it sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+from .bench import Bench, FloatArray
+from .chief import chief_rays
+
+GRID = 96
+
+
+@dataclass(frozen=True)
+class Illumination:
+    """Light on the film over the field.
+
+    Attributes:
+        height_mm: Image heights, mm, shape (N,).
+        irradiance: pi times the irradiance of a scene of radiance 1 over pi: E / L, shape (N,).
+        cos4_object: cos^4 of the angle in front of the lens, shape (N,).
+        cos4_film: cos^4 of the angle at the film toward the middle of the paraxial exit pupil
+            (Kolb, Mitchell and Hanrahan 1995), shape (N,).
+    """
+
+    height_mm: FloatArray
+    irradiance: FloatArray
+    cos4_object: FloatArray
+    cos4_film: FloatArray
+
+    @property
+    def relative(self) -> FloatArray:
+        """Against the axis, shape (N,)."""
+        return np.asarray(self.irradiance / self.irradiance[0])
+
+
+def relative_illumination(
+    bench: Bench,
+    heights_mm: ArrayLike,
+    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+    *,
+    grid: int = GRID,
+) -> Illumination:
+    """E / L over the field: the pupil's area in direction cosines, times its transmittance.
+
+    dE = L T cos(t) dw, and cos(t) dw is the area in direction cosines: exact for any pupil.
+
+    Args:
+        bench: The lens.
+        heights_mm: Image heights along y, mm, shape (N,), the first on the axis.
+        wavelength_nm: Wavelength, nm.
+        grid: Rays across the pupil.
+    """
+    heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
+    chief = chief_rays(bench, heights, wavelength_nm)
+    values = [_irradiance(bench, h, wavelength_nm, grid) for h in heights]
+    reach = bench.film_z - bench.order.exit_pupil.z
+    return Illumination(
+        heights,
+        np.array(values),
+        np.cos(chief.angles) ** 4,
+        (reach**2 / (reach**2 + heights**2)) ** 2,
+    )
+
+
+def pupil_outline(
+    bench: Bench,
+    height_mm: float,
+    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+    *,
+    corners: int = 72,
+) -> FloatArray:
+    """Edge of the pupil as a film point sees it: the cat's eye.
+
+    Args:
+        bench: The lens.
+        height_mm: Image height along y, mm.
+        wavelength_nm: Wavelength, nm.
+        corners: Of the outline.
+
+    Returns:
+        Direction cosines about the middle of the light, closed, shape (corners + 1, 2); of length 0
+        if it is dark there.
+    """
+    found = _lit_window(bench, height_mm, wavelength_nm)
+    if found is None:
+        return np.zeros((0, 2))
+    low, high, seen = found
+    middle = seen.mean(axis=0)
+    around = 2 * np.pi * np.arange(corners) / corners
+    away = np.column_stack([np.cos(around), np.sin(around)])
+    inner, outer = np.zeros(corners), np.full(corners, float(np.linalg.norm(high - low)))
+    for _ in range(22):
+        between = 0.5 * (inner + outer)
+        lit = _passes(bench, height_mm, middle + between[:, None] * away, wavelength_nm) > 0
+        inner, outer = np.where(lit, between, inner), np.where(lit, outer, between)
+    edge = middle + inner[:, None] * away
+    return np.concatenate([edge, edge[:1]])
+
+
+def _irradiance(bench: Bench, height: float, nm: float, grid: int) -> float:
+    found = _lit_window(bench, height, nm)
+    if found is None:
+        return 0.0
+    low, high, _ = found
+    cell = (high - low) / grid
+    u = (np.arange(grid) + 0.5)[:, None]
+    at = np.stack(np.meshgrid(*(low[k] + cell[k] * u[:, 0] for k in range(2))), -1)
+    return float(_passes(bench, height, at.reshape(-1, 2), nm).sum() * cell[0] * cell[1])
+
+
+def _lit_window(
+    bench: Bench, height: float, nm: float
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Bounds of the light in direction cosines, and a grid's directions within it."""
+    reach = bench.film_z - bench.order.exit_pupil.z
+    middle = np.array([0.0, np.sin(np.arctan2(height, reach))])
+    low, high = middle - 1.3 / bench.f_stop, middle + 1.3 / bench.f_stop
+    seen = np.zeros((0, 2))
+    for _ in range(4):
+        low, high = np.maximum(low, -0.999), np.minimum(high, 0.999)
+        cell = (high - low) / 48
+        u = np.arange(48) + 0.5
+        at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1).reshape(-1, 2)
+        seen = at[_passes(bench, height, at, nm) > 0]
+        if not len(seen):
+            return None
+        new_low, new_high = seen.min(axis=0) - cell, seen.max(axis=0) + cell
+        done = ((new_high - new_low) > 0.8 * (high - low)).all()
+        low, high = new_low, new_high
+        if done:
+            break
+    return low, high, seen
+
+
+def _passes(bench: Bench, height: float, cosines: FloatArray, nm: float) -> FloatArray:
+    """Transmittance of rays from a film point under direction cosines, shape (N,)."""
+    z2 = 1 - (cosines**2).sum(axis=1)
+    # Cosines of the light, which runs toward the film: the ray runs back.
+    directions = -np.column_stack([cosines * [1, 1], np.sqrt(np.maximum(z2, 1e-9))])
+    origins = np.broadcast_to([0.0, height, bench.film_z], directions.shape)
+    rays = bench.rays(origins, directions, nm, to_film=False)
+    return np.where(rays.passed & (z2 > 0), rays.transmittance, 0.0)

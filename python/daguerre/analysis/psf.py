@@ -1,0 +1,180 @@
+"""The point spread function: the picture of one point of light in the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .bench import FloatArray
+from .pencil import Pencil
+from .spots import Spot, spot
+from .wavefront import Wavefront, wavefront
+
+#: wavelengths (nm) and weights of white light as the eye sees it (CIE 1924 V)
+WHITE_NM = (470.0, 510.0, 555.0, 610.0, 650.0)
+WHITE_WEIGHTS = (0.091, 0.503, 1.0, 0.503, 0.107)
+MAX_GRID = 288
+MOST_POINTS = 320  # across the picture of waves, before they are summed to pixels
+
+
+@dataclass(frozen=True)
+class Psf:
+    """Light on the film about the chief ray's point.
+
+    Attributes:
+        image: Share of the light in each pixel, rows along the tangential axis (upward from row
+            0), columns along the sagittal one; shape (n, n). The sum is what falls in the window.
+        half_mm: Half of the window, mm.
+        center: Of the window: sagittal and tangential, mm from the chief ray's point.
+        diffraction: Whether light was a wave.
+    """
+
+    image: FloatArray
+    half_mm: float
+    center: FloatArray
+    diffraction: bool
+
+    @property
+    def pixel_mm(self) -> float:
+        """Side of a pixel, mm."""
+        return 2 * self.half_mm / len(self.image)
+
+    @property
+    def line_widths(self) -> tuple[float, float]:
+        """Widths of the line spread, light / peak, sagittal and tangential, mm."""
+        sums = (self.image.sum(axis=0), self.image.sum(axis=1))
+        sagittal, tangential = (float(s.sum() / s.max()) * self.pixel_mm for s in sums)
+        return sagittal, tangential
+
+    @property
+    def axis_mm(self) -> FloatArray:
+        """Middles of the pixels about the window's middle, mm, shape (n,)."""
+        n = len(self.image)
+        return np.asarray((np.arange(n) + 0.5) * self.pixel_mm - self.half_mm)
+
+
+def geometric_psf(
+    light: Pencil,
+    wavelengths_nm: Sequence[float] = WHITE_NM,
+    weights: Sequence[float] = WHITE_WEIGHTS,
+    *,
+    half_mm: float | None = None,
+    pixels: int = 64,
+    grid: int = 192,
+    dz: float = 0.0,
+) -> Psf:
+    """The PSF of rays alone: right where the blur is far larger than diffraction's.
+
+    Args:
+        light: From ``pencil``.
+        wavelengths_nm: Wavelengths, nm, shape (L,).
+        weights: Of the wavelengths, shape (L,).
+        half_mm: Half of the window, mm; all of the light if None.
+        pixels: Of the picture, across.
+        grid: Rays across, for each wavelength.
+        dz: The film this much further from the lens, mm.
+    """
+    rays = spot(light, wavelengths_nm, weights, grid=grid).moved(dz)
+    return binned(rays, half_mm, pixels)
+
+
+def binned(rays: Spot, half_mm: float | None, pixels: int) -> Psf:
+    """A spot as a picture of square pixels about its centroid."""
+    center = rays.centroid
+    off = rays.points - center
+    half = half_mm or 1.1 * float(np.abs(off).max(initial=1e-4))
+    edges = np.linspace(-half, half, pixels + 1)
+    image, _, _ = np.histogram2d(off[:, 1], off[:, 0], bins=(edges, edges), weights=rays.weights)
+    return Psf(image, half, center, diffraction=False)
+
+
+def diffraction_psf(
+    light: Pencil,
+    wavelengths_nm: Sequence[float] = WHITE_NM,
+    weights: Sequence[float] = WHITE_WEIGHTS,
+    *,
+    half_mm: float | None = None,
+    pixels: int = 64,
+    dz: float = 0.0,
+) -> Psf | None:
+    """The PSF of waves: |sum of exp(i k (W + a x + b y))|^2 over the directions of the light.
+
+    Args:
+        light: From ``pencil``.
+        wavelengths_nm: Wavelengths, nm, shape (L,), each a wave of its own.
+        weights: Of the wavelengths, shape (L,).
+        half_mm: Half of the window, mm; the spot and three Airy discs if None.
+        pixels: Of the picture, across.
+        dz: The film this much further from the lens, mm.
+
+    Returns:
+        None if no light arrives, or if the blur is so large against the wavelength that its
+        fringes would ask for more than MAX_GRID directions across: ``geometric_psf`` is for that.
+    """
+    rays = spot(light, wavelengths_nm, weights, grid=32).moved(dz)
+    if not len(rays.weights):
+        return None
+    center = rays.centroid
+    spread = float(np.abs(rays.points - center).max())
+    airy = 1.22e-6 * max(wavelengths_nm) * light.bench.f_stop
+    half = half_mm or 1.1 * spread + 3 * airy
+    # Points are close enough for the finest fringes; pixels are their sums.
+    each = int(np.ceil(2 * half / pixels / (0.4e-6 * min(wavelengths_nm) * light.bench.f_stop)))
+    count = pixels * min(each, max(1, MOST_POINTS // pixels))
+    x = (np.arange(count) + 0.5) / count * 2 * half - half
+    fine = np.zeros((count, count))
+    total = sum(weights)
+    for nm, weight in zip(wavelengths_nm, weights, strict=True):
+        grid = grid_for(light, nm, half + spread)
+        if grid > MAX_GRID:
+            return None
+        wave = wavefront(light, nm, grid=grid, about=center)
+        if wave is not None:
+            fine += weight / total * _intensity(wave.defocused(dz), x)
+    image = fine.reshape(pixels, -1, pixels, count // pixels).sum(axis=(1, 3))
+    return Psf(image, half, center, diffraction=True)
+
+
+def strehl_ratio(wave: Wavefront) -> float:
+    """Peak of the light against that of a perfect wave through the same pupil.
+
+    Of the brightest point within half an Airy disc about the wave's own point.
+    """
+    reach = 0.6e-6 * wave.wavelength_nm / (0.5 * wave.step * len(wave.amplitude))
+    x = np.linspace(-reach, reach, 21)
+    pixel = x[1] - x[0]
+    perfect = wave.amplitude.sum() ** 2 * _normalisation(wave) * pixel**2
+    return float(_intensity(wave, x).max() / perfect)
+
+
+def grid_for(light: Pencil, nm: float, reach_mm: float) -> int:
+    """Directions across so that neighbours differ by less than half a wave at a reach, mm."""
+    sine = 0.5 / light.bench.f_stop
+    wanted = 2 * (2 * sine) * reach_mm / (1e-6 * nm) * 1.3
+    return max(96, 32 * int(np.ceil(wanted / 32)))
+
+
+def _normalisation(wave: Wavefront) -> float:
+    # Parseval: the intensity's integral over the film is the light of the pupil.
+    return float((wave.step / (1e-6 * wave.wavelength_nm)) ** 2 / (wave.amplitude**2).sum())
+
+
+def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
+    """Share of the light in each pixel of a square raster x by x (mm); rows are tangential."""
+    k = 2e6 * np.pi / wave.wavelength_nm
+    across = np.exp(1j * k * np.outer(wave.cosines[0, :, 0], x))
+    along = np.exp(1j * k * np.outer(wave.cosines[:, 0, 1], x))
+    field = along.T @ wave.pupil_function @ across
+    pixel = x[1] - x[0]
+    return np.asarray(np.abs(field) ** 2 * _normalisation(wave) * pixel**2)
+
+
+def point_spread(light: Pencil, **options: object) -> Psf:
+    """Waves where they matter, rays where the blur is larger than waves can show.
+
+    Takes what ``diffraction_psf`` takes.
+    """
+    waves = diffraction_psf(light, **options)  # type: ignore[arg-type]
+    return waves if waves is not None else geometric_psf(light, **options)  # type: ignore[arg-type]

@@ -1,0 +1,61 @@
+"""Third-order aberrations by surface: Seidel's five sums, and two of colour."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from daguerre.errors import InputError
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+from .bench import Bench, FloatArray
+
+NAMES = ("S1", "S2", "S3", "S4", "S5", "C1", "C2")
+MEANINGS = (
+    "spherical aberration",
+    "coma",
+    "astigmatism",
+    "Petzval curvature",
+    "distortion",
+    "axial colour",
+    "lateral colour",
+)
+WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray of more says little
+
+
+@dataclass(frozen=True)
+class SeidelSums:
+    """Welford's sums, mm of wavefront, for the edge of the pupil and of the field.
+
+    Attributes:
+        surfaces: Columns S1, S2, S3, S4, S5, C1 and C2 (F against C), shape (surfaces, 7).
+        field_deg: The field they belong to.
+    """
+
+    surfaces: FloatArray
+    field_deg: float
+
+    @property
+    def total(self) -> FloatArray:
+        """Of the lens, mm, shape (7,)."""
+        return np.asarray(self.surfaces.sum(axis=0))
+
+
+def seidel_sums(bench: Bench, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> SeidelSums | None:
+    """The sums at the bench's aperture, focus and field (45 degrees for wider lenses).
+
+    None for a lens without axial symmetry: it has other aberrations than these.
+    """
+    order = bench.order
+    if not bench.lens.prescription.is_axially_symmetric or math.isinf(order.entrance_pupil.z):
+        return None
+    slope = min(bench.field_mm / abs(order.efl), math.tan(math.radians(WIDEST_FIELD_DEG)))
+    try:
+        rows, _, _ = bench.lens.prescription.seidel(
+            wavelength_nm, 0.5 * bench.pupil_diameter, slope, bench.focus_mm
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return SeidelSums(rows, math.degrees(math.atan(slope)))

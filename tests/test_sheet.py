@@ -1,0 +1,64 @@
+"""The data sheet as a file, and the drawing on it."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from daguerre import analysis, lenses
+from daguerre.lenses.outline import element_outlines, sag
+
+SVG = "{http://www.w3.org/2000/svg}"
+HEADS = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+
+
+@pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
+def test_the_page_is_a_file_of_its_kind(kind: str) -> None:
+    pytest.importorskip("matplotlib", reason="data sheets are drawn by matplotlib")
+    from daguerre.analysis.sheet import sheet
+
+    bench = analysis.set_up(lenses.load("tessar-50mm-f2.8"), f_stop=8)
+    page = sheet(bench, kind)
+    assert page.startswith(HEADS[kind])
+    if kind == "svg":
+        root = ElementTree.fromstring(page)
+        width, height = (float(root.get(k, "0").removesuffix("pt")) for k in ("width", "height"))
+        assert height / width == pytest.approx(297 / 210, rel=1e-2)
+
+
+def test_elements_are_drawn_from_their_own_diameters_with_flat_edges() -> None:
+    lens = lenses.load("double-gauss-50mm-f2")
+    outlines = element_outlines(lens)
+    assert len(outlines) == 6
+    for (points, _), surface in zip(outlines, (0, 2, 3, 6, 7, 9), strict=True):
+        z, y = np.array(points).T
+        both = [lens.surfaces[k].semi_diameter or 0 for k in (surface, surface + 1)]
+        assert y.max() == pytest.approx(max(both))
+        assert y.min() == pytest.approx(-max(both))
+        # The vertices lie on it, at their places along the axis.
+        for k in (surface, surface + 1):
+            on_axis = np.isclose(y, 0, atol=1e-9)
+            assert np.isclose(z[on_axis], lens.vertices[k]).any()
+
+
+def test_sags_of_conics_and_aspheres() -> None:
+    plane = lenses.load("double-gauss-50mm-f2").surfaces[0]
+    parabola = plane.replaced(radius=20.0, conic=-1.0, asphere={})
+    assert sag(parabola, 4.0) == pytest.approx(16 / 40)
+    sphere = plane.replaced(radius=-20.0, conic=0.0, asphere={4: 1e-5, 3: 1e-4})
+    assert sag(sphere, 4.0) == pytest.approx(-(20 - np.sqrt(400 - 16)) + 256e-5 + 64e-4)
+    assert np.isnan(sag(sphere, 21.0))
+    cylinder = plane.replaced(kind="cyl-y", radius=20.0)
+    assert sag(cylinder, 4.0, "y") == 0
+    assert sag(cylinder, 4.0, "x") == pytest.approx(20 - np.sqrt(400 - 16))
+
+
+def test_the_drawing_needs_no_package_and_has_three_fields() -> None:
+    from daguerre.lenses.drawing import COLOURS, draw
+
+    root = ElementTree.fromstring(draw(lenses.load("heliar-100mm-f4")))
+    strokes = [line.get("stroke") for line in root.iter(f"{SVG}polyline")]
+    assert all(strokes.count(colour) >= 3 for colour in COLOURS)
+    assert len(list(root.iter(f"{SVG}polygon"))) == 5
