@@ -164,13 +164,13 @@ def test_lenses(capsys: pytest.CaptureFixture[str]) -> None:
     rows = capsys.readouterr().out.splitlines()
     assert len(rows) >= 4
     assert any(row.startswith("double-gauss-50mm-f2 ") and "mm" in row for row in rows)
-    assert main(["lens", "double-gauss-50mm-f2", "--json", "--plot", "x.svg"]) == 0
+    assert main(["lens", "double-gauss-50mm-f2", "--json", "--drawing", "x.svg"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["efl"] == pytest.approx(50, abs=0.1)
     assert facts["entrance_pupil"]["diameter"] > 0
     assert Path("x.svg").read_text().lstrip().startswith("<svg")
     for name, magic in (("x.png", b"\x89PNG"), ("x.pdf", b"%PDF")):
-        assert main(["lens", "fisheye-16mm-f2.8", "--plot", name]) == 0
+        assert main(["lens", "fisheye-16mm-f2.8", "--drawing", name]) == 0
         assert Path(name).read_bytes().startswith(magic)
     capsys.readouterr()
     assert main(["lens", "double-gauss-50mm-f2", "--plot", "x.gif"]) == 2

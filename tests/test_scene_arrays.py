@@ -138,10 +138,12 @@ def test_a_plot_without_matplotlib(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(plot, "find_spec", lambda name: None)
-    target = tmp_path / "lens.png"
-    assert main(["lens", "tessar-50mm-f2.8", "--plot", str(target)]) == 2
-    assert 'pip install "daguerre[plot]"' in capsys.readouterr().err
-    assert not target.exists()
+    for flag, name in (("--plot", "lens.svg"), ("--plot", "lens.png"), ("--drawing", "lens.png")):
+        target = tmp_path / name
+        assert main(["lens", "tessar-50mm-f2.8", flag, str(target)]) == 2
+        assert 'pip install "daguerre[plot]"' in capsys.readouterr().err
+        assert not target.exists()
+    assert main(["lens", "tessar-50mm-f2.8", "--drawing", str(tmp_path / "lens.svg")]) == 0
 
 
 @pytest.mark.parametrize(

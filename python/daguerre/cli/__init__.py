@@ -19,7 +19,8 @@ from daguerre.errors import DaguerreError, suggest
 
 from . import console
 from .info import info
-from .lenses import lens, lenses
+from .lens import lens
+from .lenses import lenses
 from .merge import merge
 from .render import render
 from .version import version

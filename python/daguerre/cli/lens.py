@@ -1,0 +1,222 @@
+"""``daguerre lens``: one lens on the bench, its numbers, its data sheet, its PSF."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from daguerre.errors import InputError, UsageError
+
+from .flags import option
+from .quantities import angle_deg, distance_m, f_number, length_mm
+
+if TYPE_CHECKING:
+    from daguerre.analysis import Bench
+    from daguerre.lenses import Lens
+
+#: the wavelength of the helium d line, at which lenses are specified, nm
+DESIGN_NM = 587.56
+FORMATS = (".svg", ".png", ".pdf")
+FOCUS_BY = ("best", "paraxial")
+BENCH, FILES = "On the bench", "What is written"
+
+
+def lens(
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
+    json: Annotated[bool, option("--json", help="All numbers as one JSON object, mm.")] = False,
+    plot: Annotated[
+        Path | None,
+        option(
+            "--plot",
+            "-o",
+            metavar="FILE.svg|png|pdf",
+            help="Data sheet of one page; with --psf its pictures. Extra `plot`.",
+            panel=FILES,
+        ),
+    ] = None,
+    drawing: Annotated[
+        Path | None,
+        option(
+            "--drawing",
+            metavar="FILE.svg|png|pdf",
+            help="The section with rays of three fields; .png, .pdf: extra `plot`.",
+            panel=FILES,
+        ),
+    ] = None,
+    psf: Annotated[
+        str | None,
+        option(
+            "--psf",
+            metavar="FIELD,DISTANCE",
+            help="Point spread: image height (mm) or angle (deg), distance (m) or inf.",
+            panel=BENCH,
+        ),
+    ] = None,
+    through_focus: Annotated[
+        bool,
+        option("--through-focus", help="The PSF on nine films around the focus.", panel=BENCH),
+    ] = False,
+    zoom: Annotated[
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.", panel=BENCH)
+    ] = None,
+    focus: Annotated[
+        str | None,
+        option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].", panel=BENCH),
+    ] = None,
+    f_stop: Annotated[
+        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].", panel=BENCH)
+    ] = None,
+    focus_by: Annotated[
+        str,
+        option(
+            "--focus-by",
+            metavar="best|paraxial",
+            help="Smallest spot on the axis, or rays close to it [best].",
+            panel=BENCH,
+        ),
+    ] = "best",
+    wavelength: Annotated[
+        float, option("--wavelength", metavar="NM", help="Of the first-order data, nm [587.56].")
+    ] = DESIGN_NM,
+) -> int:
+    """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""
+    from daguerre import lenses as library
+    from daguerre.analysis import set_up
+
+    for flag, path in (("--plot", plot), ("--drawing", drawing)):
+        _check_file(flag, path)
+    if focus_by not in FOCUS_BY:
+        raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
+    if through_focus and psf is None:
+        raise UsageError("--through-focus: wanted with --psf FIELD,DISTANCE")
+    point = None if psf is None else _point(psf)
+    item = library.load(name)
+    setting = _setting(zoom, focus, f_stop)
+
+    def bench() -> Bench:
+        return set_up(item, by="best" if focus_by == "best" else "paraxial", **setting)
+
+    if drawing is not None:
+        _write_drawing(bench(), drawing)
+    if point is not None:
+        from .lens_psf import show_psf
+
+        return show_psf(bench(), *point, plot=plot, json=json, through_focus=through_focus)
+    if plot is not None or json:
+        _write_figures(item, bench(), plot, wavelength, json=json)
+    if not json:
+        _print(item if not setting else bench().lens, wavelength)
+    return 0
+
+
+def _check_file(flag: str, path: Path | None) -> None:
+    from daguerre.io.atomic import check_writable
+    from daguerre.lenses.plot import check_available
+
+    if path is None:
+        return
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise UsageError(
+            f"{flag}: wanted a name ending in {' or '.join(FORMATS)}, got {str(path)!r}"
+        )
+    check_available(suffix, needed=flag == "--plot")
+    check_writable(path)
+
+
+def _setting(zoom: str | None, focus: str | None, f_stop: str | None) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    if zoom is not None:
+        out["zoom_mm"] = length_mm("--zoom", zoom)
+    if focus is not None:
+        out["focus_m"] = distance_m("--focus", focus)
+    if f_stop is not None:
+        out["f_stop"] = f_number("--f-stop", f_stop)
+    return out
+
+
+def _point(text: str) -> tuple[float, bool, float]:
+    """Field, whether it is an angle (deg), distance (m)."""
+    field, comma, distance = text.partition(",")
+    if not comma:
+        raise UsageError(f"--psf: wanted FIELD,DISTANCE such as 10mm,inf or 15deg,3, got {text!r}")
+    is_angle = field.strip().lower().endswith(("deg", "rad"))
+    value = angle_deg("--psf", field) if is_angle else length_mm("--psf", field)
+    metres = distance_m("--psf", distance)
+    if not metres > 0 or not math.isfinite(value):
+        raise UsageError(f"--psf: wanted a field and a distance above 0, got {text!r}")
+    return value, is_angle, metres
+
+
+def _write_drawing(bench: Bench, path: Path) -> None:
+    from daguerre.io.atomic import write_bytes
+    from daguerre.lenses.plot import picture
+
+    write_bytes(path, picture(bench, path.suffix.lower()))
+
+
+def _write_figures(
+    item: Lens, bench: Bench, plot: Path | None, wavelength: float, *, json: bool
+) -> None:
+    """Figures are made once, for the page and for the JSON."""
+    from daguerre.analysis.figures import figures
+
+    made = figures(bench)
+    if plot is not None:
+        from daguerre.analysis.sheet import page
+        from daguerre.io.atomic import write_bytes
+
+        write_bytes(plot, page(made, plot.suffix.lower()[1:]))
+    if json:
+        from json import dumps
+
+        from daguerre.analysis.facts import facts
+
+        order = asdict(item.first_order(wavelength))
+        # JSON has no NaN or infinity: null.
+        print(dumps(_finite({**_facts(item, order), "bench": facts(made)}), indent=2))
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _print(item: Lens, wavelength: float) -> None:
+    try:
+        order = asdict(item.first_order(wavelength))
+    except ValueError as error:
+        raise InputError(f"{item.source}: {error}") from None
+    print(item)
+    print(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")
+    for key, value in order.items():
+        if key != "wavelength_nm":
+            print(f"  {key.replace('_', ' '):22} {_show(value)}")
+
+
+def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
+    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
+    surfaces = [{name: getattr(s, name) for name in names} for s in item.surfaces]
+    return {
+        "name": item.name,
+        "source": item.patent,
+        "note": item.note,
+        **order,
+        "first_order": order,
+        "nominal": asdict(item.nominal),
+        "image_z": item.image_z,
+        "surfaces": surfaces,
+    }
+
+
+def _show(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_show(inner)}" for key, inner in value.items())
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,80 @@
+"""``daguerre lens``: numbers, pictures, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from daguerre.cli import main
+
+LENS = "tessar-50mm-f2.8"
+
+
+def test_json_has_every_figure(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lens", LENS, "--json", "--f-stop", "8", "--focus", "2"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    bench = facts["bench"]
+    assert bench["f_stop"] == 8
+    assert bench["focus_m"] == 2
+    assert bench["working_f_number"] > 8
+    assert bench["magnification"] == pytest.approx(-0.0235, rel=0.01)
+    assert len(bench["seidel"]["surfaces"]) == len(facts["surfaces"])
+    heights = bench["mtf"]["height"]
+    assert len(bench["mtf"]["diffraction_tangential"]) == len(heights)
+    assert bench["field"]["relative_illumination"][0] == 1
+    assert bench["points"][0]["rms"] > 0
+
+
+@pytest.mark.parametrize("field", ["10", "10mm", "0", "12deg"])
+def test_the_psf_of_a_point(field: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lens", LENS, "--psf", f"{field},inf", "--f-stop", "8", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["distance_m"] is None
+    (film,) = facts["films"]
+    assert film["film_mm"] == 0
+    assert 0 < film["radius_50_mm"] < film["radius_80_mm"]
+    if field == "12deg":
+        assert facts["angle_deg"] == pytest.approx(12, abs=1e-6)
+
+
+def test_through_focus_is_sharpest_in_the_middle(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    pytest.importorskip("matplotlib", reason="pictures are drawn by matplotlib")
+    picture = tmp_path / "psf.png"
+    command = ["lens", LENS, "--psf", "0,inf", "--through-focus", "--f-stop", "16"]
+    assert main([*command, "-o", str(picture), "--json"]) == 0
+    films = json.loads(capsys.readouterr().out)["films"]
+    rms = [film["rms_mm"] for film in films]
+    assert len(rms) == 9
+    assert rms.index(min(rms)) == 4
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert main(command) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 11
+
+
+@pytest.mark.parametrize(
+    ("flags", "code", "says"),
+    [
+        (["--psf", "10"], 2, "FIELD,DISTANCE"),
+        (["--psf", "10,-1"], 2, "above 0"),
+        (["--psf", "10kg,1"], 2, "--psf"),
+        (["--psf", "89deg,inf"], 3, "no light"),
+        (["--through-focus"], 2, "--psf"),
+        (["--plot", "x.gif"], 2, "--plot"),
+        (["--drawing", "x.jpg"], 2, "--drawing"),
+        (["--focus-by", "eye", "--json"], 2, "best or paraxial"),
+        (["--f-stop", "1", "--json"], 3, "f/2.8"),
+        (["--focus", "0.01", "--json"], 3, "nearest"),
+        (["--zoom", "70", "--json"], 3, "lens-zoom"),
+    ],
+)
+def test_what_cannot_be_is_said(
+    flags: list[str], code: int, says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["lens", LENS, *flags]) == code
+    error = capsys.readouterr().err
+    assert says in error
+    assert "Traceback" not in error
