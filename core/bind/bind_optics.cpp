@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "bind/arrays.h"
+#include "camera/aim_state.h"
 #include "camera/exact.h"
 #include "math/error.h"
 
@@ -22,6 +23,25 @@ using ColumnF = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::
 
 dg::Vec2d vec(Pair p) {
     return {p.first, p.second};
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus_distance_m,
+                               bool focus_from_sensor, double half_diagonal_mm,
+                               bool only_slope_boxes, double film_z_mm, Pair tilt_deg,
+                               Pair film_center_mm, Pair film_half_mm) {
+    return {f_stop,
+            iris,
+            focus_distance_m,
+            focus_from_sensor ? dg::FocusFrom::sensor : dg::FocusFrom::pupil,
+            half_diagonal_mm,
+            only_slope_boxes,
+            std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
+            vec(tilt_deg),
+            vec(film_center_mm),
+            vec(film_half_mm),
+            ""};
 }
 
 std::vector<dg::CameraSample> camera_samples(const dg::bind::Rows2f& film_mm,
@@ -99,20 +119,33 @@ void bind_optics(nb::module_& m) {
                double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
                bool only_slope_boxes, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
                Pair film_half_mm, const std::optional<nb::bytes>& cache) {
-                const std::string aim = cache ? std::string(cache->c_str(), cache->size()) : "";
+                ExactLensSettings s =
+                    settings(f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm,
+                             only_slope_boxes, film_z_mm, tilt_deg, film_center_mm, film_half_mm);
+                if (cache) s.cache.assign(cache->c_str(), cache->size());
                 nb::gil_scoped_release release;   // states of a lens are set up side by side
-                new (self) ExactLens(
-                    lens, {f_stop, iris, focus_distance_m,
-                           focus_from_sensor ? FocusFrom::sensor : FocusFrom::pupil,
-                           half_diagonal_mm, only_slope_boxes,
-                           std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
-                           vec(tilt_deg), vec(film_center_mm), vec(film_half_mm), aim});
+                new (self) ExactLens(lens, s);
             },
             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
             "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
-            nb::kw_only(), "film_z_mm"_a = std::numeric_limits<double>::quiet_NaN(),
-            "tilt_deg"_a = Pair{0, 0}, "film_center_mm"_a = Pair{0, 0},
-            "film_half_mm"_a = Pair{0, 0}, "cache"_a = nb::none())
+            nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
+            "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
+            "cache"_a = nb::none(),
+            "cache: aim_state of an earlier one; not used unless it fits.")
+        .def_static(
+            "aim_key",
+            [](const Prescription& lens, double f_stop, const Iris& iris, double focus_distance_m,
+               bool focus_from_sensor, double half_diagonal_mm, bool only_slope_boxes,
+               double film_z_mm, Pair tilt_deg, Pair film_center_mm, Pair film_half_mm) {
+                return aim_key(lens, settings(f_stop, iris, focus_distance_m, focus_from_sensor,
+                                              half_diagonal_mm, only_slope_boxes, film_z_mm,
+                                              tilt_deg, film_center_mm, film_half_mm));
+            },
+            "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
+            "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
+            nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
+            "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
+            "Name of the aim_state that a lens with these arguments has.")
         .def_prop_ro("aim_state",
                      [](const ExactLens& lens) {
                          const std::string state = lens.aim_state();
@@ -126,7 +159,10 @@ void bind_optics(nb::module_& m) {
         .def_prop_ro("film_z_mm", &ExactLens::film_z_mm)
         .def_prop_ro("film_distance_mm", &ExactLens::film_distance_mm)
         .def_prop_ro("aim_degree",
-                     [](const ExactLens& lens) { return lens.aim().tables.degree; })
+                     [](const ExactLens& lens) {
+                         const AimTables& t = lens.aim().tables;
+                         return t.free.degree > 0 ? t.free.degree : t.degree;
+                     })
         .def_prop_ro("aim_fallback_segments",
                      [](const ExactLens& lens) { return lens.aim().fallback_segments; })
         .def("first_order", &ExactLens::first_order)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "camera/aim_state.h"
 #include "camera/tilt.h"
 #include "optics/lens_error.h"
 #include "spectrum/wavelengths.h"
@@ -51,9 +52,9 @@ struct ExactLens::State {
     bool tilted;
     Affine3d turn;   // camera from lens, about the middle of the entrance pupil
     Vec2d ahead{};   // camera frame, mm: the middle of the film
-    Aim aim;
     LensTables tables;
-    double h0 = 0, transmittance = 0;
+    std::string key;
+    AimState found;
 
     State(const Prescription& lens, const ExactLensSettings& s)
         : settings(s), tracer(without_stop_aperture(lens)), order(dg::first_order(lens)) {
@@ -89,9 +90,15 @@ struct ExactLens::State {
         if (tilted) request.tilted = film_plane();
         // The image is upside down on the film.
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
-        aim = make_aim(tracer, request);
         tables = make_lens_tables(tracer, film_plane(), true, &settings.iris, iris_radius);
-        set_exposure();
+        key = aim_key(lens, s);
+        if (auto known = aim_from_bytes(s.cache, key)) {
+            found = std::move(*known);
+        } else {
+            found.aim = make_aim(tracer, request);
+            set_exposure();
+        }
+        settings.cache.clear();
     }
 
     /// From the middle of the entrance pupil along the camera's axis: the lens's own axis meets the film at
@@ -115,7 +122,7 @@ struct ExactLens::State {
         const Vec2d chief =
             symmetric ? Vec2d{} : ChiefMap(tracer, {{0, 0, film_z}}, {{}, {1, 1}}).slope({}, {});
         const LensRay axis{{0, 0, film_z}, normalize(Vec3d{-chief.x, -chief.y, -1})};
-        double weights = 0;
+        double weights = 0, &h0 = found.h0, &transmittance = found.transmittance;
         for (double nm = 390; nm <= 770; nm += symmetric ? 20 : 40) {
             const double w = cie_y(nm) * d65(nm);
             h0 += w * (symmetric ? axial_irradiance(tracer, film_z, opening, iris_radius, nm)
@@ -135,7 +142,7 @@ struct ExactLens::State {
 
 ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
     : state_(std::make_shared<State>(lens, settings)),
-      unit_(state_->h0) {}
+      unit_(state_->found.h0) {}
 
 ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     ExactLens lens = *this;
@@ -186,7 +193,7 @@ void ExactLens::generate(std::span<const CameraSample> samples,
         for (int i = count; i < padded; ++i)
             b.samples.x[i] = b.samples.y[i] = b.samples.u[i] = b.samples.v[i] = 0,
             b.samples.nm[i] = 550;
-        guided_rays(state_->tables, state_->aim.tables, b.samples, b.scene, b.weight,
+        guided_rays(state_->tables, state_->found.aim.tables, b.samples, b.scene, b.weight,
                     nullptr, padded);
         for (int i = 0; i < count; ++i) {
             CameraRay& out = rays[begin + i];
@@ -244,7 +251,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             b.film.nm[i] = wavelength_nm[from];
         }
         trace_to_film(state_->tables, b.scene, b.film, padded);
-        aim_weights(state_->tables, state_->aim.tables, b.film, b.scene, b.weight,
+        aim_weights(state_->tables, state_->found.aim.tables, b.film, b.scene, b.weight,
                     padded);
         for (int i = 0; i < count; ++i) {
             const float aim = b.weight[i] * inv_h0;
@@ -278,10 +285,10 @@ Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
 }
 
 double ExactLens::h0() const {
-    return state_->h0;
+    return state_->found.h0;
 }
 double ExactLens::transmittance() const {
-    return state_->transmittance;
+    return state_->found.transmittance;
 }
 double ExactLens::f_stop() const {
     return state_->settings.f_stop;
@@ -299,7 +306,7 @@ double ExactLens::half_diagonal_mm() const {
     return state_->settings.half_diagonal_mm;
 }
 std::string ExactLens::aim_state() const {
-    return {};
+    return to_bytes(state_->found, state_->key);
 }
 FilmPlane ExactLens::film_plane() const {
     return state_->film_plane();
@@ -308,7 +315,7 @@ const FirstOrder& ExactLens::first_order() const {
     return state_->order;
 }
 const Aim& ExactLens::aim() const {
-    return state_->aim;
+    return state_->found.aim;
 }
 const Tracer& ExactLens::tracer() const {
     return state_->tracer;

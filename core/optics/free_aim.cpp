@@ -5,7 +5,7 @@
 #include <memory>
 #include <numeric>
 
-#include "optics/free_visible.h"
+#include "optics/pupil_visible.h"
 #include "optics/quasi_random.h"
 
 namespace dg {
@@ -233,25 +233,19 @@ std::vector<bool> FreeAimMaker::uncovered_cells() const {
     return bad;
 }
 
-/// Box around the slopes that pass at a node: the search widens until the box lies inside.
+/// Box around the slopes that pass at a node.
 SlopeBox FreeAimMaker::slope_box(int i) const {
-    const Vec2d mm = film_.at(node(i));
-    for (double reach = 1.2; reach < 60; reach *= 1.6) {
-        SlopeBox range;
+    const auto range = [&](double reach) {
+        SlopeBox box;
         for (int k = 0; k < 16; ++k) {
             const double angle = kPiD * k / 8;
             const Vec2d m =
                 chief_.slope(node(i), reach * outer_ * Vec2d{std::cos(angle), std::sin(angle)});
-            range.add({m.x, m.x, m.y, m.y});
+            box.add({m.x, m.x, m.y, m.y});
         }
-        const SlopeBox box = passing_slopes(open_, mm, outer_, range, 40);
-        const bool inside = !box.empty() && box.x0 > range.x0 && box.x1 < range.x1 &&
-                            box.y0 > range.y0 && box.y1 < range.y1;
-        if (!inside) continue;
-        const SlopeBox fine = passing_slopes(open_, mm, outer_, box, 40);
-        return fine.empty() ? box : fine;
-    }
-    return {};
+        return box;
+    };
+    return passing_box(open_, film_.at(node(i)), outer_, range);
 }
 
 void FreeAimMaker::fall_back(const std::vector<bool>& bad) {

@@ -1,8 +1,92 @@
-"""Exact lenses that are ready at once when the same lens was set up before."""
+"""Exact lenses that are ready at once when the same lens was set up before.
+
+What the set-up of an exact lens finds out is kept in a folder, one file per lens and setting,
+named by a hash of everything that it depends on: ``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache``
+where that is not set). ``DAGUERRE_CACHE`` names another folder, or is ``off``. Files are written
+whole or not at all; beyond 256 MB those that were not used for longest go. A folder that cannot be
+written and files that are damaged do no harm: the lens is set up anew.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
 import daguerre._core as _core
+
+MAX_BYTES = 256 << 20
+
+
+def folder() -> Path | None:
+    """Where aims are kept; None: nowhere."""
+    choice = os.environ.get("DAGUERRE_CACHE", "")
+    if choice.lower() == "off":
+        return None
+    if choice:
+        return Path(choice) / "aims"
+    home = os.environ.get("XDG_CACHE_HOME", "")
+    try:
+        # The convention: a relative path there is to be ignored.
+        base = Path(home) if Path(home).is_absolute() else Path.home() / ".cache"
+    except RuntimeError:  # no home
+        return None
+    return base / "daguerre" / "aims"
+
+
+def load(key: str) -> bytes | None:
+    """The bytes kept under a key, if any; marks them as used."""
+    place = folder()
+    if place is None:
+        return None
+    path = place / f"{key}.aim"
+    try:
+        state = path.read_bytes()
+    except OSError:
+        return None
+    with contextlib.suppress(OSError):
+        os.utime(path)
+    return state
+
+
+def store(key: str, state: bytes) -> None:
+    """Keeps the bytes under a key, if that is possible."""
+    place = folder()
+    if place is None:
+        return
+    with contextlib.suppress(OSError):
+        place.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".new-", dir=place)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(state)
+            Path(name).replace(place / f"{key}.aim")
+        except OSError:
+            Path(name).unlink(missing_ok=True)
+            raise
+        _drop_oldest(place)
+
+
+def _drop_oldest(place: Path) -> None:
+    """Removes what was not used for longest until all is within MAX_BYTES."""
+
+    def entries() -> Iterator[tuple[float, int, str]]:
+        with os.scandir(place) as scan:
+            for entry in scan:
+                with contextlib.suppress(OSError):  # another process removed it
+                    facts = entry.stat(follow_symlinks=False)
+                    if entry.name.endswith(".aim") or entry.name.startswith(".new-"):
+                        yield facts.st_mtime, facts.st_size, entry.path
+
+    kept = sorted(entries(), reverse=True)
+    total = 0
+    for _, size, path in kept:
+        total += size
+        if total > MAX_BYTES:
+            with contextlib.suppress(OSError):
+                Path(path).unlink()
 
 
 def exact_lens(
@@ -18,7 +102,7 @@ def exact_lens(
     film_center_mm: tuple[float, float] = (0.0, 0.0),
     film_half_mm: tuple[float, float] = (0.0, 0.0),
 ) -> _core.ExactLens:
-    """A lens at one focus and f-stop, ready to draw rays.
+    """A lens at one focus and f-stop, ready to draw rays; the same bits whether kept or not.
 
     Args:
         prescription: The lens, its gaps set for zoom and focus.
@@ -38,15 +122,28 @@ def exact_lens(
     Raises:
         ValueError: If the lens cannot open or focus like that.
     """
-    return _core.ExactLens(
-        prescription,
-        f_stop,
-        iris,
-        focus_distance_m,
-        focus_from_sensor,
-        half_diagonal_mm,
+    args = (prescription, f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm)
+
+    def lens(cache: bytes | None) -> _core.ExactLens:
+        return _core.ExactLens(
+            *args,
+            film_z_mm=film_z_mm,
+            tilt_deg=tilt_deg,
+            film_center_mm=film_center_mm,
+            film_half_mm=film_half_mm,
+            cache=cache,
+        )
+
+    key = _core.ExactLens.aim_key(
+        *args,
         film_z_mm=film_z_mm,
         tilt_deg=tilt_deg,
         film_center_mm=film_center_mm,
         film_half_mm=film_half_mm,
     )
+    known = load(key)
+    exact = lens(known)
+    state = exact.aim_state
+    if state != known:
+        store(key, state)
+    return exact

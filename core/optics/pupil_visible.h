@@ -1,6 +1,8 @@
-// free_visible.h -- what the mounts of a lens without symmetry let through from one film point: the part
-// of the iris, and the box of slopes around it.
+// pupil_visible.h -- what the mounts of a lens let through from one film point: the part of the iris, and
+// the box of slopes around it.
 #pragma once
+#include <functional>
+
 #include "optics/pupil.h"
 #include "optics/pupil_region.h"
 
@@ -19,6 +21,10 @@ struct Visible {
 Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm, double reach,
                      double orientation);
 
+/// The same from (film_mm, 0) through a symmetric lens, whose outline is the same above and below.
+Visible visible_half_iris(const LensTables& open, const AimTables& aim, double film_mm, double reach,
+                          double orientation);
+
 struct SlopeBox {
     double x0 = 1e30, x1 = -1e30, y0 = 1e30, y1 = -1e30;
     bool empty() const { return x1 < x0; }
@@ -26,9 +32,9 @@ struct SlopeBox {
     void grow(double x, double y);
 };
 
-/// Around the slopes that pass the mounts and reach the iris within `radius` mm, of those in `range`, on a
-/// grid of n x n; grown by a step.
-SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, const SlopeBox& range,
-                        int n);
+/// Around the slopes that pass the mounts and reach the iris within `radius` mm, by search on grids in
+/// range_at(reach), which widens until the box lies inside; empty if nothing passes.
+SlopeBox passing_box(const LensTables& open, Vec2d film_mm, double radius,
+                     const std::function<SlopeBox(double)>& range_at);
 
 }  // namespace dg

@@ -1,6 +1,7 @@
-#include "optics/free_visible.h"
+#include "optics/pupil_visible.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -51,6 +52,34 @@ class Look {
     alignas(64) float jacobian_[kLensBatch];
 };
 
+/// Around the slopes that pass the mounts and reach the iris within `radius` mm, of those in `range`, on a
+/// grid of n x n; grown by a step.
+SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, const SlopeBox& range,
+                        int n) {
+    SlopeBox box;
+    const auto film = std::make_unique<FilmRays>();
+    const auto out = std::make_unique<SceneRays>();
+    const double dx = (range.x1 - range.x0) / n, dy = (range.y1 - range.y0) / n;
+    const int grid = (n + 1) * (n + 1), rays = grid * kWavelengths;
+    for (int begin = 0; begin < rays; begin += kLensBatch) {
+        for (int i = 0; i < kLensBatch; ++i) {
+            const int ray = std::min(begin + i, rays - 1), at = ray % grid;
+            film->x[i] = float(film_mm.x), film->y[i] = float(film_mm.y);
+            film->mx[i] = float(range.x0 + at % (n + 1) * dx);
+            film->my[i] = float(range.y0 + at / (n + 1) * dy);
+            film->nm[i] = float(kBoundWavelengths[ray / grid]);
+        }
+        trace_to_scene(open, *film, *out, kLensBatch);
+        for (int i = 0; i < kLensBatch; ++i) {
+            const bool inside = std::hypot(out->iris_x[i], out->iris_y[i]) <= radius;
+            if (out->pass[i] > 0 && inside)
+                box.add({film->mx[i], film->mx[i], film->my[i], film->my[i]});
+        }
+    }
+    box.grow(dx, dy);
+    return box;
+}
+
 }  // namespace
 
 Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm, double reach,
@@ -98,6 +127,42 @@ Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm
     return v;
 }
 
+/// Up to where the columns of the iris are visible: a coarse search upward from the meridian, then a fine
+/// one in the step where visibility ends.
+Visible visible_half_iris(const LensTables& open, const AimTables& aim, double film_mm, double reach,
+                          double orientation) {
+    constexpr int kRows = 12, kFine = 8, kPoints = 97;
+    Look look(open, aim, {film_mm, 0}, orientation);
+    Visible v{Outline::dark(reach, kPoints)};
+    std::array<double, kPoints> half{}, low{}, step{};
+    for (int i = 0; i < kPoints; ++i) {
+        const double x = v.outline.x(i);
+        step[i] = std::sqrt(std::max(0.0, reach * reach - x * x)) / kRows;
+    }
+    const auto search = [&](int rows) {
+        std::vector<Vec2d> points;
+        for (int i = 0; i < kPoints; ++i)
+            for (int row = 0; row <= rows; ++row)
+                points.push_back({v.outline.x(i), low[i] + row * step[i]});
+        const std::vector<bool> seen = look(points);
+        for (int i = 0; i < kPoints; ++i) {
+            int last = rows;
+            while (last >= 0 && !seen[i * (rows + 1) + last]) --last;
+            // Up to the first row that is not seen: conservative.
+            if (last >= 0) half[i] = low[i] + std::min(last + 1, rows) * step[i];
+            low[i] += std::max(last, 0) * step[i];
+        }
+    };
+    search(kRows);
+    for (int i = 0; i < kPoints; ++i) step[i] = (half[i] - low[i]) / kFine;
+    const std::array<double, kPoints> coarse = half;
+    search(kFine);
+    for (int i = 0; i < kPoints; ++i)
+        if (coarse[i] > 0) v.outline.low[i] = -half[i], v.outline.high[i] = half[i];
+    v.jacobian_ok = look.jacobian_ok;
+    return v;
+}
+
 void SlopeBox::add(const SlopeBox& b) {
     x0 = std::min(x0, b.x0), x1 = std::max(x1, b.x1);
     y0 = std::min(y0, b.y0), y1 = std::max(y1, b.y1);
@@ -107,30 +172,19 @@ void SlopeBox::grow(double x, double y) {
     if (!empty()) x0 -= x, x1 += x, y0 -= y, y1 += y;
 }
 
-SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, const SlopeBox& range,
-                        int n) {
-    SlopeBox box;
-    const auto film = std::make_unique<FilmRays>();
-    const auto out = std::make_unique<SceneRays>();
-    const double dx = (range.x1 - range.x0) / n, dy = (range.y1 - range.y0) / n;
-    const int grid = (n + 1) * (n + 1), rays = grid * kWavelengths;
-    for (int begin = 0; begin < rays; begin += kLensBatch) {
-        for (int i = 0; i < kLensBatch; ++i) {
-            const int ray = std::min(begin + i, rays - 1), at = ray % grid;
-            film->x[i] = float(film_mm.x), film->y[i] = float(film_mm.y);
-            film->mx[i] = float(range.x0 + at % (n + 1) * dx);
-            film->my[i] = float(range.y0 + at / (n + 1) * dy);
-            film->nm[i] = float(kBoundWavelengths[ray / grid]);
-        }
-        trace_to_scene(open, *film, *out, kLensBatch);
-        for (int i = 0; i < kLensBatch; ++i) {
-            const bool inside = std::hypot(out->iris_x[i], out->iris_y[i]) <= radius;
-            if (out->pass[i] > 0 && inside)
-                box.add({film->mx[i], film->mx[i], film->my[i], film->my[i]});
-        }
+SlopeBox passing_box(const LensTables& open, Vec2d film_mm, double radius,
+                     const std::function<SlopeBox(double)>& range_at) {
+    for (double reach = 1.5; reach < 100; reach *= 1.6) {
+        const SlopeBox range = range_at(reach);
+        SlopeBox box = passing_slopes(open, film_mm, radius, range, 48);
+        if (box.empty()) box = passing_slopes(open, film_mm, radius, range, 160);
+        const bool inside = !box.empty() && box.x0 > range.x0 && box.x1 < range.x1 &&
+                            box.y0 > range.y0 && box.y1 < range.y1;
+        if (!inside) continue;
+        const SlopeBox fine = passing_slopes(open, film_mm, radius, box, 48);
+        return fine.empty() ? box : fine;
     }
-    box.grow(dx, dy);
-    return box;
+    return {};
 }
 
 }  // namespace dg

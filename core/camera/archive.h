@@ -1,0 +1,108 @@
+// archive.h -- values as bytes and back, for what is kept between runs on one machine (native byte order).
+// A struct is described once, by a list of its members: `describe(archive, value)`.
+#pragma once
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "math/hash.h"
+
+namespace dg {
+
+/// 64 bits of the bytes; `seed` makes independent ones.
+inline std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t seed) {
+    std::uint64_t h = hash64(seed, bytes.size());
+    for (std::size_t i = 0; i < bytes.size(); i += 8) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+        h = hash64(h, word);
+    }
+    return h;
+}
+
+/// Appends what it is called with.
+class ByteWriter {
+  public:
+    template <typename... T>
+    void operator()(const T&... values) {
+        (put(values), ...);
+    }
+    std::string bytes;
+
+  private:
+    template <typename T>
+    void put(const T& v) {
+        if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+            bytes.append(reinterpret_cast<const char*>(&v), sizeof(T));
+        else
+            describe(*this, v);
+    }
+    void put(const std::string& s) { put(s.size()), bytes.append(s); }
+    template <typename T>
+    void put(const std::vector<T>& v) {
+        put(v.size());
+        for (const T& x : v) put(x);
+    }
+    template <typename T>
+    void put(const std::optional<T>& v) {
+        put(v.has_value());
+        if (v) put(*v);
+    }
+    template <typename... T>
+    void put(const std::variant<T...>& v) {
+        put(v.index());
+        std::visit([&](const auto& x) { put(x); }, v);
+    }
+    template <typename T, std::size_t N>
+    void put(const T (&v)[N]) {
+        for (const T& x : v) put(x);
+    }
+};
+
+/// Fills what it is called with; past the end, or at sizes that cannot be, `ok` turns false.
+class ByteReader {
+  public:
+    explicit ByteReader(std::string_view from) : rest(from) {}
+    template <typename... T>
+    void operator()(T&... values) {
+        (get(values), ...);
+    }
+    std::string_view rest;
+    bool ok = true;
+
+  private:
+    template <typename T>
+    void get(T& v) {
+        if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+            copy(&v, sizeof(T));
+        else
+            describe(*this, v);
+    }
+    template <typename T>
+    void get(std::vector<T>& v) {
+        static_assert(std::is_arithmetic_v<T>);
+        std::size_t size = 0;
+        get(size);
+        ok = ok && size <= rest.size() / sizeof(T);
+        if (!ok) return;
+        v.resize(size);
+        copy(v.data(), size * sizeof(T));
+    }
+    template <typename T, std::size_t N>
+    void get(T (&v)[N]) {
+        static_assert(std::is_arithmetic_v<T>);
+        copy(v, sizeof v);
+    }
+    void copy(void* to, std::size_t size) {
+        ok = ok && rest.size() >= size;
+        if (!ok || size == 0) return;
+        std::memcpy(to, rest.data(), size);
+        rest.remove_prefix(size);
+    }
+};
+
+}  // namespace dg
