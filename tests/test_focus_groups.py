@@ -103,3 +103,40 @@ def test_zoom_and_focus_form_a_grid() -> None:
     way = path_of(lens.at_zoom(100.0))
     assert way is not None
     assert set(way.changes[0].values()) == {0.0}
+
+
+@pytest.mark.parametrize("measured_from", ["pupil", "sensor"])
+def test_an_anamorphic_lens_is_focused_between_its_sections(measured_from: str) -> None:
+    lens = lenses.load("schneider-anamorphic-60mm")
+    for distance in (math.inf, 5.0):
+        found = lens.focused(distance, measured_from=measured_from)  # type: ignore[arg-type]
+        start = found.entrance_pupil_z if measured_from == "pupil" else found.film_z_mm
+        images = []
+        for axis in (0, 1):
+            direction, origin = np.array([0.0, 0, 1]), np.array([0.0, 0, 0])
+            direction[axis] = 0.0 if math.isinf(distance) else 1e-3 / (1e3 * distance - start)
+            origin[axis] = 1e-3
+            near, far = (found.lens.trace(origin, direction, image_z=z)[0, axis] for z in (0, 1))
+            images.append(-near / (far - near))
+        assert np.mean(images) == pytest.approx(found.film_z_mm, abs=1e-5)
+        assert abs(images[1] - images[0]) > 0.02
+
+
+def test_the_best_focus_has_the_smallest_spot() -> None:
+    for name in ("double-gauss-50mm-f2", "telephoto-200mm-f1.8"):
+        lens = lenses.load(name)
+        spots = {}
+        for by in ("paraxial", "best"):
+            found = lens.focused(10.0, by=by)  # type: ignore[arg-type]
+            y = np.linspace(0.02, 0.98, 49) * found.lens.first_order().entrance_pupil.diameter / 2
+            start = found.entrance_pupil_z - 1e4
+            origins = np.tile([0.0, 0.0, start], (49, 1))
+            directions = np.stack([0 * y, y, 0 * y + 1e4], axis=1)
+            points = found.lens.trace(origins, directions, image_z=found.film_z_mm)
+            spots[by] = math.sqrt(float(np.sum(y * points[:, 1] ** 2) / np.sum(y)))
+        assert spots["best"] < 0.9 * spots["paraxial"]
+    # Groups move for it, too: the film stays.
+    tele = lenses.load("telephoto-200mm-f1.8")
+    a, b = tele.focused(10.0), tele.focused(10.0, by="best", f_stop=2.0)
+    assert a.film_z_mm == pytest.approx(b.film_z_mm, abs=1e-6)
+    assert a.lens.surfaces[9].thickness != b.lens.surfaces[9].thickness

@@ -140,6 +140,14 @@ def test_the_stop_of_the_hologon_lies_in_glass() -> None:
     assert lens.vertices[-1] / 15 == pytest.approx(1.7313, abs=2e-4)
 
 
+def test_the_anamorphic_lens_squeezes_by_two() -> None:
+    lens = lenses.load("schneider-anamorphic-60mm")
+    tall, wide = (lens.prescription.first_order(587.5618, section) for section in "yx")
+    assert wide.efl == pytest.approx(lens.nominal.efl_x_mm, rel=0.02)  # US 6,310,731: 31 mm
+    assert tall.efl / wide.efl == pytest.approx(1.92, abs=0.01)
+    assert tall.back_focal_z == pytest.approx(wide.back_focal_z, abs=0.05)
+
+
 def test_the_folder_is_part_of_the_package() -> None:
     assert Path(lenses.__file__).parent / "library" == FOLDER
 

@@ -53,7 +53,7 @@ class Path:
         for i, first in self.changes[k].items():
             change = first + share * (self.changes[k + 1][i] - first)
             gap = (self.lens.surfaces[i].thickness or 0.0) + change
-            gaps[i] = max(gap, 0.0) if i + 1 < len(self.lens.surfaces) else gap
+            gaps[i] = float(max(gap, 0.0) if i + 1 < len(self.lens.surfaces) else gap)
         return self.lens.with_gaps(gaps)
 
 
@@ -157,13 +157,20 @@ def _sharp(
 def _whole(
     lens: Lens, distance_m: float, f_stop: float | None, by: By, measured_from: MeasuredFrom
 ) -> float:
+    """The film's place when the whole lens moves."""
     from_sensor = measured_from == "sensor"
-    paraxial = lens.prescription.film_position(distance_m, from_sensor)
+    film = float(lens.prescription.film_position(distance_m, from_sensor))
     if by == "best":
         stop = f_stop or lens.first_order().f_number
-        best, _ = lens.prescription.best_focus(stop, distance_m, from_sensor)
-        return float(best)
-    return float(paraxial)
+        return float(lens.prescription.best_focus(stop, distance_m, from_sensor)[0])
+    if lens.prescription.is_axially_symmetric:
+        return film
+    for _ in range(60):  # far objects hardly feel where the film is: this converges fast
+        start = film if from_sensor else lens.first_order().entrance_pupil.z
+        film, before = image_z(lens, start - 1e3 * distance_m), film
+        if abs(film - before) < 1e-10:
+            break
+    return film
 
 
 def _solved(
