@@ -15,8 +15,8 @@ PALETTE = [WARM, (1.0, 0.78, 0.50), (1.0, 0.40, 0.14), COOL, (1.0, 0.20, 0.16), 
 class Stage:
     """A GLB in the making, with materials and placing in a few words."""
 
-    def __init__(self) -> None:
-        self.glb = Glb("daguerre examples/night_table.py")
+    def __init__(self, generator: str = "daguerre examples/night_table.py") -> None:
+        self.glb = Glb(generator)
         color, packed = textures.brass_patina()
         self.brass = self.matter(
             "brass",
