@@ -1,0 +1,62 @@
+"""One photograph of the arcade through each lens, wide open: small, and kept while it is true."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+from place import Place
+
+import daguerre as dg
+from daguerre.denoise import denoise
+
+#: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
+SPP, DEPTH, EDITION = 40, 4, 1
+JPEG = "jpeg:84"
+
+
+def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
+    """Takes the photograph unless it is there already; whether it was taken."""
+    key = _key(at, scene_key)
+    if (
+        path.exists()
+        and oiio.ImageBuf(str(path)).spec().get_string_attribute("ImageDescription") == key
+    ):
+        return False
+    transform = np.eye(4)
+    transform[2, 3] = at.distance_m
+    camera = dg.Camera(
+        transform=transform,
+        lens=at.lens,
+        sensor_size=at.film_mm,
+        sensor_fit="fill",
+        f_stop=at.f_stop,
+        focus_distance=at.distance_m,
+    )
+    frame = dg.render(scene, camera, spp=SPP, resolution=at.resolution, max_depth=DEPTH, aovs=True)
+    if find_spec("pyoidn"):
+        frame = denoise(frame)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    image = oiio.ImageBuf(np.ascontiguousarray(frame.display("soft")[..., :3]))
+    image.specmod().attribute("Compression", JPEG)
+    image.specmod().attribute("ImageDescription", key)
+    if not image.write(str(path)):
+        raise SystemExit(image.geterror())
+    return True
+
+
+def scene_key(path: Path) -> str:
+    """What a scene file is known by."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _key(at: Place, scene: str) -> str:
+    """Of all that the picture depends on, but for the program."""
+    facts = [at.f_stop, at.film_mm, at.distance_m, at.resolution, at.focal_length_mm]
+    facts += [at.lens.data, scene, SPP, DEPTH, EDITION, dataclasses.asdict(at.lens.nominal)]
+    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:32]
