@@ -19,11 +19,11 @@ class Random {
     std::uniform_real_distribution<double> uniform_{-1, 1};
 };
 
-inline constexpr int kForms = 9;
+inline constexpr int kForms = 10;
 inline const char* form_name(int form) {
-    static const char* names[kForms] = {"sphere", "conic",   "even asphere",
-                                        "odd",    "cyl-x",   "cyl-y",
-                                        "toroid", "biconic", "biconic asphere"};
+    static const char* names[kForms] = {
+        "sphere", "conic",   "even asphere",    "odd",           "cyl-x", "cyl-y",
+        "toroid", "biconic", "biconic asphere", "strong asphere"};
     return names[form];
 }
 
@@ -34,10 +34,15 @@ inline Surface surface_of_form(int form, Random& u) {
     s.curvature = bend();
     s.semi_diameter = 10;
     const char* kinds[] = {"aspheric", "aspheric", "aspheric", "aspheric", "cyl-x",
-                           "cyl-y",    "toroid",   "biconic",  "biconic"};
+                           "cyl-y",    "toroid",   "biconic",  "biconic",  "aspheric"};
     if (form != 0) s.conic = u.between(-3, 1);
-    if (form >= 6) s.curvature_x = bend();
-    if (form >= 7) s.conic_x = u.between(-3, 1);
+    if (form == 9) {  // slopes up to 45 degrees, as in the cameras of phones
+        s.curvature = (u() < 0 ? -1 : 1) / u.between(15, 40);
+        s.asphere = {
+            {4, 1.5e-4 * u()}, {6, 1e-6 * u()}, {8, 4e-9 * u()}, {10, 2e-11 * u()}};
+    }
+    if (form >= 6 && form < 9) s.curvature_x = bend();
+    if (form >= 7 && form < 9) s.conic_x = u.between(-3, 1);
     if (form == 2 || form == 8)
         s.asphere = {
             {4, 2e-6 * u()}, {6, 2e-8 * u()}, {8, 1e-10 * u()}, {10, 1e-12 * u()}};

@@ -144,7 +144,8 @@ TEST_CASE("lanes equal the scalar reference on every target, both directions") {
     });
 }
 
-TEST_CASE("lanes equal the scalar reference for surfaces of every form, moved and turned") {
+TEST_CASE(
+    "lanes equal the scalar reference for surfaces of every form, moved and turned") {
     for_each_target([] {
         test::Random u(12);
         for (const Case& c : singlets_of_every_form()) {
