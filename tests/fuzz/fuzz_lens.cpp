@@ -1,4 +1,6 @@
 // fuzz_lens.cpp -- any prescription: an Error, or a lens through which rays can be drawn.
+#include <cmath>
+
 #include "camera/exact.h"
 #include "math/error.h"
 #include "input.h"
@@ -38,6 +40,18 @@ Glass any_glass(FuzzInput& in) {
     return glass;
 }
 
+void any_form(FuzzInput& in, Surface& s) {
+    s.shape = Shape(in.below(3));
+    s.conic = length(in);
+    if (in.flag()) s.curvature_x = 1 / length(in), s.conic_x = length(in);
+    for (int i = in.below(4); i > 0; --i)
+        s.asphere.push_back({in.below(24), in.number() * std::pow(0.1, in.below(12))});
+    if (in.flag()) s.decenter = {length(in), length(in), length(in)};
+    if (in.flag()) s.tilt = {length(in), length(in), length(in)};
+    s.inner_semi_diameter = in.flag() ? length(in) : 0;
+    s.semi_diameter_after = in.flag() ? length(in) : 0;
+}
+
 Prescription any_lens(FuzzInput& in) {
     Prescription lens;
     lens.name = "lens";
@@ -51,6 +65,7 @@ Prescription any_lens(FuzzInput& in) {
         if (in.below(4) != 0) s.semi_diameter = length(in);
         s.glass = any_glass(in);
         s.stop = i == stop;
+        if (in.flag()) any_form(in, s);
         lens.surfaces.push_back(s);
     }
     lens.nominal_f_number = in.number();
