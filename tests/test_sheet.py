@@ -8,24 +8,40 @@ import numpy as np
 import pytest
 
 from daguerre import analysis, lenses
+from daguerre.analysis.figures import Figures, figures
+from daguerre.analysis.illumination import within_light
 from daguerre.lenses.outline import element_outlines, sag
 
 SVG = "{http://www.w3.org/2000/svg}"
 HEADS = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
 
-@pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
-def test_the_page_is_a_file_of_its_kind(kind: str) -> None:
-    pytest.importorskip("matplotlib", reason="data sheets are drawn by matplotlib")
-    from daguerre.analysis.sheet import sheet
+@pytest.fixture(scope="module")
+def made() -> Figures:
+    return figures(analysis.set_up(lenses.load("tessar-50mm-f2.8"), f_stop=8), psf_pixels=32)
 
-    bench = analysis.set_up(lenses.load("tessar-50mm-f2.8"), f_stop=8)
-    page = sheet(bench, kind)
-    assert page.startswith(HEADS[kind])
+
+@pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
+def test_the_page_is_a_file_of_its_kind(kind: str, made: Figures) -> None:
+    pytest.importorskip("matplotlib", reason="data sheets are drawn by matplotlib")
+    from daguerre.analysis.sheet import page
+
+    data = page(made, kind)
+    assert data.startswith(HEADS[kind])
     if kind == "svg":
-        root = ElementTree.fromstring(page)
+        root = ElementTree.fromstring(data)
         width, height = (float(root.get(k, "0").removesuffix("pt")) for k in ("width", "height"))
         assert height / width == pytest.approx(297 / 210, rel=1e-2)
+
+
+def test_the_field_of_the_figures_ends_where_the_light_does() -> None:
+    bench = analysis.set_up(lenses.load("tessar-50mm-f2.8"), field_mm=60.0)
+    lit = within_light(bench)
+    assert 20 < lit.field_mm < 45
+    light = analysis.relative_illumination(bench, [0, 0.98 * lit.field_mm, 1.02 * lit.field_mm])
+    assert light.irradiance[1] > 0
+    assert light.irradiance[2] == 0
+    assert within_light(lit) is lit
 
 
 def test_elements_are_drawn_from_their_own_diameters_with_flat_edges() -> None:

@@ -191,16 +191,17 @@ def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
 
 
 def half_image(lens: Lens, order: FirstOrder) -> float:
-    """Half of the image circle, mm: as stated, else from the stated field, else 36 x 24's."""
+    """Half of the image circle, mm: as stated, or from the stated field, else 36 x 24's.
+
+    A fisheye's picture may be a circle within its film: the smaller counts.
+    """
+    known = []
     if lens.nominal.image_circle_mm:
-        return 0.5 * lens.nominal.image_circle_mm
-    field = lens.nominal.full_field_deg
-    if field and field > 1:
-        if lens.nominal.projection in (None, "rectilinear") and field < 160:
-            return abs(order.efl) * math.tan(math.radians(0.5 * field))
-        law = lens.nominal.projection or ""
-        return float(abs(projected(law, order.efl, math.radians(0.5 * field))))
-    return 0.5 * math.hypot(36, 24) * min(1.0, abs(order.efl) / 40)
+        known.append(0.5 * lens.nominal.image_circle_mm)
+    field, law = lens.nominal.full_field_deg, lens.nominal.projection or "rectilinear"
+    if field and field > 1 and (law != "rectilinear" or (not known and field < 160)):
+        known.append(float(abs(projected(law, order.efl, math.radians(0.5 * field)))))
+    return min(known, default=0.5 * math.hypot(36, 24) * min(1.0, abs(order.efl) / 40))
 
 
 def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:

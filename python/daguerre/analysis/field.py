@@ -94,22 +94,23 @@ class Distortion:
 def distortion(bench: Bench, heights_mm: ArrayLike) -> Distortion:
     """Distortion by exact chief rays.
 
-    Of a rectilinear lens against the paraxial image of a plane object at the focus distance; of a
-    fisheye against its own law of angles, with the focal length of the axis.
+    Of a rectilinear lens against the image of a plane object at the focus distance, of a fisheye
+    against its own law of angles, both at the scale of the axis.
 
     Args:
         bench: The lens.
         heights_mm: Image heights along y, mm, shape (N,).
     """
     heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
-    chief = chief_rays(bench, heights)
-    angles = chief.angles
-    efl = abs(bench.order.efl)
+    # The first is the scale: a film off the paraxial focus is a little larger or smaller.
+    near = np.concatenate([[1e-3 * bench.field_mm], heights])
+    angles = chief_rays(bench, near).angles
     if bench.is_fisheye or math.isinf(bench.focus_mm):
-        ideal = projected(bench.projection, efl, angles)
+        ideal = projected(bench.projection, abs(bench.order.efl), angles)
     else:
-        ideal = np.array([abs(bench.magnification) * _object_height(bench, h) for h in heights])
-    return Distortion(heights, np.degrees(angles), ideal, bench.projection)
+        ideal = np.array([_object_height(bench, h) for h in near])
+    ideal = ideal[1:] * (near[0] / ideal[0])
+    return Distortion(heights, np.degrees(angles[1:]), ideal, bench.projection)
 
 
 def _object_height(bench: Bench, height: float) -> float:

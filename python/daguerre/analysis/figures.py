@@ -16,7 +16,7 @@ from .field import (
     lateral_colour,
     spherical_aberration,
 )
-from .illumination import Illumination, pupil_outline, relative_illumination
+from .illumination import Illumination, pupil_outline, relative_illumination, within_light
 from .mtf import diffraction_mtf, geometric_mtf
 from .pencil import Pencil, pencil
 from .psf import Psf, point_spread, strehl_ratio
@@ -49,6 +49,8 @@ class FieldPoint:
 @dataclass(frozen=True)
 class Figures:
     """Figures at one focal length, focus and f-stop. Heights in mm, over the field from 0 to 1.
+
+    The field ends where the light does, if that is within the image circle.
 
     Attributes:
         points: At FIELDS.
@@ -93,6 +95,7 @@ def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
         bench: The lens at its setting.
         psf_pixels: Of the pictures of points, across.
     """
+    bench = within_light(bench)
     field = bench.field_mm
     lights = {share: pencil(bench, share * field) for share in MTF_FIELDS}
     frequency = np.linspace(0, 2 * FREQUENCIES[-1], 33)
@@ -133,4 +136,6 @@ def _mtf(light: Pencil | None, frequency: FloatArray) -> FloatArray:
 
 
 def _mtf_rays(light: Pencil | None, frequency: FloatArray) -> FloatArray:
-    return np.zeros((len(frequency), 2)) if light is None else geometric_mtf(spot(light), frequency)
+    if light is None:
+        return np.zeros((len(frequency), 2))
+    return geometric_mtf(spot(light, grid=64, jitter=True), frequency)

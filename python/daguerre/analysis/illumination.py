@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -65,6 +65,20 @@ def relative_illumination(
         np.cos(chief.angles) ** 4,
         (reach**2 / (reach**2 + heights**2)) ** 2,
     )
+
+
+def within_light(bench: Bench) -> Bench:
+    """The bench with its field cut back to where light arrives, if some of it is dark."""
+    low, high = 0.0, bench.field_mm
+    if _lit_window(bench, high, DESIGN_WAVELENGTH_NM) is not None:
+        return bench
+    for _ in range(10):
+        middle = 0.5 * (low + high)
+        if _lit_window(bench, middle, DESIGN_WAVELENGTH_NM) is None:
+            high = middle
+        else:
+            low = middle
+    return replace(bench, field_mm=low or bench.field_mm)
 
 
 def pupil_outline(

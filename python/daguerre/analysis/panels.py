@@ -112,7 +112,7 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
         ("f-number, open", f"{order.f_number:.3f}", _stated(nominal.f_number)),
         ("back focus", f"{order.bfl:.3f} mm", ""),
         ("length to film", f"{bench.film_z:.2f} mm", ""),
-        ("full field", f"{2 * angle:.1f}°", _stated(field, "°")),
+        ("full field", _known(2 * angle, ".1f", "°"), _stated(field, "°")),
         ("image circle", f"{2 * bench.field_mm:.1f} mm", _stated(nominal.image_circle_mm, " mm")),
         (
             "entrance pupil",
@@ -141,9 +141,9 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
             _um(made.points[-1].spot.rms if made.points[-1].spot else math.nan),
             "",
         ),
-        ("Strehl ratio on axis", f"{made.strehl:.3f}", ""),
+        ("Strehl ratio on axis", _known(made.strehl, ".3f"), ""),
         ("light at the edge", f"{100 * made.illumination.relative[-1]:.0f} %", ""),
-        ("distortion at the edge", f"{made.distortion.percent[-1]:+.2f} %", ""),
+        ("distortion at the edge", _known(float(made.distortion.percent[-1]), "+.2f", " %"), ""),
     ]
     return rows
 
@@ -157,7 +157,11 @@ def paraxial_film(made: Figures) -> float:
 
 
 def _um(mm: float) -> str:
-    return f"{1e3 * mm:.1f} µm"
+    return _known(1e3 * mm, ".1f", " µm")
+
+
+def _known(value: float, form: str, unit: str = "") -> str:
+    return f"{value:{form}}{unit}" if math.isfinite(value) else "-"
 
 
 def _stated(value: float | None, unit: str = "") -> str:
@@ -183,7 +187,7 @@ def spots(page: Figure, cell: SubplotSpec, made: Figures) -> None:
             axes.plot(*off[of].T, ".", ms=0.9, mew=0, color=colour, alpha=0.7, rasterized=True)
         caption(axes, point.height_mm, point.angle_deg, f"RMS {_um(point.spot.rms)}")
         if k == 0:
-            axes.set_title(f"Spots, box {_um(2 * half)}")
+            axes.set_title(f"Spots in F, d, C; box {_um(2 * half)}")
 
 
 def psfs(page: Figure, cell: SubplotSpec, made: Figures) -> None:
@@ -217,8 +221,15 @@ def box(axes: Axes, half: float) -> None:
 
 def caption(axes: Axes, height: float, angle: float, text: str) -> None:
     """Height and angle below a window."""
-    where = f"{height:.1f} mm, {angle:.1f}°"
+    where = f"{height:.1f} mm, {_known(angle, '.1f', '°')}"
     axes.set_xlabel(f"{where}\n{text}" if text else where, labelpad=2)
+
+
+def legend_above(axes: Axes) -> None:
+    """Two lines beside the title, clear of the curves."""
+    axes.legend(
+        ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.99), borderaxespad=0, columnspacing=1
+    )
 
 
 def mtf_over_field(axes: Axes, made: Figures) -> None:
@@ -228,11 +239,11 @@ def mtf_over_field(axes: Axes, made: Figures) -> None:
         values = made.mtf_over_field(f)
         axes.plot(heights, values[:, 0], color=colour, label=f"{f:g}/mm sagittal")
         axes.plot(heights, values[:, 1], color=colour, ls="--", label="tangential")
-    axes.set_title("MTF over the field (diffraction)")
+    axes.set_title("MTF over the field")
     axes.set_xlabel("image height, mm")
     axes.set_xlim(0, heights[-1])
     axes.set_ylim(0, 1)
-    axes.legend(ncols=3, loc="lower left")
+    legend_above(axes)
 
 
 def mtf_over_frequency(axes: Axes, made: Figures) -> None:
@@ -243,8 +254,8 @@ def mtf_over_frequency(axes: Axes, made: Figures) -> None:
             name = f"{share * made.bench.field_mm:.1f} mm {'ST'[j]}"
             axes.plot(made.frequency, made.mtf_waves[k, :, j], color=colour, ls=style, label=name)
             axes.plot(made.frequency, made.mtf_rays[k, :, j], color=colour, ls=":", lw=0.6)
-    axes.set_title("MTF over frequency (dotted: rays alone)")
+    axes.set_title("MTF (dotted: rays alone)")
     axes.set_xlabel("cycles per mm")
     axes.set_xlim(0, made.frequency[-1])
     axes.set_ylim(0, 1)
-    axes.legend(ncols=3, loc="upper right")
+    legend_above(axes)

@@ -62,7 +62,7 @@ def geometric_psf(
     *,
     half_mm: float | None = None,
     pixels: int = 64,
-    grid: int = 192,
+    grid: int = 112,
     dz: float = 0.0,
 ) -> Psf:
     """The PSF of rays alone: right where the blur is far larger than diffraction's.
@@ -76,7 +76,7 @@ def geometric_psf(
         grid: Rays across, for each wavelength.
         dz: The film this much further from the lens, mm.
     """
-    rays = spot(light, wavelengths_nm, weights, grid=grid).moved(dz)
+    rays = spot(light, wavelengths_nm, weights, grid=grid, jitter=True).moved(dz)
     return binned(rays, half_mm, pixels)
 
 
@@ -116,25 +116,50 @@ def diffraction_psf(
     rays = spot(light, wavelengths_nm, weights, grid=32).moved(dz)
     if not len(rays.weights):
         return None
-    center = rays.centroid
-    spread = float(np.abs(rays.points - center).max())
+    spread = float(np.abs(rays.points - rays.centroid).max())
     airy = 1.22e-6 * max(wavelengths_nm) * light.bench.f_stop
     half = half_mm or 1.1 * spread + 3 * airy
+    waves = waves_of(light, wavelengths_nm, half + spread, rays.centroid)
+    if not waves:
+        return None
+    share = [weights[wavelengths_nm.index(wave.wavelength_nm)] / sum(weights) for wave in waves]
+    return psf_of(waves, share, half, pixels, rays.centroid, dz)
+
+
+def waves_of(
+    light: Pencil, wavelengths_nm: Sequence[float], reach_mm: float, about: FloatArray
+) -> list[Wavefront]:
+    """Wavefronts fine enough for a reach (mm) about an image point; none if MAX_GRID is not."""
+    grids = [grid_for(light, nm, reach_mm) for nm in wavelengths_nm]
+    if max(grids) > MAX_GRID:
+        return []
+    found = (
+        wavefront(light, nm, grid=grid, about=about)
+        for nm, grid in zip(wavelengths_nm, grids, strict=True)
+    )
+    return [wave for wave in found if wave is not None]
+
+
+def psf_of(
+    waves: Sequence[Wavefront],
+    shares: Sequence[float],
+    half_mm: float,
+    pixels: int,
+    center: FloatArray,
+    dz: float = 0.0,
+) -> Psf:
+    """The PSF of several wavelengths' waves about one point, with their shares of the light."""
     # Points are close enough for the finest fringes; pixels are their sums.
-    each = int(np.ceil(2 * half / pixels / (0.4e-6 * min(wavelengths_nm) * light.bench.f_stop)))
-    count = pixels * min(each, max(1, MOST_POINTS // pixels))
-    x = (np.arange(count) + 0.5) / count * 2 * half - half
+    sine = min(0.5 * wave.step * len(wave.amplitude) for wave in waves)
+    finest = 0.2e-6 * min(wave.wavelength_nm for wave in waves) / sine
+    each = max(1, min(int(np.ceil(2 * half_mm / pixels / finest)), MOST_POINTS // pixels))
+    count = pixels * each
+    x = (np.arange(count) + 0.5) / count * 2 * half_mm - half_mm
     fine = np.zeros((count, count))
-    total = sum(weights)
-    for nm, weight in zip(wavelengths_nm, weights, strict=True):
-        grid = grid_for(light, nm, half + spread)
-        if grid > MAX_GRID:
-            return None
-        wave = wavefront(light, nm, grid=grid, about=center)
-        if wave is not None:
-            fine += weight / total * _intensity(wave.defocused(dz), x)
-    image = fine.reshape(pixels, -1, pixels, count // pixels).sum(axis=(1, 3))
-    return Psf(image, half, center, diffraction=True)
+    for wave, share in zip(waves, shares, strict=True):
+        fine += share * _intensity(wave.defocused(dz), x)
+    image = fine.reshape(pixels, each, pixels, each).sum(axis=(1, 3))
+    return Psf(image, half_mm, center, diffraction=True)
 
 
 def strehl_ratio(wave: Wavefront) -> float:

@@ -69,6 +69,7 @@ def spot(
     weights: Sequence[float] = FDC_WEIGHTS,
     *,
     grid: int = GRID,
+    jitter: bool = False,
 ) -> Spot:
     """The spot of one object point, by a grid of equal cells of the light in front of the lens.
 
@@ -77,8 +78,12 @@ def spot(
         wavelengths_nm: Wavelengths, nm, shape (L,).
         weights: Of the wavelengths, shape (L,).
         grid: Rays across.
+        jitter: Each ray somewhere in its cell, always the same: no pattern of the grid is left.
     """
     at = light.grid(grid)
+    if jitter:
+        cell = (light.high - light.low) / grid
+        at = at + cell * (np.random.default_rng(1).random(at.shape) - 0.5)
     flux = light.flux(at)
     parts = []
     for nm, weight in zip(wavelengths_nm, weights, strict=True):

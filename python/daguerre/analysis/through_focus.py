@@ -9,7 +9,7 @@ import numpy as np
 
 from .mtf import diffraction_mtf, geometric_mtf
 from .pencil import Pencil
-from .psf import Psf, point_spread
+from .psf import WHITE_NM, WHITE_WEIGHTS, Psf, geometric_psf, psf_of, waves_of
 from .spots import Spot, spot
 
 PIXELS = 96
@@ -35,31 +35,38 @@ class Step:
 def series(light: Pencil, count: int = 9) -> list[Step]:
     """The PSF on films around that of the bench; one only: on that film.
 
-    Steps are so that the blur of each differs from the next by about the size of the sharpest.
+    Steps are so that the blur of each differs from the next by about the size of the sharpest. All
+    are of waves, or all of rays where the widest blur has fringes too fine to be drawn.
 
     Args:
         light: From ``pencil``.
         count: Films, an odd number.
     """
-    bench = light.bench
-    sharp = max(spot(light).rms, 1.22e-6 * 555 * bench.f_stop)
-    step = 1.5 * bench.f_stop * sharp
-    half = None
-    if count > 1:  # one scale for all, that of the widest
-        ends = [spot(light).moved(s * step * (count // 2)) for s in (-1, 1)]
-        half = 1.1 * max(float(np.abs(e.points - e.centroid).max()) for e in ends)
-    return [_step(light, (k - count // 2) * step, half) for k in range(count)]
+    bench, rays = light.bench, spot(light, grid=96)
+    airy = 1.22e-6 * max(WHITE_NM) * bench.f_stop
+    step = 1.5 * bench.f_stop * max(rays.rms, airy)
+    places = [(k - count // 2) * step for k in range(count)]
+    ends = [rays.moved(places[0]), rays.moved(places[-1])]
+    spread = max(float(np.abs(end.points - end.centroid).max()) for end in ends)
+    half = 1.1 * spread + 3 * airy
+    waves = waves_of(light, WHITE_NM, half + spread, rays.centroid)
+    shares = [w / sum(WHITE_WEIGHTS) for w in WHITE_WEIGHTS]
+    out = []
+    for dz in places:
+        if len(waves) == len(shares):
+            psf = psf_of(waves, shares, half, PIXELS, rays.centroid, dz)
+        else:
+            psf = geometric_psf(light, half_mm=half, pixels=PIXELS, dz=dz)
+        out.append(_step(light, rays.moved(dz), psf, dz))
+    return out
 
 
-def _step(light: Pencil, dz: float, half_mm: float | None) -> Step:
-    psf = point_spread(light, pixels=PIXELS, half_mm=half_mm, dz=dz)
-    rays = spot(light, grid=96).moved(dz)
+def _step(light: Pencil, rays: Spot, psf: Psf, dz: float) -> Step:
     frequency = [10.0, 20.0, 40.0]
-    mtf = (
-        diffraction_mtf(light, frequency, dz=dz)
-        if psf.diffraction
-        else geometric_mtf(rays, frequency)
-    )
+    if psf.diffraction:
+        mtf = diffraction_mtf(light, frequency, dz=dz)
+    else:
+        mtf = geometric_mtf(rays, frequency)
     facts = {
         "film_mm": dz,
         "rms_mm": rays.rms,

@@ -75,7 +75,11 @@ def focused(
             "lens-focus-near",
         )
     path = path_of(lens)
-    sharp = _sharp(distance_m, f_stop, by, measured_from)
+    # An f-stop is engraved for infinity: the iris stays, whatever the groups do to the focal length.
+    narrowed = 1.0
+    if f_stop is not None and path is not None:
+        narrowed = f_stop / lens.first_order().f_number
+    sharp = _sharp(distance_m, narrowed, by, measured_from)
     with reported(lens.source):
         if path is None:
             return _done(lens, _whole(lens, distance_m, f_stop, by, measured_from))
@@ -137,9 +141,12 @@ def image_z(lens: Lens, object_z: float) -> float:
 
 
 def _sharp(
-    distance_m: float, f_stop: float | None, by: By, measured_from: MeasuredFrom
+    distance_m: float, narrowed: float, by: By, measured_from: MeasuredFrom
 ) -> Callable[[Lens], float]:
-    """Where the film ought to be, for a lens whose film is where its table says."""
+    """Where the film ought to be, for a lens whose film is where its table says.
+
+    narrowed: f-stop over that of the open lens.
+    """
 
     def film(lens: Lens) -> float:
         pupil = lens.first_order().entrance_pupil.z
@@ -147,7 +154,7 @@ def _sharp(
         object_z = start - 1e3 * distance_m
         if by == "paraxial":
             return image_z(lens, object_z)
-        stop = f_stop or lens.first_order().f_number
+        stop = narrowed * lens.first_order().f_number
         best, _ = lens.prescription.best_focus(stop, (pupil - object_z) * 1e-3, False)
         return float(best)
 

@@ -35,7 +35,9 @@ def check_available(suffix: str, *, needed: bool) -> None:
 
 def picture(bench: Bench, suffix: str) -> bytes:
     """The meridional section of a lens with rays, as the bytes of a file."""
-    drawing = section(bench.lens, bench.film_z, bench.field_mm)
+    from daguerre.analysis.illumination import within_light
+
+    drawing = section(bench.lens, bench.film_z, within_light(bench).field_mm)
     if suffix == ".svg":
         return to_svg(drawing).encode()
     return _by_matplotlib(drawing, suffix[1:])
