@@ -88,6 +88,10 @@ ChiefRays::ChiefRays(const LensKind& kind) {
         if (const auto* thick = std::get_if<ThickLens>(&kind)) thick_ = *thick;
         return;
     }
+    if (!lens->is_axial()) {
+        grid_.emplace(*lens);
+        return;
+    }
     step_mm_ = lens->half_diagonal_mm() / kSteps;
     for (int i = 0; i <= kSteps; ++i) {
         const auto ray = mean_ray(passing(*lens, i * step_mm_));
@@ -130,6 +134,10 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
 
 ChiefRay ChiefRays::at(Vec2d film_mm) const {
     if (thick_) return {{0, 0, thick_->pupil_offset_m()}, thick_->chief_direction(film_mm)};
+    if (grid_) {
+        const ChiefGrid::Line line = grid_->at(film_mm);
+        return {line.foot + line.direction * line.start, line.direction};
+    }
     const double radius = length(film_mm);
     const Meridional m = at_radius(radius);
     const Vec2d out = radius > 0 ? film_mm * (1 / radius) : Vec2d{1, 0};
@@ -174,6 +182,7 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
 
 std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
     if (thick_) return thick_->film_point({p.x, p.y, p.z - w * thick_->pupil_offset_m()});
+    if (grid_) return grid_->film_point(p, w);
     if (film_distance_mm_ > 0) {
         if (!(p.z < 0)) return std::nullopt;
         return Vec2d{p.x, p.y} * (film_distance_mm_ / -p.z);

@@ -5,13 +5,15 @@
 // across it in the middle of what the film point sees of that plane. So it goes through
 // the point in focus exactly, and through the middle of the blur elsewhere; mounts that
 // cut the pupil move it, but never darken it. Ideal lenses: through the centre of the
-// lens, or of a thick one's pupils. Exact lenses: the mean at the design wavelength, with the iris turned to all
-// sides, so that it depends on the distance from the axis alone.
+// lens, or of a thick one's pupils. Exact lenses: the mean at the design wavelength, with
+// the iris turned to all sides, so that it depends on the distance from the axis alone;
+// of tilted, decentred and anamorphic ones it is tabulated over the film, iris as it is.
 #pragma once
 #include <optional>
 #include <vector>
 
 #include "camera/camera.h"
+#include "camera/chief_grid.h"
 
 namespace dg {
 
@@ -49,6 +51,7 @@ class ChiefRays {
 
     double film_distance_mm_ = 0;    // of a pinhole or a thin lens, else 0
     std::optional<ThickLens> thick_;
+    std::optional<ChiefGrid> grid_;  // of an exact lens that is not the same on all sides
     std::vector<Meridional> table_;  // of an exact one, by film radius
     double step_mm_ = 0;
 };

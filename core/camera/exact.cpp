@@ -311,6 +311,12 @@ std::string ExactLens::aim_state() const {
 FilmPlane ExactLens::film_plane() const {
     return state_->film_plane();
 }
+const ExactLensSettings& ExactLens::settings() const {
+    return state_->settings;
+}
+bool ExactLens::is_axial() const {
+    return is_axially_symmetric(state_->tracer.prescription()) && state_->settings.tilt_deg == Vec2d{};
+}
 const FirstOrder& ExactLens::first_order() const {
     return state_->order;
 }

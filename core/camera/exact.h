@@ -74,6 +74,9 @@ class ExactLens {
     double half_diagonal_mm() const;
     /// What the set-up found out, as bytes: with them the same lens is ready at once, with the same bits.
     std::string aim_state() const;
+    const ExactLensSettings& settings() const;
+    /// The same on all sides of the camera's axis.
+    bool is_axial() const;
     const FirstOrder& first_order() const;  // design wavelength
     const Aim& aim() const;
     const Tracer& tracer() const;

@@ -28,7 +28,9 @@ IDEAL = ("thin", "pinhole")
 #: precision would overflow on the way
 LIMITS = {
     "focal_length": (1e-3, 1e6),  # mm
+    "zoom": (1e-3, 1e6),  # mm
     "f_stop": (1e-2, 1e9),
+    "t_stop": (1e-2, 1e9),
     "aperture_diameter": (1e-9, 1e6),  # mm
     "sensor_size": (1e-3, 1e5),  # mm
     "focus_distance": (1e-6, 1e12),  # m, or infinite
@@ -38,13 +40,17 @@ LIMITS = {
 #: what may change while the shutter is open
 MOVABLE = (
     *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
-    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt"),
+    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt", "zoom"),
 )
+
+
+#: (first, last), (x, y), (about x, about y): surfaces of a lens, moved by mm and turned by degrees
+Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
 
 
 #: ways to say the same, of which one may be given
 RIVALS = (
-    ("f_stop", "aperture_diameter"),
+    ("f_stop", "aperture_diameter", "t_stop"),
     ("focus_distance", "focus_at", "focus_on"),
     ("shutter_time", "shutter_angle"),
 )
@@ -62,15 +68,21 @@ class Camera:
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
         lens_model: exact, thick, thin or pinhole; None: exact if a prescription is named.
         focal_length: mm, of an ideal lens; None: 50. A prescription has its own and takes no other.
+        zoom: Focal length at which a zoom stands, mm; None: as its file has it.
+        decenter: Elements that stand off the axis of a prescription, as lenses that were dropped
+            have them: for each the indices of its first and last surface, millimetres along x and
+            y, and degrees about x and y.
         sensor_size: Width and height, mm.
         sensor_fit: horizontal, vertical, auto or fill: which side of the sensor the picture spans.
         f_stop: Focal length / entrance pupil diameter; None: the file's, else 5.6, or the widest of
             the lens if that is slower.
         aperture_diameter: mm; the lecture's parameter, instead of ``f_stop`` (thin lens only).
+        t_stop: As ``f_stop``, of the light that comes through the glass on the axis.
         focus_distance: m from the entrance pupil along the axis; None: autofocus.
         focus_at: Pixel (x, y) whose surface is to be sharp.
         focus_on: Node whose nearest surface point is to be sharp.
         focus_from: pupil or sensor.
+        focus_by: paraxial, or best: the film stands where a point on the axis is the smallest spot.
         focus_breathing: Thin lens: keep the focal length, so that the field narrows when it focuses
             close, as a real lens does that moves as a whole; False keeps the field.
         blades: Number of straight or curved iris blades; 0: round.
@@ -101,14 +113,18 @@ class Camera:
     lens: str | Lens | None = None
     lens_model: str | None = None
     focal_length: float | None = None
+    zoom: float | None = None
+    decenter: tuple[Decenter, ...] = ()
     sensor_size: tuple[float, float] = (36.0, 24.0)
     sensor_fit: str = "horizontal"
     f_stop: float | None = None
     aperture_diameter: float | None = None
+    t_stop: float | None = None
     focus_distance: float | None = None
     focus_at: tuple[float, float] | None = None
     focus_on: str | None = None
     focus_from: str = "pupil"
+    focus_by: str = "paraxial"
     focus_breathing: bool = False
     blades: int = 0
     blade_rotation: float = 0.0
@@ -168,10 +184,12 @@ class Camera:
                 )
         given = {name for name, value in changes.items() if value is not None}
         if "pinhole" in (changes.get("lens"), changes.get("lens_model")):
-            odd = sorted(given & {"f_stop", "aperture_diameter", "aperture_image"})
+            odd = sorted(given & {"f_stop", "t_stop", "aperture_diameter", "aperture_image"})
             if odd:
                 raise UsageError(f"camera: a pinhole has no {odd[0]}")
-        replaced: dict[str, None] = {}
+        replaced: dict[str, Any] = {}
+        if changes.get("lens") is not None:  # of the lens that goes
+            replaced |= {"zoom": None, "decenter": ()}
         for rivals in RIVALS:
             both = sorted(given & set(rivals))
             if len(both) > 1:

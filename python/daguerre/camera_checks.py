@@ -39,10 +39,10 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
 
 def check(camera: Camera, model: str, *, prescription: bool) -> None:
     """Values that no lens has, and values that this kind cannot honour."""
-    for name in ("focal_length", "f_stop", "aperture_diameter", "iso"):
+    for name in ("focal_length", "zoom", "f_stop", "t_stop", "aperture_diameter", "iso"):
         value = getattr(camera, name)
         if value is not None:
-            hint = name in ("f_stop", "aperture_diameter") and value == 0
+            hint = name in ("f_stop", "t_stop", "aperture_diameter") and value == 0
             _positive(name, value, "; a pinhole is its own kind: lens='pinhole'" if hint else "")
     if camera.focus_distance is not None:
         _positive("focus_distance", camera.focus_distance, infinite=True)
@@ -60,12 +60,27 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
     if prescription and camera.focal_length is not None:
         raise UsageError(
             "camera: focal_length: a lens with a prescription has its own; "
-            "wanted none with it, or an ideal lens (lens='thin' or 'pinhole')"
+            "wanted none with it (of a zoom: zoom), or an ideal lens (lens='thin' or 'pinhole')"
+        )
+    for name in ("zoom", "decenter"):
+        if not prescription and getattr(camera, name):
+            raise UsageError(
+                f"camera: {name}: wanted a lens with a prescription for it, got {model}"
+                + ("; its focal_length may be any" if name == "zoom" else "")
+            )
+    if camera.decenter and model != "exact":
+        raise UsageError(
+            f"camera: decenter: wanted lens_model exact, got {model}, which has no elements"
         )
     if (model != "thin" or prescription) and camera.aperture_diameter is not None:
         raise UsageError(f"camera: aperture_diameter: this {model} lens takes f_stop instead")
-    if camera.aperture_diameter is not None and camera.f_stop is not None:
-        raise UsageError("camera: wanted either f_stop or aperture_diameter, got both")
+    stops = [n for n in ("f_stop", "aperture_diameter", "t_stop") if getattr(camera, n) is not None]
+    if len(stops) > 1:
+        raise UsageError(f"camera: wanted either {stops[0]} or {stops[1]}, got both")
+    if camera.t_stop is not None and model == "pinhole":
+        raise UsageError("camera: a pinhole has no t_stop")
+    if camera.focus_by not in ("paraxial", "best"):
+        raise UsageError(f"camera: focus_by: wanted paraxial or best, got {camera.focus_by!r}")
     if camera.focus_from not in ("pupil", "sensor"):
         raise UsageError(f"camera: focus_from: wanted pupil or sensor, got {camera.focus_from!r}")
     if model == "exact" and camera.aperture_image is not None and camera.shutter_type == "leaf":

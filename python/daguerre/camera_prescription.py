@@ -19,10 +19,12 @@ import daguerre._core as _core
 
 from . import lenses, tilt
 from .aim_cache import exact_lens
-from .camera import Camera
+from .camera import Camera, Decenter
 from .camera_parts import iris_facts, iris_of
-from .errors import InputError
+from .checks import numbers, short
+from .errors import UsageError
 from .focusing import Focus, ideal_direction
+from .lenses.errors import LensError, from_core
 
 DEFAULT_F_STOP = 5.6
 
@@ -78,23 +80,29 @@ def set_up(
         UsageError: Autofocus on a pixel outside of the frame.
         InputError: The lens cannot focus or open so far.
     """
+    lens = lens if camera.zoom is None else lens.at_zoom(camera.zoom)
     order = lens.first_order()
-    f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+    transmittance = _transmittance(lens)
+    f_stop = _f_stop(camera, lens, order, transmittance)
     if any(camera.tilt):
         imaging = _imaging(order)
         focus.sharp_at = lambda point: tilt.focus_on(imaging, camera.tilt, point)
     distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
     sharp = _focused(camera, lens, distance, f_stop)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    core, h0, transmittance = _core_camera(camera, model, sharp, frame, pose, film)
+    core, h0 = _core_camera(camera, model, sharp, frame, pose, film)
     facts = {
         "lens": lens.name,
         "lens_sha256": _hash_lens(lens),
         "coating": lens.coating,
-        "focal_length_mm": lens.nominal.efl_mm or order.efl,
+        "focal_length_mm": lens.zoom_mm or lens.nominal.efl_mm or order.efl,
         "effective_focal_length_mm": sharp.order.efl,
+        "zoom_mm": lens.zoom_mm,
+        "decenter": [[list(part) for part in one] for one in decenters(camera)],
         "f_stop": f_stop,
+        "t_stop": f_stop / math.sqrt(transmittance),
         "focus_distance_m": sharp.distance,
+        "focus_by": camera.focus_by,
         "entrance_pupil_offset_mm": (sharp.film_z - sharp.order.entrance_pupil.z)
         * tilt.cosine(camera.tilt),
         "h0": h0,
@@ -104,16 +112,63 @@ def set_up(
     return RealLens(core, film, facts)
 
 
+def decenters(camera: Camera) -> list[Decenter]:
+    """The elements off the axis, checked."""
+    wanted = "((first, last), (x, y)) or ((first, last), (x, y), (about x, about y))"
+    found: list[Decenter] = []
+    given: Any = camera.decenter
+    if not isinstance(given, tuple | list):
+        raise UsageError(f"camera: decenter: wanted a list of {wanted}, got {short(given)}")
+    for i, one in enumerate(given):
+        where = f"camera: decenter[{i}]"
+        if not isinstance(one, tuple | list) or len(one) not in (2, 3):
+            raise UsageError(f"{where}: wanted {wanted}, got {short(one)}")
+        first, last = numbers(one[0], where, 2, "the first and last surface")
+        x, y = numbers(one[1], where, 2, "two finite numbers (mm)")
+        a, b = numbers(one[2], where, 2, "two angles (deg)") if len(one) == 3 else (0.0, 0.0)
+        found.append(((int(first), int(last)), (x, y), (a, b)))
+    return found
+
+
+def _transmittance(lens: lenses.Lens) -> float:
+    """On the axis, of light as bright as a D65 world."""
+    try:
+        thick = _core.ThickLens(lens.prescription, 0.0, _core.Iris(), math.inf)
+    except ValueError as error:
+        raise from_core(error, lens.source) from None
+    return float(thick.transmittance)
+
+
+def _f_stop(
+    camera: Camera, lens: lenses.Lens, order: lenses.FirstOrder, transmittance: float
+) -> float:
+    if camera.t_stop is None:
+        return camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+    f_stop = camera.t_stop * math.sqrt(transmittance)
+    if f_stop < 0.99 * order.f_number:  # as the core grants
+        widest = order.f_number / math.sqrt(transmittance)
+        raise LensError(
+            f"{lens.source}: t-stop: wanted T/{widest:.3g} or narrower (f/{order.f_number:.3g} "
+            f"and {100 * transmittance:.3g} % of the light), got T/{camera.t_stop:.4g}",
+            "lens-f-stop",
+        )
+    return f_stop
+
+
 def _focused(camera: Camera, lens: lenses.Lens, distance: float, f_stop: float) -> _InFocus:
     from_sensor = camera.focus_from == "sensor" and camera.focus_distance is not None
-    order = lens.first_order()
-    try:
-        film_z = lens.prescription.film_position(distance, from_sensor)
-    except ValueError as error:
-        raise InputError(f"{lens.source}: {error}") from None
+    found = lens.focused(
+        distance,
+        f_stop=f_stop,
+        by="best" if camera.focus_by == "best" else "paraxial",
+        measured_from="sensor" if from_sensor else "pupil",
+    )
     if from_sensor:  # the film's place is known now, and with it the way to the pupil
-        distance -= (film_z - order.entrance_pupil.z) * 1e-3
-    return _InFocus(lens, order, film_z, distance, f_stop)
+        distance -= (found.film_z_mm - found.entrance_pupil_z) * 1e-3
+    used = found.lens
+    for surfaces, place, angles in decenters(camera):
+        used = used.decentered(surfaces, place, angles)
+    return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, f_stop)
 
 
 def _core_camera(
@@ -123,11 +178,11 @@ def _core_camera(
     frame: tuple[float, float],
     pose: _core.Motion,
     film: float,
-) -> tuple[_core.Camera, float, float]:
-    """The camera, its H0 and the transmittance on the axis."""
+) -> tuple[_core.Camera, float]:
+    """The camera and its H0."""
     if model == "exact":
         exact = _exact_lens(camera, sharp, frame)
-        return _core.Camera.exact(pose, exact), exact.h0, exact.transmittance
+        return _core.Camera.exact(pose, exact), exact.h0
     try:
         thick = _core.ThickLens(
             sharp.lens.prescription,
@@ -138,7 +193,7 @@ def _core_camera(
             tilt_deg=camera.tilt,
         )
     except ValueError as error:
-        raise InputError(f"{sharp.lens.source}: {error}") from None
+        raise from_core(error, sharp.lens.source) from None
     radius = sharp.order.efl / sharp.f_stop / 2
     vignetting = camera.natural_vignetting
     if model == "thick":
@@ -149,7 +204,7 @@ def _core_camera(
         )
     else:
         core = _core.Camera.pinhole(pose, film, vignetting)
-    return core, thick.h0, thick.transmittance
+    return core, thick.h0
 
 
 def _directions(
@@ -213,7 +268,7 @@ def _exact_lens(camera: Camera, sharp: _InFocus, frame: tuple[float, float]) -> 
             film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
         )
     except ValueError as error:
-        raise InputError(f"{sharp.lens.source}: {error}") from None
+        raise from_core(error, sharp.lens.source) from None
 
 
 def _hash_lens(lens: lenses.Lens) -> str:

@@ -91,7 +91,8 @@ def set_up(
     changing = set(facts.get("motion", {})) - {"transform"}
     if changing:
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
-        lens_motion = LensMotion(moving, changing, begin, end, *parts, lens_of)
+        behind = 1e-3 * setup.facts.get("entrance_pupil_offset_mm", 0.0) / tilt.cosine(camera.tilt)
+        lens_motion = LensMotion(moving, changing, begin, end, *parts, behind, lens_of)
         states = model in ("exact", "thick")  # as opposed to ideal lenses, which blend
         efl = setup.facts["effective_focal_length_mm"] if states else None
         note = lens_motion.apply(setup.core, efl, size, size[0] / resolution[0])
@@ -139,7 +140,8 @@ def _set_up_pinhole(setup: CameraSetup, camera: Camera, pose: _core.Motion) -> N
 
 def _set_up_thin(setup: CameraSetup, camera: Camera, pose: _core.Motion, focus: Focus) -> None:
     f = camera.focal_length or DEFAULT_FOCAL_LENGTH
-    diameter = camera.aperture_diameter or f / (camera.f_stop or camera_prescription.DEFAULT_F_STOP)
+    f_stop = camera.f_stop or camera.t_stop  # without glass they are the same
+    diameter = camera.aperture_diameter or f / (f_stop or camera_prescription.DEFAULT_F_STOP)
     if any(camera.tilt):
         focus.sharp_at = _sharp_when_tilted(camera, f)
     distance = focus.settled(lambda s: ideal_direction(_film_distance(camera, f, s)))

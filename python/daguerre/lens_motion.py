@@ -31,7 +31,7 @@ _STATE_TURN = 0.01
 MAX_STATES = 129
 _LOOKS = 1024
 _IRIS = ("blades", "blade_rotation", "blade_curvature")
-_LENS = ("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", *_IRIS)
+_LENS = ("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", "zoom", *_IRIS)
 
 
 @dataclass
@@ -45,6 +45,7 @@ class LensMotion:
         end: Of the interval, s.
         focus_distance: m, unless it changes; None: a pinhole.
         f_stop: Unless it changes; None: a pinhole.
+        film_offset: From the entrance pupil to the film at mid-exposure, m.
         make: The core's camera for one without motion.
     """
 
@@ -54,6 +55,7 @@ class LensMotion:
     end: float
     focus_distance: float | None
     f_stop: float | None
+    film_offset: float
     make: Callable[[Camera], _core.Camera]
 
     def apply(
@@ -93,13 +95,15 @@ class LensMotion:
         now = self.camera.at(time)
         if "focus_distance" in self.changing or self.focus_distance is None:
             return now
-        return replace(
-            now,
-            focus_distance=self.focus_distance,
-            focus_on=None,
-            focus_at=None,
-            focus_from="pupil",
-        )
+        known: dict[str, Any] = {"focus_on": None, "focus_at": None}
+        if "zoom" in self.changing:  # which moves the pupil, while the film stays
+            known |= {
+                "focus_distance": self.focus_distance + self.film_offset,
+                "focus_from": "sensor",
+            }
+        else:
+            known |= {"focus_distance": self.focus_distance, "focus_from": "pupil"}
+        return replace(now, **known)
 
     def _fractions(self, times: Sequence[float]) -> NDArray[np.float32]:
         span = self.end - self.begin
@@ -131,9 +135,11 @@ class LensMotion:
         widest = min(self._stop(c) for c in cameras)
         shifts = np.abs([c.shift for c in cameras]).max(axis=0)
         reach = math.hypot(*(size / 2 + s for size, s in zip(frame, shifts, strict=True)))
-        times, needed = self._state_times(cameras, efl, reach, STATE_BLUR * pitch * widest)
+        times, needed = self._state_times(cameras, efl, reach, widest, STATE_BLUR * pitch)
         states = [
-            replace(self._at(t), f_stop=widest, shift=(float(shifts[0]), float(shifts[1])))
+            replace(
+                self._at(t), f_stop=widest, t_stop=None, shift=(float(shifts[0]), float(shifts[1]))
+            )
             for t in times
         ]
         with ThreadPoolExecutor() as pool:
@@ -152,18 +158,22 @@ class LensMotion:
         return self.f_stop
 
     def _state_times(
-        self, cameras: list[Camera], efl: float, reach: float, film_mm: float
+        self, cameras: list[Camera], efl: float, reach: float, stop: float, blur_mm: float
     ) -> tuple[list[float], int]:
         """Times of the states, and how many the bounds ask for.
 
         Focusing at s moves the film by about f^2 / s; a state serves as much to either side of it.
-        Tilting moves what is sharp by as much as the film's edge turns (``reach`` from the axis).
+        Tilting moves what is sharp by as much as the film's edge turns (``reach`` from the axis),
+        zooming what lies there.
         """
+        film_mm = blur_mm * stop
         # inf counts as 0, so does a focus that stays
         inverse = [1e-3 / c.focus_distance if c.focus_distance else 0.0 for c in cameras]
         steps = efl**2 * np.abs(np.diff(inverse)) / (2 * film_mm)
         tilts = np.radians([c.tilt for c in cameras])
         steps += reach * np.abs(np.diff(tilts, axis=0)).sum(axis=1) / (2 * film_mm)
+        zooms = np.log([c.zoom or 1.0 for c in cameras])
+        steps += reach * np.abs(np.diff(zooms)) / (2 * blur_mm)
         turns = np.radians([c.blade_rotation for c in cameras])
         bends = np.array([c.blade_curvature for c in cameras])
         blades = np.diff([c.blades for c in cameras]) != 0

@@ -290,6 +290,7 @@ class Session:
             "time": self.scene.time,
             **shutter.metadata(camera),
             "aperture": facts.get("f_stop"),
+            "tStop": facts.get("t_stop"),
             "focus": facts.get("focus_distance_m"),
             "nominalFocalLength": facts.get("focal_length_mm"),
             "effectiveFocalLength": facts.get(

@@ -42,6 +42,15 @@ class CameraFlags:
     focal_length: Annotated[
         Text, option("--focal-length", metavar="MM", help="Focal length, mm.", panel=_CAMERA)
     ] = None
+    zoom: Annotated[
+        Text,
+        option(
+            "--zoom",
+            metavar="MM",
+            help="Focal length at which a zoom lens stands, mm.",
+            panel=_CAMERA,
+        ),
+    ] = None
     f_stop: Annotated[
         Text,
         option(
@@ -50,6 +59,15 @@ class CameraFlags:
             "--aperture",
             metavar="N",
             help="Focal length / entrance pupil diameter.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    t_stop: Annotated[
+        Text,
+        option(
+            "--t-stop",
+            metavar="N",
+            help="Instead of --f-stop, of the light that the glass lets pass.",
             panel=_CAMERA,
         ),
     ] = None
@@ -79,6 +97,15 @@ class CameraFlags:
             "--focus-from",
             metavar="pupil|sensor",
             help="Where the focus distance starts [pupil].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    focus_by: Annotated[
+        Text,
+        option(
+            "--focus-by",
+            metavar="paraxial|best",
+            help="Focus of rays near the axis, or the smallest spot [paraxial].",
             panel=_CAMERA,
         ),
     ] = None
@@ -134,6 +161,15 @@ class CameraFlags:
             panel=_CAMERA,
         ),
     ] = None
+    decenter: Annotated[
+        list[str] | None,
+        option(
+            "--decenter",
+            metavar="FIRST-LAST:X,Y[,AX,AY]",
+            help="Moves (mm) and turns (degrees) these surfaces of the lens; repeatable.",
+            panel=_CAMERA,
+        ),
+    ] = None
     iso: Annotated[
         float | None,
         option("--iso", metavar="N", help="For metadata and development only.", panel=_CAMERA),
@@ -155,7 +191,9 @@ class CameraFlags:
         """The parameters of ``Camera.with_`` that were given."""
         parsers: dict[str, tuple[str, str, Callable[[str, str], Any]]] = {
             "focal_length": ("focal_length", "--focal-length", q.length_mm),
+            "zoom": ("zoom", "--zoom", q.length_mm),
             "f_stop": ("f_stop", "--f-stop", q.f_number),
+            "t_stop": ("t_stop", "--t-stop", q.f_number),
             "aperture_diameter": ("aperture_diameter", "--aperture-diameter", q.length_mm),
             "focus": ("focus_distance", "--focus", q.distance_m),
             "focus_at": ("focus_at", "--focus-at", lambda f, t: q.numbers(f, t, 2, "480,270")),
@@ -169,6 +207,7 @@ class CameraFlags:
             "lens_model": "lens_model",
             "focus_on": "focus_on",
             "focus_from": "focus_from",
+            "focus_by": "focus_by",
             "focus_breathing": "focus_breathing",
             "blades": "blades",
             "blade_curvature": "blade_curvature",
@@ -185,6 +224,8 @@ class CameraFlags:
         for name, parameter in plain.items():
             if getattr(self, name) is not None:
                 out[parameter] = getattr(self, name)
+        if self.decenter:
+            out["decenter"] = tuple(q.decenter("--decenter", text) for text in self.decenter)
         if self.aperture_image is not None:
             from daguerre.io.iris import read_grey
 
@@ -198,7 +239,7 @@ def _refuse_rivals(changes: dict[str, Any]) -> dict[str, Any]:
 
     for rivals in (
         {"focus_distance": "--focus", "focus_at": "--focus-at", "focus_on": "--focus-on"},
-        {"f_stop": "--f-stop", "aperture_diameter": "--aperture-diameter"},
+        {"f_stop": "--f-stop", "t_stop": "--t-stop", "aperture_diameter": "--aperture-diameter"},
     ):
         given = [name for name in rivals if name in changes]
         if len(given) > 1:
