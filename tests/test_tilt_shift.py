@@ -21,6 +21,10 @@ KINDS = {
 }
 
 
+EXACT = dg.Camera(lens=LENS, f_stop=11.0, focus_distance=2.0)
+NEAR = [(0.0, 0.0), (1.5, 1.0), (-1.5, 1.0), (1.0, -2.0), (-1.0, -1.5)]
+
+
 def sharp_points(camera: dg.Camera, film: list[tuple[float, float]] = ALL) -> Array:
     o, d, w = rays(camera, film)
     return np.array([meeting(*one) for one in zip(o, d, w, strict=True)])
@@ -36,6 +40,30 @@ def test_what_is_sharp_is_a_plane_through_the_focus(kind: str, angles: tuple[flo
     assert sizes[2] < 2e-4 * sizes[1]  # flat
     axis = -tilt.turn(angles)[:, 2]
     assert (2.0 * axis - middle) @ axes[2] == pytest.approx(0, abs=2e-3)
+
+
+@pytest.mark.parametrize("angles", [(2.0, 0.0), (1.5, -2.0)])
+def test_near_the_axis_an_exact_lens_is_sharp_where_a_thick_one_is(
+    angles: tuple[float, float],
+) -> None:
+    """What is left is the difference of their focus, which tilt does not change."""
+    exact = EXACT.with_(tilt=angles)
+    error = sharp_points(exact, NEAR) - sharp_points(exact.with_(lens_model="thick"), NEAR)
+    straight = sharp_points(EXACT, NEAR) - sharp_points(EXACT.with_(lens_model="thick"), NEAR)
+    slant = sharp_points(exact, NEAR)[:, 2]
+    assert np.ptp(slant) > 0.1
+    np.testing.assert_allclose(error, straight, atol=0.25 * np.ptp(slant))
+
+
+def test_the_axis_of_an_exact_lens_is_sharp_at_its_focus() -> None:
+    for angles in ((6.0, 0.0), (4.0, -5.0)):
+        axis = -tilt.turn(angles)[:, 2]
+        exact = EXACT.with_(tilt=angles)
+        core = set_up(dg.Scene(), exact, (36, 24), None).core
+        film = np.asarray(core.chief_rays().film_points((2.0 * axis)[None]))[0]
+        point = sharp_points(exact, [(float(film[0]), float(film[1]))])[0]
+        np.testing.assert_allclose(point, 2.0 * axis, atol=0.04)
+        np.testing.assert_allclose(point / point[2], axis / axis[2], atol=1e-3)
 
 
 def test_the_sharp_plane_of_a_thin_lens_meets_film_and_lens_in_one_line() -> None:
@@ -79,9 +107,10 @@ def test_tilt_is_nothing_to_a_pinhole() -> None:
         assert (a == b).all()
 
 
-@pytest.mark.parametrize("kind", ["thin", "thick"])
+@pytest.mark.parametrize("kind", ["thin", "thick", "exact"])
 def test_the_lens_axis_is_as_bright_as_without_tilt(kind: str) -> None:
-    camera = KINDS[kind].with_(focus_distance=4.0, tilt=(10.0, 0.0), shift=(0.0, 8.8))
+    camera = (KINDS | {"exact": EXACT})[kind]
+    camera = camera.with_(focus_distance=4.0, tilt=(10.0, 0.0), shift=(0.0, 8.8))
     frame = dg.render(scenes.furnace(), camera, resolution=(12, 8), spp=64, filter="box")
     light = np.asarray(frame.xyz)[..., 1]
     assert light[3:5, 5:7].mean() == pytest.approx(1, abs=0.03)

@@ -35,7 +35,7 @@ LIMITS = {
     "sensor_size": (1e-3, 1e5),  # mm
     "focus_distance": (1e-6, 1e12),  # m, or infinite
     "shift": (-1e5, 1e5),  # mm
-    "tilt": (-60, 60),  # degrees
+    "tilt": (-45, 45),  # degrees
 }
 #: what may change while the shutter is open
 MOVABLE = (

@@ -52,6 +52,10 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
         number(shift, "camera: shift", *LIMITS["shift"])
     for tilt in numbers(camera.tilt, "camera: tilt", 2, "two finite angles (degrees)"):
         number(tilt, "camera: tilt", *LIMITS["tilt"])
+    if math.hypot(*camera.tilt) > LIMITS["tilt"][1]:
+        raise UsageError(
+            f"camera: tilt: wanted at most {LIMITS['tilt'][1]:g} degrees, got {camera.tilt}"
+        )
     whole(camera.blades, "camera: blades", 0, 64, "0 (round) or 3 .. 64")
     number(camera.blade_rotation, "camera: blade_rotation")
     number(camera.blade_curvature, "camera: blade_curvature", -1)

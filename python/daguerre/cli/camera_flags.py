@@ -193,7 +193,7 @@ class CameraFlags:
             "focal_length": ("focal_length", "--focal-length", q.length_mm),
             "zoom": ("zoom", "--zoom", q.length_mm),
             "f_stop": ("f_stop", "--f-stop", q.f_number),
-            "t_stop": ("t_stop", "--t-stop", q.f_number),
+            "t_stop": ("t_stop", "--t-stop", q.t_number),
             "aperture_diameter": ("aperture_diameter", "--aperture-diameter", q.length_mm),
             "focus": ("focus_distance", "--focus", q.distance_m),
             "focus_at": ("focus_at", "--focus-at", lambda f, t: q.numbers(f, t, 2, "480,270")),

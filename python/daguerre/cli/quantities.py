@@ -72,10 +72,18 @@ def plain_number(flag: str, text: str, wanted: str) -> float:
 
 
 def f_number(flag: str, text: str) -> float:
-    """``2.8``, ``f/2.8`` or ``T2.9``."""
-    number = re.sub(r"^[fFtT]/?", "", text.strip())
+    """``2.8`` or ``f/2.8``."""
+    number = re.sub(r"^[fF]/?", "", text.strip())
     return _finite(
         flag, text, _quantity(flag, number, {"": 1.0}, "", "an f-stop such as 2.8 or f/2.8")
+    )
+
+
+def t_number(flag: str, text: str) -> float:
+    """``2.9``, ``T2.9`` or ``T/2.9``."""
+    number = re.sub(r"^[tT]/?", "", text.strip())
+    return _finite(
+        flag, text, _quantity(flag, number, {"": 1.0}, "", "a T-stop such as 2.9 or T2.9")
     )
 
 
@@ -83,13 +91,16 @@ def decenter(
     flag: str, text: str
 ) -> tuple[tuple[int, int], tuple[float, float], tuple[float, float]]:
     """``FIRST-LAST:X,Y[,AX,AY]``: surfaces (0 is the front), mm, degrees."""
-    example = "3-5:0.1,0 or 3-5:0,0,0.2,0"
+    wanted = "surfaces, mm and degrees such as 3-5:0.1,0 or 3-5:0,0,0.2,0"
     match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*:(.*)", text)
     if not match:
-        raise _bad(flag, f"surfaces and millimetres such as {example}", text)
+        raise _bad(flag, wanted, text)
     first = int(match[1])
     count = 2 if match[3].count(",") == 1 else 4
-    x, y, a, b = (*numbers(flag, match[3], count, example), 0.0, 0.0)[:4]
+    try:
+        x, y, a, b = (*numbers(flag, match[3], count, ""), 0.0, 0.0)[:4]
+    except UsageError:
+        raise _bad(flag, wanted, text) from None
     return (first, int(match[2] or first)), (x, y), (a, b)
 
 
