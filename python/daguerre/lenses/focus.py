@@ -75,7 +75,7 @@ def focused(
             "lens-focus-near",
         )
     path = path_of(lens)
-    # An f-stop is engraved for infinity: the iris stays, whatever the groups do to the focal length.
+    # An f-stop is engraved for infinity: the iris stays, whatever groups do to the focal length.
     narrowed = 1.0
     if f_stop is not None and path is not None:
         narrowed = f_stop / lens.first_order().f_number
