@@ -167,6 +167,15 @@ void bind_optics(nb::module_& m) {
                      [](const ExactLens& lens) { return lens.aim().fallback_segments; })
         .def("first_order", &ExactLens::first_order)
         .def(
+            "film_plane",
+            [](const ExactLens& lens) {
+                const FilmPlane p = lens.film_plane();
+                const auto tuple = [](Vec3d v) { return nb::make_tuple(v.x, v.y, v.z); };
+                return nb::make_tuple(tuple(p.center), tuple(p.x), tuple(p.y));
+            },
+            "Where the film lies in the lens's frame, mm: its (0, 0), and unit vectors along its "
+            "coordinates, which are upside down: a point of the upright picture has the negative ones.")
+        .def(
             "chief_direction",
             [](const ExactLens& lens, double x_mm, double y_mm) {
                 const Vec3d d = lens.chief_direction({x_mm, y_mm});
