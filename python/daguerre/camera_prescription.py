@@ -24,6 +24,7 @@ from .camera_parts import iris_facts, iris_of
 from .checks import numbers, short
 from .errors import UsageError
 from .focusing import Focus, ideal_direction
+from .lenses.checking import frame_notes
 from .lenses.errors import LensError, from_core
 
 DEFAULT_F_STOP = 5.6
@@ -90,7 +91,8 @@ def set_up(
     distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
     sharp = _focused(camera, lens, distance, f_stop)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    core, h0 = _core_camera(camera, model, sharp, frame, pose, film)
+    focus.notes += lens.notes
+    core, h0 = _core_camera(camera, model, sharp, frame, pose, film, focus.notes)
     facts = {
         "lens": lens.name,
         "lens_sha256": _hash_lens(lens),
@@ -178,10 +180,12 @@ def _core_camera(
     frame: tuple[float, float],
     pose: _core.Motion,
     film: float,
+    notes: list[str],
 ) -> tuple[_core.Camera, float]:
     """The camera and its H0."""
     if model == "exact":
         exact = _exact_lens(camera, sharp, frame)
+        notes += frame_notes(exact, sharp.lens, frame, camera.shift)
         return _core.Camera.exact(pose, exact), exact.h0
     try:
         thick = _core.ThickLens(

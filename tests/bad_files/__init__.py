@@ -14,6 +14,7 @@ from . import (
     extensions,
     images,
     lens_files,
+    lens_imports,
     materials,
     meshes,
     nodes,
@@ -35,6 +36,7 @@ _THEMES = (
     uris,
     environments,
     lens_files,
+    lens_imports,
     pass_files,
 )
 CASES: list[Case] = unique(case for theme in _THEMES for case in theme.CASES)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from daguerre.errors import suggest
 from daguerre.io.json_item import Item, clean
 
+from .errors import LensError
 from .reading import member, number
 
 
@@ -86,5 +87,12 @@ def _gaps(item: Item, count: int) -> dict[int, float]:
         key = str(gap.key)
         if not key.isdecimal() or int(key) >= count:
             gap.fail(f"wanted the index of a surface, 0 to {count - 1}, got {key!r}")
-        out[int(key)] = gap.number(0 if int(key) < count - 1 else -1e5, 1e5)
+        value = gap.number(-1e5, 1e5)
+        if value < 0 and int(key) < count - 1:
+            raise LensError(
+                f"{gap.file}: {gap.path}: wanted at least 0 mm after surface {key}, got {value:g}",
+                "lens-overlap",
+                int(key),
+            )
+        out[int(key)] = value
     return out

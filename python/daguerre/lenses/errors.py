@@ -45,23 +45,29 @@ class LensError(InputError):
         self.surface = surface
 
 
-def from_core(error: ValueError, source: str) -> InputError:
-    """The core's complaint about a lens, with the name of its file."""
-    if isinstance(error, InputError):
+def from_core(error: ValueError, source: str, code: str | None = None) -> InputError:
+    """The core's complaint about a lens, with the name of its file.
+
+    Args:
+        error: What was raised; an ``InputError`` names its file already.
+        source: The lens's file.
+        code: Of what has none of its own; None: such errors stay as they are.
+    """
+    if isinstance(error, LensError) or (isinstance(error, InputError) and code is None):
         return error
     text = str(error)
-    message = f"{source}: {text}"
-    code = _CODE.search(text)
-    if code is None:
+    message = text if isinstance(error, InputError) else f"{source}: {text}"
+    own = _CODE.search(text)
+    if own is None and code is None:
         return InputError(message)
-    surface = _SURFACE.search(text)
-    return LensError(message, code[1], int(surface[1]) if surface else None)
+    surface = _SURFACE.search(text[len(source) :] if text.startswith(source) else text)
+    return LensError(message, own[1] if own else str(code), int(surface[1]) if surface else None)
 
 
 @contextmanager
-def reported(source: str) -> Iterator[None]:
-    """What the core says of a lens inside is raised with the name of its file, and its code."""
+def reported(source: str, code: str | None = None) -> Iterator[None]:
+    """What is said of a lens inside is raised with the name of its file, and a code."""
     try:
         yield
     except ValueError as error:
-        raise from_core(error, source) from None
+        raise from_core(error, source, code) from None

@@ -40,8 +40,9 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         InputError: With file and JSON path of what cannot be used.
     """
     path = Path(path)
-    root, notes = _root(path)
-    with reported(str(path)):
+    data = _bytes(path)
+    with reported(str(path), "lens-format"):
+        root, notes = _root(data, path)
         return checked(replace(_lens(root, path, configuration), notes=tuple(notes)))
 
 
@@ -51,13 +52,12 @@ def lens_of(data: dict[str, Any], source: str, configuration: str | None = None)
     Raises:
         InputError: With JSON path of what cannot be used.
     """
-    with reported(source):
+    with reported(source, "lens-format"):
         return _lens(Item(data, source), Path(source), configuration)
 
 
-def _root(path: Path) -> tuple[Item, list[str]]:
+def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:
     """The file's value, and what could not be honoured of another program's."""
-    data = _bytes(path)
     if formats.is_foreign(path):
         value, notes = formats.parse(data, path)
         return Item(value, str(path)), notes

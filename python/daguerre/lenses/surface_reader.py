@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 from daguerre.io.json_item import Item
 
+from .errors import LensError
 from .glass_json import glass_from_json
 from .reading import member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
@@ -60,8 +63,12 @@ def _thickness(item: Item, gap: float | None, last: bool) -> float | None:
     if not last and thickness is None:
         item.need("thickness").fail("wanted the distance to the next surface in mm, got null")
     if not last and thickness is not None and thickness < 0:
-        item.need("thickness").fail(f"wanted at least 0 mm, got {thickness:g}")
+        _overlap(item, f"thickness: wanted at least 0 mm, got {thickness:g}")
     return thickness
+
+
+def _overlap(item: Item, message: str) -> NoReturn:
+    raise LensError(f"{item.file}: {item.path}.{message}", "lens-overlap", int(item.key))
 
 
 def _semi_diameter(item: Item, radius: float | None) -> float | None:

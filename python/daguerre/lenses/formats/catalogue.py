@@ -6,7 +6,6 @@ from typing import Any
 
 from daguerre.errors import suggest
 from daguerre.lenses import glasses
-from daguerre.lenses.errors import LensError
 
 
 def find(name: str, makers: tuple[str, ...] = ()) -> tuple[dict[str, Any], str] | None:
@@ -17,11 +16,10 @@ def find(name: str, makers: tuple[str, ...] = ()) -> tuple[dict[str, Any], str] 
         makers: Names of catalogues, such as ``SCHOTT`` or ``OHARA_2021-04``; they come first.
     """
     known = {maker.upper(): maker for maker in glasses.MAKERS}
-    wanted = [known[key] for m in makers if (key := m.upper().split("_")[0]) in known]
-    for maker in (*wanted, None):
-        try:
-            found = glasses.find(name, maker)
-        except LensError:
+    keys = dict.fromkeys(maker.upper().split("_")[0] for maker in makers)
+    for maker in (*(known[key] for key in keys if key in known), None):
+        found = glasses.lookup(name, maker)
+        if found is None:
             continue
         glass = {"name": found.name}
         if found.maker in glasses.MAKERS:

@@ -112,6 +112,8 @@ class _Table:
 
     def surface(self, row: Line, index: int) -> Draft:
         words = (*row.words, "", "", "", "", "", "", "")
+        if not words[1]:
+            row.word(len(row.words), "radius")
         kind = words[1].lower()
         radius = 0.0 if kind in _PLANES else row.to_number(words[1], "radius")
         nd = row.to_number(words[3], "nd") if words[3] else 1.0
@@ -137,8 +139,10 @@ class _Table:
         )
 
     def _thickness(self, row: Line, word: str, index: int) -> float:
-        if number(word) is not None or not word:
-            return row.to_number(word, "thickness") if word else 0.0
+        if not word:
+            row.word(len(row.words), "thickness")
+        if number(word) is not None:
+            return row.to_number(word, "thickness")
         variable = self.variables.get(word)
         if variable is None:
             row.fail(

@@ -156,7 +156,7 @@ class _Reader:
     def _of_surface(self, line: Line) -> None:
         words = list(line.words)
         match = _SURFACE_WORD.fullmatch(words[1]) if len(words) > 1 else None
-        if match:  # THI S3 5
+        if match and words[0] not in ("GLB", "RET", "PIK"):  # THI S3 5
             del words[1]
             surface = self._at(match[1], line)
         elif not self.surfaces:

@@ -4,6 +4,6 @@ Indices are relative to air of 20 C and 101.325 kPa, as the catalogues state the
 at 25 C, Hikari at 23 C. Data: refractiveindex.info (CC0), see ``script/make-glass-catalogue``.
 """
 
-from .catalogue import MAKERS, GlassData, find, names, similar
+from .catalogue import MAKERS, GlassData, find, lookup, names, similar
 
-__all__ = ["MAKERS", "GlassData", "find", "names", "similar"]
+__all__ = ["MAKERS", "GlassData", "find", "lookup", "names", "similar"]

@@ -100,25 +100,37 @@ def find(name: str, maker: str | None = None) -> GlassData:
     Raises:
         LensError: No glass has this name (lens-glass); the nearest are suggested.
     """
-    key, maker = _key(name), _maker(name, maker)
-    exact = _by_key(maker).get(key)
-    if exact is not None:
-        return _load(exact)
-    tail = _WITH_MAKER.match(name.strip())
-    if tail and maker is None and tail[2].upper() in {m.upper() for m in (*MAKERS, "Nikon")}:
-        return find(tail[1], "Hikari" if tail[2].upper() == "NIKON" else tail[2])
-    other = _by_key(maker).get(_key(_OTHER_NAMES.get(key, "")))
-    if other is None:
-        found = (_by_key(maker).get(prefix + key) for prefix in PREFIXES)
-        other = next((entry for entry in found if entry is not None), None)
-    if other is None:
+    maker = _maker(name, maker)
+    found = _found(name, maker)
+    if found is None:
         whose = f" of {maker}" if maker else ""
         raise LensError(
             f"glass {name!r}: no glass{whose} in the catalogues has this name"
             f"{suggest(name, names(maker))}",
             "lens-glass",
         )
-    return _load(other, f"{name}: took {other.name} ({other.maker})")
+    return found
+
+
+def lookup(name: str, maker: str | None = None) -> GlassData | None:
+    """As :func:`find`, but None where no glass has this name: nothing is spent on suggestions."""
+    return _found(name, _maker(name, maker))
+
+
+def _found(name: str, maker: str | None) -> GlassData | None:
+    key = _key(name)
+    exact = _by_key(maker).get(key)
+    if exact is not None:
+        return _load(exact)
+    tail = _WITH_MAKER.match(name.strip())
+    if tail and maker is None and tail[2].upper() in {m.upper() for m in (*MAKERS, "Nikon")}:
+        whose = "Hikari" if tail[2].upper() == "NIKON" else tail[2]
+        return _found(tail[1], _maker(tail[1], whose))
+    other = _by_key(maker).get(_key(_OTHER_NAMES.get(key, "")))
+    if other is None:
+        found = (_by_key(maker).get(prefix + key) for prefix in PREFIXES)
+        other = next((entry for entry in found if entry is not None), None)
+    return None if other is None else _load(other, f"{name}: took {other.name} ({other.maker})")
 
 
 def similar(label: str, nd: float, tolerance: float = 5e-4) -> GlassData | None:
