@@ -140,3 +140,13 @@ def test_the_best_focus_has_the_smallest_spot() -> None:
     a, b = tele.focused(10.0), tele.focused(10.0, by="best", f_stop=2.0)
     assert a.film_z_mm == pytest.approx(b.film_z_mm, abs=1e-6)
     assert a.lens.surfaces[9].thickness != b.lens.surfaces[9].thickness
+
+
+def test_every_lens_of_the_library_focuses() -> None:
+    """To the film where its file has it, or says how near it can."""
+    for name in lenses.names():
+        lens = lenses.load(name)
+        found = lens.focused(20.0 if lens.first_order().efl < 700 else 100.0)
+        if path_of(lens) is not None:
+            assert found.film_z_mm == pytest.approx(found.lens.image_z, abs=1e-6)
+        assert min(s.thickness or 0 for s in found.lens.surfaces[:-1]) >= 0

@@ -17,7 +17,7 @@ By = Literal["paraxial", "best"]
 MeasuredFrom = Literal["pupil", "sensor"]
 
 #: Groups may go beyond infinity by this share of their way, as those of real lenses do.
-BEYOND = 0.05
+BEYOND = 0.2
 
 
 @dataclass(frozen=True)
@@ -189,9 +189,9 @@ def _solved(
         lens = path.at(way)
         return sharp(lens) - lens.image_z
 
-    grid = [-BEYOND, *np.linspace(0, 1, 2 * len(path.changes) + 3)]
+    grid = [-BEYOND, -BEYOND / 8, *np.linspace(0, 1, 2 * len(path.changes) + 3)]
     values = [miss(way) for way in grid]
-    for k in range(len(grid) - 1):
+    for k in (*range(2, len(grid) - 1), 1, 0):  # beyond infinity only if not before
         if values[k] == 0 or values[k] * values[k + 1] < 0:
             return path.at(_root(miss, grid[k], grid[k + 1], values[k], values[k + 1]))
     if values[-1] < 0:  # beyond infinity, as the file's own film is a little off: the film moves
