@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from daguerre import lenses
+from daguerre.cli import main
 from daguerre.lenses.library import FOLDER, Entry, entries
 
 ENTRIES = entries()
@@ -115,6 +116,21 @@ def test_a_list_of_names_parses_no_lens() -> None:
     start = time.process_time()
     assert len(lenses.names()) == len(ENTRIES)
     assert time.process_time() - start < 0.2
+
+
+def test_the_list_says_what_a_photographer_asks(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lenses"]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert len(rows) == len(ENTRIES)
+    (zoom,) = [row for row in rows if row.startswith("nikon-af-s-70-200mm-f2.8 ")]
+    assert zoom.split() == [
+        "nikon-af-s-70-200mm-f2.8", "2016", "71.5-196", "mm", "f/2.85", "36x24",
+        "WO", "2019/097669", "Ex.", "1",
+    ]  # fmt: skip
+    assert main(["lenses", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert [item["name"] for item in listed] == lenses.names()
+    assert {"title", "year", "patent", "efl_mm", "f_number", "format", "maker"} <= set(listed[0])
 
 
 def test_files_are_short_and_plain() -> None:

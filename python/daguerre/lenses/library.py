@@ -62,9 +62,9 @@ class Entry:
 
     @property
     def focal_length(self) -> str:
-        """Such as ``50 mm`` or ``70-196 mm``."""
+        """Such as ``50 mm`` or ``71.5-196 mm``."""
         ends = [self.efl_mm] if self.efl_long_mm is None else [self.efl_mm, self.efl_long_mm]
-        return "-".join(f"{end:.0f}" if end >= 20 else f"{end:.3g}" for end in ends) + " mm"
+        return "-".join(f"{end:.3g}" if end < 999 else f"{end:.0f}" for end in ends) + " mm"
 
 
 @cache
