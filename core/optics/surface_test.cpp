@@ -278,3 +278,50 @@ TEST_CASE("surfaces that cannot be are refused with a code and the surface") {
     Surface s;
     CHECK_THROWS_AS(set_kind(s, "mirror"), LensError);
 }
+
+TEST_CASE("the first crossing of wavy aspheres is that of a dense search") {
+    test::Random u(40);
+    int compared = 0, missed = 0, several = 0;
+    for (int round = 0; round < 1500; ++round) {
+        Surface s;
+        s.semi_diameter = 10;
+        s.curvature = u() / 20;
+        for (int power : {3, 4, 6, 8, 10, 14})
+            s.asphere.push_back({power, 12 * u() / std::pow(10, power)});
+        const SurfaceForm f(s, 0);
+        const int sign = round % 2 ? 1 : -1;
+        LensRay ray = ray_toward(u, 0, 9, 4);  // up to 80 degrees
+        ray.direction.z *= sign;
+        const Vec3d d = ray.direction,
+                    m = ray.origin - dot(ray.origin, ray.direction) * ray.direction;
+        const auto past = [&](double t) {
+            const Vec3d p = m + t * d;
+            return sign * (p.z - sag(f, p.x, p.y).z);
+        };
+        // Within the clear cylinder only.
+        const double a = d.x * d.x + d.y * d.y, b = m.x * d.x + m.y * d.y;
+        const double root =
+            std::sqrt(std::max(0., b * b - a * (m.x * m.x + m.y * m.y - 100)));
+        const double low = std::max(-60.0, (-b - root) / a);
+        const double high = std::min(60.0, (-b + root) / a);
+        constexpr int kSteps = 4000;
+        std::optional<double> first;
+        int crossings = 0;
+        for (int i = 1; i <= kSteps; ++i) {
+            const double t0 = low + (high - low) * (i - 1) / kSteps;
+            const double t1 = low + (high - low) * i / kSteps;
+            if (!(past(t0) < 0 && past(t1) >= 0)) continue;
+            ++crossings;
+            if (!first) first = t1;
+        }
+        const auto found = first_crossing(f, m, d, sign);
+        if (!first) continue;
+        ++compared, several += crossings > 1;
+        const bool same =
+            found && std::abs(*found - *first) < 1.01 * (high - low) / kSteps;
+        missed += !same;
+    }
+    CHECK(compared > 800);
+    CHECK(several > 20);
+    CHECK(missed == 0);
+}
