@@ -94,7 +94,10 @@ ShapeTables shape_tables(const Surface& s, const SurfaceForm& f) {
     t.px = float((1 + f.kx) * f.cx * f.cx), t.py = float((1 + f.ky) * f.cy * f.cy);
     const double scale = std::isfinite(f.clear) ? f.clear : 10;
     fill_asphere(t, f, scale);
-    t.tolerance = float(1e-6 * scale), t.stride = float(scale);
+    double terms = scale;  // what rounding acts on
+    for (const float a : t.even) terms += std::abs(double(a));
+    for (const float a : t.odd) terms += std::abs(double(a));
+    t.tolerance = float(5e-7 * terms), t.stride = float(scale);
     const SurfaceFrame& place = f.place;
     const Vec3d axes[3] = {place.x, place.y, place.z};
     const Vec3d shift = s.decenter;

@@ -69,6 +69,8 @@ inline Prescription singlet_of_form(int form, Random& u, bool placed) {
     }
     Surface stop;
     stop.thickness = 40, stop.stop = true, stop.semi_diameter = 9;
+    if (form == 1) stop.curvature = 1.0 / 50;                // stops may be round
+    if (form == 3) stop.glass.formula = AbbeGlass{1.5, 60};  // or the face of a prism
     lens.surfaces.push_back(stop);
     return lens;
 }
