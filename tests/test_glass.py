@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import math
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from daguerre import _core
+from daguerre import _core, lenses
 from daguerre.errors import InputError
 from daguerre.io.json_item import Item
 from daguerre.lenses import glasses
@@ -141,3 +145,50 @@ def test_formulas_in_a_file() -> None:
 def test_bad_glasses_are_refused_by_place(value: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         read(value)
+
+
+def singlet(folder: Path, glass: object, **changes: object) -> lenses.Lens:
+    surface = {"kind": "spherical", "semi_diameter": 10, "thickness": 8}
+    data = {
+        "schema": "daguerre-lens/0.1",
+        "surfaces": [
+            {**surface, "radius": 100, "glass": glass},
+            {**surface, "radius": -100, "thickness": 1},
+            {"kind": "stop", "radius": None, "semi_diameter": 8, "thickness": 90},
+        ],
+        **changes,
+    }
+    path = folder / "singlet.json"
+    path.write_text(json.dumps(data))
+    return lenses.load(path)
+
+
+def test_t_stop_of_a_bare_absorbing_singlet(tmp_path: Path) -> None:
+    glass = {"polynomial": {"coefficients": [2.25], "powers": [0]}}
+    bare = singlet(tmp_path, glass, coating="uncoated")
+    share = (1 - 0.04) ** 2
+    assert bare.axial_transmittance([450, 600]) == pytest.approx([share, share], abs=1e-12)
+    assert bare.t_stop(4) == pytest.approx(4 / math.sqrt(share))
+    tau = {"thickness_mm": 8, "table": [[400, 0.5], [700, 0.9]]}
+    dark = singlet(tmp_path, {**glass, "internal_transmittance": tau}, coating="uncoated")
+    assert dark.axial_transmittance([400, 700]) == pytest.approx([0.5 * share, 0.9 * share])
+    assert dark.t_stop(4, [400, 700]) == pytest.approx(4 / math.sqrt(0.7 * share))
+    assert bare.t_stop() == pytest.approx(bare.t_stop(bare.first_order().f_number))
+
+
+def test_coatings_lose_less_and_less(tmp_path: Path) -> None:
+    kinds = ("uncoated", "mgf2", "broadband", "perfect")
+    light = [
+        float(np.mean(singlet(tmp_path, {"name": "N-BK7"}, coating=c).axial_transmittance(VISIBLE)))
+        for c in kinds
+    ]
+    assert light == sorted(light)
+    assert light[2] > 0.99
+    green = singlet(tmp_path, {"nd": 1.6, "vd": 50}, coating="v-coat").axial_transmittance(550.0)
+    assert green == pytest.approx(1, abs=1e-6)
+
+
+def test_a_lens_under_water(tmp_path: Path) -> None:
+    dry = singlet(tmp_path, {"name": "N-BK7"})
+    wet = singlet(tmp_path, {"name": "N-BK7"}, object_medium={"name": "water"})
+    assert wet.first_order().efl > 1.3 * dry.first_order().efl

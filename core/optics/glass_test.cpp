@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "math/error.h"
-#include "optics/coating.h"
 
 using namespace dg;
 
@@ -110,32 +109,4 @@ TEST_CASE("absorption: nodes, logarithm between them, constant beyond") {
     CHECK_THROWS_WITH_AS(check_glass(g, "x"), doctest::Contains("absorption"), Error);
     g.absorption.per_mm.pop_back();
     CHECK_THROWS_AS(check_glass(g, "x"), Error);
-}
-
-TEST_CASE("coatings: published losses at normal incidence, both ways, never above 1") {
-    CHECK(1 - fresnel_transmittance(1, 1, 1.52, 1) ==
-          doctest::Approx(0.0426).epsilon(2e-3));
-    CHECK(1 - film_transmittance(1, 1, 1.52, 1, 550) ==
-          doctest::Approx(0.0126).epsilon(4e-3));
-    for (double sin1 = 0; sin1 < 0.99; sin1 += 0.1)
-        for (double nm = 380; nm <= 780; nm += 40) {
-            const double cos1 = std::sqrt(1 - sin1 * sin1), n = 1.7;
-            const double cos2 = std::sqrt(1 - sin1 * sin1 / (n * n));
-            const double in = film_transmittance(1, cos1, n, cos2, nm);
-            CHECK(
-                in ==
-                doctest::Approx(film_transmittance(n, cos2, 1, cos1, nm)).epsilon(1e-12));
-            CHECK(in > 0);
-            CHECK(in <= 1);
-            const double bare = fresnel_transmittance(1, cos1, n, cos2);
-            CHECK(
-                bare ==
-                doctest::Approx(fresnel_transmittance(n, cos2, 1, cos1)).epsilon(1e-12));
-        }
-    // A film of the glass's own index is no film.
-    CHECK(film_transmittance(1, 1, kFilmIndex, 1, 470) ==
-          doctest::Approx(fresnel_transmittance(1, 1, kFilmIndex, 1)).epsilon(1e-12));
-    CHECK(surface_transmittance(Coating::mgf2, 1.6, 1, 1.7, 1, 550) ==
-          fresnel_transmittance(1.6, 1, 1.7, 1));  // cemented: bare
-    CHECK_THROWS_AS(coating_from_name("gold"), Error);
 }

@@ -14,6 +14,20 @@ std::string surface_name(const Prescription& lens, int surface) {
            std::to_string(surface);
 }
 
+SurfaceCoating coating_at(const Prescription& lens, int i) {
+    const Surface& s = lens.surfaces[i];
+    const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
+    return coat(s.coating.empty() ? lens.coating : coating_from_name(s.coating),
+                refractive_index(before, kFilmWavelength),
+                refractive_index(s.glass, kFilmWavelength));
+}
+
+bool absorbs(const Prescription& lens) {
+    bool any = !lens.object_medium.absorption.nm.empty();
+    for (const Surface& s : lens.surfaces) any |= !s.glass.absorption.nm.empty();
+    return any;
+}
+
 int Prescription::stop_index() const {
     for (int i = 0; i < int(surfaces.size()); ++i)
         if (surfaces[i].stop) return i;

@@ -30,6 +30,12 @@ bool is_axially_symmetric(const Prescription& lens);
 /// beyond the form, NaN, negative gaps, absurd sizes and indices.
 void validate(const Prescription& lens);
 
+/// What lies on a surface: its own coating or the lens's, made for its glass.
+SurfaceCoating coating_at(const Prescription& lens, int surface);
+
+/// Whether any of its media swallows light.
+bool absorbs(const Prescription& lens);
+
 /// "name: surface 3", the place in messages.
 std::string surface_name(const Prescription& lens, int surface);
 

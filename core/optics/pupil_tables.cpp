@@ -8,6 +8,7 @@ namespace dg {
 namespace {
 
 constexpr double kShortest = 380, kLongest = 780;  // nm
+constexpr double kFilmTolerance = 1.5e-4;  // bound for a table of films; its error is half
 
 /// Coefficients (powers of l) of the polynomial through n at Chebyshev points of [-1, 1].
 std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale& scale,
@@ -17,7 +18,7 @@ std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale&
     for (int i = 0; i < count; ++i) {
         node[i] = std::cos(kPiD * (i + 0.5) / count);
         divided[i] = refractive_index(
-            glass, 1e3 / std::sqrt((node[i] - scale.offset) / scale.scale));
+            glass, scale.wavelength(node[i]));
     }
     for (int order = 1; order < count; ++order)  // Newton's divided differences
         for (int i = count - 1; i >= order; --i)
@@ -110,6 +111,40 @@ ShapeTables shape_tables(const Surface& s, const SurfaceForm& f) {
 
 }  // namespace
 
+namespace {
+
+void add_absorption(AbsorptionTables& t, const Glass& glass, const WavelengthScale& scale) {
+    t.absorbs.push_back(!glass.absorption.nm.empty());
+    for (int i = 0; i < t.kNodes; ++i) {
+        const double nm = scale.wavelength(2.0 * i / (t.kNodes - 1) - 1);
+        t.per_mm.push_back(float(absorption_per_mm(glass, nm)));
+    }
+}
+
+}  // namespace
+
+FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
+                     const Glass& after, const WavelengthScale& scale) {
+    if (coating.films.empty()) return {};
+    const double n = refractive_index(before, kFilmWavelength) /
+                     refractive_index(after, kFilmWavelength);
+    const Glass &rarer = n < 1 ? before : after, &denser = n < 1 ? after : before;
+    double thickness = 0;
+    for (const CoatingLayer& f : coating.films)
+        thickness += f.index(kFilmWavelength) * f.thickness_nm;
+    const auto at = [&](double l) -> std::function<double(double)> {
+        const double nm = scale.wavelength(l);
+        const double n1 = refractive_index(rarer, nm), n2 = refractive_index(denser, nm);
+        return [&coating, nm, n1, n2](double cos1) {
+            const double mu = n1 / n2, cos2 = std::sqrt(1 - mu * mu * (1 - cos1 * cos1));
+            return surface_transmittance(coating, n1, cos1, n2, cos2, nm);
+        };
+    };
+    return fit_film_table(at, std::max(n, 1 / n),
+                          2 * kPiD * thickness * (1 / kShortest - 1 / kLongest),
+                          kFilmTolerance);
+}
+
 WavelengthScale WavelengthScale::visible() {
     const double a = 1e6 / (kShortest * kShortest), b = 1e6 / (kLongest * kLongest);
     return {float(-(a + b) / (a - b)), float(2 / (a - b))};
@@ -146,11 +181,17 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
         const auto after = t.index.end() - (t.index_degree + 1);
         const bool same = std::equal(after, t.index.end(), after - (t.index_degree + 1));
         t.refracts.push_back(!same);
-        const bool coated =
-            lens.coating == Coating::mgf2 && (is_air(before) || is_air(s.glass));
-        t.light.push_back(same || lens.coating == Coating::perfect ? SurfaceLight::none
-                          : coated                                 ? SurfaceLight::film
-                                                                   : SurfaceLight::bare);
+        const SurfaceCoating coating = coating_at(lens, i);
+        t.light.push_back(same || !coating.reflects ? SurfaceLight::none
+                          : coating.films.empty()   ? SurfaceLight::bare
+                                                    : SurfaceLight::film);
+        t.rarer_in_front.push_back(refractive_index(before, kFilmWavelength) <
+                                   refractive_index(s.glass, kFilmWavelength));
+        t.films.push_back(film_table(coating, before, s.glass, t.scale));
+    }
+    if (absorbs(lens)) {
+        add_absorption(t.absorption, lens.object_medium, t.scale);
+        for (const Surface& s : lens.surfaces) add_absorption(t.absorption, s.glass, t.scale);
     }
     if (iris) fill_iris(t.iris, *iris, iris_radius);
     return t;

@@ -1,9 +1,11 @@
 // pupil_tables.h -- flat float tables that the SIMD kernels read: the lens and its iris.
 #pragma once
+#include <cmath>
 #include <vector>
 
 #include "optics/aim_tables.h"
 #include "optics/film_plane.h"
+#include "optics/film_table.h"
 #include "optics/stop.h"
 #include "optics/trace.h"
 
@@ -29,9 +31,11 @@ struct WavelengthScale {
     float offset, scale;  // l = offset + scale / um^2
     static WavelengthScale visible();
     double operator()(double nm) const { return offset + scale * (1e6 / (nm * nm)); }
+    double wavelength(double l) const { return 1e3 / std::sqrt((l - offset) / scale); }
 };
 
-/// How a surface treats light in the kernel.
+/// How a surface treats light in the kernel: lets all pass, by Fresnel's formulas, by the
+/// table of its films.
 enum class SurfaceLight : int { none, bare, film };
 
 /// By which formula rays meet a surface.
@@ -52,6 +56,14 @@ struct ShapeTables {
     float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 };
 
+/// What the media swallow: coefficients (1/mm, base e) at equal steps of l from -1 to 1,
+/// [medium][node]; empty if all are clear.
+struct AbsorptionTables {
+    static constexpr int kNodes = 257;  // 0.6 nm apart at 380 nm, 5 nm at 780 nm
+    std::vector<float> per_mm;
+    std::vector<char> absorbs;  // by medium
+};
+
 struct LensTables {
     int surfaces = 0, stop = 0;
     float film_gap = 0;  // last vertex to film, mm; to its centre if it is tilted
@@ -61,12 +73,19 @@ struct LensTables {
     std::vector<char> refracts;      // or rays go straight on
     std::vector<ShapeTables> shape;  // of those met as other
     std::vector<SurfaceLight> light;
+    std::vector<FilmTable> films;      // of coated surfaces
+    std::vector<char> rarer_in_front;  // for the cosine of those
     int index_degree = 0;
     std::vector<float> index;  // [medium][power of l]
+    AbsorptionTables absorption;
     bool apertures = true;     // test clear apertures
     IrisTables iris;
     WavelengthScale scale = WavelengthScale::visible();
 };
+
+/// The table of one coated surface; empty if there are no films on it.
+FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
+                     const Glass& after, const WavelengthScale& scale);
 
 LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,
                             const Iris* iris, double iris_radius);

@@ -18,9 +18,10 @@ namespace HWY_NAMESPACE {
 /// Rays on their way; z is measured from the vertex of the surface at hand.
 struct LaneRays {
     V x, y, z, dx, dy, dz;
-    V l, inv_um;  // wavelength variable, 1/lambda
-    V n;          // index of the medium that they are in
+    V l;  // wavelength variable
+    V n;  // index of the medium that they are in
     V transmittance;
+    V depth;  // optical, of the absorbing glass passed
     V iris_x, iris_y;
     M alive;
 };
@@ -33,8 +34,8 @@ HWY_INLINE V index_of(const LensTables& lens, int medium, V l) {
 }
 
 HWY_INLINE void set_wavelength(const LensTables& lens, V nm, LaneRays& r) {
-    r.inv_um = hn::Div(constant(1e3f), nm);
-    r.l = hn::MulAdd(hn::Mul(r.inv_um, r.inv_um), constant(lens.scale.scale),
+    const V inv_um = hn::Div(constant(1e3f), nm);
+    r.l = hn::MulAdd(hn::Mul(inv_um, inv_um), constant(lens.scale.scale),
                      constant(lens.scale.offset));
 }
 
@@ -76,11 +77,31 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     return hn::IfThenElseZero(inside, constant(1));
 }
 
+/// What a medium swallows on the way to a point; costs nothing in a lens of clear glass.
+HWY_INLINE void swallow(const LensTables& lens, int medium, const LaneVec& to, LaneRays& r) {
+    if (lens.absorption.absorbs.empty() || !lens.absorption.absorbs[medium]) return;
+    const V path = hn::MulAdd(
+        hn::Sub(to.x, r.x), r.dx,
+        hn::MulAdd(hn::Sub(to.y, r.y), r.dy, hn::Mul(hn::Sub(to.z, r.z), r.dz)));
+    r.depth = hn::MulAdd(absorption_lanes(lens.absorption, medium, r.l), path, r.depth);
+}
+
+HWY_INLINE void start_transmittance(LaneRays& r) {
+    r.transmittance = constant(1);
+    r.depth = hn::Zero(D());
+}
+
+HWY_INLINE void finish_transmittance(const LensTables& lens, LaneRays& r) {
+    if (lens.absorption.absorbs.empty()) return;
+    r.transmittance = hn::Mul(r.transmittance, hn::Exp(D(), hn::Neg(r.depth)));
+}
+
 /// What is left of Tracer::cross after the meeting: stops, and Snell's law.
 template <int kSign>
 HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
                              LaneRays& r) {
     const V one = constant(1), x = hit.point.x, y = hit.point.y;
+    swallow(lens, kSign > 0 ? i : i + 1, hit.point, r);
     r.x = x, r.y = y, r.z = hit.point.z;
     const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
     M ok = hn::And(hit.ok, hn::Le(r2, constant(lens.semi2[i])));
@@ -101,8 +122,7 @@ HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
         const V cos2 = hn::Sqrt(cos2_squared);
         ok = hn::And(ok, hn::Ge(cos2_squared, hn::Zero(D())));
         if (lens.light[i] != SurfaceLight::none) {
-            const LaneCrossing at{r.n,  hit.cos1, hit.cos1_squared, n2,
-                                  cos2, r.l,      r.inv_um};
+            const LaneCrossing at{r.n, hit.cos1, n2, cos2, r.l};
             r.transmittance =
                 hn::Mul(r.transmittance, transmission_lanes<kSign>(lens, i, at));
         }
@@ -190,7 +210,7 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
     const int last = lens.surfaces - 1;
     a.n = index_of(lens, lens.surfaces, a.l);
     b.n = index_of(lens, lens.surfaces, b.l);
-    a.transmittance = b.transmittance = constant(1);
+    start_transmittance(a), start_transmittance(b);
     a.z = hn::Add(a.z, constant(lens.film_gap));
     b.z = hn::Add(b.z, constant(lens.film_gap));
     for (int i = last; i >= 0; --i) {
@@ -200,6 +220,7 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
         }
         cross_surface<-1>(lens, i, a, b);
     }
+    finish_transmittance(lens, a), finish_transmittance(lens, b);
 }
 
 /// Rays that travel toward the film; z from the first vertex. At the end z is from the
@@ -207,7 +228,7 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
 HWY_INLINE void lanes_to_film(const LensTables& lens, LaneRays& a, LaneRays& b) {
     a.n = index_of(lens, 0, a.l);
     b.n = index_of(lens, 0, b.l);
-    a.transmittance = b.transmittance = constant(1);
+    start_transmittance(a), start_transmittance(b);
     for (int i = 0; i < lens.surfaces; ++i) {
         if (i) {
             a.z = hn::Sub(a.z, constant(lens.gap[i - 1]));
@@ -215,6 +236,7 @@ HWY_INLINE void lanes_to_film(const LensTables& lens, LaneRays& a, LaneRays& b) 
         }
         cross_surface<1>(lens, i, a, b);
     }
+    finish_transmittance(lens, a), finish_transmittance(lens, b);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -12,12 +12,18 @@ Tracer::Tracer(const Prescription& lens) : lens_(lens) {
     stop_ = lens.stop_index();
     for (std::size_t i = 0; i < vertices_.size(); ++i)
         forms_.emplace_back(lens_.surfaces[i], vertices_[i]);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+        coatings_.push_back(coating_at(lens_, int(i)));
 }
 
 LensIndices Tracer::at(double wavelength_nm) const {
     LensIndices n{wavelength_nm, {refractive_index(lens_.object_medium, wavelength_nm)}};
     for (const Surface& s : lens_.surfaces)
         n.index.push_back(refractive_index(s.glass, wavelength_nm));
+    if (!absorbs(lens_)) return n;
+    n.absorption = {absorption_per_mm(lens_.object_medium, wavelength_nm)};
+    for (const Surface& s : lens_.surfaces)
+        n.absorption.push_back(absorption_per_mm(s.glass, wavelength_nm));
     return n;
 }
 
@@ -39,8 +45,12 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
     const Vec3d d = place.turn_in(traced.ray.direction);
     const auto hit = meet(forms_[i], start, d, sign);
     if (!hit) return false;
-    const double n1 = n.index[sign > 0 ? i : i + 1], n2 = n.index[sign > 0 ? i + 1 : i];
-    traced.optical_path += n1 * dot(hit->point - start, d);
+    const int before = sign > 0 ? i : i + 1, after = sign > 0 ? i + 1 : i;
+    const double n1 = n.index[before], n2 = n.index[after];
+    const double path = dot(hit->point - start, d);
+    traced.optical_path += n1 * path;
+    if (!n.absorption.empty())
+        traced.transmittance *= std::exp(-n.absorption[before] * path);
     traced.ray.origin = place.out_of(hit->point);
     if (i == stop_) {
         traced.iris = {hit->point.x, hit->point.y};
@@ -59,7 +69,7 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
     if (!bent) return false;  // total reflection
     traced.ray.direction = place.turn_out(*bent);
     traced.transmittance *=
-        surface_transmittance(lens_.coating, n1, hit->cosine, n2, cos2, n.wavelength_nm);
+        surface_transmittance(coatings_[i], n1, hit->cosine, n2, cos2, n.wavelength_nm);
     return true;
 }
 

@@ -19,7 +19,7 @@ struct LensRay {
 struct TracedRay {
     LensRay ray;               // from the last surface that was met, refracted
     Vec2d iris{};              // mm, where the ray crossed the stop
-    double transmittance = 1;  // product over the surfaces, and the iris's
+    double transmittance = 1;  // product over surfaces and glasses, and the iris's
     double optical_path = 0;   // mm: sum of n x distance, from the origin to there
 };
 
@@ -35,10 +35,12 @@ struct Clip {
 /// d(x, y, n L, n M) out / in: rows are outputs. L and M are the direction's x and y.
 using RayJacobian = std::array<std::array<double, 4>, 4>;
 
-/// The indices of all media at one wavelength: index[i] before surface i.
+/// The indices of all media at one wavelength: index[i] before surface i; and what they
+/// swallow, 1/mm (empty: all are clear).
 struct LensIndices {
     double wavelength_nm;
     std::vector<double> index;
+    std::vector<double> absorption = {};
 };
 
 class Tracer {
@@ -83,6 +85,7 @@ class Tracer {
     Prescription lens_;
     std::vector<double> vertices_;
     std::vector<SurfaceForm> forms_;
+    std::vector<SurfaceCoating> coatings_;
     int stop_;
 };
 

@@ -76,6 +76,22 @@ std::vector<Case> patent_lenses() {
     return cases;
 }
 
+/// Every other glass swallows, mostly blue; all presets of coating in turn.
+std::vector<Case> lenses_of_dark_glass() {
+    constexpr Coating presets[] = {Coating::broadband, Coating::v_coat, Coating::uncoated};
+    std::vector<Case> cases = patent_lenses();
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+        Prescription& lens = cases[k].lens;
+        lens.coating = presets[k % 3];
+        lens.surfaces[0].coating = "mgf2";
+        for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+            if (i % 2 == 0 && !is_air(lens.surfaces[i].glass))
+                lens.surfaces[i].glass.absorption = {{380, 400, 500, 700},
+                                                     {0.03, 0.012, 0.002, 0.001}};
+    }
+    return cases;
+}
+
 std::vector<Case> singlets_of_every_form() {
     std::vector<Case> cases;
     test::Random u(21);
@@ -121,7 +137,7 @@ int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
         const Vec3d d{out.dx[i], out.dy[i], out.dz[i]}, o{out.x[i], out.y[i], out.z[i]};
         CHECK(length(d - exact->ray.direction) < 4e-6);
         CHECK(length(o - exact->ray.origin) < 2e-6 * c.size + 2e-5);
-        CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(2e-5));
+        CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(3e-4));
         CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) < 1e-4);
         // And back to the same film point, unless an edge is grazed.
         if (b.scene->pass[i] > 0) {
@@ -135,6 +151,13 @@ int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
 }
 
 }  // namespace
+
+TEST_CASE("lanes lose what coatings reflect and glass swallows, as the reference does") {
+    for_each_target([] {
+        test::Random u(12);
+        for (const Case& c : lenses_of_dark_glass()) CHECK(compare_lanes(c, Iris(), u) > 3);
+    });
+}
 
 TEST_CASE("lanes equal the scalar reference on every target, both directions") {
     for_each_target([] {

@@ -195,3 +195,22 @@ TEST_CASE("random prescriptions and rays give points or nothing, never NaN") {
     }
     CHECK(traced > 1000);
 }
+
+TEST_CASE("glass swallows along the path; a surface's own coating comes first") {
+    Prescription plate;
+    const Glass dark{ConstantIndex{1.5}, "", {{400, 600}, {0.04, 0.02}}};
+    plate.surfaces = {{0, 10, 20, dark}, {0, 50, 20, {}, true}};
+    plate.coating = Coating::perfect;
+    const double sine = 0.6;
+    const LensRay ray{{0, 0, -5}, {sine, 0, 0.8}};
+    const auto share = [&](double nm) {
+        const Tracer t(plate);
+        return t.to_film(ray, t.at(nm), {})->transmittance;
+    };
+    const double path = 10 / std::sqrt(1 - sine * sine / 2.25);
+    CHECK(share(500) == doctest::Approx(std::exp(-0.03 * path)).epsilon(1e-12));
+    CHECK(share(380) == doctest::Approx(std::exp(-0.04 * path)).epsilon(1e-12));
+    plate.surfaces[1].coating = "uncoated";
+    const double bare = surface_transmittance({}, 1.5, std::sqrt(1 - 0.16), 1, 0.8, 500);
+    CHECK(share(500) == doctest::Approx(bare * std::exp(-0.03 * path)).epsilon(1e-12));
+}

@@ -7,6 +7,7 @@
 #define DG_OPTICS_TRANSMISSION_INL_H_
 #endif
 
+#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
 #include "optics/pupil_tables.h"
 
@@ -28,44 +29,24 @@ HWY_INLINE V constant(float value) {
 /// Rays at a surface: indices and cosines of the side that they come from (1) and of the
 /// side that they go to (2), and their wavelength.
 struct LaneCrossing {
-    V n1, cos1, cos1_squared;
+    V n1, cos1;
     V n2, cos2;
-    V l, inv_um;
+    V l;
 };
 
-/// coating.h's airy_transmittance as numerator and denominator (numerator without its
-/// factor 8).
-HWY_INLINE void airy(V p, V q, V r, V cos_2b, V& numerator, V& denominator) {
-    const V p2 = hn::Mul(p, p), q2 = hn::Mul(q, q), r2 = hn::Mul(r, r);
-    const V m = hn::Mul(q2, hn::Mul(p, r));
-    const V sums = hn::Mul(hn::Add(p2, q2), hn::Add(q2, r2));
-    const V differences = hn::Mul(hn::Sub(p2, q2), hn::Sub(q2, r2));
-    denominator = hn::MulAdd(differences, cos_2b, hn::MulAdd(m, constant(4), sums));
-    numerator = m;
-}
-
-/// coating.h's film_transmittance. cos(2b) = -cos(2b - pi), by Taylor: |2b - pi| < 1.7,
-/// error < 2e-6.
-HWY_INLINE V film_lanes(V n1, V cos1, V cos1_squared, V n2, V cos2, V inv_um) {
-    const V one = constant(1), nf = constant(float(kFilmIndex));
-    const V sin_f = hn::Mul(n1, constant(float(1 / kFilmIndex)));
-    const V cos_f =
-        hn::Sqrt(hn::NegMulAdd(hn::Mul(sin_f, sin_f), hn::Sub(one, cos1_squared), one));
-    const V phase =
-        hn::MulAdd(hn::Mul(inv_um, constant(float(kPiD * kFilmWavelength * 1e-3))), cos_f,
-                   constant(float(-kPiD)));
-    const V w = hn::Mul(phase, phase);
-    V cosine = hn::MulAdd(w, constant(-1.f / 3628800), constant(1.f / 40320));
-    cosine = hn::MulAdd(cosine, w, constant(-1.f / 720));
-    cosine = hn::MulAdd(cosine, w, constant(1.f / 24));
-    cosine = hn::MulAdd(cosine, w, constant(-0.5f));
-    const V cos_2b = hn::NegMulAdd(cosine, w, constant(-1));
-    V ns, ds, np, dp;
-    airy(hn::Mul(n1, cos1), hn::Mul(nf, cos_f), hn::Mul(n2, cos2), cos_2b, ns, ds);
-    airy(hn::Mul(n1, hn::Mul(cos_f, cos2)), hn::Mul(nf, hn::Mul(cos1, cos2)),
-         hn::Mul(n2, hn::Mul(cos1, cos_f)), cos_2b, np, dp);
-    const V sum = hn::MulAdd(ns, dp, hn::Mul(np, ds));
-    return hn::Div(hn::Mul(constant(4), sum), hn::Mul(ds, dp));
+/// T of a coated surface, by its table (film_table.h).
+HWY_INLINE V film_lanes(const FilmTable& table, V cosine, V l) {
+    const V x = hn::MulAdd(cosine, constant(2), constant(-1));
+    const V root = hn::MulAdd(cosine, constant(table.pole), constant(1));
+    const float* c = table.coefficients.data();
+    V sum = hn::Zero(D());
+    for (const int terms : table.terms) {
+        V row = constant(c[0]);
+        for (int m = 1; m < terms; ++m) row = hn::MulAdd(row, l, constant(c[m]));
+        sum = hn::MulAdd(sum, x, row);
+        c += terms;
+    }
+    return hn::Div(hn::Mul(cosine, sum), hn::Mul(root, root));
 }
 
 /// Ts + Tp over 2 of bare glass: T = 4pr / (p+r)^2 with admittances p, r.
@@ -81,9 +62,24 @@ HWY_INLINE V bare_lanes(V n1, V cos1, V n2, V cos2) {
 /// surface_transmittance() (coating.h) of surface i; kSign is +1 toward the film.
 template <int kSign>
 HWY_INLINE V transmission_lanes(const LensTables& lens, int i, const LaneCrossing& at) {
-    if (lens.light[i] == SurfaceLight::film)
-        return film_lanes(at.n1, at.cos1, at.cos1_squared, at.n2, at.cos2, at.inv_um);
+    if (lens.light[i] == SurfaceLight::film) {
+        const bool rarer_first = bool(lens.rarer_in_front[i]) == (kSign > 0);
+        return film_lanes(lens.films[i], rarer_first ? at.cos1 : at.cos2, at.l);
+    }
     return bare_lanes(at.n1, at.cos1, at.n2, at.cos2);
+}
+
+/// absorption_per_mm() (glass.h) of a medium, linear between the nodes of its table.
+HWY_INLINE V absorption_lanes(const AbsorptionTables& t, int medium, V l) {
+    const D d;
+    const V last = constant(float(t.kNodes - 1));
+    const V at = hn::Mul(hn::Mul(hn::Add(l, constant(1)), last), constant(0.5f));
+    const V node = hn::Floor(hn::Clamp(at, hn::Zero(d), hn::Sub(last, constant(1))));
+    const V u = hn::Clamp(hn::Sub(at, node), hn::Zero(d), constant(1));
+    const VI index = hn::ConvertTo(DI(), node);
+    const float* per_mm = t.per_mm.data() + medium * t.kNodes;
+    const V a = hn::GatherIndex(d, per_mm, index), b = hn::GatherIndex(d, per_mm + 1, index);
+    return hn::MulAdd(u, hn::Sub(b, a), a);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

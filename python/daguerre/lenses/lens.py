@@ -165,6 +165,38 @@ class Lens:
             return float(self.vertices[-1] + last)
         return self.first_order().back_focal_point
 
+    def axial_transmittance(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
+        """Share of the light on the axis that coatings and glass let through.
+
+        Args:
+            wavelength_nm: Wavelengths, nm, any shape.
+
+        Returns:
+            0 to 1, the shape of the wavelengths; NaN where no ray passes along the axis.
+        """
+        nm = np.asarray(wavelength_nm, np.float64)
+        _check_wavelength(nm)
+        flat = np.ascontiguousarray(nm.reshape(-1))
+        start = np.tile([0.0, 0.0, -1.0], (flat.size, 1))
+        along = np.tile([0.0, 0.0, 1.0], (flat.size, 1))
+        *_, share, stopped = self.prescription.rays(start, along, flat, False)
+        return np.where(np.asarray(stopped) < 0, share, np.nan).reshape(nm.shape)
+
+    def t_stop(
+        self, f_stop: float | None = None, wavelength_nm: ArrayLike = DESIGN_WAVELENGTH_NM
+    ) -> float:
+        """The f-number of a lens without losses that would be as bright on the axis.
+
+        Args:
+            f_stop: Of the iris; wide open if None.
+            wavelength_nm: Wavelengths over which the transmittance is averaged, nm.
+
+        Returns:
+            ``f_stop / sqrt(transmittance)``.
+        """
+        stop = self.first_order().f_number if f_stop is None else f_stop
+        return float(stop / np.sqrt(self.axial_transmittance(wavelength_nm).mean()))
+
     def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
         """The lens with another table, and other fields changed."""
         nominal = changes.get("nominal", self.nominal)

@@ -13,7 +13,7 @@ from .surface import KINDS, TWO_SECTIONS, LensSurface
 
 #: Coefficients of higher powers are no surfaces that anybody grinds.
 MAX_POWER = 40
-COATINGS = ("uncoated", "mgf2", "perfect")
+COATINGS = ("uncoated", "mgf2", "v-coat", "broadband", "perfect")
 
 
 def read_surfaces(items: list[Item], gaps: dict[int, float]) -> list[LensSurface]:
