@@ -199,6 +199,35 @@ def test_waves_bend_as_their_rays_do(gauss: lenses.Lens) -> None:
     assert np.ptp(off[inside, 1]) > 0.1
 
 
+def test_rays_that_miss_the_grid_of_directions_are_made_good(
+    gauss: lenses.Lens, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A coarse fit of the window sends rays beside the grid of directions: W is hardly moved."""
+    light = analysis.pencil(analysis.set_up(gauss), 12.0)
+    assert light is not None
+    fine = analysis.wavefront(light, grid=48)
+    monkeypatch.setattr("daguerre.analysis.wavefronts.DEGREE", 2)
+    coarse = analysis.wavefront(light, grid=48)
+    assert fine is not None
+    assert coarse is not None
+    both = fine.lit & coarse.lit
+    off = (coarse.path - fine.path)[both]
+    assert np.std(off) < 0.02 * np.std(fine.path[both])
+    assert np.std(off) < 5e-5
+
+
+def test_a_moved_film_is_another_bench(gauss: lenses.Lens) -> None:
+    bench = analysis.set_up(gauss)
+    here, there = (analysis.pencil(b) for b in (bench, bench.moved(bench.film_z + 0.3)))
+    assert here is not None
+    assert there is not None
+    assert analysis.spot(here).moved(0.3).rms == pytest.approx(analysis.spot(there).rms, rel=1e-3)
+    waves, moved = analysis.wavefront(here), analysis.wavefront(there)
+    assert waves is not None
+    assert moved is not None
+    assert waves.defocused(0.3).rms_waves == pytest.approx(moved.rms_waves, rel=1e-3)
+
+
 def test_waves_and_rays_agree_where_aberrations_are_large(gauss: lenses.Lens) -> None:
     bench = analysis.set_up(gauss)
     light = analysis.pencil(bench, 8.0)

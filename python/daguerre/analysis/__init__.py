@@ -14,11 +14,11 @@ from .field import (
 )
 from .illumination import pupil_outline, relative_illumination
 from .mtf import diffraction_mtf, geometric_mtf, perfect_mtf
-from .pencil import Pencil, pencil
+from .pencils import Pencil, pencil
 from .psf import Psf, diffraction_psf, geometric_psf, point_spread, strehl_ratio
 from .seidel import SeidelSums, seidel_sums
 from .spots import Spot, best_film_z, spot
-from .wavefront import Wavefront, wavefront
+from .wavefronts import Wavefront, wavefront
 
 __all__ = [
     "Bench",

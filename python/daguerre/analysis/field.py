@@ -14,7 +14,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import FDC_NM, Bench, FloatArray, projected
 from .chief import chief_rays
-from .pencil import FLAT_FIELD, Pencil, unbounded
+from .pencils import FLAT_FIELD, Pencil, unbounded
 
 
 @dataclass(frozen=True)

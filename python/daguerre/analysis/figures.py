@@ -18,11 +18,11 @@ from .field import (
 )
 from .illumination import Illumination, pupil_outline, relative_illumination, within_light
 from .mtf import diffraction_mtf, geometric_mtf
-from .pencil import Pencil, pencil
+from .pencils import Pencil, pencil
 from .psf import Psf, point_spread, strehl_ratio
 from .seidel import SeidelSums, seidel_sums
 from .spots import Spot, spot
-from .wavefront import Wavefront, wavefront
+from .wavefronts import Wavefront, wavefront
 
 #: shares of the field at which spots, PSFs and pupils are shown
 FIELDS = (0.0, 0.35, 0.6, 0.8, 1.0)
@@ -50,7 +50,7 @@ class FieldPoint:
 class Figures:
     """Figures at one focal length, focus and f-stop. Heights in mm, over the field from 0 to 1.
 
-    The field ends where the light does, if that is within the image circle.
+    The field ends where 2 % of the light is left, if that is within the image circle.
 
     Attributes:
         points: At FIELDS.

@@ -13,6 +13,7 @@ from .bench import Bench, FloatArray
 from .chief import chief_rays
 
 GRID = 96
+DARK = 0.02  # of the axis's light: figures end there
 
 
 @dataclass(frozen=True)
@@ -68,16 +69,18 @@ def relative_illumination(
 
 
 def within_light(bench: Bench) -> Bench:
-    """The bench with its field cut back to where light arrives, if some of it is dark."""
+    """The bench with its field cut back to where DARK of the axis's light is left."""
+
+    def light(height: float) -> float:
+        return _irradiance(bench, height, DESIGN_WAVELENGTH_NM, 24)
+
     low, high = 0.0, bench.field_mm
-    if _lit_window(bench, high, DESIGN_WAVELENGTH_NM) is not None:
+    dark = DARK * light(0.0)
+    if light(high) > dark:
         return bench
-    for _ in range(10):
+    for _ in range(9):
         middle = 0.5 * (low + high)
-        if _lit_window(bench, middle, DESIGN_WAVELENGTH_NM) is None:
-            high = middle
-        else:
-            low = middle
+        low, high = (middle, high) if light(middle) > dark else (low, middle)
     return replace(bench, field_mm=low or bench.field_mm)
 
 

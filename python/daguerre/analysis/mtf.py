@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
-from .pencil import Pencil
+from .pencils import Pencil
 from .psf import grid_for
 from .spots import Spot, spot
-from .wavefront import ComplexArray, wavefront
+from .wavefronts import ComplexArray, wavefront
 
 
 def geometric_mtf(rays: Spot, freq_per_mm: ArrayLike) -> FloatArray:

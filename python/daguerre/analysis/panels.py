@@ -132,7 +132,10 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
         rows.append(("working f-number", f"{working:.3f}", ""))
     if not bench.lens.prescription.is_axially_symmetric:
         across = bench.lens.first_order(section="x")
-        rows.insert(1, ("in the x section", f"{across.efl:.3f} mm", ""))
+        rows.insert(
+            1, ("in the x section", f"{across.efl:.3f} mm", _stated(nominal.efl_x_mm, " mm"))
+        )
+        rows.append(("field runs along", "y", ""))
     rows += [
         ("best - paraxial focus", f"{bench.film_z - paraxial_film(made):+.3f} mm", ""),
         ("RMS spot on axis", _um(made.points[0].spot.rms if made.points[0].spot else math.nan), ""),

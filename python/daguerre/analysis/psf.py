@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bench import FloatArray
-from .pencil import Pencil
+from .pencils import Pencil
 from .spots import Spot, spot
-from .wavefront import Wavefront, wavefront
+from .wavefronts import Wavefront, wavefront
 
 #: wavelengths (nm) and weights of white light as the eye sees it (CIE 1924 V)
 WHITE_NM = (470.0, 510.0, 555.0, 610.0, 650.0)

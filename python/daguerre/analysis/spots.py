@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
-from .pencil import Pencil
+from .pencils import Pencil
 
 GRID = 48
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .mtf import diffraction_mtf, geometric_mtf
-from .pencil import Pencil
+from .pencils import Pencil
 from .psf import WHITE_NM, WHITE_WEIGHTS, Psf, geometric_psf, psf_of, waves_of
 from .spots import Spot, spot
 
@@ -94,19 +94,29 @@ def pictures(light: Pencil, steps: list[Step], kind: str) -> bytes:
     rows = -(-len(steps) // columns)
     bench = light.bench
     with rc_context(STYLE):
-        figure = Figure(figsize=(2.3 * columns + 0.4, 2.5 * rows + 0.5))
+        size = (2.3 * columns + 0.3, 2.55 * rows + 0.4)
+        figure = Figure(figsize=size)
+        figure.subplots_adjust(0.2 / size[0], 0.3 / size[1], 1 - 0.2 / size[0], 1 - 0.4 / size[1])
+        brightest = max(float(step.psf.image.max()) for step in steps)
         figure.suptitle(
             f"{bench.lens.name}, f/{bench.f_stop:.3g}, {np.degrees(light.angle):.1f}°, "
             f"{light.film[1]:.1f} mm",
             size=8,
+            y=1 - 0.12 / size[1],
         )
         for k, step in enumerate(steps):
             axes = figure.add_subplot(rows, columns, k + 1)
             half = step.psf.half_mm
             box(axes, half)
             axes.grid(visible=False)
-            image = np.sqrt(step.psf.image / max(step.psf.image.max(), 1e-30))
-            axes.imshow(image, extent=(-half, half, -half, half), origin="lower", cmap="inferno")
+            axes.imshow(
+                np.sqrt(step.psf.image / brightest),
+                extent=(-half, half, -half, half),
+                origin="lower",
+                cmap="inferno",
+                vmin=0,
+                vmax=1,
+            )
             how = "waves" if step.psf.diffraction else "rays"
             axes.set_xlabel(f"film {step.dz:+.3f} mm, box {2e3 * half:.0f} µm, {how}")
         return saved(figure, kind, bench.lens.name)

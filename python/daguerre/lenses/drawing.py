@@ -14,7 +14,7 @@ from .outline import Points, clear_heights, element_outlines
 
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
-    from daguerre.analysis.pencil import Pencil
+    from daguerre.analysis.pencils import Pencil
 
 WIDTH = 760.0  # px
 RAYS = 5  # of each fan
@@ -134,7 +134,7 @@ def _stop(lens: Lens, heights: list[float]) -> list[Line]:
 
 def _rays(bench: Bench, left: float, top: float) -> list[Line]:
     """Fans of three fields, from the rim to the rim of the light that passes."""
-    from daguerre.analysis.pencil import pencil
+    from daguerre.analysis.pencils import pencil
 
     out = []
     for share, colour in zip(FIELDS, COLOURS, strict=True):

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import BoolArray, FloatArray, Rays
-from .pencil import Pencil
+from .pencils import Pencil
 
 ComplexArray = NDArray[np.complex128]
 
