@@ -178,6 +178,33 @@ def test_a_stopped_lens_has_airys_disc(gauss: lenses.Lens) -> None:
     assert analysis.strehl_ratio(wave) > 0.99
 
 
+def test_optical_paths_agree_with_another_program(tmp_path: Path) -> None:
+    """Ours are about plane waves, theirs about a sphere: apart by (where rays land)^2 / 2 R."""
+    theirs = json.loads((Path(__file__).parent / "data/wavefront_cooke_triplet.json").read_text())
+    lens = lens_of(reference("cooke_triplet_50mm"), tmp_path)
+    bench = unmounted(lens, lens.first_order(D).efl / 10)
+    for field in theirs["fields"]:
+        light = analysis.pencil(bench, float(analysis.film_heights(bench, [field["field_deg"]])[0]))
+        assert light is not None
+        z = bench.order.entrance_pupil.z
+        to_pupil = (z - light.center[2]) / light.direction[2]
+        at = np.column_stack([field["x"], field["y"], np.zeros(len(field["x"]))]) * 5
+        middle = light.center + to_pupil * light.direction
+        paths = _paths(light, np.concatenate([[middle], middle + at]))
+        opd = -(paths[1:] - paths[0]) / (1e-6 * D)
+        np.testing.assert_allclose(opd, field["opd_waves"], atol=0.01)
+        assert np.ptp(opd) > 0.5
+
+
+def _paths(light: analysis.Pencil, points: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Optical paths from a plane wave through points to the image point, mm."""
+    back = (points - light.center) @ light.direction + 50
+    origins = points - back[:, None] * light.direction
+    rays = light.bench.rays(origins, np.tile(light.direction, (len(points), 1)), D, clip=False)
+    image = np.array([*light.film, light.bench.film_z])
+    return np.asarray(rays.path + ((image - rays.points) * rays.directions).sum(axis=1))
+
+
 def test_waves_bend_as_their_rays_do(gauss: lenses.Lens) -> None:
     """Malus: the gradient of W over directions is where the rays land, off axis too."""
     bench = analysis.set_up(gauss)
