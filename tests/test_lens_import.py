@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from daguerre import lenses
+from daguerre.lenses.errors import LensError
 from daguerre.lenses.library import FOLDER
 
 from . import lens_writers as write
@@ -251,3 +252,101 @@ def test_a_finite_object_widens_the_working_aperture(tmp_path: Path) -> None:
     order = imported(text, tmp_path, ".zmx").first_order()
     half = 0.5 * order.entrance_pupil.diameter / (300 + order.entrance_pupil.z)
     assert math.sin(math.atan(half)) == pytest.approx(0.02, rel=1e-9)
+
+
+# What is not honoured is said ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "note"),
+    [
+        ("FLOA", "FLOA\nVCYN 0 0.2", "vignetting factors"),
+        ("ENVD 20 1 0", "ENVD 35 1 0", "temperature 35"),
+        ("  STOP", "  STOP\n  SQAP 3 2 0", "aperture SQAP"),
+        ("  STOP", "  STOP\n  COAT AR", "coatings of the file"),
+        ("  STOP", "  STOP\n  SCBD 1 2", "record SCBD"),
+        ("60.32 0\n", "60.32 0.01\n", "partial dispersion"),
+        ("___BLANK 1 0 1.62041 60.32 0", "QX9 0 0 1.62041 60.32 0", "glass QX9: in no catalogue"),
+        ("___BLANK 1 0 1.62041 60.32 0", "BK7 0 0 1.5 40 0", "glass BK7: took N-BK7"),
+    ],
+)
+def test_zemax_notes(old: str, new: str, note: str, tmp_path: Path) -> None:
+    text = write.zmx(ASPHERE)
+    assert old in text
+    assert imported(text, tmp_path, ".zmx").notes == ()
+    notes = imported(text.replace(old, new, 1), tmp_path, ".zmx").notes
+    assert [n for n in notes if n.startswith(note)], notes
+
+
+def test_code_v_notes(tmp_path: Path) -> None:
+    text = write.seq(ASPHERE)
+    assert imported(text, tmp_path, ".seq").notes == (
+        "no EPD, FNO or NAO: the stop's clear diameter decides",
+    )
+    more = "EPD 11; VUY .1 .2\nTEM 40\nREX 3; PIK THI S1 S2; XYZ 1"
+    notes = imported(text.replace("STO", f"STO\n{more}"), tmp_path, ".seq").notes
+    wanted = ("vignetting", "TEM 40", "aperture REX", "pickups", "command XYZ")
+    for start in wanted:
+        assert [n for n in notes if n.startswith(start)], (start, notes)
+    assert len(notes) == len(wanted)
+
+
+def test_a_tilted_film_is_told(tmp_path: Path) -> None:
+    """A break that is never taken back leaves the film off the axis; the surfaces are exact."""
+    text = write.zmx(ASPHERE)
+    last = "TYPE STANDARD\n  CURV 0\n  DISZ 0"
+    number = text.count("SURF") - 1
+    broken = text.replace(last, f"TYPE COORDBRK\n  PARM 3 5\n  DISZ 0\nSURF {number + 1}\n  {last}")
+    lens = imported(broken, tmp_path, ".zmx")
+    assert any(
+        n.startswith("a film off the axis, by 0, 0 mm and 5, 0, 0 degrees") for n in lens.notes
+    )
+    check_same(lens, original(ASPHERE, tmp_path))
+
+
+def test_zemax_tilts_up_and_code_v_left_handed(tmp_path: Path) -> None:
+    """The same element in both: a positive tilt about x takes the axis toward -y."""
+    data = copy.deepcopy(PLACED)
+    data["surfaces"][3]["decenter"] = [0.0, 0.0, 0.0]
+    ray = {"origins": [0, 0, -10], "directions": [0, 0, 1]}
+    y = [
+        imported(text, tmp_path, suffix).trace(**ray)[0, 1]
+        for text, suffix in ((write.zmx(data), ".zmx"), (write.seq(data), ".seq"))
+    ]
+    assert y[0] == pytest.approx(y[1], abs=1e-9)
+    assert abs(y[0]) > 0.1
+
+
+# Edges and light ----------------------------------------------------------------------------------
+
+
+def test_a_crossing_near_the_rim_shortens_the_glass(tmp_path: Path) -> None:
+    data = copy.deepcopy(CENTRED["tessar"])
+    data["surfaces"][0]["semi_diameter"] = data["surfaces"][1]["semi_diameter"] = 13.5
+    lens = original(data, tmp_path)
+    (note,) = [n for n in lens.notes if "cross" in n]
+    assert note.startswith("surfaces 0 and 1 cross")
+    a, b = (s.semi_diameter for s in lens.surfaces[:2])
+    assert a == b
+    assert a is not None
+    assert a < 13.5
+    c = [1 / s["radius"] if s["radius"] else 0.0 for s in data["surfaces"][:2]]
+    sags = [k * a * a / (1 + math.sqrt(1 - (k * a) ** 2)) for k in c]
+    assert data["surfaces"][0]["thickness"] + sags[1] - sags[0] == pytest.approx(0, abs=5e-3)
+
+
+def test_a_crossing_within_the_beam_is_an_error(tmp_path: Path) -> None:
+    data = copy.deepcopy(CENTRED["tessar"])
+    data["surfaces"][0]["thickness"] = 0.2
+    with pytest.raises(LensError) as caught:
+        original(data, tmp_path)
+    assert (caught.value.code, caught.value.surface) == ("lens-edge", 0)
+
+
+def test_a_lens_that_is_all_obstruction_is_dark(tmp_path: Path) -> None:
+    data = copy.deepcopy(CENTRED["tessar"])
+    front = data["surfaces"][0]
+    front["inner_semi_diameter"] = 0.999 * front["semi_diameter"]
+    with pytest.raises(LensError) as caught:
+        original(data, tmp_path)
+    assert (caught.value.code, caught.value.surface) == ("lens-no-light", 0)

@@ -11,6 +11,7 @@ import typer
 
 from daguerre.errors import InputError, UsageError
 
+from .console import note
 from .flags import option
 from .quantities import angle_deg, distance_m, f_number, length_mm
 
@@ -95,6 +96,8 @@ def lens(
         raise UsageError("--through-focus: wanted with --psf FIELD,DISTANCE")
     point = None if psf is None else _point(psf)
     item = library.load(name)
+    for text in item.notes:
+        note(text)
     setting = _setting(zoom, focus, f_stop)
 
     def bench() -> Bench:
@@ -208,6 +211,7 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
         "name": item.name,
         "source": item.patent,
         "note": item.note,
+        "notes": list(item.notes),
         **order,
         "first_order": order,
         "nominal": asdict(item.nominal),

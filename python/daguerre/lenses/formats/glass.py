@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from daguerre.io.json_item import clean
+
 from .catalogue import find, nearest
 from .text import Line, Unread
 
@@ -51,6 +53,7 @@ def named(
     makers: tuple[str, ...] = (),
 ) -> Glass | None:
     """A glass by name: the catalogue's, else that of its code, else the file's own nd and Vd."""
+    name = clean(name)[:60]
     if name.upper() in ("AIR", "VACUUM"):
         return None
     found = find(name, makers)

@@ -36,6 +36,7 @@ class Line:
     def fail(self, message: str, code: str = "lens-format", surface: int | None = None) -> NoReturn:
         """Raises ``LensError`` for this line, and the surface by the file's own count."""
         where = "" if surface is None else f" surface {surface}:"
+        message = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in message)
         raise LensError(f"{self.file}: line {self.number}:{where} {message}", code, surface)
 
     def word(self, index: int, what: str) -> str:
