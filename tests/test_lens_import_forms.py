@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import copy
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from daguerre.lenses.formats.draft import moved
 from daguerre.lenses.formats.glass import coded
+from daguerre.lenses.groups import rotation
 
 from . import lens_writers as write
 from .bad_files.lens_imports import ZOOM
@@ -16,6 +20,7 @@ from .test_lens_import import (
     ASPHERE,
     GLASS,
     ODD,
+    PLACED,
     check_same,
     imported,
     made,
@@ -114,16 +119,68 @@ def test_private_glasses_of_code_v_are_tables(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("solve", "gap"),
-    [("TCOM 2 8.5", lambda moved: 8.5 - moved), ("TOLE 2 11.0", lambda moved: 11.0 - moved - 2.0)],
+    [
+        ("TCOM 2 8.5", lambda travel: 8.5 - travel),
+        ("TOLE 2 11.0", lambda travel: 11.0 - travel - 2.0),
+    ],
 )
 def test_thickness_solves_hold_in_every_position(solve: str, gap: object, tmp_path: Path) -> None:
     """On surface 4: with surface 2 it makes up a sum; or all from 2 to 4 do (3 is 2 mm thick)."""
     text = write.zmx(ZOOM).replace("  CURV 0.0492", f"  {solve}\n  CURV 0.0492")
-    for position, moved in (("a", 6.0), ("b", 7.0)):
+    for position, travel in (("a", 6.0), ("b", 7.0)):
         lens = imported(text, tmp_path, ".zmx", position)
-        assert lens.surfaces[1].thickness == pytest.approx(moved)
+        assert lens.surfaces[1].thickness == pytest.approx(travel)
         assert callable(gap)
-        assert lens.surfaces[3].thickness == pytest.approx(gap(moved))
+        assert lens.surfaces[3].thickness == pytest.approx(gap(travel))
+
+
+def test_frames_turn_about_x_then_the_new_y_then_the_new_z() -> None:
+    """Right-handed; what is done in one order is undone by the other with the signs changed."""
+    shift, tilt = [1.0, -2.0, 0.5], [10.0, 20.0, 30.0]
+    x, y, z = (rotation(tuple(t if i == k else 0.0 for i, t in enumerate(tilt))) for k in range(3))
+    frame = moved(shift, tilt)
+    np.testing.assert_allclose(frame[:3, :3], x @ y @ z, atol=1e-15)
+    np.testing.assert_allclose(frame[:3, 3], shift)
+    np.testing.assert_allclose(x @ [0, 0, 1], [0, -math.sin(math.radians(10)), x[2, 2]])
+    np.testing.assert_allclose(y @ [0, 0, 1], [math.sin(math.radians(20)), 0, y[2, 2]])
+    back = moved([-v for v in shift], [-v for v in tilt], tilt_first=True)
+    np.testing.assert_allclose(frame @ back, np.eye(4), atol=1e-15)
+
+
+def test_compound_tilts_place_surfaces_where_the_frames_are(tmp_path: Path) -> None:
+    tilt = (1.5, -2.0, 20.0)
+    zemax = (
+        write.zmx(PLACED)
+        .replace(
+            "PARM 3 1.5\n  PARM 4 0.0\n  PARM 5 0.0", "PARM 3 1.5\n  PARM 4 -2.0\n  PARM 5 20.0"
+        )
+        .replace(
+            "PARM 3 -1.5\n  PARM 4 -0.0\n  PARM 5 -0.0", "PARM 3 -1.5\n  PARM 4 2.0\n  PARM 5 -20.0"
+        )
+    )
+    code_v = write.seq(PLACED).replace("ADE -1.5; BDE -0.0; CDE 0.0", "ADE -1.5; BDE 2.0; CDE 20.0")
+    wanted = moved([0, 0, 0], list(tilt))[:3, :3]
+    for text, suffix in ((zemax, ".zmx"), (code_v, ".seq")):
+        lens = imported(text, tmp_path, suffix)
+        surface = lens.surfaces[3]
+        np.testing.assert_allclose(rotation(surface.tilt), wanted, atol=1e-14)
+        np.testing.assert_allclose(surface.decenter, [0.4, -0.3, 0.0], atol=1e-12)
+        assert not any(lens.surfaces[4].tilt)
+
+
+def test_the_image_of_code_v_may_stand_off_the_last_gap(tmp_path: Path) -> None:
+    text = write.seq(ASPHERE).replace("SI 0.0 0.0", "SI 0.0 -0.25")
+    assert imported(text, tmp_path, ".seq").surfaces[-1].thickness == 44.0 - 0.25
+
+
+def test_a_clear_diameter_beyond_the_sphere_is_the_spheres(tmp_path: Path) -> None:
+    data = made([row("spherical", 31.0, 9.0, 60.0, glass=GLASS), *ASPHERE["surfaces"][1:]])
+    data["surfaces"][1] = row("spherical", -310.0, 1.5, 13.0)
+    lens = imported(write.zmx(data), tmp_path, ".zmx")
+    assert any(n.startswith("a clear diameter beyond the sphere (surface 1") for n in lens.notes)
+    semi = lens.surfaces[0].semi_diameter
+    assert semi is not None
+    assert semi <= 31.0
 
 
 def test_dummies_are_joined_and_numbers_kept(tmp_path: Path) -> None:

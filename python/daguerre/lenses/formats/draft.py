@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.lenses.errors import LensError
+from daguerre.lenses.groups import angles
 
 Frame = NDArray[np.float64]
 #: Objects farther away than this (mm) are at infinity: files write 1e10 for it.
@@ -145,14 +146,9 @@ def lay_out(drafts: list[Draft], file: str) -> Table:
 
 
 def _place(frame: Frame) -> tuple[list[float], list[float]] | None:
-    """Decentre (mm) and tilt (degrees about x, then y, then z) of a frame; None: on the axis."""
+    """Decentre (mm) and tilt (degrees, as in the lens file) of a frame; None: on the axis."""
     shift = [float(frame[0, 3]), float(frame[1, 3]), 0.0]
-    r = frame[:3, :3]
-    tilt = [
-        math.degrees(math.atan2(r[2, 1], r[2, 2])),
-        math.degrees(math.asin(min(1.0, max(-1.0, -r[2, 0])))),
-        math.degrees(math.atan2(r[1, 0], r[0, 0])),
-    ]
+    tilt = list(angles(frame[:3, :3]))
     shift = [0.0 if abs(v) < 1e-12 else v for v in shift]
     tilt = [0.0 if abs(v) < 1e-12 else v for v in tilt]
     return (shift, tilt) if any(shift) or any(tilt) else None
