@@ -28,8 +28,7 @@ struct AsphereTerm {
 
 /// One surface and what follows it toward the film.
 struct Surface {
-    double curvature =
-        0;  // 1/mm; 0 is a plane. Of the y-z section, unless shape is conic
+    double curvature = 0;  // 1/mm; 0 is a plane. Of the y-z section, unless it is a conic
     double thickness = 0;  // mm to the next vertex; of the last surface: to the film at
                            // infinity focus, 0 unknown
     double semi_diameter = std::numeric_limits<double>::infinity();  // mm, clear
