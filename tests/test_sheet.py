@@ -58,6 +58,12 @@ def test_elements_are_drawn_from_their_own_diameters_with_flat_edges() -> None:
             assert np.isclose(z[on_axis], lens.vertices[k]).any()
 
 
+def test_a_stop_inside_glass_divides_nothing() -> None:
+    lens = lenses.load("zeiss-hologon-15mm-f8")
+    assert lens.surfaces[[s.stop for s in lens.surfaces].index(True)].glass
+    assert len(element_outlines(lens)) == 3
+
+
 def test_sags_of_conics_and_aspheres() -> None:
     plane = lenses.load("double-gauss-50mm-f2").surfaces[0]
     parabola = plane.replaced(radius=20.0, conic=-1.0, asphere={})

@@ -191,9 +191,10 @@ def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
 
 
 def half_image(lens: Lens, order: FirstOrder) -> float:
-    """Half of the image circle, mm: as stated, or from the stated field, else 36 x 24's.
+    """Half of the image circle, mm: as stated, or from the stated field.
 
-    A fisheye's picture may be a circle within its film: the smaller counts.
+    Else that of 36 x 24, or 60 degrees off the axis, whichever is smaller. A fisheye's picture may
+    be a circle within its film: the smaller counts.
     """
     known = []
     if lens.nominal.image_circle_mm:
@@ -201,7 +202,7 @@ def half_image(lens: Lens, order: FirstOrder) -> float:
     field, law = lens.nominal.full_field_deg, lens.nominal.projection or "rectilinear"
     if field and field > 1 and (law != "rectilinear" or (not known and field < 160)):
         known.append(float(abs(projected(law, order.efl, math.radians(0.5 * field)))))
-    return min(known, default=0.5 * math.hypot(36, 24) * min(1.0, abs(order.efl) / 40))
+    return min(known, default=min(0.5 * math.hypot(36, 24), math.sqrt(3) * abs(order.efl)))
 
 
 def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
@@ -225,6 +226,12 @@ def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
 
 def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
     # The pupil's diameter is focal length / f-stop, and so the stop's in proportion.
+    if math.isinf(order.stop_semi_diameter):
+        raise LensError(
+            f"{lens.name}: f-stop: wanted a clear diameter of the stop, or nominal.f_number, "
+            "got neither",
+            "lens-f-stop",
+        )
     if not (math.isfinite(f_stop) and f_stop > 0):
         raise LensError(
             f"{lens.name}: f-stop: wanted a positive number, got {f_stop:g}", "lens-f-stop"

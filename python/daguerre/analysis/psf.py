@@ -62,7 +62,7 @@ def geometric_psf(
     *,
     half_mm: float | None = None,
     pixels: int = 64,
-    grid: int = 112,
+    grid: int = 88,
     dz: float = 0.0,
 ) -> Psf:
     """The PSF of rays alone: right where the blur is far larger than diffraction's.
@@ -178,7 +178,7 @@ def grid_for(light: Pencil, nm: float, reach_mm: float) -> int:
     """Directions across so that neighbours differ by less than half a wave at a reach, mm."""
     sine = 0.5 / light.bench.f_stop
     wanted = 2 * (2 * sine) * reach_mm / (1e-6 * nm) * 1.3
-    return max(96, 32 * int(np.ceil(wanted / 32)))
+    return max(72, 24 * int(np.ceil(wanted / 24)))
 
 
 def _normalisation(wave: Wavefront) -> float:

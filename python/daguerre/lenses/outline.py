@@ -67,17 +67,25 @@ def element_outlines(lens: Lens, section: Section = "y") -> list[tuple[Points, f
     out = []
     for i, surface in enumerate(lens.surfaces[:-1]):
         n = surface.core_glass.index(DESIGN_WAVELENGTH_NM)
-        if n < 1.01:
+        if n < 1.01 or (i > 0 and _inside_glass(lens, i)):
             continue
         j = i + 1
-        while lens.surfaces[j].core_glass is surface.core_glass and lens.surfaces[j].stop:
-            j += 1  # a stop inside the glass does not divide it
+        while _inside_glass(lens, j):
+            j += 1
         front, back = heights[i][1], heights[j][0]
         outline = _element(
             (surface, float(z[i]), front), (lens.surfaces[j], float(z[j]), back), section
         )
         out.append((outline, n))
     return out
+
+
+def _inside_glass(lens: Lens, i: int) -> bool:
+    """A plane stop inside one glass: it divides nothing."""
+    before, here = lens.surfaces[i - 1].core_glass, lens.surfaces[i]
+    if not here.stop or here.radius is not None or i + 1 == len(lens.surfaces):
+        return False
+    return all(before.index(nm) == here.core_glass.index(nm) > 1.01 for nm in (486.1, 656.3))
 
 
 def _element(
