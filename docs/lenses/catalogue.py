@@ -40,7 +40,8 @@ def draw(entry: library.Entry) -> None:
 def photograph_all(wanted: list[library.Entry], out: Path) -> None:
     """A photograph through each lens."""
     file = out / "arcade.glb"
-    subprocess.run([sys.executable, "examples/arcade.py", str(file)], check=True, cwd=ROOT)
+    make = ["examples/lens_scenes.py", "-o", str(out), "--only", "arcade"]
+    subprocess.run([sys.executable, *make], check=True, cwd=ROOT)
     scene, key = dg.load(file), photographs.scene_key(file)
     for entry in wanted:
         started = time.process_time()

@@ -23,13 +23,13 @@ data sheets of all lenses.
 
 PHOTOGRAPHS = """## The photographs
 
-All show the scene of [examples/arcade.py](../examples/arcade.py) through the lens wide open, a zoom
-in the middle of its range, on the film that the lens was made for. The camera steps back until the
-plane of the head, the chart and the white frame is half a metre high in the picture, so the subject
-keeps its size and what differs is the lens: the discs of the lanterns (their size, their edge,
-their cut toward the corners), the straightness of frame and columns, the darkening of the corners,
-what happens to the fine lines of the chart. Very short lenses stop at 0.3 m, large films at ten
-focal lengths. An anamorphic picture is stretched back.
+All show the arcade of [examples/lens_scenes.py](../examples/lens_scenes.py) through the lens wide
+open, a zoom in the middle of its range, on the film that the lens was made for. The camera steps
+back until the plane of the head, the chart and the white frame is half a metre high in the picture,
+so the subject keeps its size and what differs is the lens: the discs of the lanterns (their size,
+their edge, their cut toward the corners), the straightness of frame and columns, the darkening of
+the corners, what happens to the fine lines of the chart. Very short lenses stop at 0.3 m, large
+films at ten focal lengths. An anamorphic picture is stretched back.
 """
 
 

@@ -9,7 +9,7 @@ from daguerre.lenses import Lens
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.library import Entry
 
-#: Height of the plane of focus that is to fill the picture, m; see examples/arcade.py.
+#: Height of the plane of focus that is to fill the picture, m; see examples/lens_scenes/arcade.py.
 SUBJECT = 0.5
 #: Nearest distance from the entrance pupil, m, and in focal lengths: large films keep away.
 NEAREST, NEAREST_IN_FOCAL_LENGTHS = 0.3, 10.0

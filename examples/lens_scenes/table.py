@@ -1,13 +1,13 @@
-"""The table with what stands on it, flowers in front of it, and the camera."""
+"""The table with what stands on it, and flowers in front of it."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arcade.chart import chart
 from kit import shapes, textures
 from kit.glb import Shape
+from lens_scenes.chart import chart
 from night.stage import Stage
 
 TOP = -0.215  # of the table, m
@@ -38,13 +38,6 @@ def add_table(stage: Stage) -> None:
         _add_flowers(stage, x, z)
 
 
-def add_camera(stage: Stage) -> None:
-    """50 mm at f/1.4, as far away as shows half a metre of the plane z = 0."""
-    distance = 50 * 0.5 / 24
-    camera = stage.glb.add_camera("Camera", 50.0, 1.4, round(distance, 4))
-    stage.glb.add_node("Camera", camera=camera, translation=[0, 0, distance])
-
-
 def _frame(x: float, y: float, radius: float) -> Shape:
     """A rectangle of round bars about the origin."""
     corners = np.array([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)])
@@ -55,18 +48,23 @@ def _frame(x: float, y: float, radius: float) -> Shape:
     return shapes.join(*bars, *knobs)
 
 
-def _add_figures(stage: Stage) -> None:
-    """Chessmen in two colours, 10 cm before the plane of focus to 30 cm behind it."""
+def add_men(stage: Stage) -> list[int]:
+    """Meshes of a red and an ivory chessman, 67 mm high."""
     profile = [(0.0, 0.0), (0.017, 0.0), (0.018, 0.006), (0.012, 0.012), (0.008, 0.020)]
     profile += [(0.006, 0.038), (0.012, 0.042), (0.007, 0.045)]
     body = shapes.lathe(shapes.smooth_profile(profile, 8), 48)
     man = shapes.join(body, shapes.moved(shapes.ball(0.0125, 16, 32), (0, 0.054, 0)))
-    meshes = [
+    return [
         stage.glb.add_mesh(
             name, man, stage.matter(name, baseColorFactor=[*color, 1], roughnessFactor=0.12)
         )
         for name, color in (("red", (0.55, 0.03, 0.02)), ("ivory", (0.75, 0.66, 0.48)))
     ]
+
+
+def _add_figures(stage: Stage) -> None:
+    """Chessmen 10 cm before the plane of focus to 30 cm behind it."""
+    meshes = add_men(stage)
     places = [(-0.255, 0.10), (0.03, 0.085), (0.0, 0.0), (0.285, 0.05), (0.045, -0.09)]
     places += [(-0.27, -0.16), (0.30, -0.17), (0.09, -0.28), (-0.05, -0.31), (0.235, -0.30)]
     for k, (x, z) in enumerate(places):

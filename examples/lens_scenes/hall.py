@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from arcade.table import FLOOR
 from kit import shapes, textures
 from kit.pose import look
+from lens_scenes.table import FLOOR
 from night.stage import Stage
 
 END = -42.0  # of the arcade, m

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from arcade.hall import END, HALF_WIDTH
 from kit import shapes
+from lens_scenes.hall import END, HALF_WIDTH
 from night.stage import PALETTE, Stage
 
 

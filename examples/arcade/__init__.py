@@ -1,1 +1,0 @@
-"""The arcade at night, in which lenses are compared; see examples/arcade.py."""

@@ -1,0 +1,1 @@
+"""Scenes in which lenses are compared; see examples/lens_scenes.py."""
