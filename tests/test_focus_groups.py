@@ -108,6 +108,7 @@ def test_zoom_and_focus_form_a_grid() -> None:
 @pytest.mark.parametrize("measured_from", ["pupil", "sensor"])
 def test_an_anamorphic_lens_is_focused_between_its_sections(measured_from: str) -> None:
     lens = lenses.load("schneider-anamorphic-60mm")
+    lens = lens.rebuilt(lens.surfaces, configurations=lens.configurations[:1])  # moves as a whole
     for distance in (math.inf, 5.0):
         found = lens.focused(distance, measured_from=measured_from)  # type: ignore[arg-type]
         start = found.entrance_pupil_z if measured_from == "pupil" else found.film_z_mm
@@ -120,6 +121,17 @@ def test_an_anamorphic_lens_is_focused_between_its_sections(measured_from: str) 
             images.append(-near / (far - near))
         assert np.mean(images) == pytest.approx(found.film_z_mm, abs=1e-5)
         assert abs(images[1] - images[0]) > 0.02
+
+
+def test_an_anamorphic_lens_brings_its_sections_together_by_its_cylinders() -> None:
+    lens = lenses.load("schneider-anamorphic-60mm")
+    for distance in (20.0, 5.0, 3.0, 1.8, 1.2):
+        found = lens.focused(distance)
+        object_z = found.entrance_pupil_z - 1e3 * distance
+        orders = [found.lens.first_order(section=s) for s in ("x", "y")]
+        images = [o.back_focal_point + o.efl**2 / (o.front_focal_point - object_z) for o in orders]
+        assert images == pytest.approx([found.film_z_mm] * 2, abs=0.02)
+        assert orders[1].efl / orders[0].efl > 1.7
 
 
 def test_the_best_focus_has_the_smallest_spot() -> None:
