@@ -81,6 +81,8 @@ def test_the_camera_steps_back_with_the_focal_length(monkeypatch: pytest.MonkeyP
     assert long.distance_m / normal.distance_m == pytest.approx(587.93 / 50, rel=2e-3)
     assert normal.resolution == (300, 200)
     assert at("olympus-zuiko-fisheye-8mm-f2.8").distance_m == 0.3
-    assert at("schneider-anamorphic-60mm").resolution[0] == 300
+    squeezed = at("schneider-anamorphic-60mm")
+    assert squeezed.resolution[0] == squeezed.size[0] == 300
+    assert squeezed.resolution[1] / squeezed.size[1] == pytest.approx(60.5 / 31, rel=0.02)
     zoom = at("nikon-af-s-70-200mm-f2.8")
     assert zoom.lens.zoom_mm == pytest.approx((71.5 * 196) ** 0.5)

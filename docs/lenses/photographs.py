@@ -16,7 +16,7 @@ import daguerre as dg
 from daguerre.denoise import denoise
 
 #: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
-SPP, DEPTH, EDITION = 40, 4, 1
+SPP, DEPTH, EDITION = 24, 4, 1
 JPEG = "jpeg:84"
 
 
@@ -34,7 +34,6 @@ def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
         transform=transform,
         lens=at.lens,
         sensor_size=at.film_mm,
-        sensor_fit="fill",
         f_stop=at.f_stop,
         focus_distance=at.distance_m,
     )
@@ -43,6 +42,8 @@ def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
         frame = denoise(frame)
     path.parent.mkdir(parents=True, exist_ok=True)
     image = oiio.ImageBuf(np.ascontiguousarray(frame.display("soft")[..., :3]))
+    if at.size != at.resolution:
+        image = oiio.ImageBufAlgo.resize(image, roi=oiio.ROI(0, at.size[0], 0, at.size[1]))
     image.specmod().attribute("Compression", JPEG)
     image.specmod().attribute("ImageDescription", key)
     if not image.write(str(path)):
@@ -57,6 +58,6 @@ def scene_key(path: Path) -> str:
 
 def _key(at: Place, scene: str) -> str:
     """Of all that the picture depends on, but for the program."""
-    facts = [at.f_stop, at.film_mm, at.distance_m, at.resolution, at.focal_length_mm]
+    facts = [at.f_stop, at.film_mm, at.distance_m, at.resolution, at.size, at.focal_length_mm]
     facts += [at.lens.data, scene, SPP, DEPTH, EDITION, dataclasses.asdict(at.lens.nominal)]
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:32]

@@ -28,7 +28,8 @@ class Place:
         f_stop: Wide open.
         film_mm: Width and height.
         distance_m: From the entrance pupil to the plane of focus.
-        resolution: px; an anamorphic picture is stretched back.
+        resolution: px.
+        size: px of what is shown: an anamorphic picture is stretched back.
     """
 
     lens: Lens
@@ -36,6 +37,7 @@ class Place:
     film_mm: tuple[float, float]
     distance_m: float
     resolution: tuple[int, int]
+    size: tuple[int, int]
 
     @property
     def focal_length_mm(self) -> float:
@@ -54,8 +56,10 @@ def place(entry: Entry, lens: Lens) -> Place:
     distance = max(distance, NEAREST, 1e-3 * NEAREST_IN_FOCAL_LENGTHS * efl)
     wide = film[0] * squeeze(lens) / film[1]
     height = min(HIGHEST, WIDEST / wide)
-    resolution = (2 * round(wide * height / 2), 2 * round(height / 2))
-    return Place(lens, 1.0005 * order.f_number, film, _reachable(lens, distance), resolution)
+    size = round(wide * height), round(height)
+    resolution = size[0], round(size[0] * film[1] / film[0])
+    distance = _reachable(lens, distance)
+    return Place(lens, 1.0005 * order.f_number, film, distance, resolution, size)
 
 
 def film_of(entry: Entry, lens: Lens, efl: float) -> tuple[float, float]:
