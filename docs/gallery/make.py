@@ -19,11 +19,11 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from pictures import MOTION, NIGHT, PICTURES, Picture
+from pictures import GLASS, MOTION, NIGHT, PICTURES, Picture
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-EXAMPLES = (["night_table.py", NIGHT], ["extensions.py"], ["motion.py"])
+EXAMPLES = (["night_table.py", NIGHT], ["extensions.py"], ["motion.py"], ["lens_scenes.py"])
 
 INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
 
@@ -33,11 +33,18 @@ What moves while the shutter is open is blurred; [motion.md](../motion.md) tells
 several pictures has a command for each.
 """
 
+ABOUT_GLASS = """## Glass
+
+Real lenses, by their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
+through each of the library.
+"""
+
 CREDITS = """
 The night table is made by [examples/night_table.py](../../examples/night_table.py), what lies in
-`out/extensions` by [examples/extensions.py](../../examples/extensions.py), and in `out/motion`
-by [examples/motion.py](../../examples/motion.py). The chess set is "Open
-Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
+`out/extensions` by [examples/extensions.py](../../examples/extensions.py), in `out/motion` by
+[examples/motion.py](../../examples/motion.py), and in `out/lens_scenes` by
+[examples/lens_scenes.py](../../examples/lens_scenes.py). The chess set is
+"Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
 The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
 holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
 `--denoise` needs the extra of that name: `pip install ".[denoise]"`; the garden's mosaics need
@@ -52,10 +59,18 @@ def run(command: str, data: Path | None) -> None:
     subprocess.run([*own, *rest], check=True, cwd=ROOT)
 
 
-def pixels_of(output: str) -> list[NDArray[np.uint8]]:
+def pixels_of(output: str, squeeze: float) -> list[NDArray[np.uint8]]:
     """The picture, or those of a sequence, that a command wrote."""
     files = sorted(ROOT.glob(output.replace("#", "[0-9]")))
-    return [oiio.ImageBuf(str(file)).get_pixels(oiio.UINT8)[..., :3] for file in files]
+    return [shown(oiio.ImageBuf(str(file)), squeeze) for file in files]
+
+
+def shown(panel: oiio.ImageBuf, squeeze: float) -> NDArray[np.uint8]:
+    """The pixels of a panel, less high by the squeeze of its lens."""
+    if squeeze != 1:
+        size = panel.spec().width, round(panel.spec().height / squeeze)
+        panel = oiio.ImageBufAlgo.resize(panel, roi=oiio.ROI(0, size[0], 0, size[1]))
+    return panel.get_pixels(oiio.UINT8)[..., :3]
 
 
 def render(picture: Picture, data: Path | None) -> None:
@@ -66,7 +81,7 @@ def render(picture: Picture, data: Path | None) -> None:
         for old in ROOT.glob(output.replace("#", "[0-9]")):
             old.unlink()
         run(command, data)
-        panels += pixels_of(output)
+        panels += pixels_of(output, picture.squeeze)
     rows = [panels[k : k + picture.columns] for k in range(0, len(panels), picture.columns)]
     sheet = np.concatenate([np.concatenate(row, axis=1) for row in rows])
     pixels = oiio.ImageBuf(np.ascontiguousarray(sheet))
@@ -88,7 +103,7 @@ def section(pictures: list[Picture]) -> list[str]:
 
 def main() -> None:
     """Renders what was asked for, then writes the page."""
-    every = [*PICTURES, *MOTION]
+    every = [*PICTURES, *GLASS, *MOTION]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
     parser.add_argument("--only", action="append", choices=[p.name for p in every])
@@ -101,7 +116,8 @@ def main() -> None:
             wanted = not given.only or picture.name in given.only
             if wanted and (given.data or not picture.needs_data):
                 render(picture, given.data and given.data.resolve())
-    page = [INTRODUCTION, *section(PICTURES), ABOUT_MOTION, *section(MOTION)]
+    page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS)]
+    page += [ABOUT_MOTION, *section(MOTION)]
     (HERE / "README.md").write_text("\n".join(page) + CREDITS)
 
 

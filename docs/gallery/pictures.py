@@ -15,6 +15,7 @@ class Picture:
 
     Several flags make a sheet of as many panels, side by side in `columns`; a command that writes
     `--frames` gives a panel for each. A scene that is a Python script makes the picture by itself.
+    What an anamorphic lens has squeezed is stretched back by making the panels less high.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Picture:
     flags: str | tuple[str, ...]
     needs_data: bool = False
     columns: int = 1
+    squeeze: float = 1.0
 
     def commands(self, folder: str) -> list[tuple[str, str]]:
         """What is typed for each panel, and the file that comes of it; #### counts frames."""
@@ -252,5 +254,102 @@ MOTION = [
         "--time 0.15 --shutter 1/12 --f-stop 8 --env DATA/hdri/st_peters_square_night_1k.hdr "
         f"{FULL}",
         needs_data=True,
+    ),
+]
+
+LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
+DISCS = "--max-depth 1 --noise 0.1 --spp 1024 --denoise"
+PANEL = "--res 375x250 --spp 32 --denoise"
+TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8"
+ZOOM = "--camera zoom --lens nikon-af-s-70-200mm-f2.8 --f-stop 4"
+THIRD = "--res 250x167 --spp 32 --denoise"
+VIEW = "--lens rodenstock-grandagon-n-90mm-f4.5 --sensor 127x102 --f-stop 11 --focus 8"
+
+GLASS = [
+    Picture(
+        "four_lenses",
+        "One scene, one place, four lenses, as in Kolb, Mitchell and Hanrahan 1995: telephoto "
+        "200 mm, double Gauss 50 mm, wide angle 35 mm, fisheye 16 mm.",
+        ARCADE,
+        tuple(
+            f'--camera "one place" --lens {name} --f-stop 2.8 {PANEL}'
+            for name in (
+                "telephoto-200mm-f1.8",
+                "double-gauss-50mm-f2",
+                "wide-angle-35mm-f2",
+                "fisheye-16mm-f2.8",
+            )
+        ),
+        columns=2,
+    ),
+    Picture(
+        "cat_eyes",
+        "Small lamps far behind the focus draw the pupil of a fast lens over the whole frame: "
+        "round in the middle, and cut by the rims of the first and the last glass toward the "
+        "corners.",
+        LAMPS,
+        f"--lens canon-50mm-f0.95 --f-stop 0.95 --res 750x500 {DISCS}",
+    ),
+    Picture(
+        "bubbles",
+        "Soap bubbles and cream: a Biotar of 1927 draws discs of light with a bright edge, a "
+        "lens for soft portraits without one. That is spherical aberration, over- and "
+        "undercorrected.",
+        LAMPS,
+        (
+            f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --res 1125x750 "
+            f"--crop 375,750,250,500 {DISCS}",
+            f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
+            f"--crop 375,750,250,500 {DISCS}",
+        ),
+        columns=2,
+    ),
+    Picture(
+        "tilt",
+        "A lens for product photography at f/2.8, straight and tilted by 7.1 degrees: film, lens "
+        "and the top of the table then meet in one line (Scheimpflug), and all of it is sharp.",
+        "out/lens_scenes/long_table.glb",
+        tuple(f"{TABLE}{tilt} {PANEL}" for tilt in ("", " --tilt=-7.1,0")),
+        columns=2,
+    ),
+    Picture(
+        "shift",
+        "A view camera: turned up, the columns lean; level, with the film shifted, they stand.",
+        ARCADE,
+        (
+            f'--camera "tilted up" {VIEW} --res 375x300 --spp 32 --denoise',
+            f"--camera level {VIEW} --shift 0,32 --res 375x300 --spp 32 --denoise",
+        ),
+        columns=2,
+    ),
+    Picture(
+        "anamorphic",
+        "A true anamorphic lens, stretched back by its squeeze: lamps out of focus are upright "
+        "ovals.",
+        ARCADE,
+        "--camera portrait --lens schneider-anamorphic-60mm --f-stop 2.9 --sensor 24.9x20.7 "
+        "--res 750x624 --spp 24 --denoise",
+        squeeze=1.9,
+    ),
+    Picture(
+        "zoom",
+        "A zoom of 41 surfaces at 72, 100, 140 and 195 mm; and at 140 mm focused at infinity and "
+        "at 1.8 m: the field changes with the focus, it breathes.",
+        ARCADE,
+        tuple(f"{ZOOM} --zoom {mm} {THIRD}" for mm in (72, 100, 140, 195))
+        + tuple(f"{ZOOM} --zoom 140 --focus {m} {THIRD}" for m in ("inf", "1.8")),
+        columns=3,
+    ),
+    Picture(
+        "soft",
+        "A lens for soft focus, wide open and stopped down by two: a sharp picture under a veil, "
+        "and the picture alone.",
+        ARCADE,
+        tuple(
+            f"--camera portrait --lens mamiya-sekor-sf-150mm-f4 --sensor 69.5x46.3 "
+            f"--f-stop {n} {PANEL}"
+            for n in (4, 8)
+        ),
+        columns=2,
     ),
 ]

@@ -13,7 +13,8 @@ from night.stage import Stage
 
 AWAY, STEP = 20.0, 1.6  # m
 ROWS, COLUMNS = 4, 6  # to each side of the middle
-LUMINANCE = 900.0  # cd/m2; a disc of light shows some 1/500 of it
+RADIUS = 0.03
+LUMINANCE = 220.0  # cd/m2; a disc of light shows some 1/300 of it
 
 
 def make() -> Glb:
@@ -26,5 +27,5 @@ def make() -> Glb:
         for column in np.arange(-COLUMNS, COLUMNS + 1):
             color = (1.0, 1.0, 1.0)
             at = (STEP * float(column), STEP * float(row), -AWAY)
-            stage.lamp(at, 0.014, colors[column % 3] if row == 2 else color, LUMINANCE, True)
+            stage.lamp(at, RADIUS, colors[column % 3] if row == 2 else color, LUMINANCE, True)
     return stage.glb
