@@ -12,7 +12,7 @@ namespace dg {
 // archives.
 
 /// To be raised whenever the same lens would be aimed differently.
-constexpr int kAimVersion = 1;
+constexpr int kAimVersion = 2;
 
 template <typename A>
 void describe(A& a, const Vec2d& v) {
@@ -113,9 +113,10 @@ template <typename A, typename T>
     requires std::is_same_v<std::remove_const_t<T>, AimState>
 void describe(A& a, T& s) {
     auto& [aim, h0, transmittance] = s;
-    auto& [slopes, free_slopes, tables, fit_error, fallback_segments, covered] = aim;
+    auto& [slopes, free_slopes, tables, fit_error, iris_error, fallback_segments, covered] =
+        aim;
     a(slopes.k, slopes.coefficients, free_slopes.degree, free_slopes.coefficients, tables, fit_error,
-      fallback_segments, covered, h0, transmittance);
+      iris_error, fallback_segments, covered, h0, transmittance);
 }
 
 namespace {

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kNodes = kFilmCells + 1, kCells = kFilmCells * kFilmCells;
 constexpr int kMinDegree = 4, kMaxDegree = 7;
-constexpr double kShapeMargin = 1.02;  // the fit reaches this far beyond the enlarged iris
-constexpr double kWidened = 1.2;       // of the clear diameters, for training rays (pupil.cpp)
 constexpr double kOutlineMargin = 0.008;
 constexpr int kCoverageRays = 32768;
 
@@ -71,13 +69,10 @@ FreeAimMaker::FreeAimMaker(const Tracer& tracer, const AimRequest& request)
     open_ = make_lens_tables(tracer, plane_, true, nullptr, 0);
     open_.semi2[tracer.stop()] = 3e38f;
     real_ = make_lens_tables(tracer, plane_, true, &request.iris, request.iris_radius);
-    outer_ = kEnlargement * request.iris_radius * request.iris.outer_radius();
+    outer_ = outer_radius(request);
     AimTables& t = aim_.tables;
     t.film_radius = float(request.film_radius);
-    t.iris_scale = float(kShapeMargin * outer_);
-    t.enlargement = float(kEnlargement);
-    const double scale = request.iris_radius / t.iris_scale;
-    t.shape_area = float(request.iris.sampling_area(kEnlargement) * scale * scale);
+    set_iris_scale(t, request);
     FreeAimTables& f = t.free;
     f.center_x = float(film_.center.x), f.center_y = float(film_.center.y);
     f.half_x = float(film_.half.x), f.half_y = float(film_.half.y);
@@ -141,10 +136,13 @@ bool FreeAimMaker::fit(int degree) {
     aim_.free_slopes = fit_free_slopes(samples, degree);
     t.coefficients.assign(aim_.free_slopes.coefficients.begin(),
                           aim_.free_slopes.coefficients.end());
-    aim_.fit_error = 0;
-    for (const FreeSlopeSample& s : training(500, 100000))
-        aim_.fit_error = std::max(
-            aim_.fit_error, length(aim_.free_slopes.evaluate(s.f, s.a, s.l).m - s.m));
+    aim_.fit_error = aim_.iris_error = 0;
+    for (const FreeSlopeSample& s : training(500, 100000)) {
+        const SlopeValue v = aim_.free_slopes.evaluate(s.f, s.a, s.l);
+        aim_.fit_error = std::max(aim_.fit_error, length(v.m - s.m));
+        aim_.iris_error = std::max(aim_.iris_error, length(v.step(v.m - s.m)));
+    }
+    set_enlargement(aim_.tables, request_, aim_.iris_error);
     return true;
 }
 
@@ -163,7 +161,7 @@ void FreeAimMaker::set_region(int cell, AimRegion region, const Columns& columns
 
 void FreeAimMaker::choose_regions() {
     const AimTables& t = aim_.tables;
-    const double reach = outer_ / t.iris_scale;
+    const double reach = outer_ / t.iris_scale * t.enlargement / kEnlargement;
     const double orientation = aim_.free_slopes.evaluate({}, {}, 0).jacobian;
     std::vector<std::optional<Visible>> seen(kNodes * kNodes);
     for (int cell = 0; cell < kCells; ++cell) {
@@ -192,14 +190,12 @@ bool FreeAimMaker::covers(int cell, Vec2d f, Vec2d m, Vec2d iris, double l) cons
     Vec2d a = iris * (1 / t.iris_scale);
     for (int step = 0; step < 3; ++step) {  // Newton: the aim's own iris point
         const SlopeValue v = aim_.free_slopes.evaluate(f, a, l);
-        const Vec2d e = m - v.m;
-        a.x += (v.m22 * e.x - v.m12 * e.y) / v.jacobian;
-        a.y += (v.m11 * e.y - v.m21 * e.x) / v.jacobian;
+        a = a + v.step(m - v.m);
     }
     if (!(length(aim_.free_slopes.evaluate(f, a, l).m - m) < 1e-6)) return false;
     if (t.free.region[cell] > 0.5f) return columns_[cell].contain(a.x, a.y);
     return request_.iris.in_sampling_region(a * (t.iris_scale / request_.iris_radius),
-                                            kEnlargement);
+                                            t.enlargement);
 }
 
 /// Cells in which a fresh passing ray lies outside what is drawn, or the Jacobian changes sign.
@@ -266,15 +262,20 @@ void FreeAimMaker::fall_back(const std::vector<bool>& bad) {
 
 Aim FreeAimMaker::make() {
     std::vector<bool> bad(kCells, true);
+    std::optional<Aim> best;
+    const auto count = [](const std::vector<bool>& b) { return std::count(b.begin(), b.end(), true); };
     if (request_.only_slope_boxes) {
         fit(kMinDegree);
     } else {
         for (int degree = kMinDegree; degree <= kMaxDegree; ++degree) {
             if (!fit(degree)) break;
             choose_regions();
-            bad = uncovered_cells();
-            if (std::find(bad.begin(), bad.end(), true) == bad.end()) return aim_;
+            const std::vector<bool> now = uncovered_cells();
+            if (degree > kMinDegree && count(now) >= count(bad)) continue;
+            bad = now, best = aim_;
+            if (count(bad) == 0) return aim_;
         }
+        if (best) aim_ = *best;
     }
     fall_back(bad);
     return aim_;

@@ -29,6 +29,11 @@ struct SlopeValue {
     Vec2d m;                    // (tangential, sagittal)
     double jacobian;            // det dm/da, signed
     double m11, m12, m21, m22;  // dm/da
+
+    /// To first order, by how much a must change for m to change by e.
+    Vec2d step(Vec2d e) const {
+        return {(m22 * e.x - m12 * e.y) / jacobian, (m11 * e.y - m21 * e.x) / jacobian};
+    }
 };
 
 /// A and B, coefficients in turn.

@@ -1,7 +1,7 @@
 // pupil.h -- guided exact tracing: where to aim from the film so that most rays pass
 // (aperture sampling: Hanika and Dachsbacher 2014, CGF 33(2)).
 //
-// A ray is drawn by choosing a point a of the iris (enlarged by 1 %) and looking up the
+// A ray is drawn by choosing a point a of the iris (a little enlarged) and looking up the
 // film slope m(f, a, l) in a polynomial. The exact trace decides whether it passes. The
 // density is that of the polynomial, m being one-to-one in a: so the fit's error costs
 // efficiency and never bias.
@@ -15,7 +15,14 @@
 
 namespace dg {
 
+/// The iris is drawn larger by this factor at most; by how much follows from the fit's error.
 inline constexpr double kEnlargement = 1.01;
+/// Fits reach this far beyond that.
+inline constexpr double kShapeMargin = 1.02;
+/// Training rays may leave the clear diameters by this factor, so that the fit is not cut off at the edge
+/// of what passes. Farther outside aspheres go wild, and rays can reach the iris a second time (a fold),
+/// which no one-to-one map follows.
+inline constexpr double kWidened = 1.05;
 
 struct AimRequest {
     double film_z = 0;       // mm, lens frame
@@ -33,9 +40,16 @@ struct Aim {
     FreePolynomial free_slopes;  // of a lens without symmetry, or with a tilted film
     AimTables tables;
     double fit_error = 0;       // largest |error| of m on fresh rays
+    double iris_error = 0;      // the same on the iris, in units of its scale
     int fallback_segments = 0;  // film radii or cells where exit-pupil boxes are drawn instead
     bool covered = true;
 };
+
+/// Radius around the largest iris that is drawn, mm.
+double outer_radius(const AimRequest& request);
+/// Scales of the iris in empty tables, and what is drawn of it once the fit's error is known.
+void set_iris_scale(AimTables& tables, const AimRequest& request);
+void set_enlargement(AimTables& tables, const AimRequest& request, double iris_error);
 
 /// Fits, bounds the mechanically visible part of the iris per film radius, and tests
 /// coverage: every passing ray of a fresh set must lie inside the region that is drawn,

@@ -15,15 +15,9 @@ namespace {
 
 constexpr int kNodes = kRadialSegments + 1;
 constexpr int kMinDegree = 3, kMaxDegree = 6;
-constexpr double kShapeMargin =
-    1.02;  // the fit reaches this far beyond the enlarged iris
 constexpr int kCoverageRays = 16384;
 // What is drawn reaches so far beyond what was seen from the two ends of a segment, in iris radii.
 constexpr double kOutlineMargin = 0.005;
-
-double outer_radius(const AimRequest& r) {
-    return kEnlargement * r.iris_radius * r.iris.outer_radius();
-}
 
 class AimMaker {
   public:
@@ -38,6 +32,8 @@ class AimMaker {
     bool covers(int segment, double r, Vec2d m, Vec2d iris, double l,
                 double azimuth) const;
     double unit(double iris_mm) const { return iris_mm / aim_.tables.iris_scale; }
+    /// Around what is drawn of the iris.
+    double reach() const { return unit(outer_) * aim_.tables.enlargement / kEnlargement; }
 
     const AimRequest& request_;
     double outer_;  // mm, radius around the enlarged iris
@@ -57,10 +53,7 @@ AimMaker::AimMaker(const Tracer& tracer, const AimRequest& request)
                              request.iris_radius);
     AimTables& t = aim_.tables;
     t.film_radius = float(request.film_radius);
-    t.iris_scale = float(kShapeMargin * outer_);
-    t.enlargement = float(kEnlargement);
-    const double scale = request.iris_radius / t.iris_scale;
-    t.shape_area = float(request.iris.sampling_area(kEnlargement) * scale * scale);
+    set_iris_scale(t, request);
 }
 
 SlopeBox AimMaker::slope_box(double r) const {
@@ -92,12 +85,12 @@ void AimMaker::choose_regions() {
     std::vector<Visible> at(kNodes);
     const double orientation = aim_.slopes.evaluate(0, {0, 0}, 0).jacobian;
     for (int i = 0; i < kNodes; ++i)
-        at[i] = visible_half_iris(open_, t, t.film_radius * i / kRadialSegments, unit(outer_),
+        at[i] = visible_half_iris(open_, t, t.film_radius * i / kRadialSegments, reach(),
                                   orientation);
     for (int i = 0; i < kRadialSegments; ++i) {
         jacobian_ok_[i] = at[i].jacobian_ok && at[i + 1].jacobian_ok;
         const Columns seen =
-            cover(at[i].outline.joined(at[i + 1].outline, kOutlineMargin * unit(outer_)));
+            cover(at[i].outline.joined(at[i + 1].outline, kOutlineMargin * reach()));
         const bool smaller = seen.area < 0.97 * t.shape_area;
         set_region(i, smaller ? AimRegion::visible : AimRegion::shape, seen);
     }
@@ -112,9 +105,7 @@ bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
     Vec2d a{unit(iris.x), unit(iris.y)};
     for (int step = 0; step < 3; ++step) {  // Newton: the aim's own iris point
         const SlopeValue v = aim_.slopes.evaluate(rn, a, l);
-        const Vec2d e = m - v.m;
-        a.x += (v.m22 * e.x - v.m12 * e.y) / v.jacobian;
-        a.y += (v.m11 * e.y - v.m21 * e.x) / v.jacobian;
+        a = a + v.step(m - v.m);
     }
     if (length(aim_.slopes.evaluate(rn, a, l).m - m) > 1e-6) return false;
     if (t.region[segment] > 0.5f)
@@ -122,7 +113,7 @@ bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
     const double c = std::cos(azimuth), s = std::sin(azimuth);
     const Vec2d turned{c * a.x - s * a.y, s * a.x + c * a.y};
     return request_.iris.in_sampling_region(
-        turned * (t.iris_scale / request_.iris_radius), kEnlargement);
+        turned * (t.iris_scale / request_.iris_radius), t.enlargement);
 }
 
 /// Segments in which a fresh passing ray lies outside what is drawn, or the Jacobian
@@ -171,13 +162,18 @@ std::vector<bool> AimMaker::uncovered_segments() const {
 
 Aim AimMaker::make() {
     std::vector<bool> bad(kRadialSegments, true);
+    std::optional<Aim> best;
+    const auto count = [](const std::vector<bool>& b) { return std::count(b.begin(), b.end(), true); };
     if (!request_.only_slope_boxes) {
         for (int k = kMinDegree; k <= kMaxDegree; ++k) {
             if (!rays_.fit(aim_, k)) break;
             choose_regions();
-            bad = uncovered_segments();
-            if (std::find(bad.begin(), bad.end(), true) == bad.end()) return aim_;
+            const std::vector<bool> now = uncovered_segments();
+            if (k > kMinDegree && count(now) >= count(bad)) continue;
+            bad = now, best = aim_;
+            if (count(bad) == 0) return aim_;
         }
+        if (best) aim_ = *best;
     } else {
         rays_.fit(aim_, kMinDegree);
     }

@@ -9,10 +9,6 @@
 namespace dg {
 namespace {
 
-// Training rays may leave the clear diameters a little, so that the fit is not cut off at
-// the edge of what passes; far outside, rays can reach the iris a second time (a fold),
-// which no one-to-one map follows.
-constexpr double kWidened = 1.2;
 constexpr int kSearchRays = 16384;
 
 }  // namespace
@@ -92,11 +88,13 @@ bool SymmetricRays::fit(Aim& aim, int k) const {
     aim.slopes = fit_slopes(samples, k);
     t.coefficients.assign(aim.slopes.coefficients.begin(),
                           aim.slopes.coefficients.end());
-    aim.fit_error = 0;
+    aim.fit_error = aim.iris_error = 0;
     for (const SlopeSample& s : training(t, 500, 100000)) {
-        const Vec2d m = aim.slopes.evaluate(s.r, s.a, s.l).m;
-        aim.fit_error = std::max(aim.fit_error, length(m - s.m));
+        const SlopeValue v = aim.slopes.evaluate(s.r, s.a, s.l);
+        aim.fit_error = std::max(aim.fit_error, length(v.m - s.m));
+        aim.iris_error = std::max(aim.iris_error, length(v.step(v.m - s.m)));
     }
+    set_enlargement(t, request_, aim.iris_error);
     return true;
 }
 

@@ -214,7 +214,7 @@ TEST_CASE(
                 const double s = b.samples->y[i] / (r * aim.tables.film_radius);
                 const Vec2d a =
                     (request.iris_radius / aim.tables.iris_scale) *
-                    iris.sample({b.samples->u[i], b.samples->v[i]}, kEnlargement);
+                    iris.sample({b.samples->u[i], b.samples->v[i]}, aim.tables.enlargement);
                 const SlopeValue v =
                     aim.slopes.evaluate(r, {c * a.x + s * a.y, c * a.y - s * a.x},
                                         tables.scale(b.samples->nm[i]));
