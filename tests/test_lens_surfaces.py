@@ -12,7 +12,7 @@ FloatArray = NDArray[np.float64]
 OMEGA = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
 ASPHERIC = (
     "canon-ef-11-24mm-f4",
-    "nikon-z-26mm-f2.8",
+    "canon-rf-85mm-f1.2",
     "schneider-anamorphic-60mm",
     "sigma-28mm-f1.4",
 )
