@@ -19,6 +19,7 @@ using namespace nb::literals;
 namespace {
 
 using Pair = std::pair<double, double>;
+using Picture = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using ColumnF = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 dg::Vec2d vec(Pair p) {
@@ -152,6 +153,18 @@ void bind_optics(nb::module_& m) {
                          return nb::bytes(state.data(), state.size());
                      },
                      "What the set-up found out, for `cache` of the same lens another time.")
+        .def("with_dirt",
+             [](const ExactLens& lens, const std::optional<Picture>& front,
+                const std::optional<Picture>& iris) {
+                 const auto mask = [](const std::optional<Picture>& p) {
+                     if (!p) return LensMask{};
+                     return LensMask{int(p->shape(1)), int(p->shape(0)),
+                                     std::vector<float>(p->data(), p->data() + p->size())};
+                 };
+                 return lens.with_dirt({mask(front), mask(iris)});
+             },
+             "front"_a.none(), "iris"_a.none(),
+             "Dust and scratches: transmittances (H, W) over the clear front and the open iris.")
         .def_prop_ro("h0", &ExactLens::h0)
         .def_prop_ro("transmittance", &ExactLens::transmittance)
         .def_prop_ro("f_stop", &ExactLens::f_stop)

@@ -3,6 +3,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
@@ -124,7 +125,7 @@ void bind_prescription(nb::module_& m) {
                const std::map<int, double>& asphere, double curvature_x, double conic_x,
                double inner_semi_diameter, double semi_diameter_after,
                std::array<double, 3> decenter, std::array<double, 3> tilt,
-               const std::string& coating) {
+               const std::string& coating, std::tuple<double, double, unsigned> ripple) {
                 Surface s{curvature, thickness, semi_diameter, glass, stop};
                 s.conic = conic, s.curvature_x = curvature_x, s.conic_x = conic_x;
                 for (const auto& [power, a] : asphere) s.asphere.push_back({power, a});
@@ -133,6 +134,7 @@ void bind_prescription(nb::module_& m) {
                 s.decenter = {decenter[0], decenter[1], decenter[2]};
                 s.tilt = {tilt[0], tilt[1], tilt[2]};
                 s.coating = coating;
+                s.ripple = {std::get<0>(ripple), std::get<1>(ripple), std::get<2>(ripple)};
                 set_kind(s, kind);
                 new (self) Surface(std::move(s));
             },
@@ -142,7 +144,8 @@ void bind_prescription(nb::module_& m) {
             "conic_x"_a = 0.0, "inner_semi_diameter"_a = 0.0,
             "semi_diameter_after"_a = 0.0, "decenter"_a = std::array<double, 3>{},
             "tilt"_a = std::array<double, 3>{}, "coating"_a = "",
-            "asphere: {power of r: coefficient}; tilt in degrees.");
+            "ripple"_a = std::tuple<double, double, unsigned>{0, 0, 0},
+            "asphere: {power of r: coefficient}; tilt in degrees; ripple: (nm RMS, period um, seed).");
     nb::class_<Prescription> lens(m, "Prescription");
     lens.def(
             "__init__",

@@ -66,9 +66,9 @@ void describe(A& a, const AsphereTerm& t) {
 template <typename A>
 void describe(A& a, const Surface& s) {
     const auto& [curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x,
-                 asphere, inner, after, decenter, tilt, coating] = s;
+                 asphere, inner, after, decenter, tilt, coating, ripple] = s;
     a(curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x, asphere, inner,
-      after, decenter, tilt, coating);
+      after, decenter, tilt, coating, ripple.rms_nm, ripple.period_um, ripple.seed);
 }
 template <typename A>
 void describe(A& a, const Prescription& lens) {

@@ -24,6 +24,12 @@ Prescription without_stop_aperture(const Prescription& lens) {
     return open;
 }
 
+/// Without the marks of grinding: their waves would lead every fit and every derivative astray.
+Prescription polished(Prescription lens) {
+    for (Surface& s : lens.surfaces) s.ripple = {};
+    return lens;
+}
+
 constexpr double kMaxTilt = 45;  // degrees
 
 /// Where the chief ray from straight ahead (camera frame: -z) meets the plane at `depth` behind the middle
@@ -57,7 +63,7 @@ struct ExactLens::State {
     AimState found;
 
     State(const Prescription& lens, const ExactLensSettings& s)
-        : settings(s), tracer(without_stop_aperture(lens)), order(dg::first_order(lens)) {
+        : settings(s), tracer(polished(without_stop_aperture(lens))), order(dg::first_order(lens)) {
         validate(lens);
         if (!(s.half_diagonal_mm > 0 && s.half_diagonal_mm < 1e4))
             throw input_error(lens.name, "half diagonal of the film", "0 to 1e4 mm",
@@ -90,7 +96,8 @@ struct ExactLens::State {
         if (tilted) request.tilted = film_plane();
         // The image is upside down on the film.
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
-        tables = make_lens_tables(tracer, film_plane(), true, &settings.iris, iris_radius);
+        tables = make_lens_tables(Tracer(without_stop_aperture(lens)), film_plane(), true,
+                                  &settings.iris, iris_radius);
         key = aim_key(lens, s);
         if (auto known = aim_from_bytes(s.cache, key)) {
             found = std::move(*known);
@@ -172,6 +179,24 @@ float ExactLens::leaf_transmission(float opening, float x_mm, float y_mm) const 
     return float(state_->settings.iris.transmission({x_mm * unit, y_mm * unit}));
 }
 
+ExactLens ExactLens::with_dirt(LensDirt dirt) const {
+    check_mask(dirt.front, "front mask"), check_mask(dirt.iris, "iris mask");
+    ExactLens lens = *this;
+    lens.dirt_ = std::make_shared<const LensDirt>(std::move(dirt));
+    return lens;
+}
+
+float ExactLens::dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const {
+    if (!dirt_) return 1;
+    const double front = clear_radius(state_->tracer.prescription().surfaces.front());
+    const float half = float(std::isfinite(front) ? front : 0.5 * state_->order.entrance_pupil_diameter);
+    float pass = 1;
+    if (!dirt_->front.values.empty()) pass = dirt_->front.at(front_mm.x, front_mm.y, half);
+    if (!dirt_->iris.values.empty())
+        pass *= dirt_->iris.at(iris_mm.x, iris_mm.y, float(state_->order.stop_semi_diameter));
+    return pass;
+}
+
 void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
@@ -200,7 +225,9 @@ void ExactLens::generate(std::span<const CameraSample> samples,
             const float aim = b.weight[i] * inv_h0;
             const float weight = aim * b.scene.pass[i] *
                                  leaf_transmission(samples[begin + i].iris_opening,
-                                                   b.scene.iris_x[i], b.scene.iris_y[i]);
+                                                   b.scene.iris_x[i], b.scene.iris_y[i]) *
+                                 dirt_transmission({b.scene.x[i], b.scene.y[i]},
+                                                   {b.scene.iris_x[i], b.scene.iris_y[i]});
             const bool passed = weight > 0 && std::isfinite(weight);
             out.weight = passed ? weight : 0;
             out.aim_weight = passed ? aim : 0;
@@ -257,7 +284,9 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             const float aim = b.weight[i] * inv_h0;
             const float pass =
                 b.scene.pass[i] * leaf_transmission(rays[begin + i].iris_opening,
-                                                    b.scene.iris_x[i], b.scene.iris_y[i]);
+                                                    b.scene.iris_x[i], b.scene.iris_y[i]) *
+                dirt_transmission({b.scene.x[i], b.scene.y[i]},
+                                  {b.scene.iris_x[i], b.scene.iris_y[i]});
             const bool passed = pass > 0 && aim > 0 && std::isfinite(aim);
             out[begin + i] = {{shift.x - b.film.x[i], shift.y - b.film.y[i]},
                               passed ? pass : 0,

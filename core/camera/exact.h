@@ -9,6 +9,7 @@
 
 #include "camera/axial.h"
 #include "camera/camera_sample.h"
+#include "camera/lens_mask.h"
 #include "optics/paraxial.h"
 #include "optics/pupil.h"
 
@@ -50,6 +51,10 @@ class ExactLens {
     /// the body, so that focusing moves the glass; weights are exposures divided by the H0 of `middle`.
     ExactLens in_the_body_of(const ExactLens& middle) const;
 
+    /// The same lens, dirty: rays lose what the pictures stop. H0 stays that of the clean one. Error if a
+    /// value is not in [0, 1].
+    ExactLens with_dirt(LensDirt dirt) const;
+
     /// Rays start on the first surface. Film points beyond half_diagonal_mm get weight 0.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
@@ -87,7 +92,10 @@ class ExactLens {
     /// What an iris lets through there that is open to a fraction of its radius, in addition to the
     /// whole one: a leaf shutter on its way.
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
+    /// Of both masks, for a ray of the front point and iris point (lens frame, mm).
+    float dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const;
     std::shared_ptr<const State> state_;
+    std::shared_ptr<const LensDirt> dirt_;   // null: clean
     double unit_;            // the exposure of weight 1
     double advance_ = 0;     // camera frame, mm: z of the middle of the entrance pupil
     Vec2f film_shift_{0, 0};   // mm: of the body's film against this lens's own

@@ -14,6 +14,24 @@ Vec3d chief(const Ideal& lens, double x_mm) {
     return normalize(Vec3d{x_mm, 0, -lens.film_distance_mm});
 }
 
+/// Solid angle per mm^2 of film (its root), mean over the directions at a radius: of lenses that are not the
+/// same on all sides.
+double mean_angle_per_mm(const ExactLens& lens, double radius_mm, double step_mm) {
+    constexpr int kTurns = 8;
+    double sum = 0;
+    int lit = 0;
+    for (int i = 0; i < kTurns; ++i) {
+        const double a = 2 * kPiD * i / kTurns;
+        const Vec2d at{radius_mm * std::cos(a), radius_mm * std::sin(a)};
+        const Vec3d here = lens.chief_direction(at);
+        const Vec3d x = lens.chief_direction({at.x + step_mm, at.y}) - here;
+        const Vec3d y = lens.chief_direction({at.x, at.y + step_mm}) - here;
+        const double area = length(cross(x, y)) / (step_mm * step_mm);
+        if (area > 0) sum += std::sqrt(area), ++lit;
+    }
+    return lit ? sum / lit : 0;
+}
+
 double field_angle(const LensKind& lens, double x_mm) {
     const Vec3d d = std::visit([&](const auto& kind) { return chief(kind, x_mm); }, lens);
     return std::atan2(d.x, -d.z);
@@ -32,6 +50,13 @@ PixelCone::PixelCone(const Camera& camera, const Sensor& sensor) {
     const double radius = largest_radius(sensor), step = radius / kSteps;
     const double pitch = std::sqrt(sensor.width_mm / sensor.width * sensor.height_mm / sensor.height);
     steps_per_mm_ = float(1 / step);
+    if (const auto* lens = std::get_if<ExactLens>(&camera.lens); lens && !lens->is_axial()) {
+        for (int i = 0; i <= kSteps; ++i) {
+            const double angle = mean_angle_per_mm(*lens, i * step, 0.5 * step);
+            angles_[i] = angle > 0 || i == 0 ? float(pitch * angle) : angles_[i - 1];
+        }
+        return;
+    }
     std::array<double, kSteps + 1> a;
     for (int i = 0; i <= kSteps; ++i) a[i] = field_angle(camera.lens, i * step);
     for (int i = 0; i <= kSteps; ++i) {

@@ -77,6 +77,7 @@ SurfaceForm::SurfaceForm(const Surface& s, double vertex_z) : shape(s.shape) {
     if (!quadric) set_bounds(*this);
     place.origin = {s.decenter.x, s.decenter.y, vertex_z + s.decenter.z};
     if (s.tilt != Vec3d{}) turn(place, s.tilt);
+    ripple = RippleSlope(s.ripple, clear);
 }
 
 }  // namespace dg

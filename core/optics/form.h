@@ -57,6 +57,7 @@ struct SurfaceForm {
     /// Within the clear radius: bounds of |sag| and of its slope. Infinite: not known.
     double clear = 0, height = 0, slope = 0;
     SurfaceFrame place;
+    RippleSlope ripple;
 
     SurfaceForm(const Surface& surface, double vertex_z);
 };

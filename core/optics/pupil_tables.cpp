@@ -68,7 +68,8 @@ void fill_iris(IrisTables& t, const Iris& iris, double radius) {
 
 MetAs met_as(const Surface& s) {
     const bool sphere =
-        s.shape == Shape::conic && s.conic == 0 && s.asphere.empty() && !is_placed(s);
+        s.shape == Shape::conic && s.conic == 0 && s.asphere.empty() && !is_placed(s) &&
+        s.ripple.rms_nm == 0;
     return !sphere ? MetAs::other : s.curvature == 0 ? MetAs::plane : MetAs::sphere;
 }
 
@@ -99,6 +100,7 @@ ShapeTables shape_tables(const Surface& s, const SurfaceForm& f) {
     for (const float a : t.even) terms += std::abs(double(a));
     for (const float a : t.odd) terms += std::abs(double(a));
     t.tolerance = float(5e-7 * terms), t.stride = float(scale);
+    t.ripple = f.ripple.slope, t.ripple_steps_per_mm = float(f.ripple.steps_per_mm);
     const SurfaceFrame& place = f.place;
     const Vec3d axes[3] = {place.x, place.y, place.z};
     const Vec3d shift = s.decenter;

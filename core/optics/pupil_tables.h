@@ -54,6 +54,8 @@ struct ShapeTables {
     float tolerance = 0, stride = 0;  // mm: of the last step of a search, of any
     float shift[3] = {0, 0, 0};
     float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    std::vector<float> ripple;  // RippleSlope
+    float ripple_steps_per_mm = 0;
 };
 
 /// What the media swallow: coefficients (1/mm, base e) at equal steps of l from -1 to 1,

@@ -11,6 +11,7 @@
 
 #include "math/vec.h"
 #include "optics/glass.h"
+#include "optics/ripple.h"
 
 namespace dg {
 
@@ -45,6 +46,7 @@ struct Surface {
     /// about that z. This surface and its apertures alone; the axis goes on as before.
     Vec3d decenter{}, tilt{};
     std::string coating{};  // empty: the lens's
+    Ripple ripple{};
 };
 
 /// Light passes the smaller of both sides, mm.

@@ -165,6 +165,24 @@ HWY_INLINE void leave_frame(const ShapeTables& s, LaneRays& r) {
     r.z = hn::Add(r.z, constant(s.shift[2]));
 }
 
+/// The normal leans with the slope of the grooves (ripple.h).
+template <int kSign>
+HWY_INLINE void lean_lanes(const ShapeTables& s, const LaneVec& d, LaneHit& h) {
+    const VI last = hn::Set(DI(), int(s.ripple.size()) - 2);
+    const V r = hn::Sqrt(hn::MulAdd(h.point.x, h.point.x, hn::Mul(h.point.y, h.point.y)));
+    const V x = hn::Mul(r, constant(s.ripple_steps_per_mm));
+    const VI i = hn::Max(hn::Min(hn::ConvertTo(DI(), x), last), hn::Zero(DI()));
+    const V below = hn::GatherIndex(D(), s.ripple.data(), i);
+    const V above = hn::GatherIndex(D(), s.ripple.data() + 1, i);
+    const V slope = hn::MulAdd(hn::Sub(x, hn::ConvertTo(D(), i)), hn::Sub(above, below), below);
+    const V e = hn::Div(slope, hn::Max(r, constant(1e-6f)));
+    h.bend_x = hn::Add(h.bend_x, e), h.bend_y = hn::Add(h.bend_y, e);
+    const V speed = hn::NegMulAdd(
+        hn::Mul(h.bend_x, h.point.x), d.x,
+        hn::NegMulAdd(hn::Mul(h.bend_y, h.point.y), d.y, hn::Mul(h.axial, d.z)));
+    normalize_hit<kSign>(speed, h);
+}
+
 /// Forms other than centred planes and spheres, apart so that those keep their speed.
 template <int kSign>
 HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
@@ -179,6 +197,8 @@ HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRa
         const M alive[2] = {a.alive, b.alive};
         meet_searched<kSign>(s, p, d, alive, hit);
     }
+    if (!s.ripple.empty())
+        for (int v = 0; v < 2; ++v) lean_lanes<kSign>(s, d[v], hit[v]);
     pass_surface<kSign>(lens, i, hit[0], a);
     pass_surface<kSign>(lens, i, hit[1], b);
     if (s.placed) leave_frame(s, a), leave_frame(s, b);

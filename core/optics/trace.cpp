@@ -36,6 +36,15 @@ bool within_apertures(const Surface& s, const Vec3d& p, const Clip& clip, bool i
     return (iris_here || r2 <= edge * edge) && r2 >= hole * hole;
 }
 
+/// The normal leans with the slope of the grooves.
+void lean(const RippleSlope& ripple, const Vec3d& direction, int sign, LensHit<double>& hit) {
+    const double r = std::hypot(hit.point.x, hit.point.y);
+    if (!(r > 0)) return;
+    const double slope = ripple.at(r) / r;
+    hit.normal = normalize(hit.normal - Vec3d{slope * hit.point.x, slope * hit.point.y, 0});
+    hit.cosine = sign * dot(direction, hit.normal);
+}
+
 }  // namespace
 
 bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
@@ -43,8 +52,9 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
     const SurfaceFrame& place = forms_[i].place;
     const Vec3d start = place.into(traced.ray.origin);
     const Vec3d d = place.turn_in(traced.ray.direction);
-    const auto hit = meet(forms_[i], start, d, sign);
+    auto hit = meet(forms_[i], start, d, sign);
     if (!hit) return false;
+    if (!forms_[i].ripple.slope.empty()) lean(forms_[i].ripple, d, sign, *hit);
     const int before = sign > 0 ? i : i + 1, after = sign > 0 ? i + 1 : i;
     const double n1 = n.index[before], n2 = n.index[after];
     const double path = dot(hit->point - start, d);

@@ -49,6 +49,13 @@ void check_form(const Place& at) {
     }
 }
 
+void check_ripple(const Place& at) {
+    const Ripple& r = at.s.ripple;
+    if (r.rms_nm == 0) return;
+    at.range("height of the ripple", r.rms_nm, 0, 1000, "0 to 1000 nm");
+    at.range("period of the ripple", r.period_um, 5, 1e4, "5 to 10000 um");
+}
+
 void check_apertures(const Place& at) {
     const Surface& s = at.s;
     if (!(s.semi_diameter > 0))
@@ -88,6 +95,7 @@ void check_placement(const Place& at) {
 
 void check_surface(const Prescription& lens, int i) {
     const Place at{lens.surfaces[i], i, surface_name(lens, i)};
+    check_ripple(at);
     check_apertures(at);
     check_form(at);
     check_placement(at);

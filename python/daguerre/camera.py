@@ -89,6 +89,11 @@ class Camera:
         blade_rotation: Degrees.
         blade_curvature: -1 .. 1; 1 is round, 0 straight.
         aperture_image: Grey picture (H, W) of the iris opening; None: by blades.
+        front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens, as
+            wide as it is clear: 1 lets all light through.
+        iris_mask: The same at the iris, as wide as it opens.
+        ripple: Grooves that grinding left in the aspheric surfaces of an exact lens, which show as
+            onion rings: RMS height (nm), period (um), and a seed if wanted.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Film shift, mm.
         tilt: The lens is turned about its entrance pupil: degrees about the camera's x (up is
@@ -130,6 +135,9 @@ class Camera:
     blade_rotation: float = 0.0
     blade_curvature: float = 0.0
     aperture_image: NDArray[np.float32] | None = None
+    front_mask: NDArray[np.float32] | None = None
+    iris_mask: NDArray[np.float32] | None = None
+    ripple: tuple[float, ...] | None = None
     natural_vignetting: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
     tilt: tuple[float, float] = (0.0, 0.0)
@@ -189,7 +197,7 @@ class Camera:
                 raise UsageError(f"camera: a pinhole has no {odd[0]}")
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
-            replaced |= {"zoom": None, "decenter": ()}
+            replaced |= {"zoom": None, "decenter": (), "ripple": None}
         for rivals in RIVALS:
             both = sorted(given & set(rivals))
             if len(both) > 1:

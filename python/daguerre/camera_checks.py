@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import lenses, shutter
 from .camera import IDEAL, LIMITS, Camera
 from .checks import number, numbers, short, whole
@@ -72,10 +74,12 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
                 f"camera: {name}: wanted a lens with a prescription for it, got {model}"
                 + ("; its focal_length may be any" if name == "zoom" else "")
             )
-    if camera.decenter and model != "exact":
-        raise UsageError(
-            f"camera: decenter: wanted lens_model exact, got {model}, which has no elements"
-        )
+    for name in ("decenter", "ripple", "front_mask", "iris_mask"):
+        given = getattr(camera, name)
+        if model != "exact" and given is not None and np.size(given):
+            raise UsageError(
+                f"camera: {name}: wanted lens_model exact, got {model}, which has no elements"
+            )
     if (model != "thin" or prescription) and camera.aperture_diameter is not None:
         raise UsageError(f"camera: aperture_diameter: this {model} lens takes f_stop instead")
     stops = [n for n in ("f_stop", "aperture_diameter", "t_stop") if getattr(camera, n) is not None]

@@ -95,6 +95,29 @@ def iris_of(camera: Camera) -> _core.Iris:
     return _core.Iris()
 
 
+def mask_of(camera: Camera, name: str) -> NDArray[np.float32] | None:
+    """``front_mask`` or ``iris_mask``, checked; None: clean."""
+    given = getattr(camera, name)
+    if given is None:
+        return None
+    picture = np.ascontiguousarray(given, np.float32)
+    if picture.ndim != 2 or not picture.size:
+        raise UsageError(f"camera: {name}: wanted shape (H, W), got {picture.shape}")
+    if not ((picture >= 0) & (picture <= 1)).all():
+        raise UsageError(f"camera: {name}: wanted values of 0 to 1")
+    return picture
+
+
+def dirt_facts(camera: Camera) -> dict[str, Any]:
+    """The masks for metadata and hashes."""
+    masks = {name: mask_of(camera, name) for name in ("front_mask", "iris_mask")}
+    return {
+        f"{name}_sha256": hashlib.sha256(repr(mask.shape).encode() + mask.tobytes()).hexdigest()
+        for name, mask in masks.items()
+        if mask is not None
+    }
+
+
 def iris_facts(camera: Camera) -> dict[str, Any]:
     """The iris for metadata and hashes."""
     if camera.aperture_image is not None:

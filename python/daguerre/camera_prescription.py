@@ -20,8 +20,8 @@ import daguerre._core as _core
 from . import lenses, tilt
 from .aim_cache import exact_lens
 from .camera import Camera, Decenter
-from .camera_parts import iris_facts, iris_of
-from .checks import numbers, short
+from .camera_parts import dirt_facts, iris_facts, iris_of, mask_of
+from .checks import number, numbers, short, whole
 from .errors import UsageError
 from .focusing import Focus, ideal_direction
 from .lenses.checking import frame_notes
@@ -109,7 +109,9 @@ def set_up(
         * tilt.cosine(camera.tilt),
         "h0": h0,
         "transmittance": transmittance,
+        "ripple": None if camera.ripple is None else list(_ripple(camera)),
         **iris_facts(camera),
+        **dirt_facts(camera),
     }
     return RealLens(core, film, facts)
 
@@ -130,6 +132,29 @@ def decenters(camera: Camera) -> list[Decenter]:
         a, b = numbers(one[2], where, 2, "two angles (deg)") if len(one) == 3 else (0.0, 0.0)
         found.append(((int(first), int(last)), (x, y), (a, b)))
     return found
+
+
+def _ripple(camera: Camera) -> tuple[float, float, int]:
+    given: Any = camera.ripple
+    if not isinstance(given, tuple | list) or len(given) not in (2, 3):
+        raise UsageError(f"camera: ripple: wanted (nm, um) or (nm, um, seed), got {short(given)}")
+    height, period, seed = numbers((*given, 0)[:3], "camera: ripple", 3, "nm, um and a seed")
+    number(height, "camera: ripple", 0, 1000)
+    number(period, "camera: ripple", 5, 10000)
+    return height, period, whole(int(seed), "camera: ripple: seed", 0, 2**32 - 1)
+
+
+def _rippled(lens: lenses.Lens, ripple: tuple[float, float, int]) -> lenses.Lens:
+    """The lens with grooves in all of its aspheric surfaces, each with its own."""
+    height, period, seed = ripple
+    if not any(s.kind == "aspheric" for s in lens.surfaces):
+        raise UsageError(f"camera: ripple: {lens.name} has no aspheric surface")
+    return lens.rebuilt(
+        [
+            s.replaced(ripple=(height, period, seed + i)) if s.kind == "aspheric" else s
+            for i, s in enumerate(lens.surfaces)
+        ]
+    )
 
 
 def _transmittance(lens: lenses.Lens) -> float:
@@ -170,6 +195,8 @@ def _focused(camera: Camera, lens: lenses.Lens, distance: float, f_stop: float) 
     used = found.lens
     for surfaces, place, angles in decenters(camera):
         used = used.decentered(surfaces, place, angles)
+    if camera.ripple is not None:
+        used = _rippled(used, _ripple(camera))
     return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, f_stop)
 
 
@@ -186,6 +213,9 @@ def _core_camera(
     if model == "exact":
         exact = _exact_lens(camera, sharp, frame)
         notes += frame_notes(exact, sharp.lens, frame, camera.shift)
+        masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
+        if any(mask is not None for mask in masks):
+            exact = exact.with_dirt(*masks)
         return _core.Camera.exact(pose, exact), exact.h0
     try:
         thick = _core.ThickLens(

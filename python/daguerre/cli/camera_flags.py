@@ -131,6 +131,28 @@ class CameraFlags:
         Path | None,
         option("--aperture-image", metavar="FILE", help="Grey picture of the iris.", panel=_CAMERA),
     ] = None
+    front_mask: Annotated[
+        Path | None,
+        option(
+            "--front-mask",
+            metavar="FILE",
+            help="Grey picture of dust and scratches on the front of an exact lens.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    iris_mask: Annotated[
+        Path | None,
+        option("--iris-mask", metavar="FILE", help="The same at the iris.", panel=_CAMERA),
+    ] = None
+    ripple: Annotated[
+        Text,
+        option(
+            "--ripple",
+            metavar="NM,UM",
+            help="Grooves in the aspheric surfaces: height (RMS), period.",
+            panel=_CAMERA,
+        ),
+    ] = None
     sensor: Annotated[
         Text,
         option(
@@ -200,6 +222,7 @@ class CameraFlags:
             "blade_rotation": ("blade_rotation", "--blade-rotation", q.angle_deg),
             "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
+            "ripple": ("ripple", "--ripple", lambda f, t: q.numbers(f, t, 2, "2,100")),
             "tilt": ("tilt", "--tilt", lambda f, t: q.numbers(f, t, 2, "0,6")),
         }
         plain = {
@@ -226,10 +249,12 @@ class CameraFlags:
                 out[parameter] = getattr(self, name)
         if self.decenter:
             out["decenter"] = tuple(q.decenter("--decenter", text) for text in self.decenter)
-        if self.aperture_image is not None:
-            from daguerre.io.iris import read_grey
+        for name in ("aperture_image", "front_mask", "iris_mask"):
+            path = getattr(self, name)
+            if path is not None:
+                from daguerre.io.iris import read_grey
 
-            out["aperture_image"] = read_grey(self.aperture_image)
+                out[name] = read_grey(path)
         return _refuse_rivals(out)
 
 

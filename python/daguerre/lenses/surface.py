@@ -39,6 +39,7 @@ class LensSurface:
         decenter: Shift of the vertex. The axis goes on as before.
         tilt: Degrees about x, then the turned y, then the turned z, at the vertex.
         coating: By name; empty: the lens's.
+        ripple: Grooves left by grinding: RMS height (nm), period (um), seed; height 0: none.
         derived: The semi-diameter is not the source's: rays were traced for it.
     """
 
@@ -58,6 +59,7 @@ class LensSurface:
     decenter: Triple = (0.0, 0.0, 0.0)
     tilt: Triple = (0.0, 0.0, 0.0)
     coating: str = ""
+    ripple: tuple[float, float, int] = (0.0, 0.0, 0)
     derived: bool = False
 
     def replaced(self, **changes: Any) -> LensSurface:
@@ -83,6 +85,7 @@ class LensSurface:
             decenter=self.decenter,
             tilt=self.tilt,
             coating=self.coating,
+            ripple=self.ripple,
         )
 
 

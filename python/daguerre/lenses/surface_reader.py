@@ -48,7 +48,22 @@ def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
         decenter=triple(item, "decenter", 1e4),
         tilt=triple(item, "tilt", 90),
         coating="" if coating is None else coating.choice(COATINGS),
+        ripple=_ripple(item),
     )
+
+
+def _ripple(item: Item) -> tuple[float, float, int]:
+    """Grooves left by grinding, in nm, um and a seed."""
+    ripple = member(item, "ripple")
+    if ripple is None:
+        return 0.0, 0.0, 0
+    height, period = number(ripple, "rms_nm", above=0), number(ripple, "period_um", above=0)
+    if height is None or period is None or height > 1000 or not 5 <= period <= 10000:
+        ripple.fail("wanted rms_nm up to 1000 and period_um of 5 to 10000")
+    seed = number(ripple, "seed") or 0.0
+    if seed != int(seed) or not 0 <= seed < 2**32:
+        ripple.need("seed").fail("wanted a whole number from 0 to 2^32 - 1")
+    return height, period, int(seed)
 
 
 def _radius(item: Item, key: str) -> float | None:
