@@ -57,6 +57,28 @@ def test_damaged_entries_are_replaced(place: Path) -> None:
         assert file.read_bytes() == whole
 
 
+def test_another_build_does_not_read_what_this_one_keeps(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    aim_cache.store("key", b"state")
+    assert aim_cache.load("key") == b"state"
+    core = tmp_path / "_core.so"
+    builds = set()
+    for size, changed in ((10, 1), (11, 1), (11, 2)):
+        core.write_bytes(bytes(size))
+        os.utime(core, ns=(changed, changed))
+        builds.add(aim_cache.identity(core))
+        monkeypatch.setattr(aim_cache, "BUILD", aim_cache.identity(core))
+        assert aim_cache.load("key") is None
+    assert len(builds) == 3
+
+
+def test_tests_do_not_use_the_cache_of_the_user(tmp_path_factory: pytest.TempPathFactory) -> None:
+    kept = aim_cache.folder()
+    assert kept is not None
+    assert kept.is_relative_to(tmp_path_factory.getbasetemp())
+
+
 def test_off_and_folders_that_cannot_be_written(
     place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -84,10 +106,10 @@ def test_what_was_not_used_for_longest_goes(place: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(aim_cache, "MAX_BYTES", 2500)
     for age, key in enumerate("abcd"):
         aim_cache.store(key, bytes(1000))
-        if (place / f"{key}.aim").exists():
-            os.utime(place / f"{key}.aim", (1e9 + age, 1e9 + age))
-    assert {p.stem for p in place.iterdir()} == {"c", "d"}
+        if (place / aim_cache.file_name(key)).exists():
+            os.utime(place / aim_cache.file_name(key), (1e9 + age, 1e9 + age))
+    assert {p.name for p in place.iterdir()} == {aim_cache.file_name(k) for k in "cd"}
     assert aim_cache.load("c") == bytes(1000)  # used now
     aim_cache.store("e", bytes(1000))
-    assert {p.stem for p in place.iterdir()} == {"c", "e"}
+    assert {p.name for p in place.iterdir()} == {aim_cache.file_name(k) for k in "ce"}
     assert aim_cache.load("a") is None

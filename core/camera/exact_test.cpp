@@ -129,6 +129,34 @@ TEST_CASE(
           doctest::Approx(0.19247).epsilon(1e-3));
 }
 
+TEST_CASE("the exposure of the axis from few rays is that from many, coatings and blades included") {
+    for (const Prescription& prescription : test::all_lenses())
+        for (const Iris& iris : {Iris(), Iris::polygon(5, 7, 0)})
+            for (const double f_number : {1.0, 4.0}) {
+                const FirstOrder order = first_order(prescription);
+                const double radius = iris_radius(prescription, order, order.f_number * f_number);
+                const ExactLens lens(prescription, at(order.f_number * f_number));
+                const Tracer& t = lens.tracer();
+                const RadialOpening opening(iris);
+                const LensIndices n = t.at(450);
+                const double e =
+                    axial_irradiance(t, lens.film_z_mm(), opening, radius, 450);
+                // All directions out to beyond what passes.
+                constexpr int kMany = 8000;
+                const double outer = 4 * e / kPiD;
+                double sum = 0;
+                for (int i = 0; i < kMany; ++i) {
+                    const double s2 = outer * (i + 0.5) / kMany;
+                    const auto ray = t.to_scene({{0, 0, lens.film_z_mm()},
+                                                 {-std::sqrt(s2), 0, -std::sqrt(1 - s2)}},
+                                                t.at(450), {true, nullptr, 0});
+                    if (ray)
+                        sum += ray->transmittance * opening.at(std::abs(ray->iris.x) / radius);
+                }
+                CHECK(e == doctest::Approx(kPiD * outer * sum / kMany).epsilon(3e-4));
+            }
+}
+
 TEST_CASE(
     "guided = rear disc = exit-pupil box; a 2 % pdf or a dropped cosine is caught") {
     std::vector<double> guided, boxed, two_percent, no_cosine;

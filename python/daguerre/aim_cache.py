@@ -1,15 +1,17 @@
 """Exact lenses that are ready at once when the same lens was set up before.
 
 What the set-up of an exact lens finds out is kept in a folder, one file per lens and setting,
-named by a hash of everything that it depends on: ``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache``
-where that is not set). ``DAGUERRE_CACHE`` names another folder, or is ``off``. Files are written
-whole or not at all; beyond 256 MB those that were not used for longest go. A folder that cannot be
-written and files that are damaged do no harm: the lens is set up anew.
+named by a hash of everything that it depends on, the build of this package included:
+``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache`` where that is not set). ``DAGUERRE_CACHE`` names
+another folder, or is ``off``. Files are written whole or not at all; beyond 256 MB those that were
+not used for longest go. A folder that cannot be written and files that are damaged do no harm: the
+lens is set up anew.
 """
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import tempfile
 from collections.abc import Iterator
@@ -36,12 +38,28 @@ def folder() -> Path | None:
     return base / "daguerre" / "aims"
 
 
+def identity(path: Path) -> str:
+    """What tells one build of the core from any other: each may aim a lens differently."""
+    with contextlib.suppress(OSError):
+        facts = path.stat()
+        return f"{path} {facts.st_size} {facts.st_mtime_ns}"
+    return str(path)
+
+
+BUILD = f"{_core.__version__} {identity(Path(_core.__file__))}"
+
+
+def file_name(key: str) -> str:
+    """Under which this build keeps the state of a key."""
+    return hashlib.blake2b(f"{key} {BUILD}".encode(), digest_size=16).hexdigest() + ".aim"
+
+
 def load(key: str) -> bytes | None:
     """The bytes kept under a key, if any; marks them as used."""
     place = folder()
     if place is None:
         return None
-    path = place / f"{key}.aim"
+    path = place / file_name(key)
     try:
         state = path.read_bytes()
     except OSError:
@@ -62,7 +80,7 @@ def store(key: str, state: bytes) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(state)
-            Path(name).replace(place / f"{key}.aim")
+            Path(name).replace(place / file_name(key))
         except OSError:
             Path(name).unlink(missing_ok=True)
             raise
