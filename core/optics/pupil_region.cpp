@@ -12,40 +12,77 @@ struct Range {
     double length() const { return std::max(0.0, high - low); }
 };
 
+/// All y of the outline from one x to where a sweep to the right has come. Places count its points.
+class Sweep {
+  public:
+    Sweep(const Outline& o, double x) : o_(o), from_(place(x)), next_(int(from_) + 1) {
+        add(swept_, from_);
+    }
+
+    double place(double x) const {
+        const double last = o_.points() - 1;
+        return std::clamp((x + o_.reach) * last / (2 * o_.reach), 0.0, last);
+    }
+    int next() const { return next_; }   // the point that is not yet behind
+    void pass_next() {
+        if (o_.lit(next_)) swept_.add(o_.low[next_], o_.high[next_]);
+        ++next_;
+    }
+    /// As far as `to`, which lies before or on the next point.
+    Range up_to(double to) const {
+        Range r = swept_;
+        add(r, to);
+        return r;
+    }
+
+  private:
+    void add(Range& r, double p) const {
+        const int i = std::min(int(p), o_.points() - 2);
+        const double t = p - i;
+        if (o_.lit(i) && o_.lit(i + 1))
+            r.add(o_.low[i] + (o_.low[i + 1] - o_.low[i]) * t,
+                  o_.high[i] + (o_.high[i + 1] - o_.high[i]) * t);
+        else if (o_.lit(i) || o_.lit(i + 1))   // it ends somewhere between the two
+            r.add(o_.low[o_.lit(i) ? i : i + 1], o_.high[o_.lit(i) ? i : i + 1]);
+    }
+
+    const Outline& o_;
+    double from_;
+    int next_;
+    Range swept_;
+};
+
 /// All y of the outline on [a, b].
 Range range(const Outline& o, double a, double b) {
-    const int points = o.points();
-    const double per_step = (points - 1) / (2 * o.reach);
-    const auto place = [&](double at) {
-        return std::clamp((at + o.reach) * per_step, 0.0, double(points - 1));
-    };
-    Range r;
-    const auto add = [&](double p) {
-        const int i = std::min(int(p), points - 2);
-        const double t = p - i;
-        if (o.lit(i) && o.lit(i + 1))
-            r.add(o.low[i] + (o.low[i + 1] - o.low[i]) * t,
-                  o.high[i] + (o.high[i + 1] - o.high[i]) * t);
-        else if (o.lit(i) || o.lit(i + 1))   // it ends somewhere between the two
-            r.add(o.low[o.lit(i) ? i : i + 1], o.high[o.lit(i) ? i : i + 1]);
-    };
-    const double from = place(a), to = place(b);
-    add(from), add(to);
-    for (int i = int(from) + 1; i <= int(to); ++i)
-        if (o.lit(i)) r.add(o.low[i], o.high[i]);
-    return r;
+    Sweep sweep(o, a);
+    const double to = sweep.place(b);
+    while (sweep.next() <= int(to)) sweep.pass_next();
+    return sweep.up_to(to);
 }
 
 /// Where a column that begins at `x` ends if it has this area; it may go beyond the outline's `end`.
 double column_end(const Outline& o, double x, double end, double area) {
-    const double rest = range(o, x, std::max(x, end)).length();
-    if (x >= end || rest * (end - x) < area) return x + area / std::max(rest, 1e-9);
-    double low = x, high = end;
-    for (int i = 0; i < 24; ++i) {
-        const double middle = 0.5 * (low + high);
-        (range(o, x, middle).length() * (middle - x) < area ? low : high) = middle;
-    }
-    return high;
+    Sweep sweep(o, x);
+    const double last = sweep.place(end);
+    const auto enough = [&](double to, double at) {
+        return sweep.up_to(to).length() * (at - x) >= area;
+    };
+    double low = x;
+    if (x < end)
+        for (;; sweep.pass_next()) {
+            const bool final = sweep.next() >= last;
+            double high = final ? end : o.x(sweep.next());
+            if (enough(final ? last : sweep.next(), high)) {
+                for (int i = 0; i < 16; ++i) {
+                    const double middle = 0.5 * (low + high);
+                    (enough(sweep.place(middle), middle) ? high : low) = middle;
+                }
+                return high;
+            }
+            if (final) break;
+            low = high;
+        }
+    return x + area / std::max(range(o, x, std::max(x, end)).length(), 1e-9);
 }
 
 }  // namespace
@@ -128,9 +165,14 @@ Columns cover(const Outline& outline) {
         }
         return c.x[kColumns] >= end;
     };
-    const Range all = range(outline, begin, end);
-    double low = 0, high = all.length() * 1.01 * (end - begin) / kColumns;
-    for (int i = 0; i < 14; ++i) {
+    // No columns are smaller than what they cover, and the best are hardly larger.
+    double low = 1e-9 * (end - begin), high = 0;
+    const double step = outline.x(1) - outline.x(0);
+    for (int i = first + 1; i < last; ++i)
+        if (outline.lit(i)) low += 0.99 * step * (outline.high[i] - outline.low[i]);
+    low /= kColumns, high = 1.05 * low;
+    while (!fill(high)) low = high, high *= 1.3;
+    for (int i = 0; i < 9; ++i) {
         const double middle = 0.5 * (low + high);
         (fill(middle) ? high : low) = middle;
     }

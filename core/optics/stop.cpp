@@ -243,13 +243,16 @@ double Iris::outer_radius() const {
 
 RadialOpening::RadialOpening(const Iris& iris) : outer_(iris.outer_radius()) {
     if (iris.kind() == Iris::Kind::round) return;
-    constexpr int kRadii = 1024, kAzimuths = 720;
+    constexpr int kRadii = 1024;
+    // Blades are alike: one shows what all do.
+    const int turns = iris.kind() == Iris::Kind::blades ? int(iris.blades().edge.size()) : 1;
+    const int azimuths = 720 / turns;
     for (int i = 0; i <= kRadii; ++i) {
         const double q = outer_ * i / kRadii;
         double sum = 0;
-        for (int j = 0; j < kAzimuths; ++j)
-            sum += iris.transmission(q * unit(2 * kPiD * (j + 0.5) / kAzimuths));
-        table_.push_back(sum / kAzimuths);
+        for (int j = 0; j < azimuths; ++j)
+            sum += iris.transmission(q * unit(2 * kPiD * (j + 0.5) / (azimuths * turns)));
+        table_.push_back(sum / azimuths);
     }
 }
 
