@@ -6,7 +6,7 @@ Operations are counted from the kernel (core/optics/trace-inl.h, meet-inl.h, tra
 pupil-inl.h), per vector of rays. A multiplication, fused or not, takes the pipe for 1 cycle, and so
 does a comparison; a division keeps the divider busy for 6 cycles and a root for 10, of which the
 pipe sees 2 each, and additions have a pipe of their own: measured on Zen 4 with 512 bits. The limit
-is the busier of pipe and divider. Aspheres count as spheres; the gathers of the aim, loads and
+is the busier of pipe and divider. Aspheres count as spheres; absorption, gathers, loads and
 stores are not counted.
 """
 
@@ -50,7 +50,7 @@ MEET_SPHERE, MEET_PLANE = Work(18, 1, 1), Work(5, 1)
 RIM = Work(3)
 IRIS = Work(4)
 SNELL = Work(12, 1, 1)
-COATED, BARE = Work(42, 1, 1), Work(13, 1)  # single layer, exact, s and p; cemented
+COATED, BARE = Work(29, 1), Work(13, 1)  # table of a single layer, s and p; cemented
 START = Work(9, 2, 1)  # unit direction, wavelength
 DRAW = Work(40, 3, 1)  # meridian, column of the visible iris, weight
 

@@ -258,9 +258,9 @@ MOTION = [
 ]
 
 LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
-DISCS = "--max-depth 1 --noise 0.1 --spp 1024 --denoise"
+DISCS = "--max-depth 1 --spp 128 --denoise"
 PANEL = "--res 375x250 --spp 32 --denoise"
-TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8"
+TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8 --focus-at 187,137"
 ZOOM = "--camera zoom --lens nikon-af-s-70-200mm-f2.8 --f-stop 4"
 THIRD = "--res 250x167 --spp 32 --denoise"
 VIEW = "--lens rodenstock-grandagon-n-90mm-f4.5 --sensor 127x102 --f-stop 11 --focus 8"
@@ -269,12 +269,12 @@ GLASS = [
     Picture(
         "four_lenses",
         "One scene, one place, four lenses, as in Kolb, Mitchell and Hanrahan 1995: telephoto "
-        "200 mm, double Gauss 50 mm, wide angle 35 mm, fisheye 16 mm.",
+        "180 mm, double Gauss 50 mm, wide angle 35 mm, fisheye 16 mm.",
         ARCADE,
         tuple(
             f'--camera "one place" --lens {name} --f-stop 2.8 {PANEL}'
             for name in (
-                "telephoto-200mm-f1.8",
+                "zeiss-olympia-sonnar-180mm-f2.8",
                 "double-gauss-50mm-f2",
                 "wide-angle-35mm-f2",
                 "fisheye-16mm-f2.8",
@@ -297,7 +297,7 @@ GLASS = [
         "undercorrected.",
         LAMPS,
         (
-            f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --res 1125x750 "
+            f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
             f"--crop 375,750,250,500 {DISCS}",
             f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
             f"--crop 375,750,250,500 {DISCS}",

@@ -13,8 +13,8 @@ from night.stage import Stage
 
 AWAY, STEP = 20.0, 1.6  # m
 ROWS, COLUMNS = 4, 6  # to each side of the middle
-RADIUS = 0.03
-LUMINANCE = 220.0  # cd/m2; a disc of light shows some 1/300 of it
+RADIUS = 0.07
+LUMINANCE = 55.0  # cd/m2; a disc of light shows some 1/70 of it
 
 
 def make() -> Glb:

@@ -22,7 +22,7 @@ def make() -> Glb:
     stage.glb.add_node("Camera", camera=camera, translation=[0, HEIGHT, 0], rotation=rotation)
     _add_top(stage)
     _add_things(stage)
-    soft = stage.matter("soft", stage.shine((1.0, 0.84, 0.64), 7.0), baseColorFactor=[0, 0, 0, 1])
+    soft = stage.matter("soft", stage.shine((1.0, 0.84, 0.64), 24.0), baseColorFactor=[0, 0, 0, 1])
     for z in (-1.6, -3.4, -5.2):
         eye = np.array([-1.5, 1.5, z])
         turn = look(eye, 2 * eye - (0, 0, z - 0.4))  # a square faces its +z
