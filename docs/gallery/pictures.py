@@ -286,7 +286,7 @@ GLASS = [
         "cat_eyes",
         "Small lamps far behind the focus draw the pupil of a fast lens over the whole frame: "
         "round in the middle, and cut by the rims of the first and the last glass toward the "
-        "corners.",
+        "corners. The fringes are its lateral and axial colour.",
         LAMPS,
         f"--lens canon-50mm-f0.95 --f-stop 0.95 --res 750x500 {DISCS}",
     ),
