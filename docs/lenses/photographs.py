@@ -16,7 +16,7 @@ import daguerre as dg
 from daguerre.denoise import denoise
 
 #: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
-SPP, DEPTH, EDITION = 24, 4, 1
+SPP, DEPTH, EDITION = 16, 4, 1
 JPEG = "jpeg:84"
 
 
