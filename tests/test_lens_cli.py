@@ -35,8 +35,17 @@ def test_the_psf_of_a_point(field: str, capsys: pytest.CaptureFixture[str]) -> N
     (film,) = facts["films"]
     assert film["film_mm"] == 0
     assert 0 < film["radius_50_mm"] < film["radius_80_mm"]
+    assert facts["focus_m"] is None
     if field == "12deg":
         assert facts["angle_deg"] == pytest.approx(12, abs=1e-6)
+
+
+@pytest.mark.parametrize(("focus", "says"), [([], "infinity"), (["--focus", "3"], "3 m")])
+def test_the_psf_says_what_is_in_focus(
+    focus: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["lens", LENS, "--psf", "0,3", "--f-stop", "8", *focus]) == 0
+    assert f"focused at {says}: a point at 3 m" in capsys.readouterr().out
 
 
 def test_through_focus_is_sharpest_in_the_middle(

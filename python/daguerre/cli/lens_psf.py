@@ -49,6 +49,7 @@ def show_psf(
         "name": bench.lens.name,
         "f_stop": bench.f_stop,
         "film_z": bench.film_z,
+        "focus_m": None if math.isinf(bench.focus_mm) else bench.focus_mm / 1e3,
         "height_mm": float(light.film[1]),
         "angle_deg": math.degrees(light.angle),
         "distance_m": None if math.isinf(distance_m) else distance_m,
@@ -76,9 +77,10 @@ def _light(bench: Bench, field: float, is_angle: bool, distance_m: float) -> Pen
 
 
 def _print(where: dict[str, Any], rows: list[dict[str, Any]]) -> None:
-    distance = where["distance_m"]
+    distance, focus = where["distance_m"], where["focus_m"]
     print(
-        f"{where['name']}, f/{where['f_stop']:.3g}: a point "
+        f"{where['name']}, f/{where['f_stop']:.3g}, focused at "
+        f"{'infinity' if focus is None else f'{focus:g} m'}: a point "
         f"{'infinitely far' if distance is None else f'at {distance:g} m'}, "
         f"{where['angle_deg']:.2f} deg off the axis, {where['height_mm']:.3f} mm on the film"
     )
