@@ -83,7 +83,7 @@ def set_up(
     """
     lens = lens if camera.zoom is None else lens.at_zoom(camera.zoom)
     order = lens.first_order()
-    transmittance = _transmittance(lens)
+    transmittance = _transmittance(lens, order)
     f_stop = _f_stop(camera, lens, order, transmittance)
     if any(camera.tilt):
         imaging = _imaging(order)
@@ -157,10 +157,11 @@ def _rippled(lens: lenses.Lens, ripple: tuple[float, float, int]) -> lenses.Lens
     )
 
 
-def _transmittance(lens: lenses.Lens) -> float:
-    """On the axis, of light as bright as a D65 world."""
+def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
+    """On the axis, of light as bright as a D65 world, at any f-stop."""
+    f_stop = order.f_number or DEFAULT_F_STOP  # 0: a stop whose size nobody knows
     try:
-        thick = _core.ThickLens(lens.prescription, 0.0, _core.Iris(), math.inf)
+        thick = _core.ThickLens(lens.prescription, f_stop, _core.Iris(), math.inf)
     except ValueError as error:
         raise from_core(error, lens.source) from None
     return float(thick.transmittance)

@@ -24,6 +24,8 @@ from .surface import LensSurface
 TOUCH = 2e-3
 #: And so is a crossing at this share of the beam on the axis, or farther out.
 ROUNDING = 0.9
+#: A lens of which less of the beam on the axis passes is slower than it says.
+ENOUGH_LIGHT = 0.6
 _RADII = 129
 _DESIGN_NM = 587.5618
 
@@ -60,7 +62,7 @@ def checked(lens: Lens) -> Lens:
         for k in (i, j):
             semi = surfaces[k].semi_diameter
             surfaces[k] = surfaces[k].replaced(semi_diameter=min(end, semi or end))
-    _check_light(lens)
+    notes += _check_light(lens)
     if list(lens.notes) == notes:
         return lens
     with reported(lens.source):
@@ -138,12 +140,12 @@ def _ray(
     return np.array([0.0, 0.0, -distance]), direction / np.linalg.norm(direction)
 
 
-def _check_light(lens: Lens) -> None:
-    """Some ray of the beam on the axis must reach the film."""
+def _check_light(lens: Lens) -> list[str]:
+    """Some ray of the beam on the axis must reach the film; a note if most do not."""
     order = lens.first_order()
     radius = 0.5 * order.entrance_pupil.diameter
     if not math.isfinite(radius) or radius <= 0 or not math.isfinite(order.entrance_pupil.z):
-        return
+        return []
     share = (np.arange(9) - 4) / 4.5
     rays = [
         _ray(lens, order.entrance_pupil.z, radius * x, radius * y)
@@ -154,8 +156,14 @@ def _check_light(lens: Lens) -> None:
     origins, directions = (np.ascontiguousarray(part) for part in zip(*rays, strict=True))
     nm = np.full(len(rays), _DESIGN_NM)
     stopped = lens.prescription.rays(origins, directions, nm, True)[-1]
-    if (stopped < 0).any():
-        return
+    passed = float((stopped < 0).mean())
+    if passed > 0:
+        if passed >= ENOUGH_LIGHT or not lens.prescription.is_axially_symmetric:
+            return []  # of a squeezed pupil this beam is too wide in one direction
+        return [
+            f"clear diameters pass {100 * passed:.0f} % of the beam on the axis: the lens does not "
+            f"reach the f/{order.f_number:.3g} that its stop is open for"
+        ]
     worst = int(np.bincount(stopped).argmax())
     raise LensError(
         f"{lens.source}: surface {worst}{_numbers(lens, worst)}: wanted rays of the beam on the "

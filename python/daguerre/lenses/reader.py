@@ -92,8 +92,12 @@ def _lens(root: Item, path: Path, name: str | None) -> Lens:
     surfaces = read_surfaces(items, configuration.gaps)
     stops = [i for i, surface in enumerate(surfaces) if surface.stop]
     if len(stops) != 1:
-        code = "lens-two-stops" if stops else "lens-no-stop"
-        raise LensError(f"{path}: surfaces: wanted exactly one stop, got {len(stops)}", code)
+        where = f" (surfaces {', '.join(map(str, stops[:8]))})" if stops else ""
+        raise LensError(
+            f"{path}: surfaces: wanted exactly one stop, got {len(stops)}{where}",
+            "lens-two-stops" if stops else "lens-no-stop",
+            stops[1] if stops else None,
+        )
     if configuration.stop_semi_diameter is not None:
         surfaces[stops[0]] = surfaces[stops[0]].replaced(
             semi_diameter=configuration.stop_semi_diameter

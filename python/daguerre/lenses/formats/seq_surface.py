@@ -58,7 +58,7 @@ class Surface:
         self.curvature = (1 / first if first else 0.0) if radius_mode else first
         far = number_ == 0 and line.word(2, "thickness").upper() in ("INF", "INFINITY")
         self.thickness = math.inf if far else line.number_at(2, "thickness", default=0)
-        self.glass = self._glass(line, private)
+        self.private = private  # PRV may stand behind the surfaces
         self.form = "SPH"
         self.values: dict[str, float] = {}
         self.how = ""  # how the frame goes on behind the surface: DAR, REV
@@ -72,8 +72,8 @@ class Surface:
         """For notes."""
         return f"surface {self.number}"
 
-    def _glass(self, line: Line, private: dict[str, dict[str, Any] | None]) -> Glass | None:
-        words = line.words[3:]
+    def _glass(self) -> Glass | None:
+        line, words = self.line, self.line.words[3:]
         for word in words:
             if word.upper() in ("REFL", "REFO", "TIRO"):
                 line.fail(
@@ -84,8 +84,8 @@ class Surface:
         if not words or words[0].upper() == "AIR":
             return None
         word = clean(words[0].strip("'\" "))
-        if word.upper() in private:
-            table = private[word.upper()]
+        if word.upper() in self.private:
+            table = self.private[word.upper()]
             if table is None:
                 line.fail(
                     f"glass: wanted a table of indices in PRV, got a formula for {word!r}",
@@ -174,7 +174,7 @@ class Surface:
             self.number,
             thickness=self.thickness * unit,
             curvature=self.curvature / unit,
-            glass=self.glass,
+            glass=self._glass(),
             semi_diameter=(semi * unit) or None if semi is not None else None,
             inner=self.inner * unit,
             stop=self.stop,
