@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <array>
 #include <map>
@@ -39,6 +40,23 @@ std::size_t check_lengths(const dg::Prescription& lens, const Rows3d& origins,
     return n;
 }
 
+/// Calls each(i, indices at the wavelength of ray i), on all cores.
+template <typename Each>
+void for_rays(const dg::Tracer& tracer, const Column& wavelength_nm, const Each& each) {
+    constexpr std::size_t kGrain = 256;
+    const nb::gil_scoped_release release;
+    oneapi::tbb::parallel_for(
+        oneapi::tbb::blocked_range<std::size_t>(0, wavelength_nm.shape(0), kGrain),
+        [&](const auto& range) {
+            dg::LensIndices index{};
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                if (wavelength_nm(i) != index.wavelength_nm)
+                    index = tracer.at(wavelength_nm(i));
+                each(i, index);
+            }
+        });
+}
+
 /// Points (N, 3) on the plane image_z, and unit directions there; NaN where a ray is
 /// stopped.
 auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
@@ -46,16 +64,14 @@ auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& di
     const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
     const dg::Tracer tracer(lens);
     std::vector<double> points(3 * n), exits(3 * n);
-    dg::LensIndices index{0, {}};
-    for (std::size_t i = 0; i < n; ++i) {
-        if (wavelength_nm(i) != index.wavelength_nm) index = tracer.at(wavelength_nm(i));
+    for_rays(tracer, wavelength_nm, [&](std::size_t i, const dg::LensIndices& index) {
         const auto out =
             tracer.to_film(ray_at(origins, directions, i), index, {clip, nullptr, 0});
         const dg::Vec3d p =
             out ? dg::at_plane(out->ray, image_z) : dg::Vec3d{kNan, kNan, kNan};
         const dg::Vec3d d = out ? out->ray.direction : dg::Vec3d{kNan, kNan, kNan};
         for (int k = 0; k < 3; ++k) points[3 * i + k] = p[k], exits[3 * i + k] = d[k];
-    }
+    });
     return nb::make_tuple(dg::bind::to_numpy(std::move(points), {n, 3}),
                           dg::bind::to_numpy(std::move(exits), {n, 3}));
 }
@@ -65,21 +81,20 @@ auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& dir
           const Column& wavelength_nm, bool clip, bool toward_film) {
     const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
     const dg::Tracer tracer(lens);
-    std::vector<double> points, exits, iris, path, transmittance;
-    std::vector<std::int32_t> stopped;
-    dg::LensIndices index{0, {}};
-    for (std::size_t i = 0; i < n; ++i) {
-        if (wavelength_nm(i) != index.wavelength_nm) index = tracer.at(wavelength_nm(i));
+    std::vector<double> points(3 * n), exits(3 * n), iris(2 * n), path(n),
+        transmittance(n);
+    std::vector<std::int32_t> stopped(n);
+    for_rays(tracer, wavelength_nm, [&](std::size_t i, const dg::LensIndices& index) {
         dg::TracedRay out{ray_at(origins, directions, i)};
         out.iris = {kNan, kNan};
-        stopped.push_back(tracer.follow(out, toward_film, index, {clip, nullptr, 0}));
-        const dg::Vec3d p = out.ray.origin, d = out.ray.direction;
-        points.insert(points.end(), {p.x, p.y, p.z});
-        exits.insert(exits.end(), {d.x, d.y, d.z});
-        iris.insert(iris.end(), {out.iris.x, out.iris.y});
-        path.push_back(out.optical_path);
-        transmittance.push_back(stopped.back() < 0 ? out.transmittance : 0);
-    }
+        stopped[i] = tracer.follow(out, toward_film, index, {clip, nullptr, 0});
+        for (int k = 0; k < 3; ++k)
+            points[3 * i + k] = out.ray.origin[k],
+                           exits[3 * i + k] = out.ray.direction[k];
+        iris[2 * i] = out.iris.x, iris[2 * i + 1] = out.iris.y;
+        path[i] = out.optical_path;
+        transmittance[i] = stopped[i] < 0 ? out.transmittance : 0;
+    });
     using dg::bind::to_numpy;
     return nb::make_tuple(to_numpy(std::move(points), {n, 3}),
                           to_numpy(std::move(exits), {n, 3}),
