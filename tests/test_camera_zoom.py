@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import daguerre._core as _core
@@ -12,6 +13,8 @@ import pytest
 import daguerre as dg
 from daguerre import lenses
 from daguerre.camera_setup import set_up
+from daguerre.cli.info import camera_rows
+from daguerre.info import camera_facts
 
 from . import scenes
 from .test_lens_models import LENS
@@ -132,3 +135,27 @@ def test_a_model_without_elements_has_none_to_move() -> None:
     with pytest.raises(dg.UsageError, match="wanted lens_model exact"):
         facts(dg.Camera(lens=LENS, lens_model="thick", focus_distance=3.0, decenter=moved))
     assert dg.Camera(lens=LENS, decenter=moved).with_(lens="thin").decenter == ()
+
+
+@pytest.mark.parametrize(
+    ("camera", "wanted"),
+    [
+        (thick(), r"25.* to 48.* mm and stands at"),
+        (dg.Camera(lens=LENS, lens_model="thin", t_stop=4.0), r"T/4 of .* is f/3\.\d+: \d+"),
+        (dg.Camera(tilt=(6.0, 0.0), focal_length=50.0), r"6 deg: .* line 478 mm from the lens"),
+    ],
+)
+def test_notes_say_what_a_picture_does_not_show(camera: dg.Camera, wanted: str) -> None:
+    (note,) = set_up(dg.Scene(), camera.with_(focus_distance=3.0), (36, 24), None).notes
+    assert re.search(wanted, note)
+
+
+def test_info_has_rows_for_what_a_lens_can_do() -> None:
+    camera = thick(zoom=35.0, tilt=(3.0, -1.0), t_stop=8.0)
+    rows = camera_rows(camera_facts(camera, dg.Scene()), (960, 540))
+    assert rows["zoom"].startswith("35 mm of 25.")
+    assert rows["T-stop"] == "T/8 on the axis"
+    assert rows["tilt"] == "3 deg about x, -1 deg about y"
+    assert not {"squeeze", "decentred"} & set(rows)
+    moved = dg.Camera(lens=LENS, focus_distance=3.0, decenter=(((1, 2), (0.1, 0.0)),))
+    assert "1 group" in camera_rows(camera_facts(moved, dg.Scene()), (960, 540))["decentred"]

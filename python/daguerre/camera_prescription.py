@@ -91,7 +91,9 @@ def set_up(
     distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
     sharp = _focused(camera, lens, distance, f_stop)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
+    squeeze = lens.squeeze if model == "exact" else 1.0  # other models have one focal length
     focus.notes += lens.notes
+    focus.notes += _notes(camera, lens, model, squeeze, f_stop, transmittance)
     core, h0 = _core_camera(camera, model, sharp, frame, pose, film, focus.notes)
     facts = {
         "lens": lens.name,
@@ -100,6 +102,8 @@ def set_up(
         "focal_length_mm": lens.zoom_mm or lens.nominal.efl_mm or order.efl,
         "effective_focal_length_mm": sharp.order.efl,
         "zoom_mm": lens.zoom_mm,
+        "zoom_range_mm": lens.zoom_range_mm,
+        "squeeze": squeeze,
         "decenter": [[list(part) for part in one] for one in decenters(camera)],
         "f_stop": f_stop,
         "t_stop": f_stop / math.sqrt(transmittance),
@@ -114,6 +118,35 @@ def set_up(
         **dirt_facts(camera),
     }
     return RealLens(core, film, facts)
+
+
+def _notes(
+    camera: Camera, lens: lenses.Lens, model: str, squeeze: float, f_stop: float, share: float
+) -> list[str]:
+    """What a picture does not show by itself: zoom, light lost in the glass, squeeze."""
+    notes = []
+    if lens.zoom_range_mm and camera.zoom is None:
+        short_end, long_end = lens.zoom_range_mm
+        notes.append(
+            f"{lens.name} is a zoom of {short_end:.4g} to {long_end:.4g} mm and stands at "
+            f"{lens.zoom_mm:.4g} mm"
+        )
+    if camera.t_stop is not None:
+        notes.append(
+            f"T/{camera.t_stop:.3g} of {lens.name} is f/{f_stop:.3g}: "
+            f"{100 * share:.3g} % of the light passes the glass"
+        )
+    if squeeze != 1:
+        notes.append(
+            f"{lens.name} is anamorphic: it squeezes the picture's width by {squeeze:.3g}; "
+            f"view it with a pixel aspect of {squeeze:.3g} (the EXR file says so)"
+        )
+    elif model != "exact" and lens.squeeze != 1:
+        notes.append(
+            f"{lens.name} is anamorphic: its {model} model has the focal length of the height "
+            "alone, and squeezes nothing"
+        )
+    return notes
 
 
 def decenters(camera: Camera) -> list[Decenter]:

@@ -88,6 +88,8 @@ def set_up(
         _set_up_lens(made, now, lens, model, pose, known)
         return made.core
 
+    if any(camera.tilt) and model != "pinhole":
+        setup.notes.append(tilt.note(camera.tilt, setup.facts["focal_length_mm"]))
     changing = set(facts.get("motion", {})) - {"transform"}
     if changing:
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")

@@ -32,6 +32,12 @@ class Facts:
         lens: Name of the lens, or thin, or pinhole.
         focal_length_mm: At infinity.
         f_stop: None for a pinhole.
+        t_stop: As ``f_stop``, of the light that passes the glass; None without glass.
+        zoom_mm: Where a zoom stands.
+        zoom_range_mm: Shortest and longest focal length of a zoom.
+        squeeze: How much an anamorphic lens narrows the picture; else 1.
+        tilt_deg: Of the lens about x, then y.
+        decentered: How many elements are off the axis.
         sensor_mm: Width, height.
         picture_mm: The part of the sensor that a picture of the wanted shape covers.
         field_of_view_deg: Of the sensor: horizontal, vertical, diagonal.
@@ -52,6 +58,12 @@ class Facts:
     lens: str
     focal_length_mm: float
     f_stop: float | None
+    t_stop: float | None
+    zoom_mm: float | None
+    zoom_range_mm: tuple[float, float] | None
+    squeeze: float
+    tilt_deg: tuple[float, float]
+    decentered: int
     sensor_mm: tuple[float, float]
     picture_mm: tuple[float, float]
     field_of_view_deg: tuple[float, float, float]
@@ -89,7 +101,7 @@ def camera_facts(
     setup = set_up(scene, camera, resolution, core_scene)
     facts = setup.facts
     focal, stop = float(facts["focal_length_mm"]), facts.get("f_stop")
-    focus = float(facts.get("focus_distance_m", math.inf))
+    focus, squeeze = float(facts.get("focus_distance_m", math.inf)), facts.get("squeeze", 1.0)
     coc = math.hypot(*camera.sensor_size) * COC_PER_DIAGONAL
     hyperfocal = near = far = None
     if stop is not None:
@@ -103,10 +115,16 @@ def camera_facts(
         str(facts.get("lens", "thin")),
         focal,
         stop,
+        facts.get("t_stop"),
+        facts.get("zoom_mm"),
+        facts.get("zoom_range_mm"),
+        squeeze,
+        facts["tilt_deg"],
+        len(facts.get("decenter", ())),
         camera.sensor_size,
         setup.frame_size,
-        field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size),
-        field_of_view_deg(setup.pinhole_focal_length, setup.frame_size),
+        field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size, squeeze),
+        field_of_view_deg(setup.pinhole_focal_length, setup.frame_size, squeeze),
         focus,
         setup.notes,
         coc,
@@ -146,12 +164,16 @@ def depth_of_field_m(
     return near, far
 
 
-def field_of_view_deg(focal_mm: float, size_mm: tuple[float, float]) -> tuple[float, float, float]:
+def field_of_view_deg(
+    focal_mm: float, size_mm: tuple[float, float], squeeze: float = 1.0
+) -> tuple[float, float, float]:
     """Full angles, 2 atan(d / 2 f): horizontal, vertical, diagonal.
 
-    ``focal_mm`` is that of the pinhole with the same framing.
+    ``focal_mm`` is that of the pinhole with the same framing; an anamorphic lens sees wider than
+    its film is by its squeeze.
     """
-    sides = (*size_mm, math.hypot(*size_mm))
+    width, height = size_mm[0] * squeeze, size_mm[1]
+    sides = (width, height, math.hypot(width, height))
     h, v, d = (math.degrees(2 * math.atan(side / (2 * focal_mm))) for side in sides)
     return h, v, d
 

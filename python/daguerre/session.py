@@ -291,6 +291,7 @@ class Session:
             **shutter.metadata(camera),
             "aperture": facts.get("f_stop"),
             "tStop": facts.get("t_stop"),
+            "pixelAspectRatio": facts.get("squeeze", 1.0),
             "focus": facts.get("focus_distance_m"),
             "nominalFocalLength": facts.get("focal_length_mm"),
             "effectiveFocalLength": facts.get(
@@ -303,7 +304,12 @@ class Session:
             "sensorOverallDimensions": (width, height),
             "sensorCenterOffset": tuple(1e3 * shift for shift in facts["shift_mm"]),
             "worldToCamera": _world_to_camera(matrix),
-            "worldToNDC": _world_to_ndc(matrix, self._setup.pinhole_focal_length, width, height),
+            "worldToNDC": _world_to_ndc(
+                matrix,
+                self._setup.pinhole_focal_length,
+                width * facts.get("squeeze", 1.0),
+                height,
+            ),
             "h0": facts.get("h0"),
             "camera": facts,
             "seed": self._identity["seed"],

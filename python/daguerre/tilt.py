@@ -28,6 +28,20 @@ def cosine(tilt_deg: tuple[float, float]) -> float:
     return float(turn(tilt_deg)[2, 2])
 
 
+def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
+    """Where the plane of focus goes: through a line f / sin(tilt) from the lens.
+
+    Source: Merklinger 1996, Focusing the View Camera, ch. 5 (the hinge rule).
+    """
+    hinge = focal_length / math.sqrt(1 - cosine(tilt_deg) ** 2)
+    angle = math.degrees(math.acos(cosine(tilt_deg)))
+    far = f"{hinge:.3g} mm" if hinge < 1000 else f"{hinge / 1000:.3g} m"
+    return (
+        f"the lens is turned by {angle:.3g} deg: what is sharp is a plane that hinges on a line "
+        f"{far} from the lens"
+    )
+
+
 @dataclass(frozen=True)
 class Imaging:
     """What of a lens decides where images lie: z in the lens's frame, mm, as in ``FirstOrder``.

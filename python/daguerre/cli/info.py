@@ -85,6 +85,18 @@ def camera_rows(facts: Facts, resolution: tuple[int, int]) -> dict[str, str]:
         if facts.f_stop is None
         else f"f/{facts.f_stop:.3g}",
     }
+    if facts.t_stop is not None:
+        rows["T-stop"] = f"T/{facts.t_stop:.3g} on the axis"
+    if facts.zoom_mm is not None and facts.zoom_range_mm is not None:
+        rows["zoom"] = "{:.4g} mm of {:.4g} to {:.4g} mm".format(
+            facts.zoom_mm, *facts.zoom_range_mm
+        )
+    if facts.squeeze != 1:
+        rows["squeeze"] = f"{facts.squeeze:.3g} (anamorphic; the pixel aspect to view it with)"
+    if any(facts.tilt_deg):
+        rows["tilt"] = "{:.3g} deg about x, {:.3g} deg about y".format(*facts.tilt_deg)
+    if facts.decentered:
+        rows["decentred"] = f"{facts.decentered} group(s) off the axis"
     if facts.pupil_diameter_mm is not None:
         rows["entrance pupil"] = f"{facts.pupil_diameter_mm:.4g} mm"
         rows["focus distance"] = _metres(facts.focus_m)

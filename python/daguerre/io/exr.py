@@ -29,7 +29,7 @@ REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
 FLOATS = (
     "isoSpeed", "expTime", "aperture", "tStop", "focus", "nominalFocalLength",
     "effectiveFocalLength", "pinholeFocalLength", "entrancePupilOffset", "shutterAngle",
-    "whiteLuminance",
+    "whiteLuminance", "pixelAspectRatio",
 )  # fmt: skip
 STRINGS = ("lensMake", "lensModel", "lensSerialNumber", "cameraMake", "cameraModel", "capDate")
 VECTORS = (

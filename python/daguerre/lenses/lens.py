@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -211,6 +212,15 @@ class Lens:
         for i, gap in gaps.items():
             surfaces[i] = surfaces[i].replaced(thickness=gap)
         return self.rebuilt(surfaces)
+
+    @property
+    def squeeze(self) -> float:
+        """How much more an anamorphic lens narrows its picture than it lowers it; else 1.
+
+        The ratio of its focal lengths, y to x.
+        """
+        ratio = abs(self.first_order().efl / self.first_order(section="x").efl)
+        return 1.0 if math.isclose(ratio, 1, rel_tol=1e-6) else ratio
 
     @property
     def zoom_range_mm(self) -> tuple[float, float] | None:
