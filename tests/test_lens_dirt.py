@@ -47,19 +47,27 @@ def test_a_spot_at_the_iris_darkens_all_of_the_picture_by_its_area() -> None:
     assert ratio[2:5, 2:6].mean() == pytest.approx(1 - share, abs=0.08)
 
 
-def test_dust_shows_where_the_rays_cross_it() -> None:
-    """The right half of the iris is shut: rays leave through the left half of the pupil alone."""
-    right = np.ones((64, 64), np.float32)
-    right[:, 32:] = 0
+@pytest.mark.parametrize("mask", ["front_mask", "iris_mask"])
+@pytest.mark.parametrize(("side", "axis"), [(np.s_[:, 32:], 0), (np.s_[:32], 1)])
+def test_dust_shows_where_the_rays_cross_it(mask: str, side: Any, axis: int) -> None:
+    """Half of it is shut: rays leave through the other half of the pupil alone."""
+    shut = np.ones((64, 64), np.float32)
+    shut[side] = 0
     camera = dg.Camera(lens=LENS, focus_distance=math.inf, f_stop=4.0)
-    origins, _, weights = rays(camera.with_(iris_mask=right), [(0.0, 0.0)], 1024)
+    origins, _, weights = rays(camera.with_(**{mask: shut}), [(0.0, 0.0)], 1024)
     passed = weights[0, :, 0] > 0.9
-    assert origins[0, passed, 0].max() < 5e-4
+    assert origins[0, passed, axis].max() < 5e-4
     assert 0.4 < passed.mean() < 0.6
-    top = np.ones((64, 64), np.float32)
-    top[:32] = 0
-    origins, _, weights = rays(camera.with_(front_mask=top), [(0.0, 0.0)], 1024)
-    assert origins[0, weights[0, :, 0] > 0.9, 1].max() < 5e-4
+
+
+def test_the_front_mask_is_as_wide_as_the_front() -> None:
+    spot = 0.3
+    camera = dg.Camera(lens=LENS, focus_distance=math.inf, f_stop=2.0, front_mask=disc(spot, 0.0))
+    origins, _, weights = rays(camera, [(0.0, 0.0)], 4096)
+    inner = 1e3 * np.hypot(*origins[0, weights[0, :, 0] > 0, :2].T).min()
+    front = lenses.load(LENS).surfaces[0].semi_diameter
+    assert front is not None
+    assert inner == pytest.approx(spot * front, rel=0.04)
 
 
 def test_grinding_marks_make_rings_and_move_no_light() -> None:

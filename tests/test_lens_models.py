@@ -51,6 +51,15 @@ def test_a_white_world_is_one_on_the_axis(model: str) -> None:
     assert luminance.mean() == pytest.approx(1, abs=0.01)
 
 
+@pytest.mark.parametrize("model", ["thin", "thick", "exact"])
+def test_a_grey_iris_takes_no_exposure(model: str) -> None:
+    """Pictures of the iris count as their own unit, grey and black parts alike."""
+    grey = np.full((8, 8), 0.3, np.float32)
+    grey[:, 4:] = 1
+    picture = white(model, f_stop=4.0, aperture_image=grey)
+    assert np.asarray(picture.xyz)[11:13, 17:19, 1].mean() == pytest.approx(1, abs=0.02)
+
+
 def test_all_models_frame_alike_near_the_axis() -> None:
     film = [(0.0, 0.0), (1.0, 0.5), (-0.6, 1.2)]
     directions = []
@@ -96,6 +105,21 @@ def test_the_fall_off_of_a_thick_lens_is_that_of_its_exit_pupil() -> None:
         ring = (r > inner - 1) & (r < inner + 1)
         expected = np.mean([exposure(v) for v in r[ring]]) / exposure(0)
         assert picture[ring].mean() == pytest.approx(expected, rel=4e-3)
+
+
+@pytest.mark.parametrize("model", ["thin", "thick", "exact"])
+def test_all_models_hold_their_iris_alike(model: str) -> None:
+    """Three blades, turned: the third moment of where rays cross the entrance pupil."""
+    camera = dg.Camera(
+        lens=LENS, lens_model=model, f_stop=4.0, focus_distance=3.0, blades=3, blade_rotation=20.0
+    )
+    o, d, w = (part[0] for part in rays(camera, [(0.0, 0.0)], 4096))
+    o, d = o[w[:, 0] > 0], d[w[:, 0] > 0]
+    at = o[:, :2] - d[:, :2] * (o[:, 2:] / d[:, 2:])
+    z = at[:, 0] + 1j * at[:, 1]
+    third = (z**3).mean() / (abs(z) ** 3).mean()
+    assert abs(third) > 0.2
+    assert math.degrees(np.angle(third)) == pytest.approx(3 * 20.0, abs=10)  # a corner at 20 deg
 
 
 def test_exposures_of_thick_and_exact_lens_are_one_number() -> None:

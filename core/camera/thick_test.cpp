@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camera/camera.h"
+#include "camera/tilt.h"
 #include "math/error.h"
 #include "math/hash.h"
 #include "optics/test_lenses.h"
@@ -195,6 +196,40 @@ TEST_CASE("the plane in focus meets film and lens in one line (Scheimpflug)") {
         const Vec3d hinge = Vec3d{0, -std::sin(a), std::cos(a)} * front + Vec3d{0, std::cos(a), std::sin(a)} * up;
         CHECK(off(hinge) < 1e-4);
     }
+}
+
+TEST_CASE("a tilted thick lens exposes its film as the exact one does: the film's own cosine counts") {
+    ExactLensSettings settings;
+    settings.f_stop = 8, settings.focus_distance_m = 3, settings.tilt_deg = {10, 0};
+    const ExactLens exact(test::check_lens(false, 0.5), settings);
+    const ThickLens thick = thick_double_gauss(8, 3, {10, 0});
+    const auto ratio = [](const LensKind& lens) {
+        return mean_weight(drawn(lens, {0, 6}, 8000)) / mean_weight(drawn(lens, {0, -6}, 8000));
+    };
+    CHECK(std::abs(ratio(thick) / ratio(exact) - 1) < 0.015);
+}
+
+TEST_CASE("a state of a lens that moves looks out from where its body puts it, and is as bright as it is") {
+    const ThickLens near = thick_double_gauss(4, 1), far = thick_double_gauss(4, 3);
+    const ThickLens state = near.in_the_body_of(far);
+    const double out = (near.film_z_mm() - far.film_z_mm()) * 1e-3;   // the film stays, the lens goes ahead
+    CHECK(out > 1e-3);
+    const double alone = meeting(drawn(near, {3, 2}, 500)).point.z;
+    CHECK(std::abs(meeting(drawn(state, {3, 2}, 500)).point.z - alone + out) < 1e-4);
+    const double bright = mean_weight(drawn(state, {0, 0}, 4000)) / mean_weight(drawn(near, {0, 0}, 4000));
+    CHECK(std::abs(bright * far.h0() / near.h0() - 1) < 1e-5);
+    CHECK(near.h0() < 0.99 * far.h0());
+}
+
+TEST_CASE("the film of a tilted lens that moves stays: its axis meets it elsewhere") {
+    const Vec2d tilt{6, -4};
+    const ThickLens near = thick_double_gauss(4, 1, tilt), far = thick_double_gauss(4, 3, tilt);
+    const Vec3d axis = lens_turn(tilt).z;
+    const auto on = near.in_the_body_of(far).film_point(-axis), before = far.film_point(-axis);
+    REQUIRE((on && before));
+    const Vec2d expected = Vec2d{axis.x, axis.y} * (far.film_z_mm() - near.film_z_mm());
+    CHECK(length(expected) > 0.1);   // mm
+    CHECK(length(*on - *before - expected) < 1e-9);
 }
 
 }  // namespace dg
