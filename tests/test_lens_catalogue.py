@@ -49,6 +49,7 @@ def test_pictures_and_links_of_the_page_exist() -> None:
     shown = set(re.findall(r'src="([^"]*)"', PAGE))
     for entry in library.entries():
         assert f"lenses/drawings/{entry.name}.svg" in shown
+        assert f"lenses/photographs/{entry.name}.jpg" in shown
     for name in shown:
         assert (ROOT / "docs" / name).stat().st_size < 40_000
     targets = {part.split(")")[0] for part in PAGE.split("](#")[1:]}

@@ -58,8 +58,9 @@ def place(entry: Entry, lens: Lens) -> Place:
     height = min(HIGHEST, WIDEST / wide)
     size = round(wide * height), round(height)
     resolution = size[0], round(size[0] * film[1] / film[0])
-    distance = _reachable(lens, distance)
-    return Place(lens, 1.0005 * order.f_number, film, distance, resolution, size)
+    distance, near = _reachable(lens, distance)
+    f_stop = 1.0005 * max(order.f_number, near.first_order().f_number)  # groups may narrow it
+    return Place(lens, f_stop, film, distance, resolution, size)
 
 
 def film_of(entry: Entry, lens: Lens, efl: float) -> tuple[float, float]:
@@ -79,15 +80,13 @@ def squeeze(lens: Lens) -> float:
     return abs(lens.first_order().efl) / x if x else 1.0
 
 
-def _reachable(lens: Lens, distance: float) -> float:
-    """That distance, or by steps the first one beyond it at which the lens can focus."""
+def _reachable(lens: Lens, distance: float) -> tuple[float, Lens]:
+    """That distance, or by steps the first one beyond it, and the lens focused there."""
     for _ in range(40):
         try:
-            lens.focused(distance)
+            return distance, lens.focused(distance).lens
         except LensError as error:
             if error.code != "lens-focus-near":
                 raise
             distance *= 1.1
-        else:
-            return distance
     raise SystemExit(f"{lens.name}: cannot focus at {distance:.1f} m")
