@@ -51,7 +51,10 @@ def prescription(case: Case) -> tuple[_core.Prescription, float, float]:
     focused = lens.focused(distance)
     # Glass before the film may have no mount of its own: what comes through the others to the film.
     mounts = [s.semi_diameter for s in lens.surfaces if math.isfinite(s.semi_diameter)]
-    rear = min(lens.surfaces[-1].semi_diameter, max(mounts) + case.half_mm)
+    last = lens.surfaces[-1]
+    rear = min(last.semi_diameter, max(mounts) + case.half_mm)
+    # From the rim of a strongly curved surface light goes on outward to the plane of its vertex.
+    rear += rear**2 / abs(last.radius) if last.radius else 0
     return focused.lens.prescription, focused.film_z_mm, rear
 
 
