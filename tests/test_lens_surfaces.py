@@ -101,3 +101,19 @@ def test_rays_say_which_surface_stops_them() -> None:
     assert (light[1:] == 0).all()
     free = lens.prescription.rays(origins[:2], along[:2], np.full(2, 550.0), False)
     assert (free[5] == -1).all()
+
+
+@pytest.mark.parametrize("name", ["canon-rf-50mm-f1.2", "schneider-anamorphic-60mm"])
+def test_the_bits_of_a_ray_do_not_depend_on_its_neighbours(name: str) -> None:
+    """Lanes come to rest one by one; what other lanes still need must not move them."""
+    lens = lenses.load(name)
+    camera = _core.ExactLens(lens.prescription, 2.0, _core.Iris(), 3.0, False, 15.0)
+    rng, n = np.random.default_rng(2), 4000
+    film = rng.uniform(-8, 8, (n, 2)).astype(np.float32)
+    at = rng.random((n, 2), dtype=np.float32)
+    nm = np.full(n, 550, np.float32)
+    whole = camera.generate(film, at, nm)
+    for part in (slice(1, None, 2), slice(7, None)):
+        alone = camera.generate(*(np.ascontiguousarray(values[part]) for values in (film, at, nm)))
+        for ours, theirs in zip(whole, alone, strict=True):
+            np.testing.assert_array_equal(np.asarray(ours)[part], theirs)

@@ -184,33 +184,50 @@ HWY_INLINE V past_surface(const ShapeTables& s, LaneHit& h) {
     return hn::Sub(z, base);
 }
 
+HWY_INLINE void keep_lanes(M which, const LaneHit& from, LaneHit& to) {
+    to.point.x = hn::IfThenElse(which, from.point.x, to.point.x);
+    to.point.y = hn::IfThenElse(which, from.point.y, to.point.y);
+    to.point.z = hn::IfThenElse(which, from.point.z, to.point.z);
+    to.bend_x = hn::IfThenElse(which, from.bend_x, to.bend_x);
+    to.bend_y = hn::IfThenElse(which, from.bend_y, to.bend_y);
+    to.axial = hn::IfThenElse(which, from.axial, to.axial);
+    to.ok = hn::Or(hn::And(which, from.ok), hn::AndNot(which, to.ok));
+}
+
 /// Newton's steps for two vectors of rays from the base form; what has not come to rest
-/// after the last counts as missed.
+/// after the last counts as missed. A lane at rest stays as it is while others move: its
+/// bits must not depend on its neighbours.
 template <int kSign>
 HWY_INLINE void meet_searched(const ShapeTables& s, const LaneVec (&p)[2],
                               const LaneVec (&d)[2], const M (&alive)[2],
                               LaneHit (&h)[2]) {
     const D tag;
     const V zero = hn::Zero(tag), stride = constant(s.stride);
-    V speed[2];
+    V speed[2] = {zero, zero};
     M rest[2];
     for (int v = 0; v < 2; ++v) {
+        rest[v] = hn::Lt(zero, zero);
         const LaneVec m = along(p[v], hn::Neg(dot_lanes(p[v], d[v])), d[v]);
         V discriminant;
         h[v].point = along(m, quadric_crossing<kSign>(s, m, d[v], discriminant), d[v]);
+        h[v].bend_x = h[v].bend_y = h[v].axial = zero, h[v].ok = rest[v];
     }
     for (int step = 0; step < 12; ++step) {
         for (int v = 0; v < 2; ++v) {
-            h[v].ok = hn::Eq(zero, zero);
-            const V past = past_surface(s, h[v]);
+            LaneHit next = h[v];
+            next.ok = hn::Eq(zero, zero);
+            const V past = past_surface(s, next);
             const V slide =
-                hn::MulAdd(hn::Mul(h[v].bend_x, h[v].point.x), d[v].x,
-                           hn::Mul(hn::Mul(h[v].bend_y, h[v].point.y), d[v].y));
-            speed[v] = hn::MulSub(h[v].axial, d[v].z, slide);
-            const V free = hn::Div(past, speed[v]);
+                hn::MulAdd(hn::Mul(next.bend_x, next.point.x), d[v].x,
+                           hn::Mul(hn::Mul(next.bend_y, next.point.y), d[v].y));
+            const V fall = hn::MulSub(next.axial, d[v].z, slide);
+            const V free = hn::Div(past, fall);
             const V t = hn::Max(hn::Min(free, stride), hn::Neg(stride));
-            h[v].point = along(h[v].point, hn::Neg(t), d[v]);
-            rest[v] = hn::Lt(hn::Abs(t), constant(s.tolerance));
+            next.point = along(next.point, hn::Neg(t), d[v]);
+            keep_lanes(rest[v], h[v], next);
+            speed[v] = hn::IfThenElse(rest[v], speed[v], fall);
+            h[v] = next;
+            rest[v] = hn::Or(rest[v], hn::Lt(hn::Abs(t), constant(s.tolerance)));
         }
         const M moving =
             hn::Or(hn::AndNot(rest[0], alive[0]), hn::AndNot(rest[1], alive[1]));
