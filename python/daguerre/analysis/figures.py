@@ -26,6 +26,8 @@ from .wavefronts import Wavefront, wavefront
 
 #: shares of the field at which spots, PSFs and pupils are shown
 FIELDS = (0.0, 0.35, 0.6, 0.8, 1.0)
+#: rays across: enough for pictures of some millimetres, in seconds
+PSF_GRID, ILLUMINATION_GRID = 160, 56
 #: cycles per mm of the MTF over the field
 FREQUENCIES = (10.0, 20.0, 40.0)
 CURVE = np.linspace(0, 1, 21)
@@ -114,7 +116,7 @@ def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
         lateral=lateral_colour(bench, along),
         axial=axial_colour(bench, COLOURS_NM),
         spherical=np.array([spherical_aberration(bench, PUPIL_SHARES, nm) for nm in FDC_NM]),
-        illumination=relative_illumination(bench, along),
+        illumination=relative_illumination(bench, along, grid=ILLUMINATION_GRID),
         seidel=seidel_sums(bench),
         on_axis=wavefront(on_axis, grid=96) if on_axis else None,
     )
@@ -127,7 +129,7 @@ def _field_point(bench: Bench, height: float, light: Pencil | None, pixels: int)
     rays = spot(light)
     if not len(rays.weights):
         return FieldPoint(height, float(np.degrees(light.angle)), None, None, outline)
-    psf = point_spread(light, pixels=pixels)
+    psf = point_spread(light, pixels=pixels, max_grid=PSF_GRID)
     return FieldPoint(height, float(np.degrees(light.angle)), rays, psf, outline)
 
 

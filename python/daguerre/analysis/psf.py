@@ -98,6 +98,7 @@ def diffraction_psf(
     half_mm: float | None = None,
     pixels: int = 64,
     dz: float = 0.0,
+    max_grid: int = MAX_GRID,
 ) -> Psf | None:
     """The PSF of waves: |sum of exp(i k (W + a x + b y))|^2 over the directions of the light.
 
@@ -108,10 +109,11 @@ def diffraction_psf(
         half_mm: Half of the window, mm; the spot and three Airy discs if None.
         pixels: Of the picture, across.
         dz: The film this much further from the lens, mm.
+        max_grid: Directions across that are traced at most.
 
     Returns:
         None if no light arrives, or if the blur is so large against the wavelength that its
-        fringes would ask for more than MAX_GRID directions across: ``geometric_psf`` is for that.
+        fringes would ask for more than ``max_grid`` directions across: ``geometric_psf`` is for that.
     """
     rays = spot(light, wavelengths_nm, weights, grid=32).moved(dz)
     if not len(rays.weights):
@@ -119,7 +121,7 @@ def diffraction_psf(
     spread = float(np.abs(rays.points - rays.centroid).max())
     airy = 1.22e-6 * max(wavelengths_nm) * light.bench.f_stop
     half = half_mm or 1.1 * spread + 3 * airy
-    waves = waves_of(light, wavelengths_nm, half + spread, rays.centroid)
+    waves = waves_of(light, wavelengths_nm, half + spread, rays.centroid, max_grid)
     if not waves:
         return None
     share = [weights[wavelengths_nm.index(wave.wavelength_nm)] / sum(weights) for wave in waves]
@@ -127,11 +129,15 @@ def diffraction_psf(
 
 
 def waves_of(
-    light: Pencil, wavelengths_nm: Sequence[float], reach_mm: float, about: FloatArray
+    light: Pencil,
+    wavelengths_nm: Sequence[float],
+    reach_mm: float,
+    about: FloatArray,
+    max_grid: int = MAX_GRID,
 ) -> list[Wavefront]:
-    """Wavefronts fine enough for a reach (mm) about an image point; none if MAX_GRID is not."""
+    """Wavefronts fine enough for a reach (mm) about an image point; none if max_grid is not."""
     grids = [grid_for(light, nm, reach_mm) for nm in wavelengths_nm]
-    if max(grids) > MAX_GRID:
+    if max(grids) > max_grid:
         return []
     found = (
         wavefront(light, nm, grid=grid, about=about)
@@ -196,10 +202,10 @@ def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
     return np.asarray(np.abs(field) ** 2 * _normalisation(wave) * pixel**2)
 
 
-def point_spread(light: Pencil, **options: object) -> Psf:
+def point_spread(light: Pencil, *, max_grid: int = MAX_GRID, **options: object) -> Psf:
     """Waves where they matter, rays where the blur is larger than waves can show.
 
     Takes what ``diffraction_psf`` takes.
     """
-    waves = diffraction_psf(light, **options)  # type: ignore[arg-type]
+    waves = diffraction_psf(light, max_grid=max_grid, **options)  # type: ignore[arg-type]
     return waves if waves is not None else geometric_psf(light, **options)  # type: ignore[arg-type]
