@@ -113,7 +113,8 @@ def diffraction_psf(
 
     Returns:
         None if no light arrives, or if the blur is so large against the wavelength that its
-        fringes would ask for more than ``max_grid`` directions across: ``geometric_psf`` is for that.
+        fringes would ask for more than ``max_grid`` directions across: ``geometric_psf`` is for
+        that.
     """
     rays = spot(light, wavelengths_nm, weights, grid=32).moved(dz)
     if not len(rays.weights):
