@@ -259,6 +259,7 @@ MOTION = [
 
 LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
 DISCS = "--max-depth 1 --spp 128 --denoise"
+FINE_DISCS = "--max-depth 1 --spp 512"  # the denoiser would draw cracks into them
 PANEL = "--res 375x250 --spp 32 --denoise"
 TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8 --focus-at 187,137"
 ZOOM = "--camera zoom --lens nikon-af-s-70-200mm-f2.8 --f-stop 4"
@@ -298,9 +299,9 @@ GLASS = [
         LAMPS,
         (
             f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
-            f"--crop 375,750,250,500 {DISCS}",
+            f"--crop 375,750,250,500 {FINE_DISCS}",
             f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
-            f"--crop 375,750,250,500 {DISCS}",
+            f"--crop 375,750,250,500 {FINE_DISCS}",
         ),
         columns=2,
     ),
