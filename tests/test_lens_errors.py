@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import pytest
 
+from daguerre import lenses
 from daguerre.errors import InputError
+from daguerre.lenses import library
 from daguerre.lenses.errors import CODES, LensError, from_core, reported
 
 
@@ -29,3 +34,21 @@ def test_other_errors_stay_what_they_are() -> None:
     assert type(plain) is InputError
     mine = InputError("b.json: x")
     assert from_core(mine, "a.json") is mine
+
+
+def test_members_that_no_one_reads_are_told(tmp_path: Path) -> None:
+    data = json.loads((library.FOLDER / "tessar-50mm-f2.8.json").read_text())
+    assert lenses.load("tessar-50mm-f2.8").notes == ()
+    data["surfaces"][2]["conicc"] = -1
+    data["coatings"] = "mgf2"
+    data["nominal"] |= {f"x{i}": 0 for i in range(20)}
+    path = tmp_path / "tessar.json"
+    path.write_text(json.dumps(data))
+    notes = lenses.load(path).notes
+    assert notes[0].startswith("coatings: not known")
+    assert "'coating'" in notes[0]
+    assert notes[-1] == "14 more members are not known"
+    del data["nominal"]
+    path.write_text(json.dumps(data))
+    assert "surfaces[2].conicc: not known, and not read" in lenses.load(path).notes[1]
+    assert "'conic'" in lenses.load(path).notes[1]

@@ -23,6 +23,7 @@ from .lens import Lens, Nominal, core_prescription
 from .reading import member, number, text, triple
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
+from .unknown import unknown_members
 from .zoom import standing_mm
 
 SCHEMA = "daguerre-lens/0.1"
@@ -43,7 +44,8 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
     data = _bytes(path)
     with reported(str(path), "lens-format"):
         root, notes = _root(data, path)
-        return checked(replace(_lens(root, path, configuration), notes=tuple(notes)))
+        lens = _lens(root, path, configuration)
+        return checked(replace(lens, notes=(*notes, *unknown_members(root))))
 
 
 def lens_of(data: dict[str, Any], source: str, configuration: str | None = None) -> Lens:
