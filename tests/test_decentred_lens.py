@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre import lenses
+from daguerre import _core, lenses
 from daguerre.camera_setup import set_up
 from daguerre.info import camera_facts
 from daguerre.io.exr import attributes
@@ -228,3 +228,19 @@ def test_an_anamorphic_picture_is_as_wide_as_its_metadata_says(
     facts = camera_facts(camera, dg.Scene(), resolution=(249, 207))
     width = math.degrees(2 * math.atan(24.9 * facts.squeeze / 2 / 60.55))
     assert facts.field_of_view_deg[0] == pytest.approx(width, rel=1e-3)
+
+
+def test_chief_rays_at_a_corner_that_stops_some_rays() -> None:
+    """What is stopped has no direction, and no say in the mean."""
+    lens = lenses.load("schneider-anamorphic-60mm")
+    exact = _core.ExactLens(lens.prescription, 4.0, _core.Iris(), 5.0, False, 21.64)
+    u = (np.indices((48, 48)).reshape(2, -1).T + 0.5) / 48
+    film = np.array([[14.345, 10.52]])
+    many = np.repeat(film, len(u), axis=0).astype(np.float32)
+    nm = np.full(len(u), 587.56, np.float32)
+    _, directions, weights, _ = exact.generate(many, u.astype(np.float32), nm)
+    on = weights > 0
+    mean = (weights[on, None] * directions[on]).sum(axis=0, dtype=np.float64)
+    camera = _core.Camera.exact(_core.Motion.still(np.eye(4)), exact)
+    chief = camera.chief_rays().rays(film)[1][0]
+    np.testing.assert_allclose(chief, mean / np.linalg.norm(mean), atol=1e-3)

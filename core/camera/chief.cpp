@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "camera/mean_ray.h"
 #include "math/error.h"
-#include "optics/glass.h"
 
 namespace dg {
 namespace {
@@ -20,11 +20,8 @@ std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
     for (int turn = 0; turn < kTurns; ++turn) {
         const double a = 2 * kPiD * turn / kTurns;
         const Vec2f film{float(radius_mm * std::cos(a)), float(radius_mm * std::sin(a))};
-        for (int i = 0; i < kSide * kSide; ++i)
-            samples.push_back({film,
-                               {(i % kSide + 0.5f) / kSide, (i / kSide + 0.5f) / kSide},
-                               0,
-                               float(kDesignWavelength)});
+        const std::vector<CameraSample> cells = lens_cells(film, kSide);
+        samples.insert(samples.end(), cells.begin(), cells.end());
     }
     std::vector<CameraRay> rays(samples.size());
     lens.generate(samples, rays);
@@ -41,28 +38,16 @@ std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
     return rays;
 }
 
-/// Means over the planes across the mean direction: of where rays cross them, and of
-/// their slopes. Rays that meet in one point have a mean ray through it, whatever their
-/// weights.
+/// Of rays turned to +x.
 std::optional<ChiefRays::Meridional> mean_ray(const std::vector<CameraRay>& rays) {
-    Vec3d axis{};
-    for (const CameraRay& r : rays) axis += double(r.weight) * to_double(r.ray.direction);
+    Vec3d axis = summed_direction(rays);
     axis.y = 0;  // what is left of it is the grid's
     if (!(length(axis) > 0)) return std::nullopt;
-    axis = normalize(axis);
-    Vec3d crossing{}, slope{};
-    double start = 0, sum = 0;
-    for (const CameraRay& r : rays) {
-        const Vec3d o = to_double(r.ray.origin), d = to_double(r.ray.direction);
-        const double w = r.weight, along = dot(d, axis), from = dot(o, axis);
-        crossing += w * (o - d * (from / along));
-        slope += w / along * d;
-        start += w * from, sum += w;
-    }
-    const Vec3d o = crossing / sum, d = normalize(Vec3d{slope.x, 0, slope.z});
+    const RayMeans mean = means_across(normalize(axis), rays);
+    const Vec3d o = mean.crossing, d = normalize(Vec3d{mean.slope.x, 0, mean.slope.z});
     const double angle = std::atan2(d.x, -d.z);
     return ChiefRays::Meridional{angle, o.x * std::cos(angle) + o.z * std::sin(angle),
-                                 start / sum};
+                                 mean.start};
 }
 
 using Meridional = ChiefRays::Meridional;

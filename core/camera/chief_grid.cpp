@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "camera/mean_ray.h"
 #include "math/error.h"
-#include "optics/glass.h"
 
 namespace dg {
 namespace {
@@ -37,30 +37,16 @@ std::array<double, 4> cubic(double t) {
 
 /// As for the lenses of chief.cpp: means over the planes across the mean direction.
 std::optional<ChiefGrid::Node> ChiefGrid::mean_ray(const ExactLens& lens, Vec2d film_mm) {
-    std::vector<CameraSample> samples;
-    for (int i = 0; i < kSide * kSide; ++i)
-        samples.push_back({{float(film_mm.x), float(film_mm.y)},
-                           {(i % kSide + 0.5f) / kSide, (i / kSide + 0.5f) / kSide},
-                           0,
-                           float(kDesignWavelength)});
+    const std::vector<CameraSample> samples =
+        lens_cells({float(film_mm.x), float(film_mm.y)}, kSide);
     std::vector<CameraRay> rays(samples.size());
     lens.generate(samples, rays);
-    Vec3d axis{};
-    for (const CameraRay& r : rays) axis += double(r.weight) * to_double(r.ray.direction);
+    Vec3d axis = summed_direction(rays);
     if (!(length(axis) > 0)) return std::nullopt;
     axis = normalize(axis);
-    Vec3d crossing{}, slope{};
-    double start = 0, sum = 0;
-    for (const CameraRay& r : rays) {
-        const Vec3d o = to_double(r.ray.origin), d = to_double(r.ray.direction);
-        const double w = r.weight, along = dot(d, axis), from = dot(o, axis);
-        if (!(w > 0)) continue;
-        crossing += w * (o - d * (from / along));
-        slope += w / along * d;
-        start += w * from, sum += w;
-    }
-    const Vec3d d = normalize(slope), o = crossing / sum, foot = o - d * dot(o, d);
-    return Node{angle_of(d), foot, start / sum - dot(foot, axis)};
+    const RayMeans mean = means_across(axis, rays);
+    const Vec3d d = normalize(mean.slope), o = mean.crossing, foot = o - d * dot(o, d);
+    return Node{angle_of(d), foot, mean.start - dot(foot, axis)};
 }
 
 ChiefGrid::ChiefGrid(const ExactLens& lens) : nodes_(kNodes * kNodes) {

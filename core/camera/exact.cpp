@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "camera/aim_state.h"
+#include "camera/mean_ray.h"
 #include "camera/tilt.h"
 #include "optics/lens_error.h"
 #include "spectrum/wavelengths.h"
@@ -298,18 +299,11 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
 Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
     // The mean direction over a coarse grid of lens samples, weighted as they expose the
     // film.
-    constexpr int kSide = 12;
-    std::vector<CameraSample> samples;
-    for (int i = 0; i < kSide * kSide; ++i)
-        samples.push_back({{float(film_mm.x), float(film_mm.y)},
-                           {(i % kSide + 0.5f) / kSide, (i / kSide + 0.5f) / kSide},
-                           0,
-                           float(kDesignWavelength)});
+    const std::vector<CameraSample> samples =
+        lens_cells({float(film_mm.x), float(film_mm.y)}, 12);
     std::vector<CameraRay> rays(samples.size());
     generate(samples, rays);
-    Vec3d sum{};
-    for (const CameraRay& r : rays)
-        if (r.weight > 0) sum += double(r.weight) * to_double(r.ray.direction);
+    const Vec3d sum = summed_direction(rays);
     return length(sum) > 0 ? normalize(sum) : Vec3d{0, 0, -1};
 }
 
