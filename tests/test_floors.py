@@ -56,6 +56,7 @@ def test_order_without_fault_passes(tmp_path):
         ("light/bad.cpp", '#include "camera/camera.h"', "neighbour"),
         ("geometry/bad.h", '#include "material/material.h"', "neighbour"),
         ("render/bad.cpp", "#include <embree4/rtcore.h>", "only geometry/embree"),
+        ("optics/folder/bad.h", '#include "camera/camera.h"', "points up"),
         ("render/bad.cpp", "#include <math/vec.h>", "written with quotes"),
         ("cellar/bad.h", '#include "math/vec.h"', "not in the table"),
         ("math/bad.h", '#include "vec.h"', "names its room"),
