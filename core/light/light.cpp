@@ -65,7 +65,6 @@ void LightSet::build_changes() {
     }
 }
 
-/// How bright a light from infinity ever is; 0 for the others.
 float LightSet::infinite_weight(std::size_t light) const {
     const auto* sun = std::get_if<DirectionalLight>(&lights_[light]);
     if (!sun) return 0;
@@ -181,10 +180,23 @@ std::optional<TriangleLight> LightSet::triangle_at(std::size_t light, float time
     return triangle;
 }
 
-SphereLight LightSet::sphere_at(std::uint32_t sphere, float time) const {
-    const std::size_t light = spheres_[sphere];
+Light LightSet::light_at(std::size_t light, float time) const {
+    const Keyed<Light>* keys = keys_of(light);
+    return keys ? keys->at(time) : lights_[light];
+}
+
+SphereLight LightSet::sphere_light_at(std::size_t light, float time) const {
     const Keyed<Light>* keys = keys_of(light);
     return std::get<SphereLight>(keys ? keys->at(time) : lights_[light]);
+}
+
+std::int64_t LightSet::triangle_index(std::uint32_t instance, std::uint32_t primitive) const {
+    if (instance >= first_slot_.size() || first_slot_[instance] < 0) return -1;
+    const std::size_t slot = first_slot_[instance] + primitive;
+    if (slot >= triangle_slots_.size() || triangle_slots_[slot] == kNone) return -1;
+    const std::int32_t light = triangle_slots_[slot];
+    const auto& triangle = std::get<TriangleLight>(lights_[light]);
+    return triangle.instance == instance && triangle.primitive == primitive ? light : -1;
 }
 
 /// What is no triangle, or changes.
@@ -229,7 +241,7 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
                        wavelengths.emission(s.value),
                        s.pdf * ((1 - p_infinite) * choice->probability),
                        s.delta,
-                       is_triangle ? std::int64_t(light) : -1,
+                       std::int32_t(light),
                        s.barycentric,
                        is_triangle && !triangle.even};
 }
@@ -250,6 +262,7 @@ std::optional<LightSample> LightSet::sample_infinite(
         sample.pdf = s.pdf * probability;
         return sample;
     }
+    sample.light = light;
     const auto s = sample_other(light, u, {}, time);
     sample.wi = s->wi;
     sample.radiance = wavelengths.emission(s->value);
@@ -260,18 +273,21 @@ std::optional<LightSample> LightSet::sample_infinite(
 
 float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
                              float cos_light, Vec3f position, float time) const {
-    if (instance >= first_slot_.size() || first_slot_[instance] < 0) return 0;
-    const std::size_t slot = first_slot_[instance] + primitive;
-    if (slot >= triangle_slots_.size() || triangle_slots_[slot] == kNone) return 0;
-    const std::size_t light = triangle_slots_[slot];
-    const auto& triangle = std::get<TriangleLight>(lights_[light]);
-    if (triangle.instance != instance || triangle.primitive != primitive) return 0;
-    if (tree_index_[light] == kNone) return 0;
+    const std::int64_t light = triangle_index(instance, primitive);
+    if (light < 0 || tree_index_[light] == kNone) return 0;
     const TriangleSampler& still = triangles_[tree_index_[light]];
     const float chosen = local_probability(position, light);
     if (!still.moves) return still.pdf(t, cos_light) * chosen;
     const auto now = triangle_at(light, time);
     return now ? emitter_pdf(*now, t, cos_light) * chosen : 0;
+}
+
+float LightSet::pdf_delta(std::size_t light, Vec3f position) const {
+    if (tree_index_[light] != kNone) return local_probability(position, light);
+    const auto found = std::ranges::find(infinite_lights_, std::int32_t(light));
+    if (found == infinite_lights_.end()) return 0;
+    return infinite_probability(position) *
+           infinite_.pmf(int(found - infinite_lights_.begin()));
 }
 
 float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const {

@@ -75,9 +75,9 @@ struct LightSample {
     float pdf;  // solid angle, selection included; for a delta light the selection
                 // probability
     bool delta;
-    /// Index of the triangle light in lights(), or -1, and where it was sampled (weights
+    /// Index in lights(), or kEnvironment; of a triangle also where it was sampled (weights
     /// of its second and third corner).
-    std::int64_t triangle_light = -1;
+    std::int32_t light = -1;
     Vec2f barycentric;
     /// The triangle does not shine evenly: the scene evaluates the emission there.
     bool uneven = false;
@@ -120,6 +120,8 @@ class LightSet {
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
                        float cos_light, Vec3f position, float time) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const;
+    /// Probability with which sample() would have chosen a delta light for `position`.
+    float pdf_delta(std::size_t light, Vec3f position) const;
     /// 0 everywhere for a constant environment: light sampling leaves it to the BSDF.
     float pdf_environment(Vec3f direction, Vec3f position, float time) const;
     /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
@@ -127,19 +129,33 @@ class LightSet {
                              const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, float time,
                                   const Wavelengths& wavelengths) const;
-    SphereLight sphere_at(std::uint32_t sphere, float time) const;
+    SphereLight sphere_at(std::uint32_t sphere, float time) const {
+        return sphere_light_at(spheres_[sphere], time);
+    }
+    SphereLight sphere_light_at(std::size_t light, float time) const;
+    /// Index in lights() of the sphere light that rays meet as this sphere; of a triangle light, or -1.
+    std::int64_t sphere_index(std::uint32_t sphere) const { return spheres_[sphere]; }
+    std::int64_t triangle_index(std::uint32_t instance, std::uint32_t primitive) const;
     bool has_environment() const { return environment_.has_value(); }
+    /// What stands for the environment among the indices of lights.
+    static constexpr std::int32_t kEnvironment = -1;
+    /// Whether light sampling looks for it: it is no even sky.
+    bool samples_environment() const { return environment_pmf_ > 0; }
     const std::vector<Light>& lights() const { return lights_; }
     /// A triangle light where it is at a time; empty while it is not there at all.
     std::optional<TriangleLight> triangle_at(std::size_t light, float time) const;
+    /// Any other as it is at a time.
+    Light light_at(std::size_t light, float time) const;
+    /// Where a light ever is, and how bright it ever gets; intensity 0: never, or at infinity.
+    LightBounds bounds_of(std::size_t light) const;
+    /// How bright a light from infinity ever is on a surface that faces it, lux; 0 for the others.
+    float infinite_weight(std::size_t light) const;
     const std::optional<Environment>& environment() const { return environment_; }
 
   private:
-    static constexpr std::int32_t kEnvironment = -1, kNone = -2;
+    static constexpr std::int32_t kNone = -2;
     void build_changes();
     void build_groups(LightChoice choice);
-    float infinite_weight(std::size_t light) const;
-    LightBounds bounds_of(std::size_t light) const;
     void build_lookup();
     float infinite_probability(Vec3f position) const;
     float infinite_share(float local) const;

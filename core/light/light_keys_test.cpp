@@ -154,7 +154,7 @@ TEST_CASE("a triangle that turns: sampled where it is, with the density it has t
         CHECK(fluence(set, p, time, 4000) == doctest::Approx(expected).epsilon(0.02));
         for (int k = 0; k < 20; ++k) {
             const auto s = set.sample(random(8, k), {random(9, k), random(10, k)}, p, time, white());
-            if (!s || s->triangle_light < 0) continue;
+            if (!s || s->light != 0) continue;
             ++seen;
             const TriangleLight now = *set.triangle_at(0, time);
             const float cosine = dot(normalize(TriangleSampler(now).normal), s->wi);

@@ -188,9 +188,10 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
             set.sample(float(hash_uniform(6, i)), uniform_2d(i), p, 0, rgb_lanes());
         if (!s) continue;
         float pdf = s->pdf;
-        if (s->triangle_light >= 0) {
+        if (s->light >= 0 &&
+            std::holds_alternative<TriangleLight>(set.lights()[s->light])) {
             ++kinds[0];
-            const auto& t = std::get<TriangleLight>(set.lights()[s->triangle_light]);
+            const auto& t = std::get<TriangleLight>(set.lights()[s->light]);
             const float cosine = dot(normalize(cross(t.b - t.a, t.c - t.a)), s->wi);
             pdf = set.pdf_triangle(t.instance, t.primitive, s->distance, std::abs(cosine),
                                    p, 0);

@@ -172,13 +172,13 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
         const Vec3f p = test_direction(i);
         const auto s =
             scene->sample_light(float(hash_uniform(3, i)), u, p, 0, test_wavelengths());
-        if (!s || s->triangle_light < 0 || occluded(*scene, p, s->wi, s->distance))
+        if (!s || s->light < 0 || occluded(*scene, p, s->wi, s->distance))
             continue;
         const auto hit = scene->intersect(test_ray(p, s->wi));
         REQUIRE(hit.has_value());
         const SurfaceHit& h = hit->surface;
         if (h.primitive !=
-            std::get<TriangleLight>(scene->lights().lights()[s->triangle_light])
+            std::get<TriangleLight>(scene->lights().lights()[s->light])
                 .primitive)
             continue;
         const float cosine = dot(h.ng, h.wo);
@@ -207,7 +207,7 @@ TEST_CASE("an even light needs no second look; a texture or a veil does") {
                                     ? 1.f
                                     : material.base_alpha * (colors ? 0.5f : 1.f);
             const Spectrum expected = test_wavelengths().emission(Rgb{1, 2, 3} * alpha);
-            CHECK(s->triangle_light >= 0);
+            CHECK(s->light >= 0);
             CHECK(s->radiance[0] == doctest::Approx(expected[0]).epsilon(1e-5));
             return s->uneven;
         }

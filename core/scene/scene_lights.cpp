@@ -47,7 +47,7 @@ std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f po
                                                const Wavelengths& wavelengths) const {
     auto sample = lights_.sample(u_select, u, position, time, wavelengths);
     if (!sample || !sample->uneven) return sample;
-    const TriangleLight light = *lights_.triangle_at(sample->triangle_light, time);
+    const TriangleLight light = *lights_.triangle_at(sample->light, time);
     const InstanceRecord& record = records_[light.instance];
     const Vec3f winding = cross(light.b - light.a, light.c - light.a);
     const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
