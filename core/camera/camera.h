@@ -51,7 +51,9 @@ struct Camera {
 void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
                    std::span<CameraRay> rays);
 
-/// ExactLens::reproject, with the lens as it is at the rays' times.
+/// Where scene rays (camera frame, from where generate_rays lets them start) meet the film, each at its
+/// wavelength in nm, with the lens as it is at their times. A ray that generate_rays drew comes back to its
+/// own film point with its own weight, aim_weight x transmittance.
 void reproject(const Camera& camera, std::span<const CameraRay> rays,
                std::span<const float> wavelength_nm, std::span<Reprojection> out);
 

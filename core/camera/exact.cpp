@@ -13,6 +13,7 @@ namespace dg {
 namespace {
 
 constexpr double kMetre = 1e-3;  // per mm
+constexpr float kPerMm2 = 1e6f;  // mm2 in 1 m2
 // A little more than the frame is aimed at: pixel filters reach beyond its corners.
 constexpr double kFilmMargin = 1.02;
 
@@ -288,10 +289,15 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
                                                     b.scene.iris_x[i], b.scene.iris_y[i]) *
                 dirt_transmission({b.scene.x[i], b.scene.y[i]},
                                   {b.scene.iris_x[i], b.scene.iris_y[i]});
-            const bool passed = pass > 0 && aim > 0 && std::isfinite(aim);
-            out[begin + i] = {{shift.x - b.film.x[i], shift.y - b.film.y[i]},
-                              passed ? pass : 0,
-                              passed ? aim : 0};
+            Reprojection& o = out[begin + i];
+            o = {{shift.x - b.film.x[i], shift.y - b.film.y[i]}};
+            if (!(pass > 0)) continue;
+            // What the aim misses reaches the film nevertheless.
+            o.transmittance = pass;
+            o.response = pass * inv_h0 * kPerMm2;
+            if (!(aim > 0) || !std::isfinite(aim)) continue;
+            o.aim_weight = aim;
+            o.etendue = b.weight[i] / kPerMm2;
         }
     }
 }

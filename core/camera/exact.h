@@ -34,13 +34,6 @@ struct ExactLensSettings {
     std::string cache{};
 };
 
-/// Where another wavelength of the same scene ray meets the film.
-struct Reprojection {
-    Vec2f film_mm;  // upright picture
-    float transmittance = 0;
-    float aim_weight = 0;  // as CameraRay::aim_weight at that wavelength; 0: stopped
-};
-
 /// A prescription at one focus and f-stop, ready to draw rays. Cheap to copy.
 class ExactLens {
   public:
@@ -58,7 +51,8 @@ class ExactLens {
     /// Rays start on the first surface. Film points beyond half_diagonal_mm get weight 0.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
-    /// Follows scene rays (camera frame) back to the film, each at its wavelength in nm.
+    /// Follows scene rays (camera frame, from the first surface) back to the film, each at its wavelength
+    /// in nm.
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    std::span<Reprojection> out) const;
 

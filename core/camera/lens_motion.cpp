@@ -42,30 +42,54 @@ void generate_states(const LensMotion& motion, std::span<const CameraSample> sam
              });
 }
 
-/// Numbers lie between those of the neighbouring keys; an iris is that of the nearer key.
-void generate_ideal(const Camera& camera, std::span<const CameraSample> samples,
-                    std::span<CameraRay> rays) {
-    const LensMotion& motion = camera.lens_motion;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const KeyPlace p = place_among(motion.times, samples[i].time);
-        const LensKind &a = motion.lenses[p.left], &b = motion.lenses[p.right];
-        const auto sample = samples.subspan(i, 1);
-        const auto ray = rays.subspan(i, 1);
-        if (const auto* pinhole = std::get_if<Pinhole>(&a)) {
-            Pinhole now = *pinhole;
-            const double next = std::get<Pinhole>(b).film_distance_mm;
-            now.film_distance_mm += p.share * (next - now.film_distance_mm);
-            now.generate(sample, ray);
-            continue;
-        }
-        const ThinLens &first = std::get<ThinLens>(a), &second = std::get<ThinLens>(b);
-        ThinLens::Numbers now = blend(first.numbers(), second.numbers(), p.share);
-        const double cone = now.aperture_radius_mm / now.film_distance_mm;
-        const ThinLens& middle = std::get<ThinLens>(camera.lens);
-        const double usual = middle.aperture_radius_mm / middle.film_distance_mm;
-        now.exposure = cone * cone / (usual * usual);
-        (p.share < 0.5 ? first : second).generate(now, sample, ray);
+/// A thin lens with the numbers that it has at some time.
+struct ThinLensNow {
+    const ThinLens& lens;
+    ThinLens::Numbers numbers;
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+        lens.generate(numbers, samples, rays);
     }
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+        lens.reproject(numbers, rays, out);
+    }
+};
+
+/// Numbers lie between those of the neighbouring keys; an iris is that of the nearer key.
+template <typename Use>
+void with_ideal(const Camera& camera, float time, const Use& use) {
+    const LensMotion& motion = camera.lens_motion;
+    const KeyPlace p = place_among(motion.times, time);
+    const LensKind &a = motion.lenses[p.left], &b = motion.lenses[p.right];
+    if (const auto* pinhole = std::get_if<Pinhole>(&a)) {
+        Pinhole now = *pinhole;
+        const double next = std::get<Pinhole>(b).film_distance_mm;
+        now.film_distance_mm += p.share * (next - now.film_distance_mm);
+        return use(now);
+    }
+    const ThinLens &first = std::get<ThinLens>(a), &second = std::get<ThinLens>(b);
+    ThinLens::Numbers now = blend(first.numbers(), second.numbers(), p.share);
+    const double cone = now.aperture_radius_mm / now.film_distance_mm;
+    const ThinLens& middle = std::get<ThinLens>(camera.lens);
+    const double usual = middle.aperture_radius_mm / middle.film_distance_mm;
+    now.exposure = cone * cone / (usual * usual);
+    use(ThinLensNow{p.share < 0.5 ? first : second, now});
+}
+
+bool is_ideal(const LensKind& lens) {
+    return std::holds_alternative<Pinhole>(lens) || std::holds_alternative<ThinLens>(lens);
+}
+
+void reproject_alone(const LensKind& lens, std::span<const CameraRay> rays,
+                     std::span<const float> wavelength_nm, std::span<Reprojection> out) {
+    std::visit(
+        [&](const auto& kind) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, ExactLens>)
+                kind.reproject(rays, wavelength_nm, out);
+            else
+                kind.reproject(rays, out);
+        },
+        lens);
 }
 
 }  // namespace
@@ -75,24 +99,31 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
     const LensMotion& motion = camera.lens_motion;
     if (motion.times.empty()) {
         std::visit([&](const auto& lens) { lens.generate(samples, rays); }, camera.lens);
-    } else if (std::holds_alternative<ExactLens>(camera.lens) ||
-               std::holds_alternative<ThickLens>(camera.lens)) {
-        generate_states(motion, samples, rays);
+    } else if (is_ideal(camera.lens)) {
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            with_ideal(camera, samples[i].time, [&](const auto& lens) {
+                lens.generate(samples.subspan(i, 1), rays.subspan(i, 1));
+            });
     } else {
-        generate_ideal(camera, samples, rays);
+        generate_states(motion, samples, rays);
     }
 }
 
 void reproject(const Camera& camera, std::span<const CameraRay> rays,
                std::span<const float> wavelength_nm, std::span<Reprojection> out) {
     const LensMotion& motion = camera.lens_motion;
-    if (motion.times.empty())
-        return std::get<ExactLens>(camera.lens).reproject(rays, wavelength_nm, out);
+    if (motion.times.empty()) return reproject_alone(camera.lens, rays, wavelength_nm, out);
+    if (is_ideal(camera.lens)) {
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            with_ideal(camera, rays[i].ray.time, [&](const auto& lens) {
+                lens.reproject(rays.subspan(i, 1), out.subspan(i, 1));
+            });
+        return;
+    }
     by_state(motion, rays.size(), [&](std::size_t i) { return rays[i].ray.time; },
              [&](const LensKind& lens, const auto& members) {
                  std::vector<Reprojection> found(members.size());
-                 std::get<ExactLens>(lens).reproject(taken(rays, members), taken(wavelength_nm, members),
-                                                     found);
+                 reproject_alone(lens, taken(rays, members), taken(wavelength_nm, members), found);
                  for (std::size_t i = 0; i < members.size(); ++i) out[members[i]] = found[i];
              });
 }

@@ -12,6 +12,22 @@ void Pinhole::generate(std::span<const CameraSample> samples,
         const float opening = samples[i].iris_opening;
         rays[i].weight = opening * opening;
         if (natural_vignetting) rays[i].weight *= cosine * cosine * cosine * cosine;
+        rays[i].iris_opening = opening;
+    }
+}
+
+void Pinhole::reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+    const float distance = float(film_distance_mm);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Vec3f d = rays[i].ray.direction;
+        const float opening = rays[i].iris_opening, cosine = -d.z;
+        out[i] = {};
+        if (!(cosine > 0 && opening > 0)) continue;
+        float weight = opening * opening;
+        if (natural_vignetting) weight *= cosine * cosine * cosine * cosine;
+        const float etendue = cosine * cosine * cosine / (distance * distance);
+        const Vec2f film{d.x * (distance / cosine), d.y * (distance / cosine)};
+        out[i] = {film, 1, weight, etendue, weight / etendue};
     }
 }
 

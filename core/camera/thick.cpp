@@ -98,23 +98,32 @@ ThickLens::Line ThickLens::to_scene(Vec3d from, Vec2d pupil) const {
     return {height, (slope * order_.efl + height) * (1 / front_focal)};
 }
 
+ThickLens::Line ThickLens::to_film(const Line& scene) const {
+    const double front_focal = order_.front_principal_z - order_.front_focal_z;
+    return {scene.height, (scene.slope * front_focal - scene.height) * (1 / order_.efl)};
+}
+
+/// Where a ray behind the lens meets the film, lens frame.
+std::optional<Vec3d> ThickLens::meets_film(const Line& rear) const {
+    // The film: n . (p - pupil) = depth, with n its normal.
+    const Vec3d n = -film_normal_;
+    const double from_pupil = order_.back_principal_z - order_.entrance_pupil_z;
+    const double depth = (film_z_ - order_.entrance_pupil_z) * turn_.z.z;
+    const double run = dot(xy(n), rear.slope) + n.z;
+    if (!(run > 0)) return std::nullopt;
+    const double z = (depth - dot(xy(n), rear.height) - n.z * from_pupil) / run;   // past H'
+    const Vec2d at = rear.height + rear.slope * z;
+    return Vec3d{at.x, at.y, order_.back_principal_z + z};
+}
+
 /// Where the chief ray of a direction (camera frame) meets the film, camera frame, mm.
 std::optional<Vec2d> ThickLens::film_hit(Vec3d direction) const {
     const Vec3d d = back_.vector(direction);
     if (!(d.z < 0)) return std::nullopt;
     const Vec2d in = xy(d) * (1 / d.z);
-    const double front_focal = order_.front_principal_z - order_.front_focal_z;
-    const Vec2d height = in * (order_.front_principal_z - order_.entrance_pupil_z);
-    const Vec2d slope = (in * front_focal - height) * (1 / order_.efl);
-    // The film: n . (p - pupil) = depth, with n its normal.
-    const Vec3d n = -film_normal_;
-    const double from_pupil = order_.back_principal_z - order_.entrance_pupil_z;
-    const double depth = (film_z_ - order_.entrance_pupil_z) * turn_.z.z;
-    const double run = dot(xy(n), slope) + n.z;
-    if (!(run > 0)) return std::nullopt;
-    const double z = (depth - dot(xy(n), height) - n.z * from_pupil) / run;   // past H'
-    const Vec2d at = height + slope * z;
-    return xy(turn_.vector({at.x, at.y, from_pupil + z}));
+    const auto at = meets_film(to_film({in * (order_.front_principal_z - order_.entrance_pupil_z), in}));
+    if (!at) return std::nullopt;
+    return xy(turn_.vector({at->x, at->y, at->z - order_.entrance_pupil_z}));
 }
 
 std::optional<Vec2d> ThickLens::film_point(Vec3d direction) const {
@@ -126,6 +135,13 @@ std::optional<Vec2d> ThickLens::film_point(Vec3d direction) const {
 Vec3d ThickLens::chief_direction(Vec2d film_mm) const {
     const Line ray = to_scene(film_in_lens(film_mm), {0, 0});
     return normalize(turn_.vector({-ray.slope.x, -ray.slope.y, -1}));
+}
+
+/// What a patch of the exit pupil is for the film, both cosines over the distance squared: 1/mm2.
+double ThickLens::solid_angle(Vec3d film, Vec2d pupil) const {
+    const Vec3d to_pupil{pupil.x - film.x, pupil.y - film.y, order_.exit_pupil_z - film.z};
+    const double d2 = length_squared(to_pupil);
+    return std::abs(to_pupil.z * dot(to_pupil, film_normal_)) / (d2 * d2);
 }
 
 void ThickLens::generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
@@ -143,15 +159,46 @@ void ThickLens::generate(std::span<const CameraSample> samples, std::span<Camera
         const Vec2d start = ray.height - ray.slope * order_.front_principal_z;
         const Vec3d origin = turn_.vector({start.x, start.y, -order_.entrance_pupil_z}) * kMetre;
         const Vec3d out = turn_.vector(normalize(Vec3d{-ray.slope.x, -ray.slope.y, -1}));
-        const Vec3d to_pupil{pupil.x - film.x, pupil.y - film.y, order_.exit_pupil_z - film.z};
-        const double d2 = length_squared(to_pupil);
-        const double cosines = std::abs(to_pupil.z * dot(to_pupil, film_normal_)) / d2;
-        double weight = area * s.iris_opening * s.iris_opening * cosines / d2;
+        double weight = area * s.iris_opening * s.iris_opening * solid_angle(film, pupil);
         if (!round) weight *= iris_.transmission(q);
         rays[i].ray = Ray{.origin = to_float(Vec3d{origin.x, origin.y, origin.z + offset_m_}),
                           .direction = to_float(out),
                           .time = s.time};
         rays[i].weight = std::isfinite(weight) && out.z < 0 ? float(weight) : 0.f;
+        rays[i].iris_opening = s.iris_opening;
+    }
+}
+
+void ThickLens::reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+    const double pupil_radius = order_.exit_magnification * iris_radius_;
+    const double area = iris_.sampling_area() * pupil_radius * pupil_radius;
+    const double focal = order_.efl / (order_.front_principal_z - order_.front_focal_z);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const CameraRay& r = rays[i];
+        out[i] = {};
+        const Vec3d p = back_.vector((to_double(r.ray.origin) - Vec3d{0, 0, offset_m_}) * (1 / kMetre));
+        const Vec3d d = back_.vector(to_double(r.ray.direction));
+        if (!(d.z < 0 && r.ray.direction.z < 0 && r.iris_opening > 0)) continue;
+        const Vec2d slope = xy(d) * (1 / d.z);
+        const double to_plane = order_.front_principal_z - order_.entrance_pupil_z - p.z;
+        const Line rear = to_film({xy(p) + slope * to_plane, slope});
+        const auto film = meets_film(rear);
+        if (!film) continue;
+        const Vec2d pupil =
+            rear.height + rear.slope * (order_.exit_pupil_z - order_.back_principal_z);
+        const double pass = iris_.transmission(pupil * (1 / (pupil_radius * r.iris_opening)));
+        const double exposed = area * r.iris_opening * r.iris_opening * solid_angle(*film, pupil);
+        if (!(pass > 0 && exposed > 0) || !std::isfinite(exposed)) continue;
+        // Slopes keep their measure through the lens, cos^-4 dw; film and scene see other cosines.
+        const double cos2 = d.z * d.z * (1 + dot(rear.slope, rear.slope));
+        const double etendue = kMetre * kMetre * exposed * cos2 * cos2 * focal * focal;
+        const Vec2d at = film_origin_ - xy(turn_.vector({film->x, film->y,
+                                                         film->z - order_.entrance_pupil_z}));
+        out[i] = {{float(at.x), float(at.y)},
+                  float(pass),
+                  float(exposed / unit_),
+                  float(etendue),
+                  float(exposed * pass / (unit_ * etendue))};
     }
 }
 

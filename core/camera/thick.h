@@ -38,6 +38,10 @@ class ThickLens {
     /// Rays start on the plane of the first vertex.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
+    /// Where scene rays meet the film. (This lens keeps dx dy times the slopes', not dA cos dw: a response
+    /// is not the same for all rays.)
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
+
     /// Through the centres of the pupils: from the camera's origin (unit; camera frame). Every plane that is
     /// imaged to the film sees its points on these rays.
     Vec3d chief_direction(Vec2d film_mm) const;
@@ -45,6 +49,9 @@ class ThickLens {
     std::optional<Vec2d> film_point(Vec3d direction) const;
     /// z of the camera's origin, m, as it lies from the middle of the pupil: 0 but for states of a body.
     double pupil_offset_m() const { return offset_m_; }
+    /// Camera from lens, with the middle of the entrance pupil as origin.
+    const Affine3d& turn() const { return turn_; }
+    const Iris& iris() const { return iris_; }
 
     /// As ExactLens::h0: with the transmittance of the glass on the axis, which all rays have here.
     double h0() const { return transmittance_ * axial_; }
@@ -62,7 +69,10 @@ class ThickLens {
     };
     Vec3d film_in_lens(Vec2d film_mm) const;
     Line to_scene(Vec3d from, Vec2d pupil) const;
+    Line to_film(const Line& scene) const;
+    std::optional<Vec3d> meets_film(const Line& rear) const;
     std::optional<Vec2d> film_hit(Vec3d direction) const;
+    double solid_angle(Vec3d film, Vec2d pupil) const;
 
     FirstOrder order_;
     Iris iris_;

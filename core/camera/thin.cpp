@@ -41,6 +41,7 @@ void ThinLens::generate(const Numbers& numbers, std::span<const CameraSample> sa
         const Vec3f direction = normalize(chief - origin * inverse_focus);
         rays[i].ray = Ray{.origin = origin, .direction = direction, .time = s.time};
         rays[i].weight = weight;
+        rays[i].iris_opening = s.iris_opening;
     }
 }
 
@@ -74,6 +75,46 @@ void ThinLens::generate_tilted(const Numbers& numbers, std::span<const CameraSam
                           .direction = to_float(normalize(direction)),
                           .time = s.time};
         rays[i].weight = along > 0 && direction.z < 0 ? float(weight * exposure) : 0.f;
+        rays[i].iris_opening = s.iris_opening;
+    }
+}
+
+// The equations of generate_tilted, solved for the film point: with o the point of the lens (o . a = 0) and
+// v = s d what the ray is there before it is normalised, v = c - o (power (c . a) - k), so c . a = s (d . a),
+// and c_z = -1 gives s. Around one o the directions turn with c as dv/dc; a patch of the lens and one of the
+// film make dA cos dw = dA (v . a) |v . (dv/dx x dv/dy)| / |v|^4 dc.
+void ThinLens::reproject(const Numbers& numbers, std::span<const CameraRay> rays,
+                         std::span<Reprojection> out) const {
+    const Affine3d turn = lens_turn(numbers.tilt_deg);
+    const Vec3d axis = -turn.z;
+    const double k = 1e3 / numbers.film_distance_mm;   // 1/m
+    const double power = k * turn.z.z + numbers.inverse_focus;
+    const double region = iris.sampling_area();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Vec3d from = to_double(rays[i].ray.origin), d = to_double(rays[i].ray.direction);
+        const double opening = rays[i].iris_opening, ahead = dot(d, axis);
+        const double radius = 1e-3 * numbers.aperture_radius_mm * opening;
+        out[i] = {};
+        if (!(ahead > 0 && d.z < 0 && radius > 0)) continue;
+        const Vec3d o = from - d * (dot(from, axis) / ahead);
+        const double s = (o.z * k - 1) / (d.z + o.z * ahead * power);
+        const double pass = iris.transmission(Vec2d{dot(o, turn.x), dot(o, turn.y)} * (1 / radius));
+        if (!(s > 0 && pass > 0)) continue;
+        const Vec3d v = s * d, chief = v + o * (s * ahead * power - k);
+        const double turning = std::abs(dot(v, cross(Vec3d{1, 0, 0} - o * (power * axis.x),
+                                                     Vec3d{0, 1, 0} - o * (power * axis.y))));
+        const double etendue = region * radius * radius * ahead * turning / (s * s * s) /
+                               (numbers.film_distance_mm * numbers.film_distance_mm);
+        double weight = numbers.exposure * opening * opening * region / kPiD;
+        if (natural_vignetting) {
+            const double cos2 = 1 / length_squared(chief);
+            weight *= s * ahead * cos2 * cos2;
+        }
+        out[i] = {{float(chief.x * numbers.film_distance_mm), float(chief.y * numbers.film_distance_mm)},
+                  float(pass),
+                  float(weight),
+                  float(etendue),
+                  float(weight * pass / etendue)};
     }
 }
 

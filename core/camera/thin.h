@@ -40,6 +40,13 @@ struct ThinLens {
     void generate(const Numbers& numbers, std::span<const CameraSample> samples,
                   std::span<CameraRay> rays) const;
 
+    /// Where scene rays meet the film.
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+        reproject(numbers(), rays, out);
+    }
+    void reproject(const Numbers& numbers, std::span<const CameraRay> rays,
+                   std::span<Reprojection> out) const;
+
   private:
     Vec2f iris_point(Vec2f u, double covered, float& weight) const;
     void generate_tilted(const Numbers& numbers, std::span<const CameraSample> samples,
