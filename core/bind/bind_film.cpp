@@ -64,10 +64,12 @@ void bind_film(nb::module_& m) {
     using namespace dg;
     nb::class_<Film>(m, "Film")
         .def("__init__",
-             [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs) {
-                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs});
+             [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs,
+                bool splats) {
+                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats});
              },
-             "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false)
+             "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false,
+             "splats"_a = false)
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")

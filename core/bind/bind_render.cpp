@@ -108,6 +108,19 @@ void bind_render(nb::module_& m) {
         .def_rw("threads", &RenderSettings::threads)
         .def_rw("shutter", &RenderSettings::shutter)
         .def_rw("filter", &RenderSettings::filter)
+        .def_prop_rw("light_paths",
+                     [](const RenderSettings& s) { return std::tuple{s.light.m1, s.light.m2}; },
+                     [](RenderSettings& s, std::tuple<double, double> m) {
+                         s.light = {std::get<0>(m), std::get<1>(m)};
+                     },
+                     "Per sample index: straight from an emitter to the lens, and with bounces.")
+        .def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
+                     [](RenderSettings& s, const std::string& name) {
+                         if (name == "both") s.technique = Technique::both;
+                         else if (name == "camera") s.technique = Technique::camera;
+                         else if (name == "light") s.technique = Technique::light;
+                         else throw input_error("render", "technique", "both, camera or light", name);
+                     })
         .def_prop_rw("max_depth", [](const RenderSettings& s) { return s.path.max_depth; },
                      [](RenderSettings& s, int v) { s.path.max_depth = v; })
         .def_prop_rw("dispersion",

@@ -45,6 +45,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     for (int i = 0; i < 3; ++i) rgb_from_xyz_[i] = {x[i], y[i], z[i]};
     pixels_.resize(pixels);
     if (layout.aovs) aovs_.resize(pixels);
+    if (layout.splats) splats_.resize(pixels);
 }
 
 std::int64_t Film::find(int x, int y) const {
@@ -62,28 +63,36 @@ void Film::mark_bad(Pixel& pixel, std::uint32_t sample) {
 
 void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
-    if (i >= 0) add_to(pixels_[i], sample, xyz);
+    if (i >= 0) add_to(pixels_[i], pixels_[i], sample, xyz);
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const PixelLock lock(pixels_[i].lock);
-    add_to(pixels_[i], sample, xyz);
+    add_to(pixels_[i], pixels_[i], sample, xyz);
 }
 
-void Film::add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
+void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz) {
+    const std::int64_t i = find(x, y);
+    if (i < 0) return;
+    DG_CHECK(splats_.size(), >, std::size_t(i));
+    const PixelLock lock(pixels_[i].lock);
+    add_to(splats_[i], pixels_[i], sample, xyz);
+}
+
+void Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) {
         mark_bad(pixel, sample);
         return;
     }
     const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
-    pixel.xyz[0].add(xyz.x);
-    pixel.xyz[1].add(xyz.y);
-    pixel.xyz[2].add(xyz.z);
-    pixel.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
-    pixel.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
-    pixel.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
+    sums.xyz[0].add(xyz.x);
+    sums.xyz[1].add(xyz.y);
+    sums.xyz[2].add(xyz.z);
+    sums.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
+    sums.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
+    sums.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
 }
 
 void Film::count(int x, int y) {
@@ -112,25 +121,31 @@ void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
     }
 }
 
+void Film::Sums::add(const Sums& other) {
+    for (int k = 0; k < 3; ++k) xyz[k].add(other.xyz[k]);
+    for (int k = 0; k < 3; ++k) rgb_squares[k].add(other.rgb_squares[k]);
+}
+
 void Film::merge(const Film& other) {
     if (!(layout_ == other.layout_)) {
         const auto words = [](const FilmLayout& l) {
             return std::to_string(l.width) + " x " + std::to_string(l.height) +
                    " px at (" + std::to_string(l.offset_x) + ", " +
                    std::to_string(l.offset_y) + ")" +
-                   (l.aovs ? " with aovs" : " without aovs");
+                   (l.aovs ? " with aovs" : " without aovs") +
+                   (l.splats ? ", with light paths" : "");
         };
         throw input_error("film", "merge", words(layout_), words(other.layout_));
     }
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         Pixel& a = pixels_[i];
         const Pixel& b = other.pixels_[i];
-        for (int k = 0; k < 3; ++k) a.xyz[k].add(b.xyz[k]);
-        for (int k = 0; k < 3; ++k) a.rgb_squares[k].add(b.rgb_squares[k]);
+        a.add(b);
         a.count += b.count;
         a.bad += b.bad;
         a.first_bad = std::min(a.first_bad, b.first_bad);
     }
+    for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];

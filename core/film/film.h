@@ -34,10 +34,11 @@ struct FilmLayout {
     int width = 0, height = 0;       // of the region that is stored
     int offset_x = 0, offset_y = 0;  // of that region in the full frame
     bool aovs = false;
+    bool splats = false;             // light paths may add to any pixel (Film::splat)
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
-/// 112 bytes per pixel; 304 with aovs.
+/// 112 bytes per pixel; 192 more with aovs, 96 with splats.
 class Film {
   public:
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels.
@@ -57,6 +58,10 @@ class Film {
     /// The same from any thread at any time, as dispersion sends wavelengths to the pixels of other
     /// tiles; a pixel that may be written like this must not be written by add() meanwhile.
     void add_shared(int x, int y, std::uint32_t sample, Vec3f xyz);
+    /// What a light path brings, from any thread at any time; the layout has splats. Their sums are divided
+    /// by the same count. Their squares tell the variance of independent arrivals (compound Poisson), from
+    /// which no mean is to be taken off; so they are sums of their own.
+    void splat(int x, int y, std::uint32_t sample, Vec3f xyz);
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
     /// layouts differ.
@@ -88,8 +93,8 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs" if there are any, so many bytes per pixel.
-    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192;
+    /// "sums", and "aovs" and "splats" if there are any, so many bytes per pixel.
+    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96;
     std::vector<std::string> state_parts() const;
     std::span<const std::byte> state(const std::string& part) const;
     /// Throws Error for another number of bytes.
@@ -99,9 +104,12 @@ class Film {
     static constexpr std::uint32_t kNone = 0xffffffffu;
     /// Depth, position, normal come from samples that hit; the rest from all that passed.
     static constexpr int kHitAovs = 7;
-    struct Pixel {
+    struct Sums {
         ValueSum xyz[3];
         SquareSum rgb_squares[3];
+        void add(const Sums& other);
+    };
+    struct Pixel : Sums {
         std::uint32_t count = 0, bad = 0, first_bad = kNone;
         std::uint32_t lock = 0;   // of add_shared; 0 at rest
     };
@@ -112,12 +120,15 @@ class Film {
 
     /// Index of a full-frame pixel, or -1 outside the region.
     std::int64_t find(int x, int y) const;
-    void add_to(Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// To the pixel's own sums, or to those of its splats.
+    void add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// Of all that was added to the pixel of this index.
+    Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
     struct Estimate {
         double sum[3], variance[3];
     };
-    Estimate estimate(const Pixel& pixel) const;
+    Estimate estimate(std::size_t i) const;
     static void mark_bad(Pixel& pixel, std::uint32_t sample);
     const std::vector<AovPixel>& require_aovs() const;
 
@@ -125,6 +136,7 @@ class Film {
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
+    std::vector<Sums> splats_;
 };
 
 }  // namespace dg

@@ -15,23 +15,38 @@
 
 namespace dg {
 
+Vec3d Film::sum_xyz(std::size_t i) const {
+    Vec3d sum;
+    for (int k = 0; k < 3; ++k) {
+        ValueSum all = pixels_[i].xyz[k];
+        if (layout_.splats) all.add(splats_[i].xyz[k]);
+        sum[k] = all.value();
+    }
+    return sum;
+}
+
 std::vector<float> Film::mean_xyz() const {
     std::vector<float> mean;
     mean.reserve(3 * pixels_.size());
-    for (const Pixel& p : pixels_)
-        for (const ValueSum& sum : p.xyz)
-            mean.push_back(p.count ? float(sum.value() / p.count) : 0.f);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Vec3d sum = sum_xyz(i);
+        const std::uint32_t n = pixels_[i].count;
+        for (int k = 0; k < 3; ++k) mean.push_back(n ? float(sum[k] / n) : 0.f);
+    }
     return mean;
 }
 
-Film::Estimate Film::estimate(const Pixel& p) const {
-    const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()};
+Film::Estimate Film::estimate(std::size_t i) const {
+    const Pixel& p = pixels_[i];
+    const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
     const double n = p.count;
     Estimate e;
     for (int k = 0; k < 3; ++k) {
-        e.sum[k] = dot(to_double(rgb_from_xyz_[k]), xyz);
-        const double scatter = p.rgb_squares[k].value() - e.sum[k] * e.sum[k] / n;
+        const double own = dot(to_double(rgb_from_xyz_[k]), xyz);
+        e.sum[k] = dot(to_double(rgb_from_xyz_[k]), all);
+        const double scatter = p.rgb_squares[k].value() - own * own / n;
         e.variance[k] = n < 2 ? 0 : std::max(0.0, scatter / (n * (n - 1)));
+        if (layout_.splats && n > 0) e.variance[k] += splats_[i].rgb_squares[k].value() / (n * n);
     }
     return e;
 }
@@ -39,8 +54,8 @@ Film::Estimate Film::estimate(const Pixel& p) const {
 std::vector<float> Film::variance_rgb() const {
     std::vector<float> variance;
     variance.reserve(3 * pixels_.size());
-    for (const Pixel& p : pixels_) {
-        const Estimate e = estimate(p);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Estimate e = estimate(i);
         for (double v : e.variance) variance.push_back(float(v));
     }
     return variance;
@@ -49,9 +64,9 @@ std::vector<float> Film::variance_rgb() const {
 std::vector<float> Film::relative_variance(float dark) const {
     std::vector<float> relative;
     relative.reserve(pixels_.size());
-    for (const Pixel& p : pixels_) {
-        const Estimate e = estimate(p);
-        const double n = std::max(1u, p.count);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Estimate e = estimate(i);
+        const double n = std::max(1u, pixels_[i].count);
         double sum = 0;
         for (int k = 0; k < 3; ++k)
             sum += e.variance[k] / (e.sum[k] * e.sum[k] / (n * n) + dark);

@@ -11,25 +11,29 @@ static_assert(std::endian::native == std::endian::little,
               "files hold the words of a sum as they lie in memory, lowest first");
 
 std::vector<std::string> Film::state_parts() const {
-    if (layout_.aovs) return {"sums", "aovs"};
-    return {"sums"};
+    std::vector<std::string> parts{"sums"};
+    if (layout_.aovs) parts.push_back("aovs");
+    if (layout_.splats) parts.push_back("splats");
+    return parts;
 }
 
 std::span<const std::byte> Film::state(const std::string& part) const {
-    static_assert(sizeof(Pixel) == kSumBytes && sizeof(AovPixel) == kAovBytes);
+    static_assert(sizeof(Pixel) == kSumBytes && sizeof(AovPixel) == kAovBytes &&
+                  sizeof(Sums) == kSplatBytes);
     if (part == "sums") return std::as_bytes(std::span(pixels_));
     if (part == "aovs" && layout_.aovs) return std::as_bytes(std::span(aovs_));
-    throw input_error("film state", "part", layout_.aovs ? "sums or aovs" : "sums",
-                      "'" + part + "'");
+    if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
+    std::string known;
+    for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
+    throw input_error("film state", "part", known, "'" + part + "'");
 }
 
 void Film::set_state(const std::string& part, std::span<const std::byte> bytes) {
-    const std::size_t wanted = state(part).size();
-    if (bytes.size() != wanted)
-        throw input_error("film state", "bytes of " + part, std::to_string(wanted),
+    const std::span<const std::byte> to = state(part);
+    if (bytes.size() != to.size())
+        throw input_error("film state", "bytes of " + part, std::to_string(to.size()),
                           std::to_string(bytes.size()));
-    void* to = part == "sums" ? static_cast<void*>(pixels_.data()) : aovs_.data();
-    std::memcpy(to, bytes.data(), wanted);
+    std::memcpy(const_cast<std::byte*>(to.data()), bytes.data(), to.size());   // of this very film
     // Nobody holds a lock of this film: one that a damaged file brings would never open.
     for (Pixel& pixel : pixels_) pixel.lock = 0;
 }

@@ -209,6 +209,57 @@ TEST_CASE("variance where wavelengths of other samples land: a pixel that also r
     CHECK(n * moments(variances).mean == doctest::Approx(1.1 - 0.49).epsilon(0.03));
 }
 
+TEST_CASE("splats: means have the same divisor, variances know that arrivals are independent") {
+    const int n = 64, films = 600;
+    std::vector<double> means, variances;
+    for (int f = 0; f < films; ++f) {
+        Film film(FilmLayout{1, 1, 0, 0, false, true});
+        for (int i = 0; i < n; ++i) {
+            film.count(0, 0);
+            if (hash_uniform(f, i) < 0.3) film.add(0, 0, i, xyz_from_rgb({1, 1, 1}));
+            for (int k = 0; k < 8; ++k)   // eight light paths per sample, few of which come here
+                if (hash_uniform(f + 9999, 8 * i + k) < 0.05)
+                    film.splat(0, 0, i, xyz_from_rgb({2, 2, 2}));
+        }
+        means.push_back(film.mean_xyz()[1]);
+        variances.push_back(film.variance_rgb()[1]);
+    }
+    CHECK(moments(means).mean == doctest::Approx(0.3 + 0.8).epsilon(0.02));
+    // Own samples 0.3 - 0.09; arrivals 8 x 4 x 0.05 x (1 - 0.05), of which the film takes the last as 1.
+    CHECK(n * moments(means).variance == doctest::Approx(0.21 + 1.52).epsilon(0.12));
+    CHECK(n * moments(variances).mean == doctest::Approx(0.21 + 1.6).epsilon(0.03));
+}
+
+TEST_CASE("splats: the same bits in any order, from any thread and any split; none where there are none") {
+    const FilmLayout layout{kWidth, kHeight, 10, 20, false, true};
+    Film whole(layout), split(layout), part(layout);
+    std::vector<Draw> draws = all_draws();
+    for (const Draw& d : draws) whole.splat(d.x, d.y, d.sample, value(d.id));
+    shuffle(draws, 3);
+    const std::size_t half = draws.size() / 2;
+    std::thread other([&] {
+        for (std::size_t i = 0; i < half; ++i)
+            split.splat(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+    });
+    for (std::size_t i = half; i < draws.size(); ++i) {
+        Film& film = i % 2 ? split : part;
+        film.splat(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+    }
+    other.join();
+    split.merge(part);
+    for (const std::string& name : whole.state_parts())
+        CHECK(std::ranges::equal(whole.state(name), split.state(name)));
+    Film again(layout);
+    again.set_state("splats", whole.state("splats"));
+    CHECK(std::ranges::equal(whole.state("splats"), again.state("splats")));
+    CHECK(whole.state("splats").size() == Film::kSplatBytes * kWidth * kHeight);
+
+    const Film bare(FilmLayout{2, 2, 0, 0, false});
+    CHECK(bare.state_parts() == std::vector<std::string>{"sums"});
+    CHECK_THROWS_AS(bare.state("splats"), Error);
+    CHECK_THROWS_AS(whole.merge(Film(FilmLayout{kWidth, kHeight, 10, 20, false})), Error);
+}
+
 TEST_CASE("NaN, infinity and monsters are dropped, counted and found again") {
     const float inf = std::numeric_limits<float>::infinity();
     Film film(FilmLayout{4, 3, 100, 200, true});

@@ -10,6 +10,7 @@
 #include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
+#include "render/light_plan.h"
 #include "render/path.h"
 #include "scene/scene.h"
 
@@ -49,10 +50,14 @@ struct RenderSettings {
     PathSettings path;
     Filter filter;
     Dispersion dispersion = Dispersion::reproject;
+    LightPlan light;                            // none: off
+    Technique technique = Technique::both;
 };
 
 struct RenderCounters {
     std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
+    std::uint64_t light_paths = 0;
+    std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

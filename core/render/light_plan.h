@@ -1,0 +1,20 @@
+// light_plan.h -- how much light is followed from the emitters to the film, beside the paths from the
+// camera. Both find the same light, and share it by the balance heuristic (light_weight.h).
+#pragma once
+
+namespace dg {
+
+/// Light paths per sample index, for the whole frame; 0: none, and the picture has the bits and the speed
+/// that it has without them.
+struct LightPlan {
+    double m1 = 0;   // from an emitter straight to the lens
+    double m2 = 0;   // with one bounce or more
+
+    bool off() const { return m1 <= 0 && m2 <= 0; }
+};
+
+/// Who draws what both could find: tests hold one against the other. What only one can find is always its
+/// own.
+enum class Technique { both, camera, light };
+
+}  // namespace dg
