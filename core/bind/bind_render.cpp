@@ -55,7 +55,8 @@ auto draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
             return go;
         });
     }
-    return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays};
+    return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays,
+                      counters.light_paths, counters.splats_off_film};
 }
 
 using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
@@ -111,6 +112,10 @@ void bind_render(nb::module_& m) {
         .def_prop_rw("light_paths",
                      [](const RenderSettings& s) { return std::tuple{s.light.m1, s.light.m2}; },
                      [](RenderSettings& s, std::tuple<double, double> m) {
+                         for (const double n : {std::get<0>(m), std::get<1>(m)})
+                             if (!(n >= 0 && n <= kMostLightPaths))
+                                 throw input_error("render", "light paths",
+                                                   "0 .. 1e9 per sample index", std::to_string(n));
                          s.light = {std::get<0>(m), std::get<1>(m)};
                      },
                      "Per sample index: straight from an emitter to the lens, and with bounces.")
@@ -147,7 +152,8 @@ void bind_render(nb::module_& m) {
               return draw(scene, camera, film, settings, std::move(callback));
           },
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
-          "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, stopped rays, rays).");
+          "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, "
+          "stopped rays, rays, light paths, splats off the film).");
 
     m.attr("ROUND_PARTS") = SampleRound::kParts;
     m.def("render_round",

@@ -27,6 +27,7 @@ from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import MismatchError, UsageError, suggest
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
+from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
 from .scene import Scene
 from .truth import GroundTruth, check_gt_time, focused
 
@@ -59,6 +60,11 @@ class Session:
             unless ``gt_time`` is given.
         dispersion: What an exact lens does with a path's other wavelengths: reproject, or
             end_secondary (the plain reference; noisier).
+        light_paths: Light that is followed from the emitters to the film, beside the paths from the
+            lens (``docs/light-paths.md``): auto, off, or paths per sample index, straight to the
+            lens and with bounces, as (M1, M2).
+        technique: Who draws what both could find: both, or camera or light alone (to check one
+            against the other).
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -81,6 +87,8 @@ class Session:
         max_depth: int = 16,
         strategy: str = "mis",
         dispersion: str = "reproject",
+        light_paths: str | float | tuple[float, float] = "auto",
+        technique: str = "both",
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -88,6 +96,9 @@ class Session:
         seed = whole(seed, "seed", 0, (1 << 64) - 1, "0 .. 2^64 - 1")
         threads = whole(threads, "threads", 0, 1024, "0 (all) .. 1024")
         max_depth = whole(max_depth, "max_depth", 1, 4096)
+        wanted = check_light_paths(light_paths)
+        if technique not in TECHNIQUES:
+            raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
         if not isinstance(scene, Scene):
             raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
         self.scene = scene
@@ -116,11 +127,15 @@ class Session:
             self._settings.dispersion = dispersion
         except ValueError as error:
             raise UsageError(str(error)) from None
+        self._settings.technique = technique
+        self.light_paths = self._plan() if wanted is None else wanted
+        self._settings.light_paths = self.light_paths
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
+        self.light_path_count = self.splats_off_film = 0
         self._identity = {
             "resolution": [self.width, self.height],
             "crop": list(self.crop),
@@ -131,11 +146,17 @@ class Session:
             "aovs": aovs,
             "strategy": strategy,
             "dispersion": dispersion,
+            "light_paths": list(self.light_paths),
+            "technique": technique,
         }
+
+    def _plan(self) -> Plan:
+        """What pays in this scene."""
+        return OFF
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
-        return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs)
+        return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs, self.light_paths != OFF)
 
     def _whole_film(self) -> _core.Film:
         if self._torn:
@@ -190,7 +211,7 @@ class Session:
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
-        complete, camera_rays, stopped, rays = draw(
+        complete, camera_rays, stopped, rays, light_paths, off_film = draw(
             self._core_scene, self._setup.core, film, self._settings, *which, progress
         )
         if not complete:
@@ -199,6 +220,8 @@ class Session:
         self.camera_rays += camera_rays
         self.stopped_rays += stopped
         self.rays += rays
+        self.light_path_count += light_paths
+        self.splats_off_film += off_film
         self.samples += camera_rays
         return True
 
@@ -317,6 +340,7 @@ class Session:
             "resolution": (self.width, self.height),
             "crop": self.crop,
             "filter": self._identity["filter"],
+            "light_paths": show_plan(self.light_paths),
             "scene_hash": self.key["scene"],
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],

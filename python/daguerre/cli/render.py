@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from daguerre.errors import UsageError
+from daguerre.light_paths import check_light_paths
 
 from . import console
 from .camera_flags import CameraFlags
@@ -102,6 +103,16 @@ def render(
     max_depth: Annotated[
         int, option("--max-depth", metavar="N", help="Surfaces along a path [16].", panel=_SAMPLING)
     ] = 16,
+    light_paths: Annotated[
+        str,
+        option(
+            "--light-paths",
+            metavar="auto|off|M1[,M2]",
+            help="Light followed from the emitters to the film, per sample index: straight to the "
+            "lens, and with bounces [auto].",
+            panel=_SAMPLING,
+        ),
+    ] = "auto",
     resume: Annotated[
         bool, option("--resume", help="Go on from OUT.checkpoint.exr.", panel=_SAMPLING)
     ] = False,
@@ -139,6 +150,7 @@ def render(
     numbers = frame_numbers("--frames", frames) if frames is not None else None
     check_names(plan.outputs, numbers)
     _check_numbers(seed, threads, max_depth)
+    wanted_light = check_light_paths(light_paths, "--light-paths")
     changes = camera_flags.changes() | shutter_flags.changes()
     plans: list[tuple[int | None, Plan]] = [(None, plan)]
     if numbers is not None:
@@ -152,7 +164,14 @@ def render(
         return interrupted_early()
     for warning in scene.warnings:
         console.warn(f"{scene_path}: {warning}")
-    settings = {"seed": seed, "filter": filter, "threads": threads, "max_depth": max_depth}
+    settings: dict[str, Any] = {
+        "seed": seed,
+        "filter": filter,
+        "threads": threads,
+        "max_depth": max_depth,
+    }
+    if wanted_light is not None:
+        settings["light_paths"] = wanted_light
     shoot = Shoot(scene, scene_path, camera_flags.camera, changes, settings, tone, stats)
     if dry_run:
         return shoot.describe(*plans[0])

@@ -41,7 +41,7 @@ OWN_NUMBERS = (
     "samples", "samples_min", "samples_max", "noise", "seed", "h0", "time", "bad_samples",
     "motion_missing",
 )  # fmt: skip
-OWN_STRINGS = ("version", "scene_hash", "filter", "denoised", "gt_time")
+OWN_STRINGS = ("version", "scene_hash", "filter", "denoised", "gt_time", "light_paths")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 

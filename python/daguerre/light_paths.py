@@ -1,0 +1,55 @@
+"""How much light is followed from the emitters to the film: what the user asks for, checked.
+
+See ``docs/light-paths.md``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from .checks import short
+from .errors import UsageError
+
+#: Light paths per sample index, straight from an emitter to the lens and with bounces.
+Plan = tuple[float, float]
+OFF: Plan = (0.0, 0.0)
+TECHNIQUES = ("both", "camera", "light")
+MOST = 1e9
+WANTED = f"auto, off, or one or two numbers of paths per sample index, 0 .. {MOST:g}"
+
+
+def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
+    """The plan that is asked for; None: the pilot decides.
+
+    Args:
+        value: ``"auto"``, ``"off"``, M1, (M1, M2), or that as text: ``"2000,500"``.
+        where: For messages.
+
+    Raises:
+        UsageError: Neither of these, or a number out of range.
+    """
+    if value == "auto":
+        return None
+    if value == "off":
+        return OFF
+    parts: Sequence[Any] = value.split(",") if isinstance(value, str) else _pair(value)
+    try:
+        if any(isinstance(part, bool | bytes) for part in parts):
+            raise TypeError
+        numbers = [float(part) for part in parts]
+    except (TypeError, ValueError):
+        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}") from None
+    if len(numbers) not in (1, 2) or not all(math.isfinite(m) and 0 <= m <= MOST for m in numbers):
+        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
+    return numbers[0], numbers[1] if len(numbers) == 2 else 0.0
+
+
+def _pair(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list | tuple) else [value]
+
+
+def show_plan(plan: Plan) -> str | None:
+    """As ``--light-paths`` takes it; None if off."""
+    return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)
