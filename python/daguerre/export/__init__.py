@@ -1,0 +1,1 @@
+"""Fitted lenses as code: C, GLSL, OSL for Blender's custom camera, NumPy; and as JSON."""

@@ -1,0 +1,181 @@
+"""Where to shoot for a point of the iris, and how bright the middle of the film becomes.
+
+Both are found by drawing rays through the exported functions themselves, in numpy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import languages
+from .lens_code import RAY
+from .plan import Aim, LensPlan, Vector
+
+FloatArray = NDArray[np.float64]
+Exponents = list[tuple[int, ...]]
+
+IRIS_OUTPUTS = RAY.index("iris_x"), RAY.index("iris_y")
+DEGREE = 4  # in the variables of axial symmetry; without it, FREE_DEGREE in all coordinates
+FREE_DEGREE = 5
+RAYS = 6000
+MARGIN = 1.04  # how far beyond the iris the aim is fitted
+#: F, d and C, and what the eye makes of them in daylight (V(lambda) of CIE 1924, times D65)
+EXPOSURE_NM, EXPOSURE_WEIGHTS = (486.13, 587.56, 656.27), (0.194, 0.742, 0.064)
+OPENINGS = np.sqrt(np.linspace(0.02, 1.0, 8))  # shares of the iris radius
+EXPOSURE_TERMS = 3
+
+
+def with_aim(plan: LensPlan) -> LensPlan:
+    """The plan, ready to draw: with an aim if one fits, and with its exposure."""
+    aim = fit_aim(plan)
+    plan = replace(plan, aim=aim, exposure=(1.0,))
+    return replace(plan, exposure=exposure(plan))
+
+
+def callables(plan: LensPlan) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """``evaluate`` and ``sample`` as numpy functions."""
+    room: dict[str, Any] = {}
+    exec(compile(languages.numpy_file(plan, []), f"<{plan.name}>", "exec"), room)
+    name = languages.identifier(plan.name)
+    return room[f"{name}_evaluate"], room[f"{name}_sample"]
+
+
+def fit_aim(plan: LensPlan) -> Aim | None:
+    """The film slope m(film point, iris point, l), fitted to rays of the plan; None: no good."""
+    outer = plan.blades.outer if plan.blades else 1.0
+    radius = MARGIN * outer * plan.iris_radius_mm
+    evaluate, _ = callables(plan)
+    film, slope, nm, iris = _film_rays(plan, evaluate, radius)
+    train = len(nm) // 2
+    if train < 4 * len(_exponents(plan.symmetric)):
+        return None
+    f = (film - plan.film_center_mm) / plan.film_half_mm
+    basis = _basis(plan, f, iris / radius, nm)
+    fitted, found = _least_squares(plan.symmetric, basis, slope, train)
+    fresh = [a[train:] for a in (film, found, nm, iris)]
+    met = _iris_points(plan, evaluate, *fresh[:3])
+    error = float(np.hypot(*(met - fresh[3]).T).max()) / plan.iris_radius_mm
+    enlargement = 1.002 + 2.0 * error  # covers what the aim would miss
+    if not enlargement < MARGIN:
+        return None
+    linear = np.linalg.lstsq(np.hstack([iris, film]), slope, rcond=None)[0][:2]
+    orientation = 1.0 if np.linalg.det(linear) > 0 else -1.0
+    return Aim(fitted, radius, enlargement, orientation)
+
+
+def exposure(plan: LensPlan) -> tuple[float, ...]:
+    """The mean weight on the axis in daylight, as `LensPlan.exposure` has it."""
+    _, sample = callables(plan)
+    u1, u2 = _quasi_random(2, 4096).T
+    values = [
+        sum(
+            share * float(np.mean(sample(0.0, 0.0, u1, u2, nm, plan.f_stop / opening)[-1]))
+            for nm, share in zip(EXPOSURE_NM, EXPOSURE_WEIGHTS, strict=True)
+        )
+        for opening in OPENINGS
+    ]
+    if any(mount.inner_mm for s in plan.segments for mount in s.mounts):
+        return (values[-1],)  # a lens with a hole has one f-stop
+    powers = np.vander(OPENINGS**2, EXPOSURE_TERMS, increasing=True)
+    found = np.linalg.lstsq(powers, np.array(values), rcond=None)[0]
+    return tuple(float(c) for c in found)
+
+
+def focal_length(plan: LensPlan) -> float:
+    """Film height over the slope of the view there, near the axis, mm."""
+    height = 0.01 * plan.film_half_mm[0]
+    u1, u2 = _quasi_random(2, 512).T
+    slopes = []
+    for x in (-height, height):
+        dx, _, dz, weight = callables(plan)[1](x, 0.0, u1, u2, 550.0, plan.f_stop)[-4:]
+        slopes.append(np.average(-dx / dz, weights=np.broadcast_to(weight, u1.shape)))
+    return float(2.0 * height / (slopes[1] - slopes[0]))
+
+
+def _film_rays(
+    plan: LensPlan, evaluate: Callable[..., Any], iris_mm: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Film points (mm), slopes, wavelengths (nm) and iris points (mm) of rays."""
+    x = _quasi_random(5, RAYS)
+    f = _disc(x[:, 0], x[:, 1]) if plan.symmetric else 2.0 * x[:, :2] - 1.0
+    film = np.array(plan.film_center_mm) + f * plan.film_half_mm
+    q = _disc(x[:, 2], x[:, 3])
+    slope = (q - f * plan.q_by_film - plan.q_shift) / plan.q_by_slope
+    offset, scale = plan.wavelength
+    nm = 1e3 / np.sqrt((2.0 * x[:, 4] - 1.0 - offset) / scale)
+    iris = _iris_points(plan, evaluate, film, slope, nm)
+    inside = np.hypot(*iris.T) < iris_mm
+    return film[inside], slope[inside], nm[inside], iris[inside]
+
+
+def _iris_points(
+    plan: LensPlan,
+    evaluate: Callable[..., Any],
+    film: FloatArray,
+    slope: FloatArray,
+    nm: FloatArray,
+) -> FloatArray:
+    outputs = evaluate(*film.T, *slope.T, nm, plan.f_stop)
+    return np.stack([outputs[i] for i in IRIS_OUTPUTS], axis=1)
+
+
+def _basis(plan: LensPlan, f: FloatArray, a: FloatArray, nm: FloatArray) -> list[FloatArray]:
+    """Columns (N, terms) of the two polynomials for x, and for y."""
+    wave = plan.wavelength[0] + plan.wavelength[1] * 1e6 / nm**2
+    if not plan.symmetric:
+        return [_monomials([*a.T, *f.T, wave], _exponents(False))]
+    s, w, u = (f * a).sum(1), 2.0 * (a * a).sum(1) - 1.0, 2.0 * (f * f).sum(1) - 1.0
+    terms = _monomials([s, w, u, wave], _exponents(True))
+    return [np.hstack([f[:, i : i + 1] * terms, a[:, i : i + 1] * terms]) for i in (0, 1)]
+
+
+def _least_squares(
+    symmetric: bool, basis: list[FloatArray], slope: FloatArray, train: int
+) -> tuple[Vector, FloatArray]:
+    """Coefficients from the first rays, and what they say for all."""
+    exponents = _exponents(symmetric)
+    if symmetric:  # one set of coefficients for both components
+        rows = np.concatenate([b[:train] for b in basis])
+        c = np.linalg.lstsq(rows, slope[:train].T.ravel(), rcond=None)[0]
+        found = np.stack([b @ c for b in basis], axis=1)
+        both = np.split(c, 2)
+    else:
+        both = list(np.linalg.lstsq(basis[0][:train], slope[:train], rcond=None)[0].T)
+        found = np.stack([basis[0] @ c for c in both], axis=1)
+    first, second = (dict(zip(exponents, map(float, c), strict=True)) for c in both)
+    return Vector(first, second), found
+
+
+def _exponents(symmetric: bool) -> Exponents:
+    """Of a complete basis whose last variable, the wavelength, costs two."""
+    degree, count = (DEGREE, 4) if symmetric else (FREE_DEGREE, 5)
+    choices = product(range(degree + 1), repeat=count)
+    return [e for e in choices if sum(e) + e[-1] <= degree]
+
+
+def _monomials(variables: list[FloatArray], exponents: Exponents) -> FloatArray:
+    highest = max(max(e) for e in exponents)
+    powers = [[v**k for k in range(highest + 1)] for v in variables]
+    columns = [math.prod(powers[i][k] for i, k in enumerate(e)) for e in exponents]
+    return np.stack(columns, axis=1)
+
+
+def _disc(u1: FloatArray, u2: FloatArray) -> FloatArray:
+    r, angle = np.sqrt(u1), 2.0 * math.pi * u2
+    return np.stack([r * np.cos(angle), r * np.sin(angle)], axis=1)
+
+
+def _quasi_random(dimensions: int, count: int) -> FloatArray:
+    """Points in [0, 1) by the generalised golden ratio (Roberts 2018): an additive recurrence."""
+    g = 2.0
+    for _ in range(50):
+        g = (1.0 + g) ** (1.0 / (dimensions + 1))
+    steps = g ** -np.arange(1.0, dimensions + 1.0)
+    return np.asarray((0.5 + np.outer(np.arange(1, count + 1), steps)) % 1.0)

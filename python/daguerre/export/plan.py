@@ -1,0 +1,130 @@
+"""A fitted lens as plain numbers: what code is made from, whatever the language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .horner import Terms
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Vector:
+    """Two components as polynomials.
+
+    With axial symmetry the vector is f A + q B, with A and B (``first``, ``second``) in s = f.q,
+    2 |q|^2 - 1, U (|f|^2, its range mapped to [-1, 1]) and l. Without, they are its x and y in q.x,
+    q.y, f.x, f.y and l.
+    """
+
+    first: Terms
+    second: Terms
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A surface whose rim cuts rays: where they meet it, and where it is clear, mm."""
+
+    surface: int
+    point: Vector
+    clear_mm: float
+    inner_mm: float = 0.0
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A lens's polynomials for film points with u_low <= |f|^2 < u_high.
+
+    Attributes:
+        direction: theta (dx, dy) / sin(theta), rad, of the ray toward the scene.
+        offset_mm: From the middle of the entrance pupil to the ray, across it.
+        iris_mm: Where the ray crosses the iris.
+        transmittance: Of the glass; in the same variables (symmetric: as A).
+        mounts: The rims that can cut.
+    """
+
+    u_low: float
+    u_high: float
+    direction: Vector
+    offset_mm: Vector
+    iris_mm: Vector
+    transmittance: Terms
+    mounts: tuple[Mount, ...]
+
+
+@dataclass(frozen=True)
+class Blades:
+    """An iris with edges, straight or arcs, in units of the iris radius (core/optics/stop.h).
+
+    Attributes:
+        edges: Unit vectors to their middles.
+        apothem: Distance of straight edges.
+        bend: 1: arcs bent outward; -1: inward; 0: straight.
+        center: Of the arcs, along the vectors.
+        arc_radius: Theirs.
+        outer: Radius of the circle about all.
+    """
+
+    edges: tuple[Pair, ...]
+    apothem: float
+    bend: int = 0
+    center: float = 0.0
+    arc_radius: float = 0.0
+    outer: float = 1.0
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Where to shoot for a point of the iris: the film slope m(f, a), a in units of ``radius_mm``.
+
+    It only draws: the polynomials of `Segment` say what becomes of the ray.
+    """
+
+    slope: Vector
+    radius_mm: float
+    enlargement: float
+    orientation: float = 1.0  # sign of det dm/da, where m does not fold back
+
+
+@dataclass(frozen=True)
+class LensPlan:
+    """A lens at one focus; it can be stopped down.
+
+    Lens frame: mm, +z from the scene to the film, z = 0 at the first vertex.
+
+    Attributes:
+        symmetric: Which of the two forms vectors have.
+        film_center_mm: f = (film point - center) / half.
+        film_half_mm: Of the film that is covered; with axial symmetry twice its radius.
+        q_by_film: q = by_film f + by_slope m + shift, m the ray's slope dx/dz, dy/dz, each by x
+            and y; the clear pupil fills |q| <= 1.
+        wavelength: l = wavelength[0] + wavelength[1] / (wavelength in um)^2.
+        front_z_mm: Vertex of the sphere on which rays start; a ray that misses it starts where it
+            comes nearest to the middle of the entrance pupil.
+        front_curvature: Of that sphere, 1/mm.
+        f_stop: As wide as it opens.
+        iris_radius_mm: Of the circle of the iris's area at that f-stop.
+        blades: None: round.
+        exposure: What weights are divided by, so that a white world of luminance 1 is 1 on the
+            axis: coefficients of o^2, o^4, ..., with o the share of the iris radius that is open.
+    """
+
+    name: str
+    film_z_mm: float
+    symmetric: bool
+    film_center_mm: Pair
+    film_half_mm: Pair
+    q_by_film: Pair
+    q_by_slope: Pair
+    q_shift: Pair
+    wavelength: Pair
+    pupil_z_mm: float
+    front_z_mm: float
+    front_curvature: float
+    f_stop: float
+    iris_radius_mm: float
+    blades: Blades | None
+    segments: tuple[Segment, ...]
+    aim: Aim | None = None
+    exposure: tuple[float, ...] = (1.0,)
