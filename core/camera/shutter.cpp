@@ -101,6 +101,13 @@ Moment Shutter::draw(int x, int y, float u) const {
     return {float(open + exposure_ * settings_.curve.sample(u))};
 }
 
+Moment Shutter::draw_any(float u) const {
+    if (!rolls()) return draw(0, 0, u);
+    if (exposure_ > line_) return {u};
+    const double line = std::min(std::floor(double(u) * lines_), lines_ - 1.0);
+    return {float(open_of(line) + exposure_ * (double(u) * lines_ - line))};
+}
+
 float Shutter::opening(int row, float time) const {
     if (row < 0 || row >= lines_) return 0;
     const double open = open_of(row);

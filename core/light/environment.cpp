@@ -10,36 +10,11 @@
 // to noise.
 #include "light/environment.h"
 
-#include <array>
-
+#include "light/environment_picture.h"
 #include "math/error.h"
 #include "math/warp.h"
 
 namespace dg {
-
-struct Environment::Picture {
-    int width, height;
-    std::vector<Rgb> pixels;      // cd/m2
-    std::vector<float> lum;       // of the texels
-    std::vector<float> cos_edge;  // h + 2: cos theta at the edges of the rows of cells
-    Distribution2D cells;         // w x (h + 1), weight: mean luminance * solid angle
-    double total = 0;             // of the weights
-    Affine3f world_from_environment, environment_from_world;
-
-    int wrap(int column) const {
-        return column < 0 ? column + width : column >= width ? column - width : column;
-    }
-    int clamp_row(int row) const { return std::clamp(row, 0, height - 1); }
-    /// Cell of column c starts at the centre of texel column c; cell row r lies below
-    /// texel row r - 1.
-    std::array<float, 4> corners(int c, int r) const {
-        const std::size_t top = std::size_t(clamp_row(r - 1)) * width,
-                          low = std::size_t(clamp_row(r)) * width;
-        return {lum[top + c], lum[top + wrap(c + 1)], lum[low + c],
-                lum[low + wrap(c + 1)]};
-    }
-    void build_cells();
-};
 
 namespace {
 
@@ -132,17 +107,35 @@ void Environment::Picture::build_cells() {
     }
     std::vector<float> weights(std::size_t(width) * (height + 1));
     for (int r = 0; r <= height; ++r) {
-        const double solid_angle =
-            2 * kPiD / width * (double(cos_edge[r]) - cos_edge[r + 1]);
         for (int c = 0; c < width; ++c) {
-            const auto k = corners(c, r);
-            const double weight =
-                solid_angle * 0.25 * (double(k[0]) + k[1] + k[2] + k[3]);
-            weights[std::size_t(r) * width + c] = static_cast<float>(weight);
-            total += weight;
+            const double w = weight(c, r);
+            weights[std::size_t(r) * width + c] = static_cast<float>(w);
+            total += w;
         }
     }
     if (total > 0) cells = Distribution2D(width, height + 1, weights);
+}
+
+Vec3f Environment::Picture::direction(int c, int r, float x, float s) const {
+    const float cos_theta = cos_edge[r] + (cos_edge[r + 1] - cos_edge[r]) * s;
+    const float sin_theta = std::sqrt(std::max(0.f, 1 - cos_theta * cos_theta));
+    const float phi = 2 * kPi * ((c + 0.5f + x) / width - 0.5f);  // 0 along -z
+    return {sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi)};
+}
+
+Vec3f Environment::Picture::sample_in(int c, int r, Vec2f u) const {
+    const auto k = corners(c, r);
+    const float s = sample_linear(u.y, k[0] + k[1], k[2] + k[3]);
+    const float x = sample_linear(u.x, k[0] + (k[2] - k[0]) * s, k[1] + (k[3] - k[1]) * s);
+    return direction(c, r, x, s);
+}
+
+Environment::Picture::Place Environment::Picture::place(Vec3f d) const {
+    const auto [c, x] = cell_column(column_of(d, width), width);
+    const int r =
+        std::clamp(static_cast<int>(std::floor(theta_of(d) / kPi * height + 0.5f)), 0, height);
+    const float s = (cos_edge[r] - d.y) / (cos_edge[r] - cos_edge[r + 1]);
+    return {c, r, bilinear(corners(c, r), x, std::clamp(s, 0.f, 1.f))};
 }
 
 Environment Environment::constant(Rgb luminance) {
@@ -205,16 +198,7 @@ Environment::Sample Environment::sample_within(Vec2f u) const {
     const Sample2D cell = p.cells.sample(u);
     const int c = std::min(static_cast<int>(cell.x * p.width), p.width - 1);
     const int r = std::min(static_cast<int>(cell.y * (p.height + 1)), p.height);
-    const auto k = p.corners(c, r);
-    const float s =
-        sample_linear(fraction(cell.y * (p.height + 1)), k[0] + k[1], k[2] + k[3]);
-    const float x = sample_linear(fraction(cell.x * p.width), k[0] + (k[2] - k[0]) * s,
-                                  k[1] + (k[3] - k[1]) * s);
-
-    const float cos_theta = p.cos_edge[r] + (p.cos_edge[r + 1] - p.cos_edge[r]) * s;
-    const float sin_theta = std::sqrt(std::max(0.f, 1 - cos_theta * cos_theta));
-    const float phi = 2 * kPi * ((c + 0.5f + x) / p.width - 0.5f);  // 0 along -z
-    const Vec3f d{sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi)};
+    const Vec3f d = p.sample_in(c, r, {fraction(cell.x * p.width), fraction(cell.y * (p.height + 1))});
     const Vec3f world = normalize(p.world_from_environment.vector(d));
     // Asked of the direction as rounded, so that sample and pdf agree also in the
     // steepest cell.
@@ -236,12 +220,7 @@ float Environment::pdf_within(Vec3f direction) const {
     const Picture& p = *picture_;
     if (p.cells.empty()) return 0;
     const Vec3f d = p.environment_from_world.vector(direction);
-    const auto [c, x] = cell_column(column_of(d, p.width), p.width);
-    const int r = std::clamp(
-        static_cast<int>(std::floor(theta_of(d) / kPi * p.height + 0.5f)), 0, p.height);
-    const float s = (p.cos_edge[r] - d.y) / (p.cos_edge[r] - p.cos_edge[r + 1]);
-    return bilinear(p.corners(c, r), x, std::clamp(s, 0.f, 1.f)) /
-           static_cast<float>(p.total);
+    return p.place(d).luminance / static_cast<float>(p.total);
 }
 
 }  // namespace dg

@@ -59,6 +59,7 @@ class Environment {
     float mean_luminance() const { return mean_luminance_; }  // over the sphere; the largest ever
 
   private:
+    friend class HotSky;
     struct Picture;
     Rgb luminance_within(Vec3f direction) const;
     Sample sample_within(Vec2f u) const;

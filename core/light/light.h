@@ -136,6 +136,10 @@ class LightSet {
     /// Index in lights() of the sphere light that rays meet as this sphere; of a triangle light, or -1.
     std::int64_t sphere_index(std::uint32_t sphere) const { return spheres_[sphere]; }
     std::int64_t triangle_index(std::uint32_t instance, std::uint32_t primitive) const;
+    /// Whether it is elsewhere, or another, at other times.
+    bool moves(std::size_t light) const {
+        return keys_of(light) || motion_.triangles.contains(std::uint32_t(light));
+    }
     bool has_environment() const { return environment_.has_value(); }
     /// What stands for the environment among the indices of lights.
     static constexpr std::int32_t kEnvironment = -1;

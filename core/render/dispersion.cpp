@@ -47,7 +47,8 @@ Footprint::Footprint(const FilmDensity& density, Vec2f px, float time) : density
     if (const Shutter* shutter = density.rolling())
         expose(shutter->scans_columns() ? x_ : y_, *shutter, time);
     if (density.even()) {
-        total_ = x_.sum() * y_.sum();
+        x_sum_ = x_.sum();
+        total_ = x_sum_ * y_.sum();
     } else {
         for (int y = 0; y < y_.count; ++y)
             for (int x = 0; x < x_.count; ++x)
@@ -62,6 +63,34 @@ float Footprint::share(Pixel p) const {
 }
 
 float Footprint::sign(Pixel p) const { return x_.of(p.x) * y_.of(p.y) < 0 ? -1.f : 1.f; }
+
+Pixel Footprint::choose(Vec2f u) const {
+    const auto row = [&](int y) {   // of the row: sum of n |f|
+        if (density_.even()) return std::abs(y_.f[y]) * x_sum_;
+        float sum = 0;
+        for (int x = 0; x < x_.count; ++x)
+            sum += density_.count({x_.first + x, y_.first + y}) * std::abs(x_.f[x]);
+        return std::abs(y_.f[y]) * sum;
+    };
+    const auto pick = [](int count, float left, const auto& weight) {
+        int last = 0;
+        for (int i = 0; i < count && left >= 0; ++i) {
+            const float w = weight(i);
+            if (w > 0) last = i, left -= w;
+        }
+        return last;
+    };
+    const int y = pick(y_.count, u.y * total_, row);
+    const auto column = [&](int x) {
+        return density_.count({x_.first + x, y_.first + y}) * std::abs(x_.f[x]);
+    };
+    float sum = x_sum_;
+    if (!density_.even()) {
+        sum = 0;
+        for (int x = 0; x < x_.count; ++x) sum += column(x);
+    }
+    return {x_.first + pick(x_.count, u.x * sum, column), y_.first + y};
+}
 
 Pixel Footprint::choose_excess(const Footprint& other, Pixel own, float u) const {
     float excess[kReach * kReach];
@@ -99,9 +128,7 @@ Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero
     }
     Landings landings(hero.pixel);
     if (!(home.total() > 0)) return landings;   // the very moment at which its line opens
-    // The integral of |f| s over film points and times, by which densities are divided.
-    const float integral = float(density.filter().absolute_integral()) * density.shutter_weight();
-    const float scale = kWavelengths * integral / sum;
+    const float scale = kWavelengths * density.integral() / sum;
     landings.add(hero.pixel, 0, home.sign(hero.pixel) * home.total() * scale *
                                     (hero.weight / hero.aim_weight));
     const float drawn = home.share(hero.pixel);

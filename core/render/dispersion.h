@@ -66,6 +66,8 @@ class FilmDensity {
     const Shutter* rolling() const { return shutter_ && shutter_->rolls() ? shutter_ : nullptr; }
     /// Mean over its window of what the shutter lets pass.
     float shutter_weight() const { return shutter_ ? shutter_->weight() : 1; }
+    /// Of |f| s over film points and times, by which densities are divided.
+    float integral() const { return float(filter_.absolute_integral()) * shutter_weight(); }
     /// n of a pixel of the region; 1 where all are alike.
     float count(Pixel p) const {
         if (even()) return 1;
@@ -90,6 +92,8 @@ class Footprint {
     /// n |f| s / total of a pixel; 0 where total is.
     float share(Pixel p) const;
     float sign(Pixel p) const;
+    /// One by its share, with u in [0,1)^2; total() > 0.
+    Pixel choose(Vec2f u) const;
     /// A pixel from what this footprint's shares have above those of `other`, with u in [0,1); `other`'s own
     /// pixel if they do not differ.
     Pixel choose_excess(const Footprint& other, Pixel own, float u) const;
@@ -110,6 +114,7 @@ class Footprint {
     const FilmDensity& density_;
     Axis x_, y_;
     float total_ = 0, per_total_ = 0;
+    float x_sum_ = 0;   // where counts are even
 };
 
 /// The hero's own record: where its film point is, and its density and transmittance.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "render/light_weight.h"
+
 namespace dg {
 namespace {
 
@@ -25,6 +27,7 @@ struct Walk {
     float straight = 0;          // m from there to the ray's origin, through clear sheets
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
+    const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
 };
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
@@ -42,8 +45,9 @@ Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavele
         walk.from_delta
             ? 0
             : lights.pdf_environment(walk.ray.direction, walk.previous, walk.ray.time);
+    const float left = walk.first ? walk.first->share_of_sky(walk.ray.direction).value_or(1.f) : 1.f;
     return lights.environment_radiance(walk.ray.direction, walk.ray.time, wl) *
-           emission_weight(walk, pdf, strategy);
+           (left * emission_weight(walk, pdf, strategy));
 }
 
 Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& material,
@@ -51,8 +55,9 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
                           PathSettings::Strategy strategy) {
     if (!emits(material)) return 0.f;
     SurfaceHit seen = hit;
+    const auto left = walk.first ? walk.first->share_of_triangle(hit) : std::nullopt;
     // Where light sampling could have come from, both must find the same light: that of a point.
-    if (!walk.from_delta) seen.footprint[0] = seen.footprint[1] = {};
+    if (!walk.from_delta || left) seen.footprint[0] = seen.footprint[1] = {};
     const Rgb luminance = emitted(material, scene.textures(), seen);
     if (max_component(luminance) <= 0) return 0.f;
     const float pdf = walk.from_delta
@@ -60,7 +65,7 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
                           : scene.lights().pdf_triangle(
                                 hit.instance, hit.primitive, walk.straight + hit.t,
                                 std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
-    return wl.emission(luminance) * emission_weight(walk, pdf, strategy);
+    return wl.emission(luminance) * (left.value_or(1.f) * emission_weight(walk, pdf, strategy));
 }
 
 /// The cone that leaves a hit. Curvature is asked for only where it matters.
@@ -148,6 +153,7 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
             return;
         }
     }
+    walk.first = nullptr;
     walk.bsdf_pdf = sample.pdf;
     walk.from_delta = sample.specular;
     walk.previous = hit.position;
@@ -178,12 +184,14 @@ bool survives_roulette(Walk& walk, float u) {
 }  // namespace
 
 Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count) {
+                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count,
+                  const FirstRay* first) {
     Radiance light;
     Spectrum* gathered = &light.shared;
     Walk walk;
     walk.ray = ray;
     walk.previous = ray.origin;
+    walk.first = first;
     std::uint64_t rays = 0;
     for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
         if (!is_traceable(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
@@ -202,9 +210,11 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
             const float pdf = walk.from_delta ? 0
                                               : scene.lights().pdf_sphere(
                                                     sphere, walk.previous, hit.time);
+            const float left =
+                walk.first ? walk.first->share_of_sphere(sphere, hit).value_or(1.f) : 1.f;
             *gathered += walk.throughput *
                          scene.lights().sphere_radiance(sphere, hit.time, wavelengths) *
-                         emission_weight(walk, pdf, settings.strategy);
+                         (left * emission_weight(walk, pdf, settings.strategy));
             break;
         }
         const MaterialAt material = scene.material(hit);

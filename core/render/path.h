@@ -21,9 +21,13 @@ struct Radiance {
     Spectrum sum() const { return shared + hero; }
 };
 
+class FirstRay;   // light_weight.h
+
 /// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
-/// sampling. `aov`, if given, receives the first hit.
+/// sampling. `aov`, if given, receives the first hit; `first`, if given, says which share of what emitters
+/// send straight along the ray is left to this path.
 Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count);
+                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count,
+                  const FirstRay* first = nullptr);
 
 }  // namespace dg

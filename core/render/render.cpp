@@ -14,11 +14,13 @@
 
 #include "camera/pixel_cone.h"
 #include "render/dispersion.h"
+#include "render/light_pass.h"
 
 namespace dg {
 namespace {
 
 constexpr int kTileSize = 16;      // px: neighbours share geometry in the caches
+constexpr int kLightBlock = 4096;  // light paths of one task
 constexpr int kBatchSize = 1024;   // camera samples per call of the lens: fills the SIMD lanes
 
 /// One camera sample on its way from random numbers to the film.
@@ -36,10 +38,32 @@ struct Workspace {
     std::vector<Sample> samples;
     std::vector<CameraSample> camera_samples;
     std::vector<CameraRay> rays;
-    std::vector<CameraRay> secondary_rays;        // of the samples that passed, three each
-    std::vector<float> secondary_nm;
+    std::vector<CameraRay> traced_rays;           // of the samples that passed, each some times
+    std::vector<float> traced_nm;
     std::vector<Reprojection> reprojections;
     RenderCounters counters;
+    LightPass::Workspace light;
+};
+
+RenderCounters operator+(const RenderCounters& a, const RenderCounters& b) {
+    return {a.camera_rays + b.camera_rays, a.stopped_rays + b.stopped_rays, a.rays + b.rays,
+            a.light_paths + b.light_paths, a.splats_off_film + b.splats_off_film};
+}
+
+/// Sums of a round over the pixels of the region.
+struct RoundSums {
+    UInt128 begin = 0, count = 0;
+    std::size_t pixels = 0;
+    explicit RoundSums(const SampleRound& round) : pixels(round.count.size()) {
+        for (const std::uint32_t n : round.begin) begin += n;
+        for (const std::uint32_t n : round.count) count += n;
+    }
+    double mean_count() const { return double(count) / double(pixels); }
+    /// Mean sample index up to which a part is drawn: the same number, to the bit, at the end of one round
+    /// and the begin of the next.
+    double until(std::uint32_t part) const {
+        return double(begin * SampleRound::kParts + count * part) / (double(pixels) * SampleRound::kParts);
+    }
 };
 
 class Renderer {
@@ -52,8 +76,29 @@ class Renderer {
           end_secondary_(settings.dispersion == Dispersion::end_secondary &&
                          std::holds_alternative<ExactLens>(camera.lens)),
           density_(settings.filter, film.layout(), uneven(settings.round.count),
-                   &settings.shutter) {
+                   &settings.shutter),
+          weight_(scene, camera, settings.sensor, density_, plan(), settings.technique) {
+        if (weight_.draws_light())
+            light_.emplace(scene, camera, film, settings, density_, weight_);
+        // Where light paths share in what is found, the hero's own landing is needed too.
+        first_traced_ = weight_.off() ? 1 : 0;
+        end_traced_ = exact_ ? kWavelengths : weight_.off() ? 0 : 1;
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
+    }
+
+    /// Indices of the light paths that belong to these samples.
+    std::array<std::uint64_t, 2> light_paths() const {
+        if (!light_) return {0, 0};
+        const SampleRound& round = settings_.round;
+        double begin = settings_.sample_begin, end = settings_.sample_end;
+        if (!round.count.empty()) {
+            const RoundSums sums(round);
+            begin = sums.until(round.first), end = sums.until(round.last);
+        }
+        return light_path_range(begin, end, settings_.light.m1, settings_.seed);
+    }
+    void draw_light(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+        light_->draw(work.light, first, last);
     }
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
@@ -73,6 +118,13 @@ class Renderer {
     static std::span<const std::uint32_t> uneven(std::span<const std::uint32_t> counts) {
         const bool even = std::ranges::adjacent_find(counts, std::not_equal_to<>{}) == counts.end();
         return even ? std::span<const std::uint32_t>{} : counts;
+    }
+
+    /// Light paths per unit of the density's counts, which are those of a whole round.
+    LightPlan plan() const {
+        if (density_.even()) return settings_.light;
+        const double samples = RoundSums(settings_.round).mean_count();
+        return {settings_.light.m1 * samples, settings_.light.m2 * samples};
     }
 
     /// Samples [begin, end) that this call draws of a pixel.
@@ -108,7 +160,7 @@ class Renderer {
         const std::size_t n = work.samples.size();
         work.rays.assign(n, CameraRay{});
         generate_rays(camera_, work.camera_samples, work.rays);
-        if (exact_) reproject(work);
+        if (end_traced_ > 0) reproject(work);
         std::size_t passed = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const Sample& sample = work.samples[i];
@@ -121,23 +173,23 @@ class Renderer {
         work.camera_samples.clear();
     }
 
-    /// Film points of the secondary wavelengths, for the rays that passed.
+    /// Film points of wavelengths [first_traced_, end_traced_), for the rays that passed.
     void reproject(Workspace& work) const {
-        work.secondary_rays.clear();
-        work.secondary_nm.clear();
+        work.traced_rays.clear();
+        work.traced_nm.clear();
         for (std::size_t i = 0; i < work.rays.size(); ++i) {
             if (work.rays[i].weight <= 0) continue;
-            for (int k = 1; k < kWavelengths; ++k) {
-                work.secondary_rays.push_back(work.rays[i]);
-                work.secondary_nm.push_back(work.samples[i].wavelengths.nm[k]);
+            for (int k = first_traced_; k < end_traced_; ++k) {
+                work.traced_rays.push_back(work.rays[i]);
+                work.traced_nm.push_back(work.samples[i].wavelengths.nm[k]);
             }
         }
-        work.reprojections.assign(work.secondary_rays.size(), Reprojection{});
-        dg::reproject(camera_, work.secondary_rays, work.secondary_nm, work.reprojections);
+        work.reprojections.assign(work.traced_rays.size(), Reprojection{});
+        dg::reproject(camera_, work.traced_rays, work.traced_nm, work.reprojections);
         if (!camera_.setting.moves()) return;
         for (std::size_t i = 0; i < work.reprojections.size(); ++i) {   // the film lay elsewhere then
             Vec2f& film = work.reprojections[i].film_mm;
-            film = film - setting_at(work.secondary_rays[i].ray.time).film_shift_mm;
+            film = film - setting_at(work.traced_rays[i].ray.time).film_shift_mm;
         }
     }
 
@@ -147,14 +199,21 @@ class Renderer {
         Ray ray = to_world(camera_, camera_ray.ray);
         ray.cone = cone_.at(work.camera_samples[i].film_mm, camera_ray.ray);
         if (end_secondary_) sample.wavelengths.end_secondary();
+        const std::size_t traced = std::size_t(std::max(0, end_traced_ - first_traced_));
+        const std::span landings(work.reprojections.data() + passed * traced, traced);
+        std::optional<FirstRay> first;
+        if (!weight_.off()) {
+            const RayOnFilm film_ray(density_, settings_.sensor, landings, camera_ray.ray.time);
+            first.emplace(weight_, camera_ray.ray, film_ray.camera_density());
+        }
         AovSample aov;
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
         const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
-                                        settings_.path, wanted, &work.counters.rays);
+                                        settings_.path, wanted, &work.counters.rays,
+                                        first ? &*first : nullptr);
         if (wanted) add_aov(sample, ray.time, aov);
         if (exact_) {
-            const auto first = work.reprojections.begin() + passed * (kWavelengths - 1);
-            splat(sample, camera_ray, {first, first + (kWavelengths - 1)}, light);
+            splat(sample, camera_ray, landings.subspan(1 - first_traced_), light);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index,
                       sample.wavelengths.to_xyz(light.sum() *
@@ -197,6 +256,9 @@ class Renderer {
     const ExactLens* exact_;   // the lens whose wavelengths are reprojected, else null
     bool end_secondary_;
     FilmDensity density_;
+    LightWeight weight_;
+    std::optional<LightPass> light_;
+    int first_traced_, end_traced_;
     PixelCone cone_;           // none where the scene has no textures
 };
 
@@ -211,14 +273,24 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     const int rows = (region.height + kTileSize - 1) / kTileSize;
     const Renderer renderer(scene, camera, film, settings);
     oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
-    std::atomic<int> done{0};
+    const auto [first_light, last_light] = renderer.light_paths();
+    const std::int64_t tiles = std::int64_t(columns) * rows;
+    const std::int64_t tasks =
+        tiles + std::int64_t((last_light - first_light + kLightBlock - 1) / kLightBlock);
+    std::atomic<std::int64_t> done{0};
     std::atomic<bool> stop{false};
-    const auto draw = [&](int tile) {
+    const auto draw = [&](std::int64_t task) {
         if (stop) return;
-        const int x = x0 + (tile % columns) * kTileSize, y = y0 + (tile / columns) * kTileSize;
-        renderer.draw_tile(workspaces.local(), x, y, std::min(x + kTileSize, x0 + region.width),
-                           std::min(y + kTileSize, y0 + region.height));
-        if (progress && !progress(double(++done) / (columns * rows))) stop = true;
+        Workspace& work = workspaces.local();
+        if (task < tiles) {
+            const int x = x0 + int(task % columns) * kTileSize, y = y0 + int(task / columns) * kTileSize;
+            renderer.draw_tile(work, x, y, std::min(x + kTileSize, x0 + region.width),
+                               std::min(y + kTileSize, y0 + region.height));
+        } else {
+            const std::uint64_t light = first_light + std::uint64_t(task - tiles) * kLightBlock;
+            renderer.draw_light(work, light, std::min(light + kLightBlock, last_light));
+        }
+        if (progress && !progress(double(++done) / double(tasks))) stop = true;
     };
     // TBB keeps to the number of cores unless more is allowed.
     std::optional<oneapi::tbb::global_control> allowed;
@@ -227,14 +299,10 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     oneapi::tbb::task_arena arena(settings.threads > 0 ? settings.threads
                                                        : oneapi::tbb::task_arena::automatic);
     arena.execute([&] {
-        oneapi::tbb::parallel_for(0, columns * rows, draw);
+        oneapi::tbb::parallel_for(std::int64_t(0), tasks, draw);
     });
     RenderCounters counters;
-    for (Workspace& work : workspaces) {
-        counters.camera_rays += work.counters.camera_rays;
-        counters.stopped_rays += work.counters.stopped_rays;
-        counters.rays += work.counters.rays;
-    }
+    for (Workspace& work : workspaces) counters = counters + work.counters + work.light.counters;
     return counters;
 }
 

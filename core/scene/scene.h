@@ -9,6 +9,7 @@
 
 #include "geometry/hit.h"
 #include "geometry/intersector.h"
+#include "light/emission.h"
 #include "light/light.h"
 #include "material/material.h"
 #include "motion/motion.h"
@@ -82,6 +83,9 @@ class Scene {
     Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
                         const Wavelengths& wavelengths) const;
 
+    /// What is left of light that runs along `ray` from t_min to t_max, all of it through air and sheets.
+    Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
+
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
 
     /// As it is at the hit's time.
@@ -97,6 +101,10 @@ class Scene {
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
                                             float time,
                                             const Wavelengths& wavelengths) const;
+
+    /// Emission (cd/m2) of a point of an emitter `toward` (unit) where it is seen from, as a ray that hits it
+    /// would find it on average.
+    Rgb emission(const EmissionPoint& point, Vec3f toward, float time) const;
 
     struct Bounds {
         Vec3f min, max;
@@ -117,6 +125,9 @@ class Scene {
     bool passes(const Ray& ray, const RawHit& hit) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     void find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const;
+    Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time) const;
+    Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
+                          const Wavelengths& wavelengths) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
     void hold(Vec3d point);

@@ -47,15 +47,30 @@ std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f po
                                                const Wavelengths& wavelengths) const {
     auto sample = lights_.sample(u_select, u, position, time, wavelengths);
     if (!sample || !sample->uneven) return sample;
-    const TriangleLight light = *lights_.triangle_at(sample->light, time);
-    const InstanceRecord& record = records_[light.instance];
-    const Vec3f winding = cross(light.b - light.a, light.c - light.a);
-    const bool front = (dot(winding, sample->wi) < 0) != light.mirrored;
-    const MaterialAt material = material_at(record.material, time);
-    const Rgb rgb = emission_at(record, material, description_.textures, light.primitive,
-                                sample->barycentric, front, time, -sample->wi);
+    const Rgb rgb = triangle_emission(sample->light, sample->barycentric, -sample->wi, time);
     sample->radiance = wavelengths.emission(rgb);
     return sample;
+}
+
+Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward, float time) const {
+    const TriangleLight light = *lights_.triangle_at(index, time);
+    const InstanceRecord& record = records_[light.instance];
+    const Vec3f winding = cross(light.b - light.a, light.c - light.a);
+    const bool front = (dot(winding, toward) > 0) != light.mirrored;
+    const MaterialAt material = material_at(record.material, time);
+    return emission_at(record, material, description_.textures, light.primitive, barycentric, front, time,
+                       toward);
+}
+
+Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time) const {
+    if (point.light == EmissionPoint::kSky)
+        return lights_.environment()->luminance(point.position, time);
+    const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
+    if (!triangle) return lights_.sphere_light_at(point.light, time).luminance;
+    if (!triangle->even || lights_.moves(point.light))
+        return triangle_emission(point.light, point.barycentric, toward, time);
+    if (!triangle->two_sided && dot(point.normal, toward) <= 0) return {0, 0, 0};
+    return triangle->mean_luminance;
 }
 
 }  // namespace dg

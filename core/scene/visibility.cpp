@@ -23,6 +23,16 @@ Spectrum Scene::visibility(Ray ray, float distance, bool delta, const Interior& 
                            const Wavelengths& wavelengths) const {
     stop_before(ray, distance);
     if (ray.t_max <= 0) return 1.f;
+    return transmission(ray, distance, delta, medium, wavelengths);
+}
+
+Spectrum Scene::visibility_along(const Ray& ray, const Wavelengths& wavelengths) const {
+    if (!(ray.t_max > ray.t_min)) return 1.f;
+    return transmission(ray, ray.t_max, false, {}, wavelengths);
+}
+
+Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
+                             const Wavelengths& wavelengths) const {
     if (!has_clear_ && !medium.present) return intersector_->occluded(ray) ? 0.f : 1.f;
     Crossings crossings(delta);
     if (intersector_->occluded(ray, &crossings)) return 0.f;

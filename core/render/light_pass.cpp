@@ -1,0 +1,132 @@
+#include "render/light_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/hash.h"
+
+namespace dg {
+namespace {
+
+constexpr int kBatchSize = 256;   // light paths per call of the lens: their wavelengths fill the SIMD lanes
+constexpr int kSequence = -1;     // where pixels have their row, in the sampler's scramble
+
+/// A ray from the emitter's point, past its own surface, to where rays of the lens start.
+Ray shadow_ray(const EmissionPoint& point, const Ray& from_lens) {
+    if (point.light == EmissionPoint::kSky) return from_lens;
+    const Vec3f a = point.position, b = from_lens.origin;
+    const float largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x),
+                                    std::abs(b.y), std::abs(b.z)});
+    const float cosine = std::abs(dot(point.normal, from_lens.direction));
+    return {.origin = a,
+            .direction = -from_lens.direction,
+            .time = from_lens.time,
+            .t_min = 0x1p-19f * largest / cosine,
+            .t_max = length(b - a)};
+}
+
+}  // namespace
+
+std::array<std::uint64_t, 2> light_path_range(double begin, double end, double per_sample,
+                                              std::uint64_t seed) {
+    const double offset = hash_uniform(seed, 0x11947);   // so that parts of a path are right on average
+    const auto until = [&](double sample) {
+        return std::uint64_t(std::floor(sample * per_sample + offset));
+    };
+    return {until(begin), until(end)};
+}
+
+LightPass::LightPass(const Scene& scene, const Camera& camera, Film& film,
+                     const RenderSettings& settings, const FilmDensity& density,
+                     const LightWeight& weight)
+    : scene_(scene),
+      camera_(camera),
+      film_(film),
+      settings_(settings),
+      density_(density),
+      weight_(weight) {
+    const bool exact = std::holds_alternative<ExactLens>(camera.lens);
+    end_secondary_ = exact && settings.dispersion == Dispersion::end_secondary;
+    landings_ = exact && !end_secondary_ ? kWavelengths : 1;
+}
+
+void LightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+    for (std::uint64_t i = first; i < last; ++i) {
+        if (auto path = begin(i)) work.paths.push_back(*path);
+        if (work.paths.size() == kBatchSize) trace(work);
+    }
+    trace(work);
+    work.counters.light_paths += last - first;
+}
+
+/// Nothing for a path that cannot bring light. Order of drawing: time and wavelengths, the emitter, the point
+/// of the lens; then the point on the emitter. Lens and emitter are stratified together.
+std::optional<LightPass::Path> LightPass::begin(std::uint64_t index) const {
+    PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index),
+                        settings_.seed);
+    const CameraRandom u = sampler.camera();
+    const Moment moment = settings_.shutter.draw_any(u.time);
+    const auto point = weight_.emission().sample(u.film.x, sampler.next_2d(), moment.time,
+                                                 weight_.viewpoint(moment.time));
+    if (!point) return std::nullopt;
+    const bool sky = point->light == EmissionPoint::kSky;
+    const Affine3d to_camera = inverse(weight_.pose(moment.time));
+    const Vec3d at = to_double(point->position);
+    const Vec3d p = sky ? to_camera.vector(at) : to_camera.point(at);
+    const auto lens = weight_.pupil().sample(p, sky ? 0 : 1, u.lens, moment.time);
+    if (!lens || !(lens->pdf > 0)) return std::nullopt;
+    Path path;
+    path.lens.ray = Ray{.origin = lens->origin, .direction = lens->direction, .time = moment.time};
+    path.lens.iris_opening = moment.iris_opening * setting_at(moment.time).iris_opening;
+    const Ray world = to_world(camera_, path.lens.ray);
+    path.point = *point;
+    path.toward = -world.direction;
+    const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
+    path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
+    if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
+    path.luminance = scene_.emission(*point, path.toward, moment.time);
+    if (!(max_component(path.luminance) > 0)) return std::nullopt;
+    path.shadow = shadow_ray(*point, world);
+    path.wavelengths = Wavelengths::sample(u.lambda);
+    if (end_secondary_) path.wavelengths.end_secondary();
+    path.u_pixel = sampler.next_2d();
+    path.sample = std::uint32_t(double(index) / settings_.light.m1);
+    return path;
+}
+
+/// To the film, each wavelength that has a way of its own.
+void LightPass::trace(Workspace& work) const {
+    work.rays.clear(), work.nm.clear();
+    for (const Path& path : work.paths)
+        for (int k = 0; k < landings_; ++k) {
+            work.rays.push_back(path.lens);
+            work.nm.push_back(path.wavelengths.nm[k]);
+        }
+    work.landings.assign(work.rays.size(), Reprojection{});
+    if (!work.rays.empty()) reproject(camera_, work.rays, work.nm, work.landings);
+    for (std::size_t i = 0; i < work.paths.size(); ++i) {
+        const std::span own(work.landings.data() + i * landings_, std::size_t(landings_));
+        if (!camera_.setting.values.empty()) {
+            const Vec2f shift = setting_at(work.paths[i].lens.ray.time).film_shift_mm;
+            for (Reprojection& l : own) l.film_mm = l.film_mm - shift;
+        }
+        finish(work, work.paths[i], own);
+    }
+    work.paths.clear();
+}
+
+void LightPass::finish(Workspace& work, const Path& path,
+                       std::span<const Reprojection> landings) const {
+    const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
+    work.counters.splats_off_film += film_ray.off_frame();
+    if (!film_ray.in_reach()) return;
+    ++work.counters.rays;
+    if (!is_traceable(path.shadow)) return;
+    const Spectrum visible = scene_.visibility_along(path.shadow, path.wavelengths);
+    if (visible.is_black()) return;
+    const double divisor = weight_.divisor(path.density, film_ray.camera_density());
+    film_ray.splat(film_, path.wavelengths.emission(path.luminance) * visible * float(1 / divisor),
+                   path.wavelengths, path.u_pixel, path.sample);
+}
+
+}  // namespace dg

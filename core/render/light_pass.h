@@ -1,0 +1,76 @@
+// light_pass.h -- light that goes from an emitter straight to the lens, followed from the emitter: a point
+// on it, a ray toward the lens as it is seen from there, traced to a film point for each wavelength. What
+// the lens lets through and nothing is in the way of lands in a pixel.
+//
+// Sources: Veach 1997 (light tracing as one technique of many); Hanika and Dachsbacher 2014, Efficient Monte
+// Carlo Rendering with Realistic Lenses, EGSR; Schrade, Hanika, Dachsbacher 2016, Sparse high-degree
+// polynomials for wide-angle lenses, EGSR.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/light_weight.h"
+#include "render/ray_on_film.h"
+#include "render/render.h"
+
+namespace dg {
+
+/// Indices [0], ..., [1] - 1 of the light paths that belong to sample indices [begin, end), `per_sample` of
+/// them to each: any split of the samples gives the same paths, and their mean number is right.
+std::array<std::uint64_t, 2> light_path_range(double begin, double end, double per_sample,
+                                              std::uint64_t seed);
+
+class LightPass {
+  public:
+    /// All outlives this.
+    LightPass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
+              const FilmDensity& density, const LightWeight& weight);
+
+    /// Buffers of one thread.
+    struct Workspace;
+
+    /// Draws light paths [first, last).
+    void draw(Workspace& work, std::uint64_t first, std::uint64_t last) const;
+
+  private:
+    struct Path;
+    std::optional<Path> begin(std::uint64_t index) const;
+    void trace(Workspace& work) const;
+    void finish(Workspace& work, const Path& path, std::span<const Reprojection> landings) const;
+    LensSetting setting_at(float time) const {
+        return camera_.setting.values.empty() ? LensSetting{} : camera_.setting.at(time);
+    }
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Film& film_;
+    const RenderSettings& settings_;
+    const FilmDensity& density_;
+    const LightWeight& weight_;
+    int landings_;         // per path: one for each wavelength that has a way of its own
+    bool end_secondary_;
+};
+
+/// One light path on its way to the film.
+struct LightPass::Path {
+    CameraRay lens;            // camera frame
+    EmissionPoint point;
+    Vec3f toward;              // unit, world: from the point to the lens
+    Ray shadow;                // world
+    Rgb luminance;             // toward the lens
+    double density;            // LightWeight::of_light
+    Wavelengths wavelengths;
+    Vec2f u_pixel;
+    std::uint32_t sample;      // index of the samples that it belongs to
+};
+
+struct LightPass::Workspace {
+    std::vector<Path> paths;
+    std::vector<CameraRay> rays;
+    std::vector<float> nm;
+    std::vector<Reprojection> landings;
+    RenderCounters counters;
+};
+
+}  // namespace dg

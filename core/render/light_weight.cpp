@@ -1,0 +1,54 @@
+#include "render/light_weight.h"
+
+#include "render/frame_view.h"
+
+namespace dg {
+
+LightWeight::LightWeight(const Scene& scene, const Camera& camera, const Sensor& sensor,
+                         const FilmDensity& density, LightPlan plan, Technique technique)
+    : scene_(scene),
+      camera_(camera),
+      plan_(plan),
+      technique_(technique) {
+    if (plan.off()) return;
+    const float margin = density.filter().radius() + 1;
+    const bool sky_turns = scene.description().environment_keys.has_value();
+    const std::vector<ViewCone> views = frame_views(camera, sensor, margin, sky_turns);
+    lens_radius_ = views.front().from.radius;
+    if (plan.m1 > 0) emission_ = EmissionSampler(scene.lights(), views);
+    pupil_.emplace(camera);
+    scale_ = density.filter().absolute_integral();
+    if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
+}
+
+Viewpoint LightWeight::viewpoint(float time) const {
+    return {to_float(camera_.world_from_camera.at(time).origin), lens_radius_};
+}
+
+std::optional<float> FirstRay::share(Vec3d at, double w, float emission_pdf, float cosine) const {
+    if (!(emission_pdf > 0)) return std::nullopt;
+    const Affine3d to_camera = inverse(weight_.pose(ray_.time));
+    const Vec3d p = w > 0 ? to_camera.point(at) : to_camera.vector(at);
+    const double light = weight_.of_light(emission_pdf, weight_.pupil().pdf(p, w, ray_), cosine);
+    if (!(light > 0)) return std::nullopt;
+    return weight_.camera_share(light, density_);
+}
+
+std::optional<float> FirstRay::share_of_triangle(const SurfaceHit& hit) const {
+    const float pdf = weight_.emission().pdf_triangle(hit.instance, hit.primitive, hit.time);
+    return share(to_double(hit.position), 1, pdf, std::abs(dot(hit.ng, hit.wo)));
+}
+
+std::optional<float> FirstRay::share_of_sphere(std::uint32_t sphere, const SurfaceHit& hit) const {
+    const float pdf = weight_.emission().pdf_sphere(sphere, hit.position, hit.time,
+                                                    weight_.viewpoint(hit.time));
+    const Vec3f center = weight_.scene().lights().sphere_at(sphere, hit.time).shape.center;
+    return share(to_double(hit.position), 1, pdf,
+                 std::abs(dot(normalize(hit.position - center), hit.wo)));
+}
+
+std::optional<float> FirstRay::share_of_sky(Vec3f direction) const {
+    return share(to_double(direction), 0, weight_.emission().pdf_sky(direction, ray_.time), 1);
+}
+
+}  // namespace dg

@@ -1,0 +1,85 @@
+// light_weight.h -- how the camera's paths and light paths share what both find.
+//
+// The balance heuristic (Veach 1997, Robust Monte Carlo Methods, section 9.2) gives each technique the share
+// of its own density. Both densities are those of one ray, per m2 sr of the phase space in which it is a
+// point: film and emitter see the same measure, as both lie in air. For light that goes straight to the lens
+//   camera:  mean over the path's wavelengths of  N / e,  N the density of film points (Footprint::total)
+//            and e the etendue (Reprojection) per unit square of lens samples;
+//   light:   M p(point) p(lens point | point) / cos, M paths per sample index.
+// Both are up to common factors: the density of times, where all lines are open at once, and the integral by
+// which N is divided.
+#pragma once
+#include <span>
+
+#include "camera/camera.h"
+#include "camera/pupil_view.h"
+#include "camera/sensor.h"
+#include "geometry/hit.h"
+#include "light/emission.h"
+#include "render/dispersion.h"
+#include "render/light_plan.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+class LightWeight {
+  public:
+    /// `plan`: paths per unit of the density's counts. All else outlives this.
+    LightWeight(const Scene& scene, const Camera& camera, const Sensor& sensor,
+                const FilmDensity& density, LightPlan plan, Technique technique);
+
+    bool off() const { return plan_.off(); }
+    const EmissionSampler& emission() const { return emission_; }
+    const PupilViewOverTime& pupil() const { return *pupil_; }
+    Viewpoint viewpoint(float time) const;
+    Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
+    const Scene& scene() const { return scene_; }
+
+    /// Density of light paths straight to the lens: `pdf` of the emitter's point and of the lens's, for a ray
+    /// that leaves it under this cosine (1 from infinity).
+    double of_light(float emission_pdf, float lens_pdf, float cosine) const {
+        return plan_.m1 * scale_ * double(emission_pdf) * lens_pdf / cosine;
+    }
+
+    /// What a light path's find is divided by, and the share of a camera path's find that counts.
+    double divisor(double light, double camera) const {
+        return technique_ == Technique::both ? light + camera : light;
+    }
+    float camera_share(double light, double camera) const {
+        if (technique_ == Technique::both) return float(camera / (light + camera));
+        return technique_ == Technique::camera ? 1.f : 0.f;
+    }
+    bool draws_light() const { return !off() && technique_ != Technique::camera; }
+
+  private:
+    const Scene& scene_;
+    const Camera& camera_;
+    LightPlan plan_;
+    Technique technique_;
+    double scale_ = 1;
+    EmissionSampler emission_;
+    std::optional<PupilViewOverTime> pupil_;
+    float lens_radius_ = 0;
+};
+
+/// The first ray of a camera path, while it has met nothing but windows: the share of an emitter's light that
+/// is left to it. Nothing where no light path could have found it. Where one could, both must find the same
+/// light: that of a point.
+class FirstRay {
+  public:
+    /// `ray`: camera frame; `density`: RayOnFilm::camera_density.
+    FirstRay(const LightWeight& weight, const Ray& ray, double density)
+        : weight_(weight), ray_(ray), density_(density) {}
+
+    std::optional<float> share_of_triangle(const SurfaceHit& hit) const;
+    std::optional<float> share_of_sphere(std::uint32_t sphere, const SurfaceHit& hit) const;
+    std::optional<float> share_of_sky(Vec3f direction) const;
+
+  private:
+    std::optional<float> share(Vec3d at, double w, float emission_pdf, float cosine) const;
+    const LightWeight& weight_;
+    Ray ray_;
+    double density_;
+};
+
+}  // namespace dg

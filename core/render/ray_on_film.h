@@ -1,0 +1,40 @@
+// ray_on_film.h -- where the wavelengths of one scene ray land on the film, seen from either side: how
+// densely camera samples draw the ray, and what a light path along it adds to which pixels.
+#pragma once
+#include <array>
+#include <optional>
+#include <span>
+
+#include "camera/sensor.h"
+#include "film/film.h"
+#include "render/dispersion.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+
+class RayOnFilm {
+  public:
+    /// One landing: all wavelengths land alike. Those that no camera sample could draw count as stopped.
+    RayOnFilm(const FilmDensity& density, const Sensor& sensor,
+              std::span<const Reprojection> landings, float time);
+
+    /// Of camera samples, per m2 sr of rays and sample index; see light_weight.h.
+    double camera_density() const { return density_; }
+    /// Some pixel of the region is in reach.
+    bool in_reach() const { return in_reach_; }
+    /// Something passes the lens, but all of it out of reach of the whole frame.
+    bool off_frame() const { return off_frame_; }
+
+    /// Adds radiance x response to one pixel per wavelength, chosen by the share of its filter there with
+    /// u in [0,1)^2: the same u for all, so that most land in one pixel, as one value.
+    void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
+               std::uint32_t sample) const;
+
+  private:
+    std::span<const Reprojection> landings_;
+    std::array<std::optional<Footprint>, kWavelengths> at_;
+    double density_ = 0, exposure_;
+    bool in_reach_ = false, off_frame_ = false;
+};
+
+}  // namespace dg
