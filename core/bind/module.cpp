@@ -10,6 +10,7 @@ void bind_codec(nb::module_& m);
 void bind_motion(nb::module_& m);
 void bind_glass(nb::module_& m);
 void bind_prescription(nb::module_& m);
+void bind_polynomial(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
@@ -31,6 +32,7 @@ NB_MODULE(_core, m) {
     bind_motion(m);
     bind_glass(m);
     bind_prescription(m);
+    bind_polynomial(m);
     bind_optics(m);
     bind_scene(m);
     bind_camera(m);

@@ -60,4 +60,11 @@ double value_of(const Dual<N>& x) {
     return x.value;
 }
 
+/// How many of Newton's steps give a root all the derivatives that a number carries.
+inline int newton_steps(double) { return 0; }
+template <int N>
+int newton_steps(const Dual<N>&) {
+    return 1;
+}
+
 }  // namespace dg

@@ -53,7 +53,7 @@ std::optional<LensHit<T>> meet_quadric(const SurfaceForm& f, const Vec3<T>& m,
     return hit;
 }
 
-/// The derivative of the crossing is that of one Newton step from it.
+/// The derivatives of the crossing are those of Newton's steps from it.
 template <typename T>
 std::optional<LensHit<T>> meet_sag(const SurfaceForm& f, const Vec3<T>& m,
                                    const Vec3<T>& d, int sign) {
@@ -62,11 +62,14 @@ std::optional<LensHit<T>> meet_sag(const SurfaceForm& f, const Vec3<T>& m,
     const Vec3d along{value_of(d.x), value_of(d.y), value_of(d.z)};
     const auto found = first_crossing(f, start, along, sign);
     if (!found) return std::nullopt;
-    const Vec3<T> near = m + T(*found) * d;
-    const Sag<T> there = sag(f, near.x, near.y);
-    const T speed = d.z - there.slope_x * d.x - there.slope_y * d.y;
-    const T gap = near.z - there.z;
-    const T t = T(*found) - (gap - T(value_of(gap))) / T(value_of(speed));
+    T t = T(*found);
+    for (int step = newton_steps(m.x); step > 0; --step) {
+        const Vec3<T> near = m + t * d;
+        const Sag<T> there = sag(f, near.x, near.y);
+        const T speed = d.z - there.slope_x * d.x - there.slope_y * d.y;
+        const T gap = near.z - there.z;
+        t = t - (gap - T(value_of(gap))) / speed;
+    }
     LensHit<T> hit;
     hit.point = m + t * d;
     const Sag<T> s = sag(f, hit.point.x, hit.point.y);

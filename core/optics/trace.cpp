@@ -47,20 +47,20 @@ void lean(const RippleSlope& ripple, const Vec3d& direction, int sign, LensHit<d
 
 }  // namespace
 
-bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
+bool Tracer::cross(const PathStep& step, const LensIndices& n, const Clip& clip,
                    TracedRay& traced) const {
+    const int i = step.surface, sign = step.sign;
     const SurfaceFrame& place = forms_[i].place;
     const Vec3d start = place.into(traced.ray.origin);
     const Vec3d d = place.turn_in(traced.ray.direction);
     auto hit = meet(forms_[i], start, d, sign);
     if (!hit) return false;
     if (!forms_[i].ripple.slope.empty()) lean(forms_[i].ripple, d, sign, *hit);
-    const int before = sign > 0 ? i : i + 1, after = sign > 0 ? i + 1 : i;
-    const double n1 = n.index[before], n2 = n.index[after];
+    const double n1 = n.index[step.before()], n2 = n.index[step.behind()];
     const double path = dot(hit->point - start, d);
     traced.optical_path += n1 * path;
     if (!n.absorption.empty())
-        traced.transmittance *= std::exp(-n.absorption[before] * path);
+        traced.transmittance *= std::exp(-n.absorption[step.before()] * path);
     traced.ray.origin = place.out_of(hit->point);
     if (i == stop_) {
         traced.iris = {hit->point.x, hit->point.y};
@@ -76,10 +76,12 @@ bool Tracer::cross(int i, int sign, const LensIndices& n, const Clip& clip,
         return false;
     double cos2 = 0;
     const auto bent = refract(d, *hit, sign, n1 / n2, cos2);
-    if (!bent) return false;  // total reflection
-    traced.ray.direction = place.turn_out(*bent);
-    traced.transmittance *=
-        surface_transmittance(coatings_[i], n1, hit->cosine, n2, cos2, n.wavelength_nm);
+    if (!bent && !step.reflects) return false;  // total reflection
+    const double through =
+        bent ? surface_transmittance(coatings_[i], n1, hit->cosine, n2, cos2, n.wavelength_nm)
+             : 0;
+    traced.transmittance *= step.reflects ? 1 - through : through;
+    traced.ray.direction = place.turn_out(step.reflects ? reflect(d, *hit, sign) : *bent);
     return true;
 }
 
@@ -88,8 +90,15 @@ int Tracer::follow(TracedRay& ray, bool toward_film, const LensIndices& n,
     const int count = int(lens_.surfaces.size());
     for (int k = 0; k < count; ++k) {
         const int i = toward_film ? k : count - 1 - k;
-        if (!cross(i, toward_film ? 1 : -1, n, clip, ray)) return i;
+        if (!cross({i, toward_film ? 1 : -1}, n, clip, ray)) return i;
     }
+    return -1;
+}
+
+int Tracer::follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
+                   const Clip& clip) const {
+    for (std::size_t k = 0; k < path.size(); ++k)
+        if (!cross(path[k], n, clip, ray)) return int(k);
     return -1;
 }
 
@@ -112,7 +121,7 @@ std::optional<Vec2d> Tracer::to_iris(LensRay ray, const LensIndices& n,
     const Clip clip{true, nullptr, 0, widened};
     TracedRay traced{ray};
     for (int i = int(lens_.surfaces.size()) - 1; i >= stop_; --i)
-        if (!cross(i, -1, n, clip, traced)) return std::nullopt;
+        if (!cross({i, -1}, n, clip, traced)) return std::nullopt;
     return traced.iris;
 }
 
@@ -121,7 +130,7 @@ std::vector<Vec3d> Tracer::path_to_film(LensRay ray, const LensIndices& n,
     TracedRay traced{ray};
     std::vector<Vec3d> points;
     for (int i = 0; i < int(lens_.surfaces.size()); ++i) {
-        if (!cross(i, 1, n, clip, traced)) return {};
+        if (!cross({i}, n, clip, traced)) return {};
         points.push_back(traced.ray.origin);
     }
     return points;

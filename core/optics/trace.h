@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "optics/form.h"
+#include "optics/path.h"
 #include "optics/prescription.h"
 #include "optics/stop.h"
 
@@ -59,6 +60,10 @@ class Tracer {
     /// that stopped it, or -1; `ray` is left at the last surface that it met.
     int follow(TracedRay& ray, bool toward_film, const LensIndices& n,
                const Clip& clip) const;
+    /// Along any path, ghosts too: the step that stopped the ray, or -1. The iris point is that
+    /// of the last crossing; the iris clips at each.
+    int follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
+               const Clip& clip) const;
     /// From the film side to the stop: the iris point, mm. Clear apertures are widened by
     /// the factor.
     std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n, double widened) const;
@@ -79,7 +84,7 @@ class Tracer {
     int stop() const { return stop_; }
 
   private:
-    bool cross(int surface, int sign, const LensIndices& n, const Clip& clip,
+    bool cross(const PathStep& step, const LensIndices& n, const Clip& clip,
                TracedRay& ray) const;
 
     Prescription lens_;
