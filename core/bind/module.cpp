@@ -12,6 +12,7 @@ void bind_glass(nb::module_& m);
 void bind_prescription(nb::module_& m);
 void bind_polynomial(nb::module_& m);
 void bind_optics(nb::module_& m);
+void bind_lens_fit(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
@@ -34,6 +35,7 @@ NB_MODULE(_core, m) {
     bind_prescription(m);
     bind_polynomial(m);
     bind_optics(m);
+    bind_lens_fit(m);
     bind_scene(m);
     bind_camera(m);
     bind_shutter(m);

@@ -17,7 +17,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import lenses
+    from . import lenses, polynomial
     from .frame import Frame
     from .session import Session, iter_render, render
 
@@ -49,6 +49,7 @@ __all__ = [
     "keys",
     "lenses",
     "load",
+    "polynomial",
     "render",
     "spin",
 ]
@@ -58,8 +59,8 @@ _LAZY = {"Frame": "frame", "Session": "session", "iter_render": "session", "rend
 
 
 def __getattr__(name: str) -> Any:
-    if name == "lenses":
-        return import_module(".lenses", __name__)
+    if name in ("lenses", "polynomial"):
+        return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)
         globals()[name] = value

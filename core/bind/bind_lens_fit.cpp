@@ -1,0 +1,226 @@
+// bind_lens_fit.cpp -- fitted lenses: the parts of the data, and what they say of film rays.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bind/arrays.h"
+#include "math/error.h"
+#include "optics/paraxial.h"
+#include "optics/polynomial/lens_fit.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+using Pair = std::pair<double, double>;
+using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Column = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Powers = nb::ndarray<const std::int32_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using dg::bind::to_numpy;
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+dg::Vec2d vec(Pair p) {
+    return {p.first, p.second};
+}
+
+/// A member that is a Vec2d, as a pair.
+template <typename T, dg::Vec2d T::*kMember>
+void pair_member(nb::class_<T>& c, const char* name) {
+    c.def_prop_rw(
+        name, [](const T& t) { return Pair{(t.*kMember).x, (t.*kMember).y}; },
+        [](T& t, Pair p) { t.*kMember = vec(p); });
+}
+
+void bind_parts(nb::module_& m) {
+    using namespace dg;
+    nb::class_<FitFunctions>(m, "FitFunctions")
+        .def(
+            "__init__",
+            [](FitFunctions* self, const Powers& powers, const Table& coefficients) {
+                FitFunctions f{int(coefficients.shape(1)), {}, {}};
+                if (powers.shape(0) != coefficients.shape(0))
+                    throw input_error("lens fit", "coefficients", "a row for each monomial",
+                                      std::to_string(coefficients.shape(0)));
+                for (std::size_t i = 0; i < powers.shape(0); ++i) {
+                    FitTerm t{};
+                    for (int k = 0; k < 5; ++k) t[k] = powers(i, k);
+                    f.terms.push_back(t);
+                }
+                f.coefficients.assign(coefficients.data(), coefficients.data() + coefficients.size());
+                new (self) FitFunctions(std::move(f));
+            },
+            "powers"_a, "coefficients"_a)
+        .def_prop_ro("powers",
+                     [](const FitFunctions& f) {
+                         std::vector<std::int32_t> flat;
+                         for (const FitTerm& t : f.terms) flat.insert(flat.end(), t.begin(), t.end());
+                         return to_numpy(std::move(flat), {f.terms.size(), 5});
+                     }, nb::rv_policy::automatic)
+        .def_prop_ro("coefficients", [](const FitFunctions& f) {
+            return to_numpy(std::vector<double>(f.coefficients), {f.terms.size(), std::size_t(f.count)});
+        }, nb::rv_policy::automatic);
+    nb::class_<FitBlock>(m, "FitBlock")
+        .def(nb::init<>())
+        .def_rw("x", &FitBlock::x)
+        .def_rw("y", &FitBlock::y);
+    nb::class_<FitSegment>(m, "FitSegment")
+        .def(nb::init<>())
+        .def_rw("u_low", &FitSegment::u_low)
+        .def_rw("u_high", &FitSegment::u_high)
+        .def_rw("rays", &FitSegment::rays)
+        .def_rw("points", &FitSegment::points)
+        .def_rw("light", &FitSegment::light);
+    nb::class_<FitPupil> pupil(m, "FitPupil");
+    pupil.def(nb::init<>());
+    pair_member<FitPupil, &FitPupil::by_film>(pupil, "by_film");
+    pair_member<FitPupil, &FitPupil::by_slope>(pupil, "by_slope");
+    pair_member<FitPupil, &FitPupil::shift>(pupil, "shift");
+    nb::class_<FitInverse>(m, "FitInverse")
+        .def(nb::init<>())
+        .def_rw("direction", &FitInverse::direction)
+        .def_rw("pupil", &FitInverse::pupil)
+        .def_rw("rays", &FitInverse::rays);
+    nb::class_<FitMount>(m, "FitMount")
+        .def(nb::init<>())
+        .def_rw("surface", &FitMount::surface)
+        .def_rw("radius", &FitMount::radius)
+        .def_rw("inner", &FitMount::inner);
+}
+
+void bind_error(nb::module_& m) {
+    using namespace dg;
+    nb::class_<FitDeviation>(m, "FitDeviation")
+        .def(nb::init<>())
+        .def_rw("rms", &FitDeviation::rms)
+        .def_rw("max", &FitDeviation::max);
+    nb::class_<FitErrorZone>(m, "FitErrorZone")
+        .def(nb::init<>())
+        .def_rw("low", &FitErrorZone::low)
+        .def_rw("high", &FitErrorZone::high)
+        .def_rw("rays", &FitErrorZone::rays)
+        .def_rw("direction", &FitErrorZone::direction)
+        .def_rw("film", &FitErrorZone::film)
+        .def_rw("iris", &FitErrorZone::iris)
+        .def_rw("mount", &FitErrorZone::mount)
+        .def_rw("transmittance", &FitErrorZone::transmittance)
+        .def_rw("lost", &FitErrorZone::lost)
+        .def_rw("leaked", &FitErrorZone::leaked);
+    nb::class_<FitError>(m, "FitError")
+        .def(nb::init<>())
+        .def_rw("all", &FitError::all)
+        .def_rw("zones", &FitError::zones);
+}
+
+std::size_t equal_lengths(const Rows2d& film, const Rows2d& slopes, const Column& nm) {
+    const std::size_t n = film.shape(0);
+    if (slopes.shape(0) != n || nm.shape(0) != n)
+        throw dg::input_error("lens fit", "arrays", "as many slopes and wavelengths as film points",
+                              std::to_string(n) + " film points");
+    return n;
+}
+
+/// Directions (rad) and offsets, iris points, mounts (N, M, 2), transmittances, whether within, origins and unit
+/// directions of the scene rays.
+auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm) {
+    const std::size_t n = equal_lengths(film, slopes, nm), mounts = fit.mounts.size();
+    std::vector<double> direction, offset, iris, mount, light, origin, unit;
+    std::vector<std::uint8_t> within;
+    for (std::size_t i = 0; i < n; ++i) {
+        const dg::FitValue v =
+            fit.evaluate({{film(i, 0), film(i, 1)}, {slopes(i, 0), slopes(i, 1)}, nm(i)});
+        const dg::LensRay ray = fit.scene_ray(v.direction, v.offset);
+        const auto add = [](std::vector<double>& to, dg::Vec2d p) { to.insert(to.end(), {p.x, p.y}); };
+        add(direction, v.direction), add(offset, v.offset), add(iris, v.iris);
+        for (const dg::Vec2d p : v.mounts) add(mount, p);
+        for (int k = 0; k < 3; ++k) origin.push_back(ray.origin[k]), unit.push_back(ray.direction[k]);
+        light.push_back(v.transmittance), within.push_back(v.within);
+    }
+    return nb::make_tuple(to_numpy(std::move(direction), {n, 2}), to_numpy(std::move(offset), {n, 2}),
+                          to_numpy(std::move(iris), {n, 2}), to_numpy(std::move(mount), {n, mounts, 2}),
+                          to_numpy(std::move(light), {n}), to_numpy(std::move(within), {n}),
+                          to_numpy(std::move(origin), {n, 3}), to_numpy(std::move(unit), {n, 3}));
+}
+
+/// Film points and slopes of scene rays (lens frame, mm); NaN where the search leaves the fit.
+auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions, const Column& nm) {
+    const std::size_t n = origins.shape(0);
+    std::vector<double> film, slope;
+    for (std::size_t i = 0; i < n; ++i) {
+        const dg::LensRay ray{{origins(i, 0), origins(i, 1), origins(i, 2)},
+                              {directions(i, 0), directions(i, 1), directions(i, 2)}};
+        const auto found = fit.to_film(ray, nm(i));
+        const dg::FitRay r = found ? *found : dg::FitRay{{kNan, kNan}, {kNan, kNan}, nm(i)};
+        film.insert(film.end(), {r.film.x, r.film.y}), slope.insert(slope.end(), {r.slope.x, r.slope.y});
+    }
+    return nb::make_tuple(to_numpy(std::move(film), {n, 2}), to_numpy(std::move(slope), {n, 2}));
+}
+
+dg::LensFit fit(const dg::Prescription& lens, double f_stop, const dg::Iris& iris, double film_z_mm,
+                double film_radius_mm, int degree, int segments) {
+    dg::LensFitRequest request;
+    request.film_z = film_z_mm, request.film_radius = film_radius_mm;
+    const dg::FirstOrder order = dg::first_order(lens);
+    request.iris = iris;
+    request.iris_radius = dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
+    request.degree = degree, request.segments = segments;
+    const nb::gil_scoped_release release;
+    return make_lens_fit(dg::Tracer(lens), request);
+}
+
+}  // namespace
+
+void bind_lens_fit(nb::module_& m) {
+    using namespace dg;
+    bind_parts(m), bind_error(m);
+    nb::class_<LensFit> c(m, "LensFit");
+    c.def(nb::init<>())
+        .def_static("fit", &fit, "prescription"_a, "f_stop"_a, "iris"_a, "film_z_mm"_a,
+                    "film_radius_mm"_a, "degree"_a, "segments"_a, "f_stop 0: as wide as the lens opens.")
+        .def("check", &check_lens_fit, "Error if its parts do not fit together.")
+        .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
+        .def("to_film", &to_film, "origins"_a, "directions"_a, "wavelength_nm"_a)
+        .def_rw("lens", &LensFit::lens)
+        .def_rw("degree", &LensFit::degree)
+        .def_prop_rw(
+            "symmetry",
+            [](const LensFit& f) {
+                return std::tuple{f.symmetry.axial, f.symmetry.mirror_x, f.symmetry.mirror_y};
+            },
+            [](LensFit& f, std::tuple<bool, bool, bool> s) {
+                f.symmetry = {std::get<0>(s), std::get<1>(s), std::get<2>(s)};
+            })
+        .def_prop_ro("wavelength_scale",
+                     [](const LensFit& f) { return Pair{f.scale.offset, f.scale.scale}; })
+        .def_prop_rw(
+            "film_plane",
+            [](const LensFit& f) {
+                const auto flat = [](Vec3d v) { return std::array{v.x, v.y, v.z}; };
+                return std::vector{flat(f.film.center), flat(f.film.x), flat(f.film.y)};
+            },
+            [](LensFit& f, const std::vector<std::array<double, 3>>& p) {
+                const auto vec3 = [](std::array<double, 3> v) { return Vec3d{v[0], v[1], v[2]}; };
+                f.film = {vec3(p.at(0)), vec3(p.at(1)), vec3(p.at(2))};
+            })
+        .def_rw("pupil", &LensFit::pupil)
+        .def_rw("entrance_pupil_z", &LensFit::entrance_pupil_z)
+        .def_rw("front_z", &LensFit::front_z)
+        .def_rw("front_curvature", &LensFit::front_curvature)
+        .def_rw("iris_radius", &LensFit::iris_radius)
+        .def_rw("iris_outer", &LensFit::iris_outer)
+        .def_rw("mounts", &LensFit::mounts)
+        .def_rw("segments", &LensFit::segments)
+        .def_rw("inverse", &LensFit::inverse)
+        .def_rw("error", &LensFit::error);
+    pair_member<LensFit, &LensFit::film_center>(c, "film_center");
+    pair_member<LensFit, &LensFit::film_half>(c, "film_half");
+}

@@ -1,0 +1,158 @@
+#include "optics/polynomial/fit_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "optics/lens_error.h"
+#include "optics/paraxial.h"
+#include "optics/quasi_random.h"
+
+namespace dg {
+namespace {
+
+constexpr int kSearchRays = 4096;
+constexpr double kSearch = 1.8;  // paraxial exit pupils that are searched
+constexpr double kMaxPupilDistance = 1e4;  // mm: beyond, the film sees it at infinity
+
+double spread(FitSpread how, double u) {
+    return how == FitSpread::uniform ? u : (1 - std::cos(kPiD * u)) / 2;
+}
+
+bool mirrored_x(const Prescription& lens) {
+    return std::all_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& s) {
+        return s.decenter.x == 0 && s.tilt.y == 0 && s.tilt.z == 0;
+    });
+}
+bool mirrored_y(const Prescription& lens) {
+    return std::all_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& s) {
+        return s.decenter.y == 0 && s.tilt.x == 0 && s.tilt.z == 0;
+    });
+}
+
+/// Half the slopes under which the middle of the film sees the exit pupil, which may be at infinity.
+double exit_slope(const FirstOrder& order, double iris_radius, double film_z) {
+    const double distance = film_z - order.exit_pupil_z;
+    if (std::isfinite(distance)) return std::abs(order.exit_magnification * iris_radius / distance);
+    return iris_radius / std::abs(2 * order.f_number * order.stop_semi_diameter);
+}
+
+/// Centre c and slope k of the line c + k f through points (f, q), least squares.
+Vec2d line_through(const std::vector<Vec2d>& points) {
+    double n = 0, f = 0, q = 0, ff = 0, fq = 0;
+    for (const Vec2d p : points) n += 1, f += p.x, q += p.y, ff += p.x * p.x, fq += p.x * p.y;
+    const double det = n * ff - f * f;
+    if (!(det > 0)) return {n > 0 ? q / n : 0, 0};
+    return {(ff * q - f * fq) / det, (n * fq - f * q) / det};
+}
+
+}  // namespace
+
+FitRays::FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& fit)
+    : tracer_(tracer), request_(request), fit_(fit) {
+    const Prescription& lens = tracer.prescription();
+    outer_ = request.iris_radius * request.iris.outer_radius();
+    fit.film = request.tilted ? *request.tilted : FilmPlane{{0, 0, request.film_z}};
+    const bool axial = !request.tilted && is_axially_symmetric(lens);
+    const Vec3d n = fit.film.normal();
+    fit.symmetry = {axial, axial || (mirrored_x(lens) && n.x == 0 && fit.film.center.x == 0),
+                    axial || (mirrored_y(lens) && n.y == 0 && fit.film.center.y == 0)};
+    const Vec2d half = request.film.half;
+    fit.film_half = Vec2d{request.film_radius, request.film_radius};
+    if (!axial && half.x > 0 && half.y > 0) {
+        fit.film_center = request.film.center, fit.film_half = half;
+        fit.symmetry.mirror_x = fit.symmetry.mirror_x && fit.film_center.x == 0;
+        fit.symmetry.mirror_y = fit.symmetry.mirror_y && fit.film_center.y == 0;
+    }
+    fit.iris_radius = request.iris_radius, fit.iris_outer = outer_;
+    find_domain(fit);
+}
+
+/// From the paraxial exit pupil to the disc that the exact rays fill.
+void FitRays::find_domain(LensFit& fit) {
+    const FirstOrder order = first_order(tracer_.prescription());
+    fit.entrance_pupil_z = order.entrance_pupil_z;
+    const double film_z = fit.film.center.z;
+    double away = film_z - order.exit_pupil_z;
+    if (!(std::abs(away) < kMaxPupilDistance)) away = std::copysign(kMaxPupilDistance, away);
+    const double wide = kSearch * std::abs(away) * exit_slope(order, outer_, film_z);
+    FitPupil& p = fit.pupil;
+    const auto look = [&] {
+        p.by_film = fit.film_half * (1 / wide), p.by_slope = Vec2d{-away, -away} * (1 / wide);
+        p.shift = fit.film_center * (1 / wide);
+        return draw(kSearchRays, 0, 1.02, FitSpread::uniform, 0, 1);
+    };
+    auto found = look();
+    double lit = 0;
+    for (const FitSample& s : found) lit = std::max(lit, length(s.f));
+    if (found.size() >= 16 && fit.symmetry.axial && lit < 0.95) {  // a film wider than the image circle
+        fit.film_half = fit.film_half * (1.02 * lit);
+        found = look();
+    }
+    if (found.size() < 16)
+        throw LensError(tracer_.prescription().name + ": no light reaches the film", "lens-no-light");
+    // The middle of the light over the film, then the disc around it.
+    for (int k = 0; k < 2; ++k) {
+        std::vector<Vec2d> points;
+        for (const FitSample& s : found)
+            points.push_back(k == 0 ? Vec2d{s.f.x, s.q.x} : Vec2d{s.f.y, s.q.y});
+        const Vec2d line = line_through(points);
+        (k == 0 ? p.by_film.x : p.by_film.y) -= fit.symmetry.axial ? 0 : line.y;
+        (k == 0 ? p.shift.x : p.shift.y) -= fit.symmetry.axial ? 0 : line.x;
+    }
+    double reach = 0;
+    for (const FitSample& s : found) reach = std::max(reach, length(p.q(s.f, s.slope)));
+    const double grow = 1 / (1.03 * reach);
+    p.by_film = p.by_film * grow, p.by_slope = p.by_slope * grow, p.shift = p.shift * grow;
+}
+
+std::optional<FitSample> FitRays::trace(Vec2d f, Vec2d q, double nm, double widened) const {
+    FitSample s;
+    s.f = f, s.q = q, s.nm = nm, s.l = fit_.scale(nm);
+    s.film = {fit_.film_center.x + fit_.film_half.x * f.x, fit_.film_center.y + fit_.film_half.y * f.y};
+    s.slope = fit_.pupil.slope(f, q);
+    const LensIndices index = tracer_.at(nm);
+    const Clip clip{true, &round_, outer_ * std::min(widened, 1.02), widened};
+    const auto ray = tracer_.to_scene(fit_.film_ray({s.film, s.slope, nm}), index, clip);
+    if (!ray) return std::nullopt;
+    s.iris = ray->iris, s.transmittance = ray->transmittance;
+    const FitDirection d = describe_ray(ray->ray, fit_.entrance_pupil_z);
+    s.direction = d.direction, s.offset = d.offset;
+    const LensRay back{ray->ray.origin + ray->ray.direction, -ray->ray.direction};
+    const auto path = tracer_.path_to_film(back, index, {false, nullptr, 0});
+    if (path.empty()) return std::nullopt;
+    s.passes = length(s.iris) <= outer_;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Vec3d p = tracer_.form(int(i)).place.into(path[i]);
+        s.met.push_back({p.x, p.y});
+        const Surface& surface = tracer_.prescription().surfaces[i];
+        const double r = length(s.met.back());
+        if (int(i) != tracer_.stop())
+            s.passes = s.passes && r <= clear_radius(surface) && r >= surface.inner_semi_diameter;
+    }
+    return s;
+}
+
+std::vector<FitSample> FitRays::draw(int count, int first, double widened, FitSpread how, double u_low,
+                                     double u_high, int* tries) const {
+    std::vector<FitSample> samples;
+    const int most = 12 * count;
+    int n = 0;
+    for (; n < most && int(samples.size()) < count; ++n) {
+        const auto a = quasi_random<5>(first + n);
+        const double blue = 1 / (380. * 380.), red = 1 / (780. * 780.);
+        const double nm = 1 / std::sqrt(red + spread(how, a[0]) * (blue - red));
+        const double w = std::sqrt(spread(how, a[1])), phi = 2 * kPiD * a[2];
+        Vec2d f, q{w * std::cos(phi), w * std::sin(phi)};
+        if (fit_.symmetry.axial) {
+            f = {std::sqrt(u_low + spread(how, a[3]) * (u_high - u_low)), 0};
+            q.y = std::abs(q.y);
+        } else {
+            f = {2 * spread(how, a[3]) - 1, 2 * spread(how, a[4]) - 1};
+        }
+        if (auto s = trace(f, q, nm, widened)) samples.push_back(std::move(*s));
+    }
+    if (tries) *tries = n;
+    return samples;
+}
+
+}  // namespace dg

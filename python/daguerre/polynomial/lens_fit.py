@@ -1,0 +1,168 @@
+"""A fitted lens: evaluation, its own error, and its data as a dictionary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+from daguerre.errors import UsageError
+
+from .fit_data import error_zone, from_dict, to_dict
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SceneRays:
+    """What a fit says of N film rays; lens frame, mm.
+
+    Attributes:
+        origins: On the sphere of the front surface, shape (N, 3).
+        directions: Unit vectors toward the scene, shape (N, 3).
+        iris: Where the rays cross the iris, shape (N, 2).
+        transmittance: Of the glass, shape (N,).
+        within: Whether film, pupil and mounts let the ray pass; the iris is not asked. Shape (N,).
+        angles: Directions as theta (dx, dy) / sin(theta), rad, shape (N, 2).
+        offsets: From the middle of the entrance pupil across the ray, shape (N, 2).
+        mounts: Where the limiting mounts are met, in their own frames, shape (N, M, 2).
+    """
+
+    origins: FloatArray
+    directions: FloatArray
+    iris: FloatArray
+    transmittance: FloatArray
+    within: NDArray[np.bool_]
+    angles: FloatArray
+    offsets: FloatArray
+    mounts: FloatArray
+
+
+@dataclass(frozen=True)
+class ErrorZone:
+    """How far a fit is from the exact lens over film radii [low, high) mm: RMS and worst ray.
+
+    Attributes:
+        low: mm.
+        high: mm.
+        rays: How many were compared.
+        direction_rad: Angle between the scene rays.
+        film_um: On the film: the fitted scene ray traced exactly back, against where it began.
+        iris_mm: On the iris.
+        mount_mm: At the worst of the mounts.
+        transmittance: Of 1.
+        lost: Share of the passing rays that the fit stops.
+        leaked: Rays that the fit lets pass though the lens stops them, against those that pass.
+    """
+
+    low: float
+    high: float
+    rays: int
+    direction_rad: tuple[float, float]
+    film_um: tuple[float, float]
+    iris_mm: tuple[float, float]
+    mount_mm: tuple[float, float]
+    transmittance: tuple[float, float]
+    lost: float
+    leaked: float
+
+    def film_px(self, pixels: int, width_mm: float) -> tuple[float, float]:
+        """RMS and worst ray on the film, in pixels of a picture so wide."""
+        scale = 1e-3 * pixels / width_mm
+        return self.film_um[0] * scale, self.film_um[1] * scale
+
+
+class LensFit:
+    """A lens as polynomials from film rays to scene rays.
+
+    A film ray is a point on the film (mm, upside down as the image is) and a slope
+    (dx/dz, dy/dz) in the lens's frame, whose z points from the scene to the film.
+    """
+
+    def __init__(self, core: _core.LensFit) -> None:
+        self.core = core
+
+    @property
+    def lens(self) -> str:
+        """Name of the lens."""
+        return str(self.core.lens)
+
+    @property
+    def degree(self) -> int:
+        """Of the polynomials in the ray's four coordinates."""
+        return int(self.core.degree)
+
+    @property
+    def error(self) -> ErrorZone:
+        """On rays all over film and pupil that the fit was not fitted to."""
+        return ErrorZone(**error_zone(self.core.error.all))
+
+    @property
+    def zones(self) -> list[ErrorZone]:
+        """The same by film radius."""
+        return [ErrorZone(**error_zone(zone)) for zone in self.core.error.zones]
+
+    def evaluate(
+        self, film_points: ArrayLike, slopes: ArrayLike, wavelength_nm: ArrayLike
+    ) -> SceneRays:
+        """Follows film rays to the scene.
+
+        Args:
+            film_points: mm, shape (N, 2).
+            slopes: dx/dz and dy/dz, shape (N, 2).
+            wavelength_nm: Shape (N,), or one for all.
+        """
+        film, slope = _rows(film_points, "film_points", 2), _rows(slopes, "slopes", 2)
+        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), film.shape[:1])
+        angles, offsets, iris, mounts, light, within, origins, directions = self.core.evaluate(
+            film, slope, np.ascontiguousarray(nm)
+        )
+        return SceneRays(
+            origins, directions, iris, light, within.astype(bool), angles, offsets, mounts
+        )
+
+    def to_film(
+        self, origins: ArrayLike, directions: ArrayLike, wavelength_nm: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Follows scene rays to the film: the inverse of ``evaluate``.
+
+        Args:
+            origins: mm, shape (N, 3).
+            directions: Unit vectors toward the scene, shape (N, 3).
+            wavelength_nm: Shape (N,), or one for all.
+
+        Returns:
+            Film points (mm) and slopes, shape (N, 2) each; NaN for rays that do not belong to the
+            fit's film and pupil.
+        """
+        points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
+        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), points.shape[:1])
+        film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
+        return film, slopes
+
+    def to_dict(self) -> dict[str, Any]:
+        """The whole fit as JSON-able data, ``daguerre-lens-fit/0.1``."""
+        return to_dict(self.core)
+
+    @classmethod
+    def from_dict(cls, data: Any) -> LensFit:
+        """The inverse of ``to_dict``.
+
+        Raises:
+            InputError: Data of another form; the message names the place.
+        """
+        return cls(from_dict(data))
+
+    def __repr__(self) -> str:
+        angle, film = self.error.direction_rad[0], self.error.film_um[0]
+        return f"LensFit({self.lens!r}, degree {self.degree}: {angle:.2g} rad, {film:.2g} um RMS)"
+
+
+def _rows(given: ArrayLike, name: str, columns: int) -> FloatArray:
+    rows = np.ascontiguousarray(given, np.float64)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise UsageError(f"lens fit: {name}: wanted shape (N, {columns}), got {rows.shape}")
+    return rows
