@@ -6,6 +6,7 @@
 #include "camera/aim_state.h"
 #include "camera/mean_ray.h"
 #include "camera/tilt.h"
+#include "optics/intersect.h"
 #include "optics/lens_error.h"
 #include "spectrum/wavelengths.h"
 
@@ -300,6 +301,18 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             o.etendue = b.weight[i] / kPerMm2;
         }
     }
+}
+
+std::optional<Vec3d> ExactLens::start(Vec3d point, Vec3d direction) const {
+    const Affine3d& turn = state_->turn;
+    const Affine3d back = inverse(turn);
+    const Vec3d pupil{0, 0, state_->order.entrance_pupil_z}, offset{0, 0, advance_};
+    const SurfaceForm& front = state_->tracer.form(0);
+    const Vec3d from = back.vector(point / kMetre - offset) + pupil;
+    const auto hit = meet(front, front.place.into(from),
+                          front.place.turn_in(back.vector(-direction)), 1);
+    if (!hit) return std::nullopt;
+    return kMetre * (turn.vector(front.place.out_of(hit->point) - pupil) + offset);
 }
 
 Vec3d ExactLens::chief_direction(Vec2d film_mm) const {

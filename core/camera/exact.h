@@ -56,6 +56,11 @@ class ExactLens {
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    std::span<Reprojection> out) const;
 
+    /// Where a scene ray (camera frame, m; the line in both directions) starts: on the first surface.
+    std::optional<Vec3d> start(Vec3d point, Vec3d direction) const;
+    /// z of the middle of the entrance pupil, m: 0 but for states of a body.
+    double pupil_offset_m() const { return 1e-3 * advance_; }
+
     /// Unit view direction (camera frame) of a film point, mm upright: through the middle
     /// of what the iris and the mounts let pass there at the design wavelength. Straight
     /// ahead if nothing passes.

@@ -80,7 +80,7 @@ std::vector<Found> by_light(const test::ViewCase& c, const Emitter& e, int count
     for (int i = 0; i < count; ++i) {
         found[i].film_mm = film[i].film_mm;
         found[i].light *= film[i].response;
-        if (!(found[i].light > 0)) found[i] = {};
+        if (!(found[i].light > 0) || length(film[i].film_mm) > c.half_diagonal_mm) found[i] = {};
     }
     return found;
 }
@@ -95,17 +95,13 @@ struct Rectangle {
     }
 };
 
-Rectangle around(const std::vector<Found>& found, float limit) {
+Rectangle around(const std::vector<Found>& found) {
     Rectangle r;
     for (const Found& f : found) {
         if (!(f.light > 0)) continue;
         r.low = {std::min(r.low.x, f.film_mm.x), std::min(r.low.y, f.film_mm.y)};
         r.high = {std::max(r.high.x, f.film_mm.x), std::max(r.high.y, f.film_mm.y)};
     }
-    // Not beyond what the camera draws.
-    const float h = limit / std::sqrt(2.f);
-    r.low = {std::max(r.low.x, -h), std::max(r.low.y, -h)};
-    r.high = {std::min(r.high.x, h), std::min(r.high.y, h)};
     return r;
 }
 
@@ -123,7 +119,7 @@ std::vector<Found> by_camera(const test::ViewCase& c, const Emitter& e, const Re
     }
     generate_rays(c.camera, samples, rays);
     for (int i = 0; i < count; ++i)
-        if (rays[i].weight > 0 && e.meets(rays[i].ray))
+        if (rays[i].weight > 0 && length(samples[i].film_mm) <= c.half_diagonal_mm && e.meets(rays[i].ray))
             found[i] = {samples[i].film_mm, rays[i].weight * film.area()};
     return found;
 }
@@ -213,7 +209,7 @@ TEST_CASE("light rays and camera rays bring the same light to the same film; 2 %
             CAPTURE(p.w);
             const Emitter e(p.at, p.w, p.half, Vec3d{-p.at.x, 0.3 * p.at.z, -p.at.z});
             const auto light = by_light(c, e, 60000, ++seed);
-            const Rectangle film = around(light, c.half_diagonal_mm);
+            const Rectangle film = around(light);
             REQUIRE(film.area() > 0);
             const auto camera = by_camera(c, e, film, 250000, ++seed);
             std::vector<double> own, total;
@@ -241,4 +237,79 @@ TEST_CASE("light rays and camera rays bring the same light to the same film; 2 %
     CHECK(chi_square_p(cells) > 1e-4);
     CHECK(chi_square_p(totals) > 1e-4);
     CHECK(chi_square_p(dimmed) < 1e-6);
+}
+
+TEST_CASE("what the camera draws lies in the region, seen from any point of its ray") {
+    for (const test::ViewCase& c : test::view_cases()) {
+        CAPTURE(c.name);
+        Random random(5);
+        const float side = c.half_diagonal_mm * 0.7f;
+        const int count = 100000;
+        std::vector<CameraSample> samples(count);
+        for (int i = 0; i < count; ++i) {
+            const Vec2f u = square(random);
+            samples[i] = {{side * (2 * u.x - 1), side * (2 * u.y - 1)}, square(random), square(random).x,
+                          380 + 400 * square(random).x, c.opening};
+        }
+        std::vector<CameraRay> rays(count);
+        generate_rays(c.camera, samples, rays);
+        const PupilViewOverTime view(c.camera);
+        int passed = 0, missed = 0, at_infinity = 0;
+        for (int i = 0; i < count; ++i) {
+            if (!(rays[i].weight > 0)) continue;
+            const double t = 0.1 * std::pow(1e3, square(random).x);
+            const Vec3d o = to_double(rays[i].ray.origin), d = to_double(rays[i].ray.direction);
+            ++passed;
+            missed += !(view.pdf(o + d * t, 1, rays[i].ray) > 0);
+            at_infinity += !(view.pdf(d, 0, rays[i].ray) > 0);
+        }
+        if (std::getenv("VIEW_VERBOSE"))
+            std::printf("%-28s missed %d + %d of %d\n", c.name.c_str(), missed, at_infinity, passed);
+        CHECK(missed + at_infinity <= passed / 5000);
+    }
+}
+
+// By rays toward a disc across the direction to the point, all alike.
+TEST_CASE("the density integrates to one, and is that of what is drawn") {
+    for (const test::ViewCase& c : test::view_cases()) {
+        if (std::holds_alternative<Pinhole>(c.camera.lens)) continue;
+        for (const test::ViewPoint& p : c.points) {
+            CAPTURE(c.name);
+            CAPTURE(p.at.x);
+            CAPTURE(p.w);
+            Random random(7);
+            const PupilViewOverTime view(c.camera);
+            const Vec3d e = normalize(p.at), x = normalize(cross(Vec3d{0.3, 1, 0.2}, e)), y = cross(e, x);
+            Vec3d sum{};
+            double reach = 0;
+            std::vector<Vec3d> met;
+            for (int i = 0; i < 2000; ++i) {
+                const float time = square(random).x;
+                const auto s = view.sample(p.at, p.w, square(random), time);
+                if (!s) continue;
+                const Ray ray{.origin = s->origin, .direction = s->direction, .time = time};
+                CHECK(view.pdf(p.at, p.w, ray) == doctest::Approx(s->pdf).epsilon(1e-4));
+                const Vec3d o = to_double(s->origin), d = to_double(s->direction);
+                met.push_back(o - d * (dot(o, e) / dot(d, e)));
+                sum += met.back();
+            }
+            REQUIRE(met.size() > 1000);
+            const Vec3d middle = sum * (1.0 / double(met.size()));
+            for (const Vec3d& q : met) reach = std::max(reach, 1.2 * length(q - middle));
+            double total = 0, squares = 0;
+            const int count = 40000;
+            for (int i = 0; i < count; ++i) {
+                const Vec2d u = reach * concentric_disc({square(random).x, square(random).y});
+                const Vec3d q = middle + x * u.x + y * u.y, way = p.at - p.w * q;
+                const double far = length(way), cosine = dot(way, e) / far;
+                const Ray ray{.origin = to_float(q), .direction = to_float(way * (1 / far)),
+                              .time = square(random).x};
+                const double f = view.pdf(p.at, p.w, ray) * kPiD * reach * reach *
+                                 (p.w == 0 ? 1 : cosine / (far * far));
+                total += f, squares += f * f;
+            }
+            const double mean = total / count;
+            CHECK(std::abs(mean - 1) < 4.5 * std::sqrt((squares / count - mean * mean) / count) + 1e-4);
+        }
+    }
 }

@@ -58,8 +58,77 @@ inline std::vector<ViewCase> ideal_cases() {
     return cases;
 }
 
+inline ExactLensSettings exact_settings(double f_stop, double focus_m, Iris iris = {}) {
+    ExactLensSettings s;
+    s.f_stop = f_stop, s.focus_distance_m = focus_m, s.iris = std::move(iris);
+    return s;
+}
+
+/// A check lens with a weak cylinder in front of its film: nothing is the same on all sides.
+inline Prescription anamorphic() {
+    Prescription lens = check_lens(true, 0.5);
+    lens.name = "anamorphic";
+    Surface& s = lens.surfaces[0];
+    s.curvature_x = 0.9 * s.curvature;
+    set_kind(s, "toroid");
+    return lens;
+}
+
+inline Prescription decentred() {
+    Prescription lens = check_lens(true, 0.5);
+    lens.name = "decentred";
+    lens.surfaces[3].decenter = {0.4, -0.3, 0};
+    lens.surfaces[3].tilt = {0.5, 0.8, 0};
+    return lens;
+}
+
+/// An iris whose opening lies to one side.
+inline Iris half_moon() {
+    std::vector<float> values;
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 24; ++x) {
+            const double a = (x - 11.5) / 12, b = (y - 11.5) / 12;
+            values.push_back(a * a + b * b < 1 && a + 0.4 * b > -0.2 ? (y % 5 ? 1.f : 0.6f) : 0.f);
+        }
+    return Iris::image(24, 24, values);
+}
+
+inline std::vector<ViewCase> exact_cases() {
+    const Prescription gauss = check_lens(true, 0.5);
+    std::vector<ViewPoint> points = usual_points();
+    points.push_back({{0.02, 0.015, -0.12}, 1, 0.001});
+    std::vector<ViewCase> cases;
+    const auto add = [&](const char* name, const Prescription& lens, const ExactLensSettings& s,
+                         const std::vector<ViewPoint>& seen, float opening = 1) {
+        cases.push_back({name, still(ExactLens(lens, s)), seen, float(s.half_diagonal_mm), opening});
+    };
+    add("double Gauss f/2", gauss, exact_settings(2, 2), points);
+    add("double Gauss f/8", gauss, exact_settings(8, 2), points, 0.6f);
+    add("pentagon", gauss, exact_settings(2.8, 2, Iris::polygon(5, 20, 0.3)), points);
+    add("image", gauss, exact_settings(4, 2, half_moon()), points);
+    add("wide angle", wide_angle(), exact_settings(2, 2), usual_points());
+    add("telephoto", telephoto(), exact_settings(1.8, 10),
+        {{{0, 0, -10}}, {{0.7, -0.4, -10}}, {{0.2, 0.1, -4}, 1, 0.004}, {{0.06, 0.05, -1}, 0, 0.003}});
+    add("fisheye", fisheye(), exact_settings(2.8, 1),
+        {{{0, 0, -1}}, {{1, 0.3, -1}}, {{-3, 0.5, -0.75}, 1, 0.02}, {{0.3, 0.3, -0.04}, 1, 0.003},
+         {{0.6, -0.8, -0.1}, 0, 0.01}});
+    ExactLensSettings s = exact_settings(2.8, 2);
+    s.film_half_mm = {18, 12};
+    add("anamorphic", anamorphic(), s, points);
+    add("decentred", decentred(), s, points);
+    s.tilt_deg = {5, -4};
+    add("tilted", gauss, s, points);
+    ExactLens middle(gauss, exact_settings(2.8, 2)), near(gauss, exact_settings(2.8, 0.7));
+    Camera focusing = still(middle);
+    focusing.lens_motion = {{0.3f, 0.7f}, {near.in_the_body_of(middle), middle}};
+    cases.push_back({"focusing", focusing, points});
+    return cases;
+}
+
 inline std::vector<ViewCase> view_cases() {
-    return ideal_cases();
+    std::vector<ViewCase> cases = ideal_cases();
+    for (ViewCase& c : exact_cases()) cases.push_back(std::move(c));
+    return cases;
 }
 
 }  // namespace dg::test
