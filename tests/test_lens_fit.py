@@ -86,6 +86,44 @@ def test_error_falls_with_the_degree_and_is_told_by_field() -> None:
     )
 
 
+def test_bytes_are_the_same_fit(fitted: polynomial.LensFit) -> None:
+    data = fitted.to_bytes()
+    copy = polynomial.LensFit.from_bytes(data)
+    assert copy.to_dict() == fitted.to_dict()
+    assert polynomial.fit(NAME, 7, f_stop=4).to_bytes() == data  # the same bits again
+    for damaged in (b"", data[:-1], data[:100] + b"x" + data[101:], data + b"x"):
+        with pytest.raises(InputError, match="damaged"):
+            polynomial.LensFit.from_bytes(damaged)
+
+
+def test_few_terms_are_worse_than_all_and_better_than_fewer() -> None:
+    errors = [
+        polynomial.fit(NAME, 7, f_stop=4, terms=terms).error.direction_rad[0]
+        for terms in (10, 30, None)
+    ]
+    assert errors[0] > 2 * errors[1] > 4 * errors[2]
+
+
+def test_rays_from_elsewhere_take_the_place_of_the_fitted_ones(
+    fitted: polynomial.LensFit,
+) -> None:
+    film, slopes, nm = film_rays(600)
+    three = polynomial.fit(NAME, 3, f_stop=4)
+    rays = three.evaluate(film, slopes, nm)
+    other = fitted.refitted(film, slopes, nm, rays.origins, rays.directions)
+    found = other.evaluate(film, slopes, nm)
+    np.testing.assert_allclose(found.angles, rays.angles, atol=1e-9)
+    np.testing.assert_array_equal(found.iris, fitted.evaluate(film, slopes, nm).iris)
+
+
+def test_an_anamorphic_lens_is_fitted_without_axial_symmetry() -> None:
+    found = polynomial.fit("schneider-anamorphic-60mm", 5)
+    assert found.to_dict()["symmetry"] == {"axial": False, "mirror_x": True, "mirror_y": True}
+    assert found.error.film_um[0] < 60
+    copy = polynomial.LensFit.from_dict(json.loads(json.dumps(found.to_dict())))
+    assert copy.to_dict() == found.to_dict()
+
+
 @pytest.mark.parametrize("degree", [0, 4, 15, 7.5])
 def test_degrees_that_are_not_fitted_are_refused(degree: int) -> None:
     with pytest.raises(UsageError, match=r"degree: wanted"):

@@ -1,18 +1,23 @@
 // bind_lens_fit.cpp -- fitted lenses: the parts of the data, and what they say of film rays.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "bind/arrays.h"
+#include "bind/thread_seconds.h"
+#include "camera/fit_state.h"
 #include "math/error.h"
 #include "optics/paraxial.h"
-#include "optics/polynomial/lens_fit.h"
+#include "optics/polynomial/lens_fit_simd.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -166,15 +171,82 @@ auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& direct
 }
 
 dg::LensFit fit(const dg::Prescription& lens, double f_stop, const dg::Iris& iris, double film_z_mm,
-                double film_radius_mm, int degree, int segments) {
+                double film_radius_mm, Pair film_half_mm, int degree, int segments, int terms) {
     dg::LensFitRequest request;
     request.film_z = film_z_mm, request.film_radius = film_radius_mm;
+    request.film.half = vec(film_half_mm);
     const dg::FirstOrder order = dg::first_order(lens);
     request.iris = iris;
     request.iris_radius = dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
-    request.degree = degree, request.segments = segments;
+    request.degree = degree, request.segments = segments, request.terms = terms;
     const nb::gil_scoped_release release;
     return make_lens_fit(dg::Tracer(lens), request);
+}
+
+/// Directions (rad) and offsets of scene rays.
+auto describe(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions) {
+    const std::size_t n = origins.shape(0);
+    std::vector<double> angles, offsets;
+    for (std::size_t i = 0; i < n; ++i) {
+        const dg::FitDirection d =
+            dg::describe_ray({{origins(i, 0), origins(i, 1), origins(i, 2)},
+                              {directions(i, 0), directions(i, 1), directions(i, 2)}},
+                             fit.entrance_pupil_z);
+        angles.insert(angles.end(), {d.direction.x, d.direction.y});
+        offsets.insert(offsets.end(), {d.offset.x, d.offset.y});
+    }
+    return nb::make_tuple(to_numpy(std::move(angles), {n, 2}), to_numpy(std::move(offsets), {n, 2}));
+}
+
+dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm,
+                     const Rows2d& angles, const Rows2d& offsets) {
+    const std::size_t n = equal_lengths(film, slopes, nm);
+    if (angles.shape(0) != n || offsets.shape(0) != n)
+        throw dg::input_error("lens fit", "arrays", "as many angles and offsets as film points",
+                              std::to_string(n) + " film points");
+    std::vector<dg::FitRay> rays;
+    std::vector<dg::FitDirection> scene;
+    for (std::size_t i = 0; i < n; ++i) {
+        rays.push_back({{film(i, 0), film(i, 1)}, {slopes(i, 0), slopes(i, 1)}, nm(i)});
+        scene.push_back({{angles(i, 0), angles(i, 1)}, {offsets(i, 0), offsets(i, 1)}});
+    }
+    return dg::refit_rays(fit, rays, scene);
+}
+
+/// CPU seconds of this thread a ray through the kernels, both ways, over the given film rays.
+Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm,
+                   int repeats) {
+    const std::size_t n = equal_lengths(film, slopes, nm);
+    dg::IrisTables iris;
+    iris.radius = float(fit.iris_radius);
+    const dg::FitTables tables = make_fit_tables(fit, iris);
+    std::vector<dg::FilmRays> batches((n + dg::kLensBatch - 1) / dg::kLensBatch);
+    for (std::size_t i = 0; i < batches.size() * dg::kLensBatch; ++i) {
+        dg::FilmRays& b = batches[i / dg::kLensBatch];
+        const std::size_t k = i % dg::kLensBatch, from = i % n;
+        b.x[k] = float(film(from, 0)), b.y[k] = float(film(from, 1));
+        b.mx[k] = float(slopes(from, 0)), b.my[k] = float(slopes(from, 1)), b.nm[k] = float(nm(from));
+    }
+    const auto scene = std::make_unique<dg::SceneRays>();
+    const auto back = std::make_unique<dg::FilmRays>();
+    const nb::gil_scoped_release release;
+    const auto time = [&](auto each) {
+        const double start = dg::bind::thread_seconds();
+        for (int i = 0; i < repeats; ++i)
+            for (const dg::FilmRays& b : batches) each(b);
+        return (dg::bind::thread_seconds() - start) / (double(repeats) * double(batches.size()) * dg::kLensBatch);
+    };
+    const double out =
+        time([&](const dg::FilmRays& b) { fit_to_scene(tables, b, *scene, dg::kLensBatch); });
+    std::copy(batches[0].nm, batches[0].nm + dg::kLensBatch, back->nm);
+    const double in =
+        time([&](const dg::FilmRays&) { fit_to_film(tables, *scene, *back, dg::kLensBatch); });
+    return {out, in};
+}
+
+nb::bytes bytes(const dg::LensFit& fit) {
+    const std::string b = dg::to_bytes(fit);
+    return nb::bytes(b.data(), b.size());
 }
 
 }  // namespace
@@ -185,7 +257,17 @@ void bind_lens_fit(nb::module_& m) {
     nb::class_<LensFit> c(m, "LensFit");
     c.def(nb::init<>())
         .def_static("fit", &fit, "prescription"_a, "f_stop"_a, "iris"_a, "film_z_mm"_a,
-                    "film_radius_mm"_a, "degree"_a, "segments"_a, "f_stop 0: as wide as the lens opens.")
+                    "film_radius_mm"_a, "film_half_mm"_a, "degree"_a, "segments"_a, "terms"_a,
+                    "f_stop 0: as wide as the lens opens; terms 0: all.")
+        .def("describe", &describe, "origins"_a, "directions"_a)
+        .def("refitted", &refitted, "film_mm"_a, "slopes"_a, "wavelength_nm"_a, "angles"_a, "offsets"_a)
+        .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a, "repeats"_a,
+             "CPU seconds of the kernels: film to scene, scene to film.")
+        .def("to_bytes", &bytes)
+        .def_static(
+            "from_bytes",
+            [](const nb::bytes& b) { return fit_from_bytes(std::string(b.c_str(), b.size())); },
+            "None if they are damaged.")
         .def("check", &check_lens_fit, "Error if its parts do not fit together.")
         .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
         .def("to_film", &to_film, "origins"_a, "directions"_a, "wavelength_nm"_a)

@@ -5,10 +5,10 @@
 #include <nanobind/stl/tuple.h>
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 #include "bind/arrays.h"
+#include "bind/thread_seconds.h"
 #include "camera/aim_state.h"
 #include "camera/exact.h"
 #include "math/error.h"
@@ -82,13 +82,6 @@ auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
                           dg::bind::to_numpy(std::move(aims), {n}));
 }
 
-/// CPU seconds of this thread: unlike the wall clock, the same on a busy machine.
-double thread_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 /// Draws the samples `repeats` times in this thread: rays that passed, its CPU seconds.
 std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
                                                const dg::bind::Rows2f& film_mm,
@@ -99,12 +92,12 @@ std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
     std::vector<dg::CameraRay> rays(samples.size());
     std::uint64_t passed = 0;
     nb::gil_scoped_release release;
-    const double start = thread_seconds();
+    const double start = dg::bind::thread_seconds();
     for (int i = 0; i < repeats; ++i) {
         lens.generate(samples, rays);
         for (const dg::CameraRay& r : rays) passed += r.weight > 0;
     }
-    return {passed, thread_seconds() - start};
+    return {passed, dg::bind::thread_seconds() - start};
 }
 
 }  // namespace

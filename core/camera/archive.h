@@ -82,15 +82,26 @@ class ByteReader {
         else
             describe(*this, v);
     }
-    template <typename T>
-    void get(std::vector<T>& v) {
-        static_assert(std::is_arithmetic_v<T>);
+    void get(std::string& s) {
         std::size_t size = 0;
         get(size);
-        ok = ok && size <= rest.size() / sizeof(T);
+        ok = ok && size <= rest.size();
+        if (!ok) return;
+        s.assign(rest.substr(0, size));
+        rest.remove_prefix(size);
+    }
+    template <typename T>
+    void get(std::vector<T>& v) {
+        constexpr bool kNumbers = std::is_arithmetic_v<T>;
+        std::size_t size = 0;
+        get(size);
+        ok = ok && size <= rest.size() / (kNumbers ? sizeof(T) : 1);  // others have a byte at least
         if (!ok) return;
         v.resize(size);
-        copy(v.data(), size * sizeof(T));
+        if constexpr (kNumbers)
+            copy(v.data(), size * sizeof(T));
+        else
+            for (std::size_t i = 0; i < size && ok; ++i) get(v[i]);
     }
     template <typename T, std::size_t N>
     void get(T (&v)[N]) {

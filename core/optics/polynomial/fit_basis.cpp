@@ -52,6 +52,24 @@ std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool od
     return terms;
 }
 
+std::vector<FitTerm> light_terms(const FitSymmetry& symmetry) {
+    constexpr int kMostDispersion = 8, kPrice = 3;  // powers of l that a ray degree of 2 costs
+    std::vector<FitTerm> terms;
+    if (symmetry.axial) {
+        for (const FitTerm& t : axial_terms(5))
+            if (t[3] == 0)
+                for (int l = 0; l <= kMostDispersion - kPrice * total(t); ++l)
+                    terms.push_back({t[0], t[1], t[2], l, 0});
+    } else {
+        for (const FitTerm& t : free_terms(4, symmetry, false, false))
+            if (t[4] == 0)
+                for (int l = 0; 2 * l <= 2 * kMostDispersion - kPrice * total(t); ++l)
+                    terms.push_back({t[0], t[1], t[2], t[3], l});
+    }
+    sort_by_degree(terms);
+    return terms;
+}
+
 void monomials(const std::vector<FitTerm>& terms, const FitVariables& at, double* values) {
     double power[5][kMaxPower];
     for (int v = 0; v < 5; ++v) {

@@ -29,6 +29,10 @@ std::vector<FitTerm> axial_terms(int degree);
 /// with x (the x of a vector); mirrors leave odd or even powers only.
 std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y);
 
+/// For the transmittance: it varies little over film and pupil, and in waves with the wavelength (coatings).
+/// Powers of l up to 8, of the other variables up to a ray degree of 4.
+std::vector<FitTerm> light_terms(const FitSymmetry& symmetry);
+
 /// Value of every term.
 void monomials(const std::vector<FitTerm>& terms, const FitVariables& at, double* values);
 

@@ -80,7 +80,7 @@ FitErrorZone summary(const std::vector<Compared>& rays, double low, double high)
 
 FitError measure_fit(const FitRays& rays, const LensFit& fit, int count) {
     std::vector<Compared> compared;
-    for (const FitSample& s : rays.draw(count, kFreshRays, kErrorWidened, FitSpread::uniform, 0, 1))
+    for (const FitSample& s : rays.draw({.count = count, .first = kFreshRays, .widened = kErrorWidened, .met = true}))
         compared.push_back(compare(rays.tracer(), fit, s));
     const double radius = fit.symmetry.axial ? fit.film_half.x : length(fit.film_half) + length(fit.film_center);
     FitError error;

@@ -10,12 +10,13 @@
 namespace dg {
 namespace {
 
-constexpr int kSearchRays = 4096;
+constexpr int kSearchRays = 1024;
 constexpr double kSearch = 1.8;  // paraxial exit pupils that are searched
+constexpr double kIrisWidened = 1.02;  // the iris is a hole: no need to follow far beyond its rim
 constexpr double kMaxPupilDistance = 1e4;  // mm: beyond, the film sees it at infinity
 
-double spread(FitSpread how, double u) {
-    return how == FitSpread::uniform ? u : (1 - std::cos(kPiD * u)) / 2;
+double spread(bool toward_edges, double u) {
+    return toward_edges ? (1 - std::cos(kPiD * u)) / 2 : u;
 }
 
 bool mirrored_x(const Prescription& lens) {
@@ -43,6 +44,21 @@ Vec2d line_through(const std::vector<Vec2d>& points) {
     const double det = n * ff - f * f;
     if (!(det > 0)) return {n > 0 ? q / n : 0, 0};
     return {(ff * q - f * fq) / det, (n * fq - f * q) / det};
+}
+
+/// Moves q so that its middle over the film is 0, and makes it as wide in x as in y.
+void center_pupil(const std::vector<FitSample>& found, FitPupil& p) {
+    std::vector<Vec2d> x, y;
+    for (const FitSample& s : found) x.push_back({s.f.x, s.q.x}), y.push_back({s.f.y, s.q.y});
+    const Vec2d line_x = line_through(x), line_y = line_through(y);
+    p.shift = p.shift - Vec2d{line_x.x, line_y.x}, p.by_film = p.by_film - Vec2d{line_x.y, line_y.y};
+    double xx = 0, yy = 0;
+    for (const FitSample& s : found) {
+        const Vec2d q = p.q(s.f, s.slope);
+        xx += q.x * q.x, yy += q.y * q.y;
+    }
+    const double wider = std::sqrt(yy / xx);
+    p.by_film.x *= wider, p.by_slope.x *= wider, p.shift.x *= wider;
 }
 
 }  // namespace
@@ -79,7 +95,7 @@ void FitRays::find_domain(LensFit& fit) {
     const auto look = [&] {
         p.by_film = fit.film_half * (1 / wide), p.by_slope = Vec2d{-away, -away} * (1 / wide);
         p.shift = fit.film_center * (1 / wide);
-        return draw(kSearchRays, 0, 1.02, FitSpread::uniform, 0, 1);
+        return draw({.count = kSearchRays, .widened = kIrisWidened});
     };
     auto found = look();
     double lit = 0;
@@ -90,36 +106,33 @@ void FitRays::find_domain(LensFit& fit) {
     }
     if (found.size() < 16)
         throw LensError(tracer_.prescription().name + ": no light reaches the film", "lens-no-light");
-    // The middle of the light over the film, then the disc around it.
-    for (int k = 0; k < 2; ++k) {
-        std::vector<Vec2d> points;
-        for (const FitSample& s : found)
-            points.push_back(k == 0 ? Vec2d{s.f.x, s.q.x} : Vec2d{s.f.y, s.q.y});
-        const Vec2d line = line_through(points);
-        (k == 0 ? p.by_film.x : p.by_film.y) -= fit.symmetry.axial ? 0 : line.y;
-        (k == 0 ? p.shift.x : p.shift.y) -= fit.symmetry.axial ? 0 : line.x;
-    }
+    if (!fit.symmetry.axial) center_pupil(found, p);
     double reach = 0;
     for (const FitSample& s : found) reach = std::max(reach, length(p.q(s.f, s.slope)));
     const double grow = 1 / (1.03 * reach);
     p.by_film = p.by_film * grow, p.by_slope = p.by_slope * grow, p.shift = p.shift * grow;
 }
 
-std::optional<FitSample> FitRays::trace(Vec2d f, Vec2d q, double nm, double widened) const {
+std::optional<FitSample> FitRays::trace(Vec2d f, Vec2d q, double nm, const FitDraw& what) const {
     FitSample s;
     s.f = f, s.q = q, s.nm = nm, s.l = fit_.scale(nm);
     s.film = {fit_.film_center.x + fit_.film_half.x * f.x, fit_.film_center.y + fit_.film_half.y * f.y};
     s.slope = fit_.pupil.slope(f, q);
     const LensIndices index = tracer_.at(nm);
-    const Clip clip{true, &round_, outer_ * std::min(widened, 1.02), widened};
+    const Clip clip{true, &round_, outer_ * std::min(what.widened, kIrisWidened), what.widened};
     const auto ray = tracer_.to_scene(fit_.film_ray({s.film, s.slope, nm}), index, clip);
     if (!ray) return std::nullopt;
     s.iris = ray->iris, s.transmittance = ray->transmittance;
     const FitDirection d = describe_ray(ray->ray, fit_.entrance_pupil_z);
     s.direction = d.direction, s.offset = d.offset;
-    const LensRay back{ray->ray.origin + ray->ray.direction, -ray->ray.direction};
+    if (what.met && !add_met(ray->ray, index, s)) return std::nullopt;
+    return s;
+}
+
+/// By following the scene ray back.
+bool FitRays::add_met(const LensRay& scene, const LensIndices& index, FitSample& s) const {
+    const LensRay back{scene.origin + scene.direction, -scene.direction};
     const auto path = tracer_.path_to_film(back, index, {false, nullptr, 0});
-    if (path.empty()) return std::nullopt;
     s.passes = length(s.iris) <= outer_;
     for (std::size_t i = 0; i < path.size(); ++i) {
         const Vec3d p = tracer_.form(int(i)).place.into(path[i]);
@@ -129,29 +142,27 @@ std::optional<FitSample> FitRays::trace(Vec2d f, Vec2d q, double nm, double wide
         if (int(i) != tracer_.stop())
             s.passes = s.passes && r <= clear_radius(surface) && r >= surface.inner_semi_diameter;
     }
-    return s;
+    return !path.empty();
 }
 
-std::vector<FitSample> FitRays::draw(int count, int first, double widened, FitSpread how, double u_low,
-                                     double u_high, int* tries) const {
+std::vector<FitSample> FitRays::draw(const FitDraw& what) const {
+    constexpr int kTries = 12;  // for each ray that is asked for
+    const double blue = 1 / (380. * 380.), red = 1 / (780. * 780.);
     std::vector<FitSample> samples;
-    const int most = 12 * count;
-    int n = 0;
-    for (; n < most && int(samples.size()) < count; ++n) {
-        const auto a = quasi_random<5>(first + n);
-        const double blue = 1 / (380. * 380.), red = 1 / (780. * 780.);
-        const double nm = 1 / std::sqrt(red + spread(how, a[0]) * (blue - red));
-        const double w = std::sqrt(spread(how, a[1])), phi = 2 * kPiD * a[2];
+    for (int n = 0; n < kTries * what.count && int(samples.size()) < what.count; ++n) {
+        const auto u = quasi_random<5>(what.first + n);
+        const auto spread_out = [&](int k) { return spread(what.toward_edges, u[k]); };
+        const double nm = 1 / std::sqrt(red + spread_out(0) * (blue - red));
+        const double w = std::sqrt(spread_out(1)), phi = 2 * kPiD * u[2];
         Vec2d f, q{w * std::cos(phi), w * std::sin(phi)};
         if (fit_.symmetry.axial) {
-            f = {std::sqrt(u_low + spread(how, a[3]) * (u_high - u_low)), 0};
+            f = {std::sqrt(what.u_low + spread_out(3) * (what.u_high - what.u_low)), 0};
             q.y = std::abs(q.y);
         } else {
-            f = {2 * spread(how, a[3]) - 1, 2 * spread(how, a[4]) - 1};
+            f = {2 * spread_out(3) - 1, 2 * spread_out(4) - 1};
         }
-        if (auto s = trace(f, q, nm, widened)) samples.push_back(std::move(*s));
+        if (auto s = trace(f, q, nm, what)) samples.push_back(std::move(*s));
     }
-    if (tries) *tries = n;
     return samples;
 }
 

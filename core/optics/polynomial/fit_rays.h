@@ -14,12 +14,19 @@ struct FitSample {
     double nm = 0, l = 0;
     Vec2d direction, offset, iris;
     double transmittance = 0;
-    std::vector<Vec2d> met;  // each surface, in its own frame, mm
-    bool passes = false;     // iris and clear apertures
+    std::vector<Vec2d> met;  // if asked for: each surface, in its own frame, mm
+    bool passes = false;     // then: iris and clear apertures
 };
 
-/// How rays are spread over film, pupil and wavelength.
-enum class FitSpread { uniform, toward_edges };
+/// Which rays are drawn.
+struct FitDraw {
+    int count = 0;
+    int first = 0;                 // of the sequence
+    double widened = 1;            // clear apertures and iris may be left by this factor
+    bool toward_edges = false;     // of film, pupil and wavelengths, where polynomials err most
+    bool met = false;              // whether `met` and `passes` are wanted
+    double u_low = 0, u_high = 1;  // |f|^2
+};
 
 class FitRays {
   public:
@@ -27,15 +34,14 @@ class FitRays {
     /// symmetry. Error if no light reaches the film.
     FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& fit);
 
-    /// Up to `count` rays of the sequence that starts at `first` which pass clear apertures and iris widened by
-    /// the factor; film points with |f|^2 in [u_low, u_high]. `tries`: how many were looked at.
-    std::vector<FitSample> draw(int count, int first, double widened, FitSpread spread, double u_low,
-                                double u_high, int* tries = nullptr) const;
+    /// Rays that get through, fewer than asked for where few do.
+    std::vector<FitSample> draw(const FitDraw& what) const;
     const Tracer& tracer() const { return tracer_; }
 
   private:
     void find_domain(LensFit& fit);
-    std::optional<FitSample> trace(Vec2d f, Vec2d q, double nm, double widened) const;
+    std::optional<FitSample> trace(Vec2d f, Vec2d q, double nm, const FitDraw& what) const;
+    bool add_met(const LensRay& scene, const LensIndices& index, FitSample& s) const;
 
     const Tracer& tracer_;
     const LensFitRequest& request_;

@@ -56,11 +56,9 @@ bool solve4(std::array<std::array<double, 5>, 4>& a, std::array<double, 4>& x) {
 using Four = std::array<double, 4>;
 
 Four scene_of(const LensFit& fit, const Four& z, double l) {
-    const Vec2d f{z[0], z[1]}, q{z[2], z[3]};
-    const FitSegment& segment = fit.segment_at(f);
-    Vec2d out[2];
-    vectors(segment.rays, fit.variables(f, q, l, segment), fit.symmetry.axial, f, q, out);
-    return {out[0].x, out[0].y, out[1].x, out[1].y};
+    const Vec2d f{z[0], z[1]};
+    const FitDirection d = fit.scene_vectors(fit.segment_at(f), f, {z[2], z[3]}, l);
+    return {d.direction.x, d.direction.y, d.offset.x, d.offset.y};
 }
 
 /// Central differences: the reference needs no speed.
@@ -109,6 +107,12 @@ const FitSegment& LensFit::segment_at(Vec2d f) const {
     for (const FitSegment& s : segments)
         if (u < s.u_high) return s;
     return segments.back();
+}
+
+FitDirection LensFit::scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q, double l) const {
+    Vec2d out[2];
+    vectors(segment.rays, variables(f, q, l, segment), symmetry.axial, f, q, out);
+    return {out[0], out[1]};
 }
 
 FitValue LensFit::evaluate(const FitRay& ray) const {

@@ -72,6 +72,11 @@ struct FitValue {
     bool within = false;           // of film, pupil and mounts; the iris shape is not asked
 };
 
+/// v and e of a scene ray, about a pupil's middle on the axis.
+struct FitDirection {
+    Vec2d direction, offset;
+};
+
 struct LensFit {
     std::string lens;
     int degree = 7;
@@ -92,6 +97,7 @@ struct LensFit {
     FitVariables variables(Vec2d f, Vec2d q, double l, const FitSegment& segment) const;
     /// Which segment owns a film point (unit coordinates); the last one beyond the film.
     const FitSegment& segment_at(Vec2d f) const;
+    FitDirection scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q, double l) const;
     FitValue evaluate(const FitRay& ray) const;
     /// From the sphere at the front, or where it is missed from the point nearest the pupil's middle.
     LensRay scene_ray(Vec2d direction, Vec2d offset) const;
@@ -101,10 +107,6 @@ struct LensFit {
     std::optional<FitRay> to_film(const LensRay& scene, double wavelength_nm) const;
 };
 
-/// v and e of a scene ray, about a pupil's middle on the axis.
-struct FitDirection {
-    Vec2d direction, offset;
-};
 FitDirection describe_ray(const LensRay& scene, double pupil_z);
 
 /// Error if a part has not the functions that the others ask for, or powers that are not kept.
@@ -118,11 +120,16 @@ struct LensFitRequest {
     std::optional<FilmPlane> tilted{};  // instead of film_z
     FilmRectangle film{};    // its part that is asked for; half 0: all within film_radius
     int degree = 7;          // odd, 1 to 13
-    int segments = 1;        // of the film's radius, equal in area
+    int segments = 1;        // of the film's radius, the worst halved until there are as many
+    int terms = 0;           // for each vector, chosen one after the other; 0: the complete basis
 };
 
 /// Fits exact rays in double: the same bits on every machine. Error if the degree is not one of those, or if no
 /// light reaches the film.
 LensFit make_lens_fit(const Tracer& tracer, const LensFitRequest& request);
+
+/// The fit with other scene rays: least squares of given ones in the same basis, and their inverse; iris, mounts
+/// and light stay, and its error is no longer known. For maps from elsewhere, such as Taylor's.
+LensFit refit_rays(const LensFit& fit, const std::vector<FitRay>& rays, const std::vector<FitDirection>& scene);
 
 }  // namespace dg

@@ -2,10 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/error.h"
 #include "optics/paraxial.h"
+#include "optics/polynomial/fit_equations.h"
+#include "optics/polynomial/lens_fit_make.h"
 #include "optics/quasi_random.h"
 #include "optics/test_lenses.h"
 
@@ -115,4 +118,164 @@ TEST_CASE("degrees that are not fitted are refused by name") {
     for (int degree : {-1, 0, 4, 15})
         CHECK_THROWS_WITH_AS(make_lens_fit(Tracer(lens), request(lens, 15, degree)),
                              doctest::Contains("degree: wanted an odd number from 1 to 13"), Error);
+}
+
+TEST_CASE("a lens that is a polynomial is found exactly") {
+    const Prescription lens = test::tessar();
+    const LensFit truth = make_lens_fit(Tracer(lens), request(lens, 15, 5));
+    std::vector<FitSample> samples;
+    for (int n = 0; n < 500; ++n) {
+        const FitRay ray = any_ray(truth, n);
+        const FitValue v = truth.evaluate(ray);
+        FitSample s;
+        s.f = truth.unit_film(ray.film), s.q = truth.pupil.q(s.f, ray.slope);
+        s.l = truth.scale(ray.wavelength_nm);
+        s.direction = v.direction, s.offset = v.offset, s.iris = v.iris;
+        s.transmittance = v.transmittance, s.met.resize(lens.surfaces.size());
+        for (std::size_t i = 0; i < truth.mounts.size(); ++i)
+            s.met[truth.mounts[i].surface] = v.mounts[i];
+        samples.push_back(s);
+    }
+    LensFit found = truth;
+    found.segments = {fit_segment(truth, samples, samples, 0, 1)};
+    for (int n = 500; n < 600; ++n) {
+        const FitRay ray = any_ray(truth, n);
+        const FitValue a = truth.evaluate(ray), b = found.evaluate(ray);
+        CHECK(length(a.direction - b.direction) < 1e-11);
+        CHECK(length(a.offset - b.offset) < 1e-10);
+        CHECK(length(a.iris - b.iris) < 1e-10);
+        CHECK(std::abs(a.transmittance - b.transmittance) < 1e-10);
+    }
+}
+
+TEST_CASE("the pursuit finds the columns of a sparse truth") {
+    constexpr int kRows = 300, kColumns = 60;
+    const int truth[] = {3, 17, 20, 41, 59};
+    FitEquations e{kColumns, 1};
+    for (int i = 0; i < kRows; ++i) {
+        const auto u = quasi_random<5>(i);
+        double sum = 0;
+        for (int j = 0; j < kColumns; ++j) {
+            const double v = std::cos((j + 1) * 3.1 * u[0] + j * u[1]) + 0.3 * u[2];
+            e.matrix.push_back(v);
+            for (int k = 0; k < 5; ++k)
+                if (truth[k] == j) sum += (1 + 0.5 * k) * v;
+        }
+        e.rhs.push_back(sum);
+    }
+    CHECK(e.choose(0, 5) == std::vector<int>(std::begin(truth), std::end(truth)));
+    const std::vector<double> x = e.solve_sparse(5);
+    for (int k = 0; k < 5; ++k) CHECK(std::abs(x[truth[k]] - (1 + 0.5 * k)) < 1e-9);
+    CHECK(std::count(x.begin(), x.end(), 0.0) == kColumns - 5);
+}
+
+TEST_CASE("more terms chosen, smaller error, down to that of the complete basis") {
+    const Prescription lens = test::tessar();
+    LensFitRequest r = request(lens, 15, 7);
+    const double complete = make_lens_fit(Tracer(lens), r).error.all.direction.rms;
+    double before = 1;
+    for (const int terms : {10, 20, 40, 70}) {
+        r.terms = terms;
+        const LensFit fit = make_lens_fit(Tracer(lens), r);
+        for (int f = 0; f < 2; ++f) {
+            int used = 0;
+            for (std::size_t i = 0; i < fit.segments[0].rays.x.terms.size(); ++i)
+                for (int side = 0; side < 2; ++side)
+                    used += fit.segments[0].rays.x.coefficients[4 * i + 2 * f + side] != 0;
+            CHECK(used <= terms);
+        }
+        CHECK(fit.error.all.direction.rms < before);
+        before = fit.error.all.direction.rms;
+    }
+    CHECK(before == doctest::Approx(complete).epsilon(1e-6));
+}
+
+TEST_CASE("a lens fit stops the rays that the lens stops, but for a narrow band at each edge") {
+    for (const Prescription& lens : {test::sonnar(), test::wide_angle(), test::telephoto()}) {
+        INFO(lens.name);
+        const Tracer tracer(lens);
+        const LensFit fit = make_lens_fit(tracer, request(lens, 21, 7));
+        CHECK(!fit.mounts.empty());
+        const Iris round;
+        const double band = 1.5 * (fit.error.all.mount.max + fit.error.all.iris.max);
+        int stopped = 0, passed = 0;
+        for (int n = 0; n < 6000; ++n) {
+            const FitRay ray = any_ray(fit, n);
+            const FitValue v = fit.evaluate(ray);
+            double edge = std::abs(length(v.iris) - fit.iris_radius);
+            for (std::size_t i = 0; i < fit.mounts.size(); ++i)
+                edge = std::min(edge, std::abs(length(v.mounts[i]) - fit.mounts[i].radius));
+            if (edge < band) continue;
+            const bool exact = tracer
+                                   .to_scene(fit.film_ray(ray), tracer.at(ray.wavelength_nm),
+                                             {true, &round, fit.iris_radius})
+                                   .has_value();
+            CHECK(exact == (v.within && length(v.iris) <= fit.iris_radius));
+            (exact ? passed : stopped) += 1;
+        }
+        CHECK(passed > 500);
+        CHECK(stopped > 300);
+        CHECK(band < 0.03 * fit.iris_radius);
+    }
+}
+
+TEST_CASE("segments share the film without gap or overlap, and each fits better than the whole") {
+    const Prescription lens = test::fisheye();
+    LensFitRequest r = request(lens, 20, 7);
+    const LensFit whole = make_lens_fit(Tracer(lens), r);
+    r.segments = 4;
+    const LensFit split = make_lens_fit(Tracer(lens), r);
+    REQUIRE(split.segments.size() == 4);
+    CHECK(split.segments.front().u_low == 0);
+    CHECK(split.segments.back().u_high == 1);
+    for (int k = 0; k < 3; ++k) CHECK(split.segments[k].u_high == split.segments[k + 1].u_low);
+    CHECK(split.error.all.direction.rms < 0.3 * whole.error.all.direction.rms);
+}
+
+TEST_CASE("lenses without symmetry and tilted films are fitted in all coordinates") {
+    Prescription lens = test::tessar();
+    lens.surfaces[5].decenter.y = lens.surfaces[6].decenter.y = lens.surfaces[7].decenter.y = 0.4;
+    LensFitRequest r = request(lens, 15, 5, 4);
+    r.film.half = {12, 8};
+    const LensFit decentred = make_lens_fit(Tracer(lens), r);
+    CHECK(!decentred.symmetry.axial);
+    CHECK(decentred.symmetry.mirror_x);
+    CHECK(!decentred.symmetry.mirror_y);
+    CHECK(decentred.error.all.direction.rms < 5e-5);
+    const Prescription straight = test::tessar();
+    LensFitRequest tilt = request(straight, 15, 5, 4);
+    tilt.film.half = {12, 8};
+    const double c = std::cos(0.1), s = std::sin(0.1);
+    tilt.tilted = FilmPlane{{0, 0, tilt.film_z}, {1, 0, 0}, {0, c, s}};
+    const LensFit tilted = make_lens_fit(Tracer(straight), tilt);
+    CHECK(!tilted.symmetry.axial);
+    CHECK(tilted.error.all.direction.rms < 5e-5);
+    CHECK(tilted.error.all.film.rms < 3);
+    for (int n = 0; n < 50; ++n) {
+        const FitRay ray{{10 * std::cos(n), 7 * std::sin(2.0 * n)}, {}, 550};
+        const Vec2d f = tilted.unit_film(ray.film);
+        const FitRay inside{ray.film, tilted.pupil.slope(f, {0.4 * std::sin(3.0 * n), 0.3}), 550};
+        const FitValue v = tilted.evaluate(inside);
+        const auto back = tilted.to_film(tilted.scene_ray(v.direction, v.offset), 550);
+        REQUIRE(back);
+        CHECK(length(back->film - inside.film) < 1e-8);
+    }
+}
+
+TEST_CASE("scene rays from elsewhere in a fit's basis") {
+    const Prescription lens = test::tessar();
+    const LensFit seven = make_lens_fit(Tracer(lens), request(lens, 15, 7));
+    const LensFit three = make_lens_fit(Tracer(lens), request(lens, 15, 3));
+    std::vector<FitRay> rays;
+    std::vector<FitDirection> scene;
+    for (int n = 0; n < 400; ++n) {
+        rays.push_back(any_ray(seven, n));
+        const FitValue v = three.evaluate(rays.back());
+        scene.push_back({v.direction, v.offset});
+    }
+    const LensFit same = refit_rays(seven, rays, scene);
+    for (int n = 400; n < 450; ++n) {
+        const FitRay ray = any_ray(seven, n);
+        CHECK(length(same.evaluate(ray).direction - three.evaluate(ray).direction) < 1e-10);
+    }
 }

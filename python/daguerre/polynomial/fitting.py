@@ -27,6 +27,7 @@ def fit(
     film: tuple[float, float] | None = None,
     zoom: float | None = None,
     segments: int = 1,
+    terms: int | None = None,
     iris: _core.Iris | None = None,
 ) -> LensFit:
     """Fits polynomials from film rays to scene rays.
@@ -38,7 +39,10 @@ def fit(
         focus: Distance from the entrance pupil, m.
         film: Width and height, mm; the format of the lens's file if None, else 36 x 24 mm.
         zoom: Focal length of a zoom, mm; as it stands if None.
-        segments: Parts of the film by radius, equal in area, each with polynomials of its own.
+        segments: Parts of the film by radius, each with polynomials of its own; the worst part is
+            halved until there are as many. Lenses without axial symmetry have one.
+        terms: Coefficients of each vector, chosen one by one (orthogonal matching pursuit); the
+            complete basis if None.
         iris: Shape of the iris; round if None.
 
     Returns:
@@ -54,6 +58,8 @@ def fit(
     if degree % 2 == 0:
         raise UsageError(f"lens fit: degree: wanted an odd number from 1 to 13, got {degree}")
     whole(segments, "lens fit: segments", 1, 16)
+    if terms is not None:
+        whole(terms, "lens fit: terms", 1, 10000)
     width, height = _film(lens, film)
     if f_stop is not None:
         number(f_stop, "lens fit: f_stop", 0.1, 1000)
@@ -65,8 +71,10 @@ def fit(
             iris or _core.Iris(),
             sharp.film_z_mm,
             FILM_MARGIN * math.hypot(width, height) / 2,
+            (FILM_MARGIN * width / 2, FILM_MARGIN * height / 2),
             degree,
             segments,
+            terms or 0,
         )
     except ValueError as error:
         raise from_core(error, lens.source) from None

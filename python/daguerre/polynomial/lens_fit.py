@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError
 
 from .fit_data import error_zone, from_dict, to_dict
 
@@ -143,6 +143,34 @@ class LensFit:
         film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
         return film, slopes
 
+    def refitted(
+        self,
+        film_points: ArrayLike,
+        slopes: ArrayLike,
+        wavelength_nm: ArrayLike,
+        origins: ArrayLike,
+        directions: ArrayLike,
+    ) -> LensFit:
+        """The same fit with other scene rays: least squares of those given, in its basis.
+
+        For maps from elsewhere, such as a Taylor series: iris, mounts and transmittance stay, and
+        the error is not known.
+
+        Args:
+            film_points: mm, shape (N, 2); all over the film, several for each coefficient.
+            slopes: dx/dz and dy/dz, shape (N, 2).
+            wavelength_nm: Shape (N,), or one for all.
+            origins: A point of each scene ray, mm, shape (N, 3).
+            directions: Unit vectors toward the scene, shape (N, 3).
+        """
+        film = _rows(film_points, "film_points", 2)
+        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), film.shape[:1])
+        angles, offsets = self.core.describe(
+            _rows(origins, "origins", 3), _rows(directions, "directions", 3)
+        )
+        slope = _rows(slopes, "slopes", 2)
+        return LensFit(self.core.refitted(film, slope, np.ascontiguousarray(nm), angles, offsets))
+
     def to_dict(self) -> dict[str, Any]:
         """The whole fit as JSON-able data, ``daguerre-lens-fit/0.1``."""
         return to_dict(self.core)
@@ -155,6 +183,22 @@ class LensFit:
             InputError: Data of another form; the message names the place.
         """
         return cls(from_dict(data))
+
+    def to_bytes(self) -> bytes:
+        """The fit for this machine, to the last bit."""
+        return bytes(self.core.to_bytes())
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> LensFit:
+        """The inverse of ``to_bytes``.
+
+        Raises:
+            InputError: Bytes that are damaged, or of another version.
+        """
+        core = _core.LensFit.from_bytes(data)
+        if core is None:
+            raise InputError("lens fit: wanted the bytes of a fit, got others or damaged ones")
+        return cls(core)
 
     def __repr__(self) -> str:
         angle, film = self.error.direction_rad[0], self.error.film_um[0]
