@@ -195,9 +195,9 @@ void bind_polynomial(nb::module_& m) {
             "degree"_a, "nm"_a, "origin"_a, "coefficients"_a)
         .def_prop_ro("degree", &PolynomialSystem::degree)
         .def_ro("nm", &PolynomialSystem::nm)
-        .def_prop_ro("origin", &origin, "Base rays, (nodes, 4).")
-        .def_prop_ro("monomials", &monomials, "Exponents, (monomials, 4).")
-        .def_prop_ro("coefficients", &coefficients, "(nodes, outputs, monomials).")
+        .def("origin", &origin, "Base rays, (nodes, 4).")
+        .def("monomials", &monomials, "Exponents, (monomials, 4).")
+        .def("coefficients", &coefficients, "(nodes, outputs, monomials).")
         .def("evaluate", &evaluate, "rays"_a, "nm"_a, "(N, 4) to (N, 4).")
         .def("jacobian", &jacobian, "rays"_a, "nm"_a, "(N, 4) to (N, 4, 4).")
         .def(

@@ -1,0 +1,143 @@
+"""The pieces of a system, each the Taylor expansion of its exact transfer about a base ray.
+
+Lengths in mm. z runs the way that light goes, also behind a mirror: distances are positive, and a
+radius is positive when the centre lies ahead. Every element ends on a plane across z through the
+vertex of its surface, where the next one begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import daguerre._core as _core
+from daguerre.errors import DaguerreError, UsageError
+
+from .forms import Form
+from .system import System
+from .wavelengths import Index, index_at, nodes_of, with_glass
+
+AXIS = (0.0, 0.0, 0.0, 0.0)
+MAX_DEGREE = 15
+
+
+def propagate(distance: float, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
+    """To a plane ``distance`` mm ahead.
+
+    Args:
+        distance: mm; negative: back.
+        degree: 1 to 15. Of two systems put together, the lower counts.
+        about: Base ray of the expansion, shape (4,); the axis if not given.
+    """
+    nodes, rays = _about(about, [])
+    with _said():
+        return System(_core.polynomial_propagation(distance, checked(degree), nodes, rays))
+
+
+def refract(
+    form: Form,
+    n1: Index,
+    n2: Index,
+    *,
+    degree: int = 5,
+    wavelength: ArrayLike | None = None,
+    about: ArrayLike = AXIS,
+) -> System:
+    """Through a surface, from the plane at its vertex to itself.
+
+    Args:
+        form: ``sphere(50)``, ``plane()``, ``conic``, ``asphere``, ``cylinder`` ...
+        n1: Index in front: a number, one for each wavelength, or a glass.
+        n2: Index behind.
+        degree: 1 to 15.
+        wavelength: Nodes, nm, shape () or (W,); not given: the indices hold for any, or are those
+            of a glass at 587.56 nm.
+        about: Base ray, shape (4,) or (W, 4): the ``image`` of what comes before.
+
+    Raises:
+        UsageError: The base ray misses, is totally reflected, or the form is not smooth there.
+    """
+    nodes, rays = _about(about, with_glass(nodes_of(wavelength), n1, n2))
+    first, second = index_at(n1, nodes), index_at(n2, nodes)
+    with _said(form):
+        return System(
+            _core.polynomial_refraction(form.surface, first, second, checked(degree), nodes, rays)
+        )
+
+
+def reflect(form: Form, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
+    """From a mirror. What follows is counted along the reflected light; x and y stay.
+
+    Args:
+        form: Radius positive when the centre lies ahead of the light that arrives.
+        degree: 1 to 15.
+        about: Base ray, shape (4,).
+    """
+    nodes, rays = _about(about, [])
+    with _said(form):
+        return System(_core.polynomial_reflection(form.surface, checked(degree), nodes, rays))
+
+
+def place(
+    decenter: ArrayLike = (0.0, 0.0, 0.0),
+    tilt: ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    degree: int = 5,
+    about: ArrayLike = AXIS,
+) -> System:
+    """Into a frame that is moved, then turned; its ``inverse()`` leads back out.
+
+    Args:
+        decenter: Of the frame along x, y and z, mm, shape (3,).
+        tilt: About x, then about the y that turned with it, then that z, degrees, shape (3,).
+        degree: 1 to 15.
+        about: Base ray, shape (4,).
+
+    Returns:
+        From the plane z = 0 to the plane z = 0 of the new frame. What follows is expanded
+        ``about=`` its ``image``.
+    """
+    shift, turn = (np.asarray(v, np.float64) for v in (decenter, tilt))
+    if shift.shape != (3,) or turn.shape != (3,) or not np.isfinite([shift, turn]).all():
+        raise UsageError(f"place: wanted three finite numbers each, got {decenter!r}, {tilt!r}")
+    nodes, rays = _about(about, [])
+    with _said():
+        return System(
+            _core.polynomial_placement(list(shift), list(turn), checked(degree), nodes, rays)
+        )
+
+
+def checked(degree: int) -> int:
+    """A degree that there is.
+
+    Raises:
+        UsageError: It is none of 1 .. 15.
+    """
+    if degree not in range(1, MAX_DEGREE + 1):
+        raise UsageError(f"degree: wanted a whole number from 1 to {MAX_DEGREE}, got {degree!r}")
+    return int(degree)
+
+
+def _about(about: ArrayLike, nodes: list[float]) -> tuple[list[float], list[list[float]]]:
+    """Base rays for the core: one, or one for each node."""
+    rays = np.atleast_2d(np.asarray(about, np.float64))
+    if rays.ndim != 2 or rays.shape[1] != 4 or len(rays) not in (1, len(nodes)):
+        raise UsageError(
+            f"about: wanted a ray (x, y, dx, dy), or one for each of {len(nodes)} wavelengths, "
+            f"got shape {np.shape(about)}"
+        )
+    return nodes, rays.tolist()
+
+
+@contextmanager
+def _said(form: Form | None = None) -> Iterator[None]:
+    """The core's complaint as a wrong parameter, with the form that it is about."""
+    try:
+        yield
+    except DaguerreError:
+        raise
+    except ValueError as error:
+        raise UsageError(f"{form}: {error}" if form else str(error)) from None

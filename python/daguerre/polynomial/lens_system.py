@@ -1,0 +1,105 @@
+"""The expansion of a lens, or of a ghost in it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import daguerre._core as _core
+from daguerre.errors import UsageError
+from daguerre.lenses.errors import reported
+from daguerre.lenses.focus import Focused
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens
+from daguerre.lenses.library import load
+
+from .elements import AXIS, checked
+from .system import System
+from .wavelengths import nodes_of
+
+
+def from_lens(
+    lens: Lens | Focused | str | Path,
+    degree: int = 5,
+    *,
+    ghost: tuple[int, int] | None = None,
+    wavelength: ArrayLike = DESIGN_WAVELENGTH_NM,
+    reverse: bool = False,
+    to_iris: int | None = None,
+    object_z: float = 0.0,
+    film_z: float | None = None,
+    about: ArrayLike = AXIS,
+) -> System:
+    """A lens as a polynomial, from a plane before it to the film.
+
+    Even degrees are allowed; a lens with axial symmetry has no terms in them.
+
+    Args:
+        lens: Of ``dg.lenses.load``, or focused; or its name or file.
+        degree: 1 to 15.
+        ghost: Two surfaces at which light is reflected on its way, in either order: at the one
+            farther along first.
+        wavelength: One, or nodes between which the coefficients follow the wavelength, nm, shape
+            () or (W,); see ``wavelength_nodes``.
+        reverse: From the film to the plane before the lens.
+        to_iris: End at the iris instead: at the crossing of this number, 0 for the first, -1 for
+            the last (a ghost may cross it three times). Points are those of the iris's own frame.
+        object_z: The plane before the lens, z in the lens frame, mm: 0 touches the first vertex.
+        film_z: The film, mm; not given: as the lens is focused, else its image plane.
+        about: Base ray, x, y and cosines on the plane where light starts, shape (4,).
+
+    Returns:
+        x and y are those of the lens frame on all planes, and both ways.
+
+    Raises:
+        InputError: The base ray is not let through, or a surface is not smooth where it meets it;
+            the message names the surface.
+        UsageError: A parameter that cannot be.
+    """
+    own_film = lens.film_z_mm if isinstance(lens, Focused) else None
+    prescribed = lens.lens if isinstance(lens, Focused) else lens
+    if not isinstance(prescribed, Lens):
+        prescribed = load(prescribed)
+    if film_z is None:
+        film_z = prescribed.image_z if own_film is None else own_film
+    ray = _ray(about)
+    if not (math.isfinite(object_z) and math.isfinite(film_z)):
+        raise UsageError(f"from_lens: planes: wanted finite z in mm, got {object_z!r}, {film_z!r}")
+    planes = (film_z, object_z) if reverse else (object_z, film_z)
+    pair = None if ghost is None else _pair(ghost)
+    nm = nodes_of(wavelength)
+    degree = checked(degree)
+    with reported(prescribed.source):
+        core = _core.polynomial_of_lens(
+            prescribed.prescription, degree, nm, planes, pair, not reverse, to_iris, ray
+        )
+    pupil = None
+    if not reverse and ghost is None:
+        pupil = _pupil_ahead(prescribed, object_z)
+    return System(core, pupil)
+
+
+def _pupil_ahead(lens: Lens, object_z: float) -> float | None:
+    """Of the entrance pupil ahead of a plane, mm; None: at infinity, or the lens is afocal."""
+    try:
+        z = lens.first_order().entrance_pupil.z - object_z
+    except ValueError:
+        return None
+    return z if math.isfinite(z) else None
+
+
+def _ray(about: ArrayLike) -> list[float]:
+    ray = np.asarray(about, np.float64)
+    if ray.shape != (4,):
+        raise UsageError(f"from_lens: about: wanted (x, y, dx, dy), got shape {ray.shape}")
+    return [float(v) for v in ray]
+
+
+def _pair(ghost: tuple[int, int]) -> tuple[int, int]:
+    try:
+        one, other = (int(i) for i in ghost)
+    except (TypeError, ValueError):
+        raise UsageError(f"from_lens: ghost: wanted two surfaces (i, j), got {ghost!r}") from None
+    return one, other

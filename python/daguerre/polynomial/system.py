@@ -1,0 +1,247 @@
+"""A polynomial from rays to rays: evaluated, put together, undone, printed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+from daguerre.errors import DaguerreError, UsageError
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+from .terms import SeidelTerms, seidel_terms
+
+FloatArray = NDArray[np.float64]
+NAMES = ("x", "y", "dx", "dy")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class System:
+    """The Taylor expansion of an optical system about one ray, its base.
+
+    A ray is ``(x, y, dx, dy)`` on a plane: a point in mm, and x and y of its unit direction. These
+    cosines (not slopes), times the index of the medium, are the momenta that belong to x and y, so
+    that a system keeps etendue to the order to which it is known. z runs the way that light goes.
+
+    ``P2 @ P1`` is first P1, then P2, to the lower degree of both. What was cut from each is what is
+    cut from both together, as long as P2 is expanded about the ray on which P1 ends.
+
+    Attributes:
+        core: The core's version.
+        pupil: Where the entrance pupil lies ahead of the first plane, mm; None: not known.
+    """
+
+    core: _core.PolynomialSystem
+    pupil: float | None = None
+
+    @property
+    def degree(self) -> int:
+        """Of the highest monomials."""
+        return int(self.core.degree)
+
+    @property
+    def wavelengths(self) -> FloatArray:
+        """Where it was expanded, nm, shape (W,); empty: it is the same at all."""
+        return np.asarray(self.core.nm, np.float64)
+
+    @property
+    def monomials(self) -> NDArray[np.int32]:
+        """Powers of x, y, dx and dy, by degree, shape (M, 4)."""
+        return np.asarray(self.core.monomials())
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of the monomials of the ray less the base ray, shape (4, M); (W, 4, M) for W > 1."""
+        c = np.asarray(self.core.coefficients())
+        return c[0] if len(c) == 1 else c
+
+    @property
+    def base(self) -> FloatArray:
+        """The base ray on the first plane, shape (4,); (W, 4) for W > 1 wavelengths."""
+        rays = np.asarray(self.core.origin())
+        return rays[0] if len(rays) == 1 else rays
+
+    @property
+    def image(self) -> FloatArray:
+        """The base ray on the last plane, shape (4,); (W, 4) for W > 1 wavelengths."""
+        return self.coefficients[..., 0].copy()
+
+    @property
+    def matrix(self) -> FloatArray:
+        """The first degree: ABCD of both sections, shape (4, 4); (W, 4, 4) for W > 1."""
+        first = self.monomials.sum(axis=1) == 1
+        return self.coefficients[..., first].copy()
+
+    def __call__(self, rays: ArrayLike, wavelength: ArrayLike | None = None) -> FloatArray:
+        """Rays on the last plane.
+
+        Args:
+            rays: On the first plane, shape (N, 4) or (4,).
+            wavelength: nm, one or shape (N,); not given: the only one, or else 587.56 nm.
+
+        Raises:
+            UsageError: Shapes that do not fit, or a wavelength outside the system's own.
+        """
+        rows, nm = self._arguments(rays, wavelength)
+        out = _said(self.core.evaluate, rows, nm)
+        return np.asarray(out).reshape(np.shape(rays))
+
+    def jacobian(self, rays: ArrayLike, wavelength: ArrayLike | None = None) -> FloatArray:
+        """Derivatives of the ray on the last plane (rows), shape (N, 4, 4) or (4, 4)."""
+        rows, nm = self._arguments(rays, wavelength)
+        out = _said(self.core.jacobian, rows, nm)
+        return np.asarray(out).reshape(*np.shape(rays), 4)
+
+    def __matmul__(self, first: System) -> System:
+        """First ``first``, then this."""
+        if not isinstance(first, System):
+            return NotImplemented
+        return System(_said(self.core.after, first.core), self._pupil_before(first))
+
+    def inverse(self) -> System:
+        """From the last plane to the first one: put together, the identity up to the degree."""
+        return System(_said(self.core.inverse))
+
+    def truncated(self, degree: int) -> System:
+        """Without the monomials above a degree."""
+        if not 1 <= degree <= self.degree:
+            raise UsageError(f"truncated: wanted a degree from 1 to {self.degree}, got {degree!r}")
+        return replace(self, core=self.core.truncated(degree))
+
+    def at(self, wavelength: float) -> System:
+        """The system at one wavelength, nm: between its nodes as they say."""
+        return replace(self, core=_said(self.core.at, float(wavelength)))
+
+    def seidel(
+        self,
+        wavelength: float | None = None,
+        *,
+        pupil: float | None = None,
+        object_distance: float = np.inf,
+    ) -> SeidelTerms:
+        """The third-order aberrations by name, of the point on the last plane.
+
+        Args:
+            wavelength: nm; as for a call.
+            pupil: Of the entrance pupil ahead of the first plane, mm; not given: as it is known,
+                else on that plane.
+            object_distance: Of the object from that pupil, mm.
+
+        Raises:
+            UsageError: Degree 3 is missing, or axial symmetry.
+        """
+        terms = self._terms(wavelength, pupil, object_distance)
+        if terms is None:
+            raise UsageError(
+                "Seidel terms: wanted degree 3 at least and axial symmetry about the base ray, "
+                f"got degree {self.degree}" + ("" if self.degree < 3 else " without symmetry")
+            )
+        return terms
+
+    def _terms(
+        self, wavelength: float | None, pupil: float | None, object_distance: float
+    ) -> SeidelTerms | None:
+        if self.degree < 3:
+            return None
+        if pupil is None:
+            pupil = self.pupil or 0.0
+        here = (
+            self.at(float(np.asarray(self._wavelength(wavelength))))
+            if self.wavelengths.size
+            else self
+        )
+        if here.base.any():
+            return None
+        return seidel_terms(here.monomials, here.coefficients, pupil, object_distance)
+
+    def _pupil_before(self, first: System) -> float | None:
+        """The entrance pupil of both: the first one's, else the image of this one's through it."""
+        if first.pupil is not None or self.pupil is None:
+            return first.pupil
+        matrix = first.matrix if first.matrix.ndim == 2 else first.matrix[0]
+        (a, b), (c, d) = matrix[0, [0, 2]], matrix[2, [0, 2]]
+        return float((b + self.pupil * d) / (a + self.pupil * c))
+
+    def _wavelength(self, wavelength: ArrayLike | None) -> ArrayLike:
+        if wavelength is not None:
+            return wavelength
+        return self.wavelengths[0] if self.wavelengths.size == 1 else DESIGN_WAVELENGTH_NM
+
+    def _arguments(
+        self, rays: ArrayLike, wavelength: ArrayLike | None
+    ) -> tuple[FloatArray, FloatArray]:
+        rows = np.ascontiguousarray(np.atleast_2d(np.asarray(rays, np.float64)))
+        nm = np.ascontiguousarray(np.atleast_1d(np.asarray(self._wavelength(wavelength), float)))
+        if rows.ndim != 2 or rows.shape[1] != 4 or nm.ndim != 1:
+            raise UsageError(
+                "polynomial system: wanted rays (x, y, dx, dy) of shape (N, 4) and wavelengths of "
+                f"shape () or (N,), got {np.shape(rays)} and {np.shape(nm)}"
+            )
+        return rows, nm
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> list[str]:
+        nm = self.wavelengths
+        at = ", ".join(f"{x:.6g}" for x in nm) + " nm" if nm.size else "any wavelength"
+        lines = [
+            f"polynomial system of degree {self.degree}, {len(self.monomials)} monomials, {at}"
+        ]
+        here = self if nm.size < 2 else self.at(float(nm[len(nm) // 2]))
+        if nm.size > 1:
+            lines.append(f"at {here.wavelengths[0]:.6g} nm")
+        if here.base.any() or here.image.any():
+            lines += [f"  base ray   {_ray(here.base)} -> {_ray(here.image)}"]
+        lines += _first_order(here.matrix)
+        terms = here._terms(None, None, np.inf)
+        if terms is None:
+            return [*lines, *_count_by_degree(here)]
+        where = "on the first plane" if self.pupil is None else f"{self.pupil:.6g} mm ahead"
+        lines.append(f"  third order, object at infinity, entrance pupil {where}")
+        lines += [f"    {name:<22}{value:>+14.6e}  {unit}" for name, value, unit in terms.rows()]
+        return [*lines, *_count_by_degree(here)]
+
+
+def _said(call: Callable[..., Any], *arguments: object) -> Any:
+    """What the core returns; its complaint as a wrong parameter."""
+    try:
+        return call(*arguments)
+    except DaguerreError:
+        raise
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def _ray(ray: FloatArray) -> str:
+    return "(" + ", ".join(f"{v:.6g}" for v in ray) + ")"
+
+
+def _first_order(matrix: FloatArray) -> list[str]:
+    """Rows of x' and dx', and of y' and dy' where they differ, without what is 0."""
+    rows = [0, 2] if np.allclose(matrix[::2, ::2], matrix[1::2, 1::2]) else [0, 1, 2, 3]
+    lines = []
+    for row in rows:
+        size = np.abs(matrix[row]).max()
+        parts = [
+            f"{v:+.6g} {name}"
+            for v, name in zip(matrix[row], NAMES, strict=True)
+            if abs(v) > 1e-13 * size
+        ]
+        lines.append(f"    {NAMES[row] + chr(39):<4}= " + " ".join(parts))
+    return ["  first order", *lines]
+
+
+def _count_by_degree(system: System) -> list[str]:
+    """How many coefficients are not 0, by degree."""
+    degrees, used = system.monomials.sum(axis=1), (system.coefficients != 0).any(axis=0)
+    counts = [f"{int(used[degrees == g].sum())} of degree {g}" for g in range(1, system.degree + 1)]
+    counts = [c for c in counts if not c.startswith("0 ")]
+    return ["  monomials in use: " + ", ".join(counts)]

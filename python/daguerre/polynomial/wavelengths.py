@@ -1,0 +1,90 @@
+"""Wavelengths at which systems are expanded, and what they do to refractive indices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+from daguerre.errors import UsageError
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+
+class HasIndex(Protocol):
+    """A glass: ``dg.lenses.glasses.find("N-BK7")``."""
+
+    def index(self, wavelength_nm: Any, /) -> Any:
+        """Index relative to air."""
+
+
+#: A number, one for each wavelength, or a glass.
+Index = float | Sequence[float] | HasIndex
+
+
+def wavelength_nodes(from_nm: float, to_nm: float, count: int) -> NDArray[np.float64]:
+    """Wavelengths through which a polynomial in 1/wavelength^2 stays near what lies between.
+
+    Args:
+        from_nm: The shortest one.
+        to_nm: The longest one.
+        count: How many, 2 at least; 4 keep most lenses within a micrometre.
+
+    Returns:
+        The nodes of Chebyshev with both ends, nm, shape (count,).
+    """
+    if not (0 < from_nm < to_nm < np.inf) or not 2 <= count <= 64:
+        raise UsageError(
+            f"wavelength nodes: wanted 0 < from < to in nm and 2 to 64 of them, "
+            f"got {from_nm!r} to {to_nm!r}, {count!r}"
+        )
+    return np.asarray(_core.wavelength_nodes(from_nm, to_nm, count), np.float64)
+
+
+def nodes_of(wavelength: ArrayLike | None) -> list[float]:
+    """The wavelengths as a list, none for None.
+
+    Raises:
+        UsageError: They do not ascend, or are no wavelengths.
+    """
+    if wavelength is None:
+        return []
+    nm = np.atleast_1d(np.asarray(wavelength, np.float64))
+    if (
+        nm.ndim != 1
+        or not nm.size
+        or not (np.isfinite(nm) & (nm > 0)).all()
+        or (np.diff(nm) <= 0).any()
+    ):
+        raise UsageError(
+            f"wavelength: wanted one in nm, or several that ascend, got {wavelength!r}"
+        )
+    return [float(x) for x in nm]
+
+
+def with_glass(nm: list[float], *indices: Index) -> list[float]:
+    """The nodes; where a glass needs a wavelength and none is named, the helium d line."""
+    return nm or (
+        [DESIGN_WAVELENGTH_NM]
+        if any(hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)) for n in indices)
+        else []
+    )
+
+
+def index_at(n: Index, nm: list[float]) -> list[float]:
+    """The index at each node, or one for all.
+
+    Raises:
+        UsageError: As many numbers as there are wavelengths are wanted.
+    """
+    if hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)):
+        return [float(n.index(x)) for x in nm]
+    numbers = np.atleast_1d(np.asarray(n, np.float64))
+    if numbers.ndim != 1 or len(numbers) not in (1, max(1, len(nm))):
+        raise UsageError(
+            f"refractive index: wanted a glass, a number, or one for each of {len(nm)} "
+            f"wavelengths, got {n!r}"
+        )
+    return [float(x) for x in numbers]
