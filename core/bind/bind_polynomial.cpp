@@ -10,6 +10,7 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
+#include "optics/ghost.h"
 #include "optics/polynomial/elements.h"
 #include "optics/polynomial/system.h"
 
@@ -172,13 +173,14 @@ void bind_elements(nb::module_& m) {
     m.def(
         "polynomial_placement",
         [](const std::array<double, 3>& decenter, const std::array<double, 3>& tilt,
-           int degree, const Numbers& nm, const RayList& about) {
+           bool back, int degree, const Numbers& nm, const RayList& about) {
             return for_nodes(nm, [&](std::size_t i) {
                 return placement({decenter[0], decenter[1], decenter[2]},
-                                 {tilt[0], tilt[1], tilt[2]}, degree, entry(about, i));
+                                 {tilt[0], tilt[1], tilt[2]}, back, degree,
+                                 entry(about, i));
             });
         },
-        "decenter"_a, "tilt"_a, "degree"_a, "nm"_a, "about"_a);
+        "decenter"_a, "tilt"_a, "back"_a, "degree"_a, "nm"_a, "about"_a);
 }
 
 }  // namespace

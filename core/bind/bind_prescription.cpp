@@ -2,6 +2,8 @@
 // traces of single rays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -9,11 +11,12 @@
 
 #include <array>
 #include <map>
+#include <optional>
 
 #include "bind/arrays.h"
 #include "bind/bind_first_order.h"
 #include "math/error.h"
-#include "optics/trace.h"
+#include "optics/ghost.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -78,16 +81,21 @@ auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& di
 
 /// Every ray at the last surface that it met, and which one stopped it.
 auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
-          const Column& wavelength_nm, bool clip, bool toward_film) {
+          const Column& wavelength_nm, bool clip, bool toward_film,
+          std::optional<std::pair<int, int>> ghost) {
     const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
     const dg::Tracer tracer(lens);
+    const dg::LensPath way =
+        ghost ? dg::ghost_path(tracer, ghost->first, ghost->second, toward_film)
+              : dg::straight_path(int(lens.surfaces.size()), toward_film);
     std::vector<double> points(3 * n), exits(3 * n), iris(2 * n), path(n),
         transmittance(n);
     std::vector<std::int32_t> stopped(n);
     for_rays(tracer, wavelength_nm, [&](std::size_t i, const dg::LensIndices& index) {
         dg::TracedRay out{ray_at(origins, directions, i)};
         out.iris = {kNan, kNan};
-        stopped[i] = tracer.follow(out, toward_film, index, {clip, nullptr, 0});
+        const int step = tracer.follow(out, way, index, {clip, nullptr, 0});
+        stopped[i] = step < 0 ? -1 : way[step].surface;
         for (int k = 0; k < 3; ++k)
             points[3 * i + k] = out.ray.origin[k],
                            exits[3 * i + k] = out.ray.direction[k];
@@ -177,10 +185,10 @@ void bind_prescription(nb::module_& m) {
         .def("trace", &trace, "origins"_a, "directions"_a, "wavelength_nm"_a, "image_z"_a,
              "clip"_a)
         .def("rays", &rays, "origins"_a, "directions"_a, "wavelength_nm"_a, "clip"_a,
-             "toward_film"_a = true,
+             "toward_film"_a = true, "ghost"_a = nb::none(),
              "Each ray at the last surface that it met: (points (N, 3), directions (N, 3), "
              "iris (N, 2), optical path (N,), transmittance (N,), index of the surface "
-             "that stopped it (N,), -1: none).")
+             "that stopped it (N,), -1: none). ghost: two surfaces that reflect the light.")
         .def("jacobian", &jacobian, "origin"_a, "direction"_a, "wavelength_nm"_a,
              "image_z"_a,
              "d(x, y, n L, n M) on the plane image_z / at the ray's origin, (4, 4); NaN if "

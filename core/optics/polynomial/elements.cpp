@@ -75,13 +75,15 @@ RayMap reflection(const SurfaceForm& form, int degree, const RayNumbers& about) 
     return crossing(form, {-1, 1, true}, 1, degree, about);
 }
 
-RayMap placement(const Vec3d& decenter, const Vec3d& tilt, int degree,
+RayMap placement(const Vec3d& decenter, const Vec3d& tilt, bool back, int degree,
                  const RayNumbers& about) {
     Surface s;
     s.decenter = decenter, s.tilt = tilt;
     const SurfaceFrame place = SurfaceForm(s, 0).place;
     const SeriesRay ray = series_ray(ray_series(degree, about), 0, 1);
-    const SeriesRay there{place.into(ray.origin), place.turn_in(ray.direction)};
+    const SeriesRay there =
+        back ? SeriesRay{place.out_of(ray.origin), place.turn_out(ray.direction)}
+             : SeriesRay{place.into(ray.origin), place.turn_in(ray.direction)};
     if (!(there.direction.z.value() > 0))
         throw input_error("polynomial element", "tilt",
                           "a frame in which the base ray goes forward",

@@ -18,8 +18,9 @@ RayMap refraction(const SurfaceForm& form, double n1, double n2, int degree,
 /// The same, reflected.
 RayMap reflection(const SurfaceForm& form, int degree, const RayNumbers& about = {});
 
-/// Into the frame of a surface that is moved or turned (surface.h): to its plane z = 0.
-RayMap placement(const Vec3d& decenter, const Vec3d& tilt, int degree,
+/// Into the frame of a surface that is moved or turned (surface.h), to its plane z = 0;
+/// `back`: out of that frame, from its plane z = 0 to the one of the frame before.
+RayMap placement(const Vec3d& decenter, const Vec3d& tilt, bool back, int degree,
                  const RayNumbers& about = {});
 
 }  // namespace dg

@@ -23,11 +23,4 @@ struct LensWay {
 RayMap lens_map(const Tracer& tracer, const LensIndices& n, const LensWay& way,
                 int degree);
 
-/// The path cut at its crossing of the stop number `crossing` (0: the first; -1: the
-/// last).
-LensPath path_to_stop(const Tracer& tracer, LensPath path, int crossing);
-
-/// Checked: the surfaces exist, differ, and have different media on both sides.
-LensPath ghost_path(const Tracer& tracer, int one, int other, bool toward_film);
-
 }  // namespace dg

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "math/linear_solve.h"
+#include "optics/ghost.h"
 #include "optics/lens_error.h"
 #include "optics/polynomial/elements.h"
 #include "optics/seidel.h"

@@ -7,9 +7,7 @@ Heidrich 2012)::
     import daguerre.polynomial as po
 
     singlet = (
-        po.refract(po.sphere(-50), 1.5, 1.0)
-        @ po.propagate(5)
-        @ po.refract(po.sphere(50), 1.0, 1.5)
+        po.refract(po.sphere(-50), 1.5, 1.0) @ po.propagate(5) @ po.refract(po.sphere(50), 1.0, 1.5)
     )
     print(singlet)
 

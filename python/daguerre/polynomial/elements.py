@@ -85,20 +85,25 @@ def place(
     decenter: ArrayLike = (0.0, 0.0, 0.0),
     tilt: ArrayLike = (0.0, 0.0, 0.0),
     *,
+    back: bool = False,
     degree: int = 5,
     about: ArrayLike = AXIS,
 ) -> System:
-    """Into a frame that is moved, then turned; its ``inverse()`` leads back out.
+    """Into a frame that is moved, then turned, or back out of it.
+
+    The axis is no longer the base ray there: what follows is expanded ``about=`` the ``image`` of
+    what comes before, so that no constants arise::
+
+        into = po.place((0, 1, 0), (2, 0, 0))
+        bend = po.refract(po.sphere(40), 1.0, 1.5, about=into.image) @ into
+        bend = po.place((0, 1, 0), (2, 0, 0), back=True, about=bend.image) @ bend
 
     Args:
         decenter: Of the frame along x, y and z, mm, shape (3,).
         tilt: About x, then about the y that turned with it, then that z, degrees, shape (3,).
+        back: From the plane z = 0 of that frame to the plane z = 0 before, instead.
         degree: 1 to 15.
         about: Base ray, shape (4,).
-
-    Returns:
-        From the plane z = 0 to the plane z = 0 of the new frame. What follows is expanded
-        ``about=`` its ``image``.
     """
     shift, turn = (np.asarray(v, np.float64) for v in (decenter, tilt))
     if shift.shape != (3,) or turn.shape != (3,) or not np.isfinite([shift, turn]).all():
@@ -106,7 +111,7 @@ def place(
     nodes, rays = _about(about, [])
     with _said():
         return System(
-            _core.polynomial_placement(list(shift), list(turn), checked(degree), nodes, rays)
+            _core.polynomial_placement(list(shift), list(turn), back, checked(degree), nodes, rays)
         )
 
 
