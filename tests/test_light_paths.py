@@ -20,7 +20,7 @@ from daguerre.session import Session
 from . import scenes
 from .statistical import batch_means, differences
 
-SIZE = (40, 24)
+SIZE = (32, 20)
 PLAN = (4000.0, 0.0)
 
 
@@ -56,13 +56,22 @@ def same_bits(a: Session, b: Session) -> bool:
     )
 
 
-@pytest.mark.parametrize("kind", ["thin", "pinhole"])
+CAMERAS = {
+    "thin": {},
+    "pinhole": {"f_stop": None},
+    "exact": {"lens": "double-gauss-50mm-f2", "focal_length": None},
+}
+
+
+@pytest.mark.parametrize("kind", CAMERAS)
 def test_camera_light_and_both_are_one_picture(kind: str) -> None:
-    scene, one = lamps(), camera(f_stop=2.0 if kind == "thin" else None)
+    scene, one = lamps(), camera(**CAMERAS[kind])
 
     def draw(technique: str, spp: int, plan: Any, seed: int) -> np.ndarray:
-        options = {"resolution": SIZE, "technique": technique, "light_paths": plan, "seed": seed}
-        return batch_means(scene, one, 8, spp, **options)
+        options = {"technique": technique, "light_paths": plan, "seed": seed}
+        # The tails of other filters bring pixels beside a lamp light that few of their samples see:
+        # pictures from the lens do not know their own variance there.
+        return batch_means(scene, one, 8, spp, resolution=SIZE, filter="box", **options)
 
     by_camera = draw("camera", 96, "off", 1000)
     by_light, by_both = draw("light", 24, PLAN, 2000), draw("both", 24, PLAN, 3000)

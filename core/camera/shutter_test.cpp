@@ -108,6 +108,28 @@ TEST_CASE("lines are exposed one after the other, from the side that is asked fo
     CHECK_FALSE(Shutter().rolls());
 }
 
+TEST_CASE("times of no line in particular expose each line as its own times do") {
+    for (const double exposure : {0.0, 0.002, 0.01, 0.5})   // an instant, windows apart, touching, over each other
+        for (const ScanOrder scan : {ScanOrder::top, ScanOrder::right}) {
+            ShutterSettings settings = rolling(scan, exposure, 0.01);
+            settings.curve = OpeningCurve::trapezoid(0.75);
+            const Shutter shutter(settings, 12, 8);
+            const int lines = scan == ScanOrder::top ? 8 : 12, n = 40000;
+            std::vector<double> exposed(lines);
+            for (int i = 0; i < n; ++i) {
+                const float time = shutter.draw_any(float((i + 0.5) / n)).time;
+                for (int row = 0; row < lines; ++row) exposed[row] += shutter.opening(row, time) / n;
+            }
+            // Of a time with density q each line gets the integral of s over its window; an instant counts as 1.
+            const double mean = exposure > 0 ? shutter.weight() : 1;
+            for (const double e : exposed)
+                CHECK(e / shutter.any_share() == doctest::Approx(mean).epsilon(0.01));
+        }
+    const Shutter at_once(ShutterSettings{0.1}, 12, 8);
+    CHECK(at_once.any_share() == 1);
+    CHECK(at_once.draw_any(0.3f).time == at_once.draw(3, 5, 0.3f).time);
+}
+
 TEST_CASE("a leaf's moments are even, and know how far the iris is open") {
     ShutterSettings settings;
     settings.exposure_s = 0.01, settings.leaf = true;

@@ -92,6 +92,18 @@ class Footprint {
     /// n |f| s / total of a pixel; 0 where total is.
     float share(Pixel p) const;
     float sign(Pixel p) const;
+    /// n f s of a pixel, with its sign.
+    float value(Pixel p) const {
+        const float f = x_.of(p.x) * y_.of(p.y);
+        return f == 0 ? 0 : density_.count(p) * f;
+    }
+    /// The pixels in reach: [x0, x1) x [y0, y1).
+    struct Box {
+        int x0, y0, x1, y1;
+    };
+    Box box() const {
+        return {x_.first, y_.first, x_.first + x_.count, y_.first + y_.count};
+    }
     /// One by its share, with u in [0,1)^2; total() > 0.
     Pixel choose(Vec2f u) const;
     /// A pixel from what this footprint's shares have above those of `other`, with u in [0,1); `other`'s own

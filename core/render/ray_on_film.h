@@ -25,12 +25,19 @@ class RayOnFilm {
     /// Something passes the lens, but all of it out of reach of the whole frame.
     bool off_frame() const { return off_frame_; }
 
-    /// Adds radiance x response to one pixel per wavelength, chosen by the share of its filter there with
-    /// u in [0,1)^2: the same u for all, so that most land in one pixel, as one value.
+    /// Adds radiance x response to all pixels whose filter it reaches. Of a wide filter to one pixel per
+    /// wavelength, chosen by its share with u in [0,1)^2: the same u for all, so that most are one value.
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                std::uint32_t sample) const;
 
   private:
+    void splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
+                   std::uint32_t sample) const;
+    void splat_chosen(Film& film, Spectrum light, const Wavelengths& wavelengths, Vec2f u,
+                      std::uint32_t sample) const;
+    bool reaches(std::size_t landing) const { return at_[landing] && at_[landing]->total() > 0; }
+
+    const FilmDensity& film_density_;
     std::span<const Reprojection> landings_;
     std::array<std::optional<Footprint>, kWavelengths> at_;
     double density_ = 0, exposure_;
