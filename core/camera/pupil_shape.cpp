@@ -13,11 +13,12 @@ PupilShape::Sight PupilShape::sight(Vec3d from_pupil, double w) const {
     s.layer = w == 0 ? 0 : std::sqrt(nearest_ / far) * layers_;
     const double across = std::hypot(s.e.x, s.e.y), angle = std::atan2(across, -s.e.z);
     const Vec2d out = across > 0 ? Vec2d{s.e.x, s.e.y} * (1 / across) : Vec2d{1, 0};
-    const Vec3d meridional{-s.e.z * out.x, -s.e.z * out.y, across}, sagittal{-out.y, out.x, 0};
+    const Vec3d meridional{-s.e.z * out.x, -s.e.z * out.y, across},
+        sagittal{-out.y, out.x, 0};
     if (axial_) {
         s.x = meridional, s.y = sagittal;
         s.angle = {angle, 0};
-    } else {   // x and y of the camera, carried along
+    } else {  // x and y of the camera, carried along
         s.x = meridional * out.x - sagittal * out.y;
         s.y = meridional * out.y + sagittal * out.x;
         s.angle = out * angle;
@@ -34,14 +35,19 @@ std::optional<Vec3d> PupilShape::grid_place(const Sight& s) const {
     const Vec2d low = a.low + (b.low - a.low) * t, high = a.high + (b.high - a.high) * t;
     Vec3d place{(s.angle.x - low.x) / (high.x - low.x) * columns_, 0, s.layer};
     if (!axial_) place.y = (s.angle.y - low.y) / (high.y - low.y) * rows_;
-    if (!(place.x >= 0 && place.x <= columns_ && place.y >= 0 && place.y <= rows_)) return std::nullopt;
+    if (!(place.x >= 0 && place.x <= columns_ && place.y >= 0 && place.y <= rows_))
+        return std::nullopt;
     return place;
 }
 
 PupilShape::Oval PupilShape::oval_at(Vec3d place) const {
-    const int i = std::min(int(place.x), columns_ - 1), j = std::min(int(place.y), std::max(rows_ - 1, 0)),
+    const int i = std::min(int(place.x), columns_ - 1),
+              j = std::min(int(place.y), std::max(rows_ - 1, 0)),
               k = std::min(int(place.z), layers_ - 1);
-    const double s = place.x - i, t = place.y - j, r = place.z - k;
+    // What moves with the distance is linear in its inverse, which is the square of the
+    // layer.
+    const double s = place.x - i, t = place.y - j,
+                 r = (place.z * place.z - k * k) / (2 * k + 1);
     Oval sum;
     const auto add = [&](int x, int y, int z, double share) {
         const Oval& o = ovals_[(std::size_t(z) * (rows_ + 1) + y) * (columns_ + 1) + x];
@@ -51,12 +57,17 @@ PupilShape::Oval PupilShape::oval_at(Vec3d place) const {
         for (int y = 0; y <= (axial_ ? 0 : 1); ++y)
             for (int x = 0; x < 2; ++x)
                 add(i + x, j + y, k + z,
-                    (x ? s : 1 - s) * (axial_ ? 1 : y ? t : 1 - t) * (z ? r : 1 - r));
+                    (x ? s : 1 - s) *
+                        (axial_ ? 1
+                         : y    ? t
+                                : 1 - t) *
+                        (z ? r : 1 - r));
     return sum;
 }
 
 std::size_t PupilShape::cell_at(Vec3d place) const {
-    const int i = std::min(int(place.x), columns_ - 1), j = std::min(int(place.y), std::max(rows_ - 1, 0)),
+    const int i = std::min(int(place.x), columns_ - 1),
+              j = std::min(int(place.y), std::max(rows_ - 1, 0)),
               k = std::min(int(place.z), layers_ - 1);
     return (std::size_t(k) * std::max(rows_, 1) + j) * columns_ + i;
 }
@@ -75,10 +86,13 @@ std::optional<PupilView::Sample> PupilShape::sample(Vec3d p, double w, Vec2f u) 
     if (!r) return std::nullopt;
     const Cell& c = *r->cell;
     const float total = c.until.back(), target = u.x * total;
-    const int k = std::min(int(std::upper_bound(c.until.begin(), c.until.end(), target) - c.until.begin()),
-                           kColumns - 1);
-    const float before = k > 0 ? c.until[k - 1] : 0, within = (target - before) / (c.until[k] - before);
-    const Vec2d at{c.first + (k + within) * c.width(), c.low[k] + u.y * (c.high[k] - c.low[k])};
+    const int k = std::min(
+        int(std::upper_bound(c.until.begin(), c.until.end(), target) - c.until.begin()),
+        kColumns - 1);
+    const float before = k > 0 ? c.until[k - 1] : 0,
+                within = (target - before) / (c.until[k] - before);
+    const Vec2d at{c.first + (k + within) * c.width(),
+                   c.low[k] + u.y * (c.high[k] - c.low[k])};
     const Vec3d q = s.x * (r->oval.center.x + r->oval.half.x * at.x) +
                     s.y * (r->oval.center.y + r->oval.half.y * at.y);
     const Vec3d way = s.e * s.distance - w * q;

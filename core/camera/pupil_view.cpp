@@ -13,10 +13,10 @@ constexpr double kRim = 1 + 1e-5;
 
 using Sample = PupilView::Sample;
 
-/// The line through a point of the scene and one of the lens, with the density of the second per m2 of a
-/// plane with the given normal.
+/// The line through a point of the scene and one of the lens, with the density of the
+/// second per m2 of a plane with the given normal.
 struct Line {
-    Vec3d direction;   // unit, from the lens to the point, whichever of both lies in front
+    Vec3d direction;  // unit, from the lens to the point, whichever of both lies in front
     double pdf;
 };
 
@@ -37,12 +37,14 @@ std::optional<Sample> sample_hole(Vec3d p, double w) {
 
 }  // namespace
 
-PupilView::Disc PupilView::disc_of(const ThinLens& lens, const ThinLens::Numbers& numbers) {
+PupilView::Disc PupilView::disc_of(const ThinLens& lens,
+                                   const ThinLens::Numbers& numbers) {
     return {lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0, lens.iris};
 }
 
 PupilView::Kind PupilView::view_of(const LensKind& kind) {
-    if (const auto* lens = std::get_if<ThinLens>(&kind)) return disc_of(*lens, lens->numbers());
+    if (const auto* lens = std::get_if<ThinLens>(&kind))
+        return disc_of(*lens, lens->numbers());
     if (const auto* lens = std::get_if<ThickLens>(&kind)) {
         const FirstOrder& order = lens->first_order();
         Affine3d frame = lens->turn();
@@ -84,7 +86,8 @@ float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
     const Disc& disc = std::get<Disc>(kind_);
     const Vec3d axis = -disc.frame.z, d = to_double(ray.direction);
     const Vec3d from = to_double(ray.origin) - disc.frame.origin;
-    if (!(dot(d, axis) > 0) || !(dot(p - w * disc.frame.origin, axis) > w * -disc.start)) return 0;
+    if (!(dot(d, axis) > 0) || !(dot(p - w * disc.frame.origin, axis) > w * -disc.start))
+        return 0;
     const Vec3d at = from - d * (dot(from, axis) / dot(d, axis));
     const Vec2d in{dot(at, disc.frame.x), dot(at, disc.frame.y)};
     if (!disc.iris.in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
@@ -93,7 +96,8 @@ float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
     return line ? float(line->pdf) : 0;
 }
 
-PupilViewOverTime::PupilViewOverTime(const Camera& camera) : times_(camera.lens_motion.times) {
+PupilViewOverTime::PupilViewOverTime(const Camera& camera)
+    : times_(camera.lens_motion.times) {
     if (times_.empty()) {
         states_.emplace_back(camera.lens);
     } else if (std::holds_alternative<ThinLens>(camera.lens)) {
@@ -109,17 +113,20 @@ decltype(auto) PupilViewOverTime::with_lens(float time, const Use& use) const {
     const KeyPlace p = place_among(times_, time);
     const std::size_t nearest = p.share < 0.5 ? p.left : p.right;
     if (thin_.empty()) return use(states_[nearest]);
-    const ThinLens &a = std::get<ThinLens>(thin_[p.left]), &b = std::get<ThinLens>(thin_[p.right]);
+    const ThinLens &a = std::get<ThinLens>(thin_[p.left]),
+                   &b = std::get<ThinLens>(thin_[p.right]);
     return use(PupilView(PupilView::disc_of(std::get<ThinLens>(thin_[nearest]),
                                             blend(a.numbers(), b.numbers(), p.share))));
 }
 
-std::optional<Sample> PupilViewOverTime::sample(Vec3d p, double w, Vec2f u, float time) const {
+std::optional<Sample> PupilViewOverTime::sample(Vec3d p, double w, Vec2f u,
+                                                float time) const {
     return with_lens(time, [&](const PupilView& view) { return view.sample(p, w, u); });
 }
 
 float PupilViewOverTime::pdf(Vec3d p, double w, const Ray& ray) const {
-    return with_lens(ray.time, [&](const PupilView& view) { return view.pdf(p, w, ray); });
+    return with_lens(ray.time,
+                     [&](const PupilView& view) { return view.pdf(p, w, ray); });
 }
 
 }  // namespace dg

@@ -1,12 +1,15 @@
-// pupil_view.h -- the lens as a point of the scene sees it: where light must aim to come through.
+// pupil_view.h -- the lens as a point of the scene sees it: where light must aim to come
+// through.
 //
-// A point (p, 1) of the camera frame (m), or a direction at infinity (p, 0), draws a ray toward a region
-// that holds every point at which its light passes the lens, and little else. The density is known in closed
-// form and can be asked again for any ray of the point, so camera and light can weigh one ray alike. What
-// passes is not the region's affair: reproject() (camera.h) traces the ray. No ray depends on a wavelength.
+// A point (p, 1) of the camera frame (m), or a direction at infinity (p, 0), draws a ray
+// toward a region that holds every point at which its light passes the lens, and little
+// else. The density is known in closed form and can be asked again for any ray of the
+// point, so camera and light can weigh one ray alike. What passes is not the region's
+// affair: reproject() (camera.h) traces the ray. No ray depends on a wavelength.
 //
-// Pinholes are a lens of measure one. Thin lens: its iris; thick: the iris's image, the entrance pupil.
-// Exact: what camera rays of all wavelengths leave at the entrance pupil, iris fully open (pupil_shape.h).
+// Pinholes are a lens of measure one. Thin lens: its iris; thick: the iris's image, the
+// entrance pupil. Exact: what camera rays of all wavelengths leave at the entrance pupil,
+// iris fully open (pupil_shape.h).
 #pragma once
 #include <memory>
 #include <optional>
@@ -24,15 +27,15 @@ class PupilView {
     explicit PupilView(const LensKind& lens);
 
     struct Sample {
-        Vec3f origin;     // where rays of the camera start: the lens, or its first surface
+        Vec3f origin;  // where rays of the camera start: the lens, or its first surface
         Vec3f direction;  // unit, from the lens to the point
         float pdf;        // see below
     };
     /// Nothing where the point sees no lens.
     std::optional<Sample> sample(Vec3d p, double w, Vec2f u) const;
 
-    /// Density of a ray through the point: per sr at the point, or (w = 0) per m2 across the ray; 0: it is
-    /// never drawn. Pinhole: 1 across the ray.
+    /// Density of a ray through the point: per sr at the point, or (w = 0) per m2 across
+    /// the ray; 0: it is never drawn. Pinhole: 1 across the ray.
     float pdf(Vec3d p, double w, const Ray& ray) const;
 
   private:
@@ -41,7 +44,8 @@ class PupilView {
     /// A flat iris. Rays start on the plane z = start of its frame.
     struct Disc {
         Affine3d frame;  // camera from iris, m
-        double radius;   // of the unit of the shape, m; negative: an image turned by 180 degrees
+        double radius;   // of the unit of the shape, m; negative: an image turned by 180
+                         // degrees
         double start;
         Iris iris;
     };
@@ -53,7 +57,8 @@ class PupilView {
     Kind kind_;
 };
 
-/// Those of a camera whose lens changes while the shutter is open: of the lens that draws at each time.
+/// Those of a camera whose lens changes while the shutter is open: of the lens that draws
+/// at each time.
 class PupilViewOverTime {
   public:
     explicit PupilViewOverTime(const Camera& camera);
@@ -66,8 +71,8 @@ class PupilViewOverTime {
     template <typename Use>
     decltype(auto) with_lens(float time, const Use& use) const;
 
-    std::vector<float> times_;     // empty: one state
-    std::vector<LensKind> thin_;   // the keys of a thin lens, which changes evenly
+    std::vector<float> times_;    // empty: one state
+    std::vector<LensKind> thin_;  // the keys of a thin lens, which changes evenly
     std::vector<PupilView> states_;
 };
 
