@@ -19,7 +19,8 @@ namespace dg {
 /// bounds_volume() const (behind it lies another medium); Spectrum straight(wo) const
 /// (share of light that a smooth clear surface lets through unbent; where it bounds a
 /// volume, as if light went on without being bent: both faces of a plane slab have the
-/// Fresnel reflectance of the angle outside).
+/// Fresnel reflectance of the angle outside); float reversed(wo, wi) const (what a delta
+/// lobe from wi to wo has, 1 / eta^2 aside, over the same from wo to wi).
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf>;
 

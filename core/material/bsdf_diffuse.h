@@ -34,6 +34,7 @@ struct DiffuseBsdf {
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }
     Spectrum straight(Vec3f) const { return 0.f; }
+    float reversed(Vec3f, Vec3f) const { return 1; }
 };
 
 }  // namespace dg

@@ -120,6 +120,7 @@ struct GltfBsdf {
     Interior interior() const { return inside; }
     bool bounds_volume() const { return bends; }
     Spectrum straight(Vec3f wo) const;
+    float reversed(Vec3f, Vec3f) const { return 1; }
 
   private:
     /// What a facet whose normal makes cos_h with wo does: colours, and the chance to

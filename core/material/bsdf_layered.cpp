@@ -39,6 +39,12 @@ Spectrum LayeredBsdf::straight(Vec3f wo) const {
     return base.straight(wo) * (passed * (1 - shares(wo).coat));
 }
 
+/// The coat takes its share by the angle of wo alone. What it reflects itself leaves under that angle too.
+float LayeredBsdf::reversed(Vec3f wo, Vec3f wi) const {
+    const float there = 1 - shares(wo).coat;
+    return there > 0 ? (1 - shares(wi).coat) / there : 0;
+}
+
 LayeredBsdf::Shares LayeredBsdf::shares(Vec3f wo) const {
     const Facing coat_side(coat.ns, base.ng, wo);
     Shares p{};

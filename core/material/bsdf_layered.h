@@ -68,6 +68,7 @@ struct LayeredBsdf {
     bool bounds_volume() const { return base.bounds_volume(); }
     /// Coat and sheen take their share of what goes straight through.
     Spectrum straight(Vec3f wo) const;
+    float reversed(Vec3f wo, Vec3f wi) const;
 
   private:
     /// Of the light seen from wo: what the coat takes, and the chances to follow it, the

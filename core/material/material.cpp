@@ -181,6 +181,11 @@ Clear clearness(const Material& material) {
     return m->thickness > 0 ? Clear::volume : Clear::sheet;
 }
 
+bool has_normal_map(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return m && (m->normal_texture.used() || m->clearcoat.normal_texture.used());
+}
+
 bool has_cutout(const Material& material, const Textures&) {
     // A mesh may bring its own alpha at the vertices, so factor and texture alone prove
     // nothing.

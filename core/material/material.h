@@ -122,6 +122,9 @@ bool emits(const Material& material);
 /// its BSDFs' straight() says.
 Clear clearness(const Material& material);
 
+/// True when a texture bends its normals.
+bool has_normal_map(const Material& material);
+
 /// False where the material is opaque everywhere, so that rays need not ask.
 bool has_cutout(const Material& material, const std::vector<Texture>& textures);
 /// Opacity in [0,1] at uv with vertex colour alpha; 1 for opaque materials. mask gives 0
