@@ -57,6 +57,11 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
 void reproject(const Camera& camera, std::span<const CameraRay> rays,
                std::span<const float> wavelength_nm, std::span<Reprojection> out);
 
+/// The camera's setting at a time.
+inline LensSetting setting_at(const Camera& camera, float time) {
+    return camera.setting.values.empty() ? LensSetting{} : camera.setting.at(time);
+}
+
 /// The wall between the camera's frame and the world's, as they lie at the ray's time.
 Ray to_world(const Camera& camera, const Ray& ray);
 

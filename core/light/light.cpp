@@ -282,12 +282,27 @@ float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, fl
     return now ? emitter_pdf(*now, t, cos_light) * chosen : 0;
 }
 
-float LightSet::pdf_delta(std::size_t light, Vec3f position) const {
+float LightSet::choice_probability(std::size_t light, Vec3f position) const {
     if (tree_index_[light] != kNone) return local_probability(position, light);
     const auto found = std::ranges::find(infinite_lights_, std::int32_t(light));
     if (found == infinite_lights_.end()) return 0;
     return infinite_probability(position) *
            infinite_.pmf(int(found - infinite_lights_.begin()));
+}
+
+float LightSet::pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance,
+                    float time) const {
+    if (light == kEnvironment) return pdf_environment(wi, position, time);
+    const float chosen = choice_probability(light, position);
+    if (!(chosen > 0)) return 0;
+    if (std::holds_alternative<SphereLight>(lights_[light]))
+        return chosen * emitter_pdf(sphere_light_at(light, time), position);
+    if (!std::holds_alternative<TriangleLight>(lights_[light])) return chosen;
+    const auto triangle = triangle_at(light, time);
+    if (!triangle) return 0;
+    const TriangleSampler sampler(*triangle);
+    const float cosine = dot(wi, sampler.normal) / (2 * sampler.area);
+    return sampler.area > 0 ? chosen * sampler.pdf(distance, cosine) : 0;
 }
 
 float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const {

@@ -120,10 +120,10 @@ class LightSet {
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
                        float cos_light, Vec3f position, float time) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const;
-    /// Probability with which sample() would have chosen a delta light for `position`.
-    float pdf_delta(std::size_t light, Vec3f position) const;
     /// 0 everywhere for a constant environment: light sampling leaves it to the BSDF.
     float pdf_environment(Vec3f direction, Vec3f position, float time) const;
+    /// LightSample::pdf, had sample() chosen this light (or kEnvironment) along `wi` at `distance`.
+    float pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance, float time) const;
     /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
     Spectrum sphere_radiance(std::uint32_t sphere, float time,
                              const Wavelengths& wavelengths) const;
@@ -172,6 +172,7 @@ class LightSet {
         return keys_.empty() ? nullptr : keys_[light];
     }
     float local_probability(Vec3f position, std::size_t light) const;
+    float choice_probability(std::size_t light, Vec3f position) const;
 
     std::vector<Light> lights_;
     std::optional<Environment> environment_;

@@ -210,6 +210,7 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
             ++kinds[3];
         }
         CHECK(s->pdf == doctest::Approx(pdf).epsilon(1e-3));
+        CHECK(s->pdf == doctest::Approx(set.pdf(s->light, p, s->wi, s->distance, 0)).epsilon(1e-3));
     }
     for (int k : kinds) CHECK(k > 100);
     CHECK(set.pdf_triangle(0, 3, 1, 1, {}, 0) == 0);

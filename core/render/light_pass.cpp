@@ -44,7 +44,8 @@ LightPass::LightPass(const Scene& scene, const Camera& camera, Film& film,
       film_(film),
       settings_(settings),
       density_(density),
-      weight_(weight) {
+      weight_(weight),
+      bounced_(scene, camera, settings, weight) {
     const bool exact = std::holds_alternative<ExactLens>(camera.lens);
     end_secondary_ = exact && settings.dispersion == Dispersion::end_secondary;
     landings_ = exact && !end_secondary_ ? kWavelengths : 1;
@@ -59,9 +60,18 @@ void LightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
     work.counters.light_paths += last - first;
 }
 
+void LightPass::draw_bounced(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+    for (std::uint64_t i = first; i < last; ++i) {
+        bounced_.follow(i, work.paths, work.counters.rays);
+        if (work.paths.size() >= kBatchSize) trace(work);
+    }
+    trace(work);
+    work.counters.light_paths += last - first;
+}
+
 /// Nothing for a path that cannot bring light. Order of drawing: time and wavelengths, the emitter, the point
 /// of the lens; then the point on the emitter. Lens and emitter are stratified together.
-std::optional<LightPass::Path> LightPass::begin(std::uint64_t index) const {
+std::optional<LightArrival> LightPass::begin(std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index),
                         settings_.seed);
     const CameraRandom u = sampler.camera();
@@ -75,20 +85,19 @@ std::optional<LightPass::Path> LightPass::begin(std::uint64_t index) const {
     const Vec3d p = sky ? to_camera.vector(at) : to_camera.point(at);
     const auto lens = weight_.pupil().sample(p, sky ? 0 : 1, u.lens, moment.time);
     if (!lens || !(lens->pdf > 0)) return std::nullopt;
-    Path path;
+    LightArrival path;
     path.lens.ray = Ray{.origin = lens->origin, .direction = lens->direction, .time = moment.time};
-    path.lens.iris_opening = moment.iris_opening * setting_at(moment.time).iris_opening;
+    path.lens.iris_opening = moment.iris_opening * setting_at(camera_, moment.time).iris_opening;
     const Ray world = to_world(camera_, path.lens.ray);
-    path.point = *point;
-    path.toward = -world.direction;
     const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
     path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
-    path.luminance = scene_.emission(*point, path.toward, moment.time);
-    if (!(max_component(path.luminance) > 0)) return std::nullopt;
+    const Rgb luminance = scene_.emission(*point, -world.direction, moment.time);
+    if (!(max_component(luminance) > 0)) return std::nullopt;
     path.shadow = shadow_ray(*point, world);
     path.wavelengths = Wavelengths::sample(u.lambda);
     if (end_secondary_) path.wavelengths.end_secondary();
+    path.radiance = path.wavelengths.emission(luminance);
     path.u_pixel = sampler.next_2d();
     path.sample = std::uint32_t(double(index) / settings_.light.m1);
     return path;
@@ -97,7 +106,7 @@ std::optional<LightPass::Path> LightPass::begin(std::uint64_t index) const {
 /// To the film, each wavelength that has a way of its own.
 void LightPass::trace(Workspace& work) const {
     work.rays.clear(), work.nm.clear();
-    for (const Path& path : work.paths)
+    for (const LightArrival& path : work.paths)
         for (int k = 0; k < landings_; ++k) {
             work.rays.push_back(path.lens);
             work.nm.push_back(path.wavelengths.nm[k]);
@@ -107,7 +116,7 @@ void LightPass::trace(Workspace& work) const {
     for (std::size_t i = 0; i < work.paths.size(); ++i) {
         const std::span own(work.landings.data() + i * landings_, std::size_t(landings_));
         if (!camera_.setting.values.empty()) {
-            const Vec2f shift = setting_at(work.paths[i].lens.ray.time).film_shift_mm;
+            const Vec2f shift = setting_at(camera_, work.paths[i].lens.ray.time).film_shift_mm;
             for (Reprojection& l : own) l.film_mm = l.film_mm - shift;
         }
         finish(work, work.paths[i], own);
@@ -115,7 +124,7 @@ void LightPass::trace(Workspace& work) const {
     work.paths.clear();
 }
 
-void LightPass::finish(Workspace& work, const Path& path,
+void LightPass::finish(Workspace& work, const LightArrival& path,
                        std::span<const Reprojection> landings) const {
     const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
     work.counters.splats_off_film += film_ray.off_frame();
@@ -125,7 +134,7 @@ void LightPass::finish(Workspace& work, const Path& path,
     const Spectrum visible = scene_.visibility_along(path.shadow, path.wavelengths);
     if (visible.is_black()) return;
     const double divisor = weight_.divisor(path.density, film_ray.camera_density());
-    film_ray.splat(film_, path.wavelengths.emission(path.luminance) * visible * float(1 / divisor),
+    film_ray.splat(film_, path.radiance * visible * float(1 / divisor),
                    path.wavelengths, path.u_pixel, path.sample);
 }
 

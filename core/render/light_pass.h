@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/light_path.h"
 #include "render/light_weight.h"
 #include "render/ray_on_film.h"
 #include "render/render.h"
@@ -30,17 +31,15 @@ class LightPass {
     /// Buffers of one thread.
     struct Workspace;
 
-    /// Draws light paths [first, last).
+    /// Draws light paths [first, last) straight to the lens.
     void draw(Workspace& work, std::uint64_t first, std::uint64_t last) const;
+    /// Those with bounces (light_path.h).
+    void draw_bounced(Workspace& work, std::uint64_t first, std::uint64_t last) const;
 
   private:
-    struct Path;
-    std::optional<Path> begin(std::uint64_t index) const;
+    std::optional<LightArrival> begin(std::uint64_t index) const;
     void trace(Workspace& work) const;
-    void finish(Workspace& work, const Path& path, std::span<const Reprojection> landings) const;
-    LensSetting setting_at(float time) const {
-        return camera_.setting.values.empty() ? LensSetting{} : camera_.setting.at(time);
-    }
+    void finish(Workspace& work, const LightArrival& path, std::span<const Reprojection> landings) const;
 
     const Scene& scene_;
     const Camera& camera_;
@@ -48,25 +47,13 @@ class LightPass {
     const RenderSettings& settings_;
     const FilmDensity& density_;
     const LightWeight& weight_;
+    LightPaths bounced_;
     int landings_;         // per path: one for each wavelength that has a way of its own
     bool end_secondary_;
 };
 
-/// One light path on its way to the film.
-struct LightPass::Path {
-    CameraRay lens;            // camera frame
-    EmissionPoint point;
-    Vec3f toward;              // unit, world: from the point to the lens
-    Ray shadow;                // world
-    Rgb luminance;             // toward the lens
-    double density;            // LightWeight::of_light
-    Wavelengths wavelengths;
-    Vec2f u_pixel;
-    std::uint32_t sample;      // index of the samples that it belongs to
-};
-
 struct LightPass::Workspace {
-    std::vector<Path> paths;
+    std::vector<LightArrival> paths;
     std::vector<CameraRay> rays;
     std::vector<float> nm;
     std::vector<Reprojection> landings;

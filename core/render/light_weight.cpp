@@ -16,6 +16,7 @@ LightWeight::LightWeight(const Scene& scene, const Camera& camera, const Sensor&
     const std::vector<ViewCone> views = frame_views(camera, sensor, margin, sky_turns);
     lens_radius_ = views.front().from.radius;
     if (plan.m1 > 0) emission_ = EmissionSampler(scene.lights(), views);
+    if (plan.m2 > 0) rays_ = EmissionRays(scene.lights(), scene.emission_reach());
     pupil_.emplace(camera);
     scale_ = density.filter().absolute_integral();
     if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
@@ -49,6 +50,11 @@ std::optional<float> FirstRay::share_of_sphere(std::uint32_t sphere, const Surfa
 
 std::optional<float> FirstRay::share_of_sky(Vec3f direction) const {
     return share(to_double(direction), 0, weight_.emission().pdf_sky(direction, ray_.time), 1);
+}
+
+double FirstRay::lens_over_camera(Vec3f point) const {
+    const Vec3d p = inverse(weight_.pose(ray_.time)).point(to_double(point));
+    return weight_.pupil().pdf(p, 1, ray_) / density_;
 }
 
 }  // namespace dg

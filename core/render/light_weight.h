@@ -16,6 +16,7 @@
 #include "camera/sensor.h"
 #include "geometry/hit.h"
 #include "light/emission.h"
+#include "light/emission_ray.h"
 #include "render/dispersion.h"
 #include "render/light_plan.h"
 #include "scene/scene.h"
@@ -29,7 +30,9 @@ class LightWeight {
                 const FilmDensity& density, LightPlan plan, Technique technique);
 
     bool off() const { return plan_.off(); }
+    bool bounces() const { return plan_.m2 > 0 && !rays_.empty(); }
     const EmissionSampler& emission() const { return emission_; }
+    const EmissionRays& emission_rays() const { return rays_; }
     const PupilViewOverTime& pupil() const { return *pupil_; }
     Viewpoint viewpoint(float time) const;
     Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
@@ -40,6 +43,9 @@ class LightWeight {
     double of_light(float emission_pdf, float lens_pdf, float cosine) const {
         return plan_.m1 * scale_ * double(emission_pdf) * lens_pdf / cosine;
     }
+
+    /// The same for rays that leave emitters on their way to surfaces; `pdf` as EmissionRay::pdf.
+    double of_bounced(double pdf) const { return plan_.m2 * scale_ * pdf; }
 
     /// What a light path's find is divided by, and the share of a camera path's find that counts.
     double divisor(double light, double camera) const {
@@ -58,6 +64,7 @@ class LightWeight {
     Technique technique_;
     double scale_ = 1;
     EmissionSampler emission_;
+    EmissionRays rays_;
     std::optional<PupilViewOverTime> pupil_;
     float lens_radius_ = 0;
 };
@@ -74,6 +81,10 @@ class FirstRay {
     std::optional<float> share_of_triangle(const SurfaceHit& hit) const;
     std::optional<float> share_of_sphere(std::uint32_t sphere, const SurfaceHit& hit) const;
     std::optional<float> share_of_sky(Vec3f direction) const;
+
+    const LightWeight& weight() const { return weight_; }
+    /// Density of rays to the lens from a point (m, world) on the ray, per sr there, over that of the camera.
+    double lens_over_camera(Vec3f point) const;
 
   private:
     std::optional<float> share(Vec3d at, double w, float emission_pdf, float cosine) const;

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "render/light_weight.h"
+#include "render/bounce_share.h"
 
 namespace dg {
 namespace {
 
 constexpr float kRouletteThreshold = 0.3f;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
 float power_heuristic(float pdf, float other) {
@@ -28,6 +29,7 @@ struct Walk {
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
     const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
+    BounceShare* bounces = nullptr;    // while light paths may find what comes next
 };
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
@@ -35,6 +37,14 @@ float emission_weight(const Walk& walk, float light_pdf, PathSettings::Strategy 
     if (walk.from_delta || light_pdf <= 0 || strategy == PathSettings::Strategy::bsdf) return 1;
     if (strategy == PathSettings::Strategy::light) return 0;
     return power_heuristic(walk.bsdf_pdf, light_pdf);
+}
+
+/// What light paths leave of an emitter that the path has met.
+float bounced_share(const Walk& walk, std::int64_t light, float distance, float light_pdf) {
+    if (!walk.bounces) return 1;
+    const float ratio = walk.from_delta ? 0 : light_pdf / walk.bsdf_pdf;
+    return walk.bounces->of_emitter(light, walk.previous, walk.ray.direction, distance,
+                                    walk.ray.time, ratio);
 }
 
 Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavelengths& wl,
@@ -45,7 +55,8 @@ Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavele
         walk.from_delta
             ? 0
             : lights.pdf_environment(walk.ray.direction, walk.previous, walk.ray.time);
-    const float left = walk.first ? walk.first->share_of_sky(walk.ray.direction).value_or(1.f) : 1.f;
+    const float left = walk.first ? walk.first->share_of_sky(walk.ray.direction).value_or(1.f)
+                                  : bounced_share(walk, LightSet::kEnvironment, kInfinity, pdf);
     return lights.environment_radiance(walk.ray.direction, walk.ray.time, wl) *
            (left * emission_weight(walk, pdf, strategy));
 }
@@ -60,12 +71,19 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
     if (!walk.from_delta || left) seen.footprint[0] = seen.footprint[1] = {};
     const Rgb luminance = emitted(material, scene.textures(), seen);
     if (max_component(luminance) <= 0) return 0.f;
-    const float pdf = walk.from_delta
-                          ? 0
-                          : scene.lights().pdf_triangle(
-                                hit.instance, hit.primitive, walk.straight + hit.t,
-                                std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
-    return wl.emission(luminance) * (left.value_or(1.f) * emission_weight(walk, pdf, strategy));
+    const LightSet& lights = scene.lights();
+    const float distance = walk.straight + hit.t;
+    const float pdf =
+        walk.from_delta
+            ? 0
+            : lights.pdf_triangle(hit.instance, hit.primitive, distance,
+                                  std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
+    float share = left.value_or(1.f);
+    if (walk.bounces) {
+        const std::int64_t light = lights.triangle_index(hit.instance, hit.primitive);
+        if (light >= 0) share *= bounced_share(walk, light, distance, pdf);
+    }
+    return wl.emission(luminance) * (share * emission_weight(walk, pdf, strategy));
 }
 
 /// The cone that leaves a hit. Curvature is asked for only where it matters.
@@ -122,7 +140,8 @@ Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& b
 template <typename BsdfKind>
 Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
                       const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
-                      PathSettings::Strategy strategy, bool& hero_only, std::uint64_t& rays) {
+                      BounceShare::Vertex* both, PathSettings::Strategy strategy,
+                      bool& hero_only, std::uint64_t& rays) {
     const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wl);
     if (!light || light->pdf <= 0) return 0.f;
     if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
@@ -135,7 +154,8 @@ Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind&
                          light->delta, medium_after(walk, hit, bsdf, light->wi), wl);
     if (visible.is_black()) return 0.f;
     const bool alone = light->delta || strategy == PathSettings::Strategy::light;
-    const float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
+    float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
+    if (both) weight *= walk.bounces->of_sample(scene, *both, *light, wl);
     return f_cos * light->radiance * visible * (weight / light->pdf);
 }
 
@@ -143,7 +163,7 @@ Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind&
 /// it came from: light sampling there sees through the sheet too.
 template <typename BsdfKind>
 void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
-             const BsdfSample& sample) {
+             const BsdfSample& sample, BounceShare::Vertex* both) {
     walk.throughput *= sample.weight;
     if (sample.transmitted) {
         walk.eta_squared *= sample.eta * sample.eta;
@@ -154,6 +174,10 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
         }
     }
     walk.first = nullptr;
+    if (both) {
+        walk.bounces->leave(*both, sample);
+        if (!walk.bounces->open()) walk.bounces = nullptr;
+    }
     walk.bsdf_pdf = sample.pdf;
     walk.from_delta = sample.specular;
     walk.previous = hit.position;
@@ -192,6 +216,9 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
     walk.ray = ray;
     walk.previous = ray.origin;
     walk.first = first;
+    std::optional<BounceShare> bounces;
+    if (first) bounces.emplace(*first);
+    if (bounces && bounces->open()) walk.bounces = &*bounces;
     std::uint64_t rays = 0;
     for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
         if (!is_traceable(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
@@ -211,7 +238,9 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
                                               : scene.lights().pdf_sphere(
                                                     sphere, walk.previous, hit.time);
             const float left =
-                walk.first ? walk.first->share_of_sphere(sphere, hit).value_or(1.f) : 1.f;
+                walk.first ? walk.first->share_of_sphere(sphere, hit).value_or(1.f)
+                           : bounced_share(walk, scene.lights().sphere_index(sphere),
+                                           walk.straight + hit.t, pdf);
             *gathered += walk.throughput *
                          scene.lights().sphere_radiance(sphere, hit.time, wavelengths) *
                          (left * emission_weight(walk, pdf, settings.strategy));
@@ -223,7 +252,11 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         const bool last = vertex == settings.max_depth;  // behind it only windows count
         if (last && !scene.has_clear()) break;
 
+        SurfaceHit bare;
+        if (walk.bounces) bare = hit;
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
+        std::optional<BounceShare::Vertex> both;
+        if (walk.bounces) both.emplace(scene, material, bare, wavelengths, bsdf);
         if (aov && !aov->hit) record_first_hit(scene, material, hit, *aov);
         const bool alive = std::visit(
             [&](const auto& kind) {
@@ -232,12 +265,13 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
                     bool hero_only = false;
                     const Spectrum direct =
                         walk.throughput * direct_light(scene, hit, kind, u, walk, wavelengths,
+                                                       both ? &*both : nullptr,
                                                        settings.strategy, hero_only, rays);
                     (hero_only ? light.hero : *gathered) += direct;
                 }
                 const auto sample = kind.sample(hit.wo, u.lobe, u.direction);
                 if (!sample || sample->weight.is_black()) return false;
-                advance(walk, hit, kind, *sample);
+                advance(walk, hit, kind, *sample, both ? &*both : nullptr);
                 if (last && walk.straight == 0) return false;
                 if (sample->hero_only) {
                     // The throughput carries the hero's share from here on, so the weights of what was

@@ -50,6 +50,17 @@ RenderCounters operator+(const RenderCounters& a, const RenderCounters& b) {
             a.light_paths + b.light_paths, a.splats_off_film + b.splats_off_film};
 }
 
+/// Light paths [first, last) in blocks.
+struct LightTasks {
+    std::uint64_t first, last;
+    explicit LightTasks(std::array<std::uint64_t, 2> range) : first(range[0]), last(range[1]) {}
+    std::int64_t count() const { return std::int64_t((last - first + kLightBlock - 1) / kLightBlock); }
+    std::array<std::uint64_t, 2> operator[](std::int64_t block) const {
+        const std::uint64_t begin = first + std::uint64_t(block) * kLightBlock;
+        return {begin, std::min(begin + kLightBlock, last)};
+    }
+};
+
 /// Sums of a round over the pixels of the region.
 struct RoundSums {
     UInt128 begin = 0, count = 0;
@@ -86,8 +97,8 @@ class Renderer {
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
     }
 
-    /// Indices of the light paths that belong to these samples.
-    std::array<std::uint64_t, 2> light_paths() const {
+    /// Indices of the light paths that belong to these samples, `per_sample` to each.
+    std::array<std::uint64_t, 2> light_paths(double per_sample) const {
         if (!light_) return {0, 0};
         const SampleRound& round = settings_.round;
         double begin = settings_.sample_begin, end = settings_.sample_end;
@@ -95,10 +106,13 @@ class Renderer {
             const RoundSums sums(round);
             begin = sums.until(round.first), end = sums.until(round.last);
         }
-        return light_path_range(begin, end, settings_.light.m1, settings_.seed);
+        return light_path_range(begin, end, per_sample, settings_.seed);
     }
-    void draw_light(Workspace& work, std::uint64_t first, std::uint64_t last) const {
-        light_->draw(work.light, first, last);
+    void draw_light(Workspace& work, std::uint64_t first, std::uint64_t last, bool bounced) const {
+        if (bounced)
+            light_->draw_bounced(work.light, first, last);
+        else
+            light_->draw(work.light, first, last);
     }
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
@@ -144,7 +158,7 @@ class Renderer {
         const Vec2f px{pixel.x + 0.5f + f.offset.x, pixel.y + 0.5f + f.offset.y};
         const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
         const Moment moment = settings_.shutter.draw(pixel.x, pixel.y, u.time);
-        const LensSetting lens = setting_at(moment.time);
+        const LensSetting lens = setting_at(camera_, moment.time);
         work.camera_samples.push_back({settings_.sensor.mm_from_px(px) + lens.film_shift_mm, u.lens,
                                        moment.time, wavelengths.nm[0],
                                        moment.iris_opening * lens.iris_opening});
@@ -152,9 +166,6 @@ class Renderer {
                                 wavelengths});
     }
 
-    LensSetting setting_at(float time) const {
-        return camera_.setting.values.empty() ? LensSetting{} : camera_.setting.at(time);
-    }
 
     void draw_batch(Workspace& work) const {
         const std::size_t n = work.samples.size();
@@ -189,7 +200,7 @@ class Renderer {
         if (!camera_.setting.moves()) return;
         for (std::size_t i = 0; i < work.reprojections.size(); ++i) {   // the film lay elsewhere then
             Vec2f& film = work.reprojections[i].film_mm;
-            film = film - setting_at(work.traced_rays[i].ray.time).film_shift_mm;
+            film = film - setting_at(camera_, work.traced_rays[i].ray.time).film_shift_mm;
         }
     }
 
@@ -273,10 +284,10 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     const int rows = (region.height + kTileSize - 1) / kTileSize;
     const Renderer renderer(scene, camera, film, settings);
     oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
-    const auto [first_light, last_light] = renderer.light_paths();
+    const LightTasks straight(renderer.light_paths(settings.light.m1)),
+        bounced(renderer.light_paths(settings.light.m2));
     const std::int64_t tiles = std::int64_t(columns) * rows;
-    const std::int64_t tasks =
-        tiles + std::int64_t((last_light - first_light + kLightBlock - 1) / kLightBlock);
+    const std::int64_t tasks = tiles + straight.count() + bounced.count();
     std::atomic<std::int64_t> done{0};
     std::atomic<bool> stop{false};
     const auto draw = [&](std::int64_t task) {
@@ -287,8 +298,10 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
             renderer.draw_tile(work, x, y, std::min(x + kTileSize, x0 + region.width),
                                std::min(y + kTileSize, y0 + region.height));
         } else {
-            const std::uint64_t light = first_light + std::uint64_t(task - tiles) * kLightBlock;
-            renderer.draw_light(work, light, std::min(light + kLightBlock, last_light));
+            const bool bounces = task >= tiles + straight.count();
+            const auto [first, last] =
+                bounces ? bounced[task - tiles - straight.count()] : straight[task - tiles];
+            renderer.draw_light(work, first, last, bounces);
         }
         if (progress && !progress(double(++done) / double(tasks))) stop = true;
     };

@@ -32,8 +32,8 @@ Vec3f around(Vec2f u) {
 }
 
 struct Case {
-    const char* name;
-    Material material;
+    const char* name = "";
+    Material material{};
     Vec3f ns = {0, 0, 1};
     std::vector<Texture> textures = {};
 };
@@ -57,8 +57,11 @@ std::vector<Case> cases() {
     const Vec3f tilted = normalize(Vec3f{0.3f, -0.2f, 1});
     std::vector<Case> all;
     const auto add = [&](const char* name, auto kind) {
-        all.push_back({name, {name, kind}});
-        all.push_back({name, {name, kind}, tilted});
+        for (const Vec3f ns : {Vec3f{0, 0, 1}, tilted}) {
+            Case& c = all.emplace_back();
+            c.name = name, c.ns = ns;
+            c.material.kind = kind;
+        }
     };
     add("diffuse", DiffuseMaterial{});
     add("metal", ConductorMaterial{{0.9f, 0.6f, 0.3f}, 0.2f});
@@ -90,7 +93,9 @@ std::vector<Case> cases() {
     add("film", film);
     GltfMaterial bumpy = gltf(0.2f, 0.4f);
     bumpy.normal_texture = test::slot(0);
-    all.push_back({"bumpy", {"bumpy", bumpy}, {0, 0, 1}, {test::texel({190, 90, 230})}});
+    add("bumpy", bumpy);
+    all.pop_back();
+    all.back().textures = {test::texel({190, 90, 230})};
     return all;
 }
 

@@ -10,6 +10,7 @@
 #include "geometry/hit.h"
 #include "geometry/intersector.h"
 #include "light/emission.h"
+#include "light/emission_ray.h"
 #include "light/light.h"
 #include "material/material.h"
 #include "motion/motion.h"
@@ -106,6 +107,15 @@ class Scene {
     /// would find it on average.
     Rgb emission(const EmissionPoint& point, Vec3f toward, float time) const;
 
+    /// Where light may go.
+    EmissionReach emission_reach() const;
+    /// A ray of EmissionRays on its way, past its own emitter; its value with textures resolved.
+    struct Leaving {
+        Ray ray;
+        Rgb value;
+    };
+    Leaving leave(const EmissionRay& emitted, float time) const;
+
     struct Bounds {
         Vec3f min, max;
     };
@@ -125,6 +135,7 @@ class Scene {
     bool passes(const Ray& ray, const RawHit& hit) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     void find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const;
+    Bounds bounds_of(std::uint32_t instance) const;
     Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time) const;
     Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
                           const Wavelengths& wavelengths) const;

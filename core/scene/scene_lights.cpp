@@ -73,4 +73,27 @@ Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time) const 
     return triangle->mean_luminance;
 }
 
+Scene::Leaving Scene::leave(const EmissionRay& emitted, float time) const {
+    Leaving out{{.origin = emitted.origin, .direction = emitted.direction, .time = time},
+                emitted.value};
+    if (emitted.light == LightSet::kEnvironment) return out;
+    const Light& light = lights_.lights()[emitted.light];
+    if (const auto* triangle = std::get_if<TriangleLight>(&light)) {
+        PlacementRoom made;
+        SurfaceHit hit;
+        const InstanceRecord& record = records_[triangle->instance];
+        surface_at(record, record.placement(time, made), triangle->primitive, emitted.barycentric.x,
+                   emitted.barycentric.y, hit);
+        out.ray = spawn_ray(hit, emitted.direction, time);
+        out.value = triangle_emission(emitted.light, emitted.barycentric, emitted.direction, time);
+    } else if (std::holds_alternative<SphereLight>(light)) {
+        const Sphere ball = lights_.sphere_light_at(emitted.light, time).shape;
+        const Vec3f c = ball.center;
+        const float largest =
+            std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) + ball.radius;
+        out.ray.origin += (emitted.origin - c) * (0x1p-18f * largest / ball.radius);
+    }
+    return out;
+}
+
 }  // namespace dg

@@ -1,0 +1,77 @@
+// emission_reach.cpp -- where light may go in a scene, and where it is worth sending more of it.
+#include "scene/scene.h"
+
+namespace dg {
+namespace {
+
+// Of what bends or mirrors light, so many are aimed at one by one; of more, the largest.
+constexpr std::size_t kMostAims = 16;
+// What is larger than this share of the scene is met anyway.
+constexpr float kLargeAim = 0.5f;
+// GGX alpha above which a lobe is too wide for a caustic to be seen.
+constexpr float kNarrowAlpha = 0.1f;
+
+bool makes_caustics(const Material& material) {
+    if (const auto* d = std::get_if<DielectricMaterial>(&material.kind))
+        return d->ior != 1 && d->alpha < kNarrowAlpha;
+    if (const auto* c = std::get_if<ConductorMaterial>(&material.kind)) return c->alpha < kNarrowAlpha;
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m || m->unlit || m->roughness * m->roughness >= kNarrowAlpha) return false;
+    return (m->transmission > 0 && m->thickness > 0) || m->metallic > 0.5f;
+}
+
+Sphere ball_around(Vec3f min, Vec3f max) {
+    return {(min + max) * 0.5f, 0.5f * length(max - min)};
+}
+
+void widen(Vec3f& min, Vec3f& max, Vec3f a, Vec3f b) {
+    for (int k = 0; k < 3; ++k) {
+        min[k] = std::min(min[k], a[k]);
+        max[k] = std::max(max[k], b[k]);
+    }
+}
+
+}  // namespace
+
+/// Of one instance, at all times.
+Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const Instance& instance = description_.instances[i];
+    Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    if (instance.motion) {
+        const Box box = intersector_->bounds_of_moving(i);
+        return {to_float(box.min), to_float(box.max)};
+    }
+    for (const Vec3f local : description_.meshes[instance.mesh].positions) {
+        const Vec3f p = instance.world_from_local.point(local);
+        widen(b.min, b.max, p, p);
+    }
+    return b;
+}
+
+EmissionReach Scene::emission_reach() const {
+    EmissionReach reach;
+    Vec3f min = bounds_.min, max = bounds_.max;
+    reach.lit = ball_around(min, max);
+    for (const Keyed<Sphere>& sphere : spheres())
+        for (const Sphere& s : sphere.values) {
+            const Vec3f r{s.radius, s.radius, s.radius};
+            widen(min, max, s.center - r, s.center + r);
+        }
+    reach.all = ball_around(min, max);
+    std::vector<Sphere> balls;
+    for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
+        const Instance& instance = description_.instances[i];
+        if (description_.meshes[instance.mesh].triangles.empty()) continue;
+        if (!std::ranges::any_of(keys_of(instance.material), makes_caustics)) continue;
+        const Bounds b = bounds_of(i);
+        const Sphere ball = ball_around(b.min, b.max);
+        if (ball.radius > 0 && ball.radius < kLargeAim * reach.lit.radius) balls.push_back(ball);
+    }
+    std::ranges::sort(balls, std::ranges::greater{}, &Sphere::radius);
+    if (balls.size() > kMostAims) balls.resize(kMostAims);
+    reach.aim = EmissionAim(std::move(balls));
+    return reach;
+}
+
+}  // namespace dg
