@@ -37,20 +37,23 @@ std::optional<Sample> sample_hole(Vec3d p, double w) {
 
 }  // namespace
 
-PupilView::Disc PupilView::disc_of(const ThinLens& lens,
-                                   const ThinLens::Numbers& numbers) {
-    return {lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0, lens.iris};
+PupilView::Disc PupilView::disc_of(const ThinLens::Numbers& numbers,
+                                   std::shared_ptr<const Iris> iris) {
+    return {lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0,
+            std::move(iris)};
 }
 
 PupilView::Kind PupilView::view_of(const LensKind& kind) {
     if (const auto* lens = std::get_if<ThinLens>(&kind))
-        return disc_of(*lens, lens->numbers());
+
+        return disc_of(lens->numbers(), std::make_shared<const Iris>(lens->iris));
     if (const auto* lens = std::get_if<ThickLens>(&kind)) {
         const FirstOrder& order = lens->first_order();
         Affine3d frame = lens->turn();
         frame.origin = {0, 0, lens->pupil_offset_m()};
         return Disc{frame, 1e-3 * order.entrance_magnification * lens->iris_radius_mm(),
-                    -1e-3 * order.entrance_pupil_z, lens->iris()};
+                    -1e-3 * order.entrance_pupil_z,
+                    std::make_shared<const Iris>(lens->iris())};
     }
     if (const auto* lens = std::get_if<ExactLens>(&kind))
         return std::make_shared<const PupilShape>(*lens);
@@ -67,9 +70,9 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
     const Vec3d axis = -disc.frame.z;
     // Rays start at the depth -start along the axis, and the point lies before that.
     if (!(dot(p - w * disc.frame.origin, axis) > w * -disc.start)) return std::nullopt;
-    const Vec2d at = disc.iris.sample({u.x, u.y}, kRim) * disc.radius;
+    const Vec2d at = disc.iris->sample({u.x, u.y}, kRim) * disc.radius;
     const Vec3d q = disc.frame.point({at.x, at.y, 0});
-    const double area = disc.iris.sampling_area(kRim) * disc.radius * disc.radius;
+    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
     const auto line = line_through(p, w, q, axis, 1 / area);
     if (!line) return std::nullopt;
     const Vec3d origin = q - line->direction * (disc.start / dot(line->direction, axis));
@@ -90,33 +93,40 @@ float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
         return 0;
     const Vec3d at = from - d * (dot(from, axis) / dot(d, axis));
     const Vec2d in{dot(at, disc.frame.x), dot(at, disc.frame.y)};
-    if (!disc.iris.in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
-    const double area = disc.iris.sampling_area(kRim) * disc.radius * disc.radius;
+    if (!disc.iris->in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
+    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
     const auto line = line_through(p, w, at + disc.frame.origin, axis, 1 / area);
     return line ? float(line->pdf) : 0;
 }
 
 PupilViewOverTime::PupilViewOverTime(const Camera& camera)
-    : times_(camera.lens_motion.times) {
-    if (times_.empty()) {
-        states_.emplace_back(camera.lens);
-    } else if (std::holds_alternative<ThinLens>(camera.lens)) {
-        thin_ = camera.lens_motion.lenses;
-    } else {
-        for (const LensKind& lens : camera.lens_motion.lenses) states_.emplace_back(lens);
-    }
+    : times_(camera.lens_motion.times),
+      evenly_(std::holds_alternative<ThinLens>(camera.lens)) {
+    const auto add = [&](const LensKind& lens) {
+        states_.push_back(std::make_unique<State>());
+        states_.back()->lens = lens;
+    };
+    if (times_.empty()) add(camera.lens);
+    for (const LensKind& lens : camera.lens_motion.lenses) add(lens);
+}
+
+const PupilView& PupilViewOverTime::view(std::size_t state) const {
+    State& s = *states_[state];
+    std::call_once(s.once, [&] { s.view.emplace(s.lens); });
+    return *s.view;
 }
 
 template <typename Use>
 decltype(auto) PupilViewOverTime::with_lens(float time, const Use& use) const {
-    if (times_.empty()) return use(states_.front());
+    if (times_.empty()) return use(view(0));
     const KeyPlace p = place_among(times_, time);
-    const std::size_t nearest = p.share < 0.5 ? p.left : p.right;
-    if (thin_.empty()) return use(states_[nearest]);
-    const ThinLens &a = std::get<ThinLens>(thin_[p.left]),
-                   &b = std::get<ThinLens>(thin_[p.right]);
-    return use(PupilView(PupilView::disc_of(std::get<ThinLens>(thin_[nearest]),
-                                            blend(a.numbers(), b.numbers(), p.share))));
+    const PupilView& nearest = view(p.share < 0.5 ? p.left : p.right);
+    if (!evenly_) return use(nearest);
+    const ThinLens &a = std::get<ThinLens>(states_[p.left]->lens),
+                   &b = std::get<ThinLens>(states_[p.right]->lens);
+    return use(
+        PupilView(PupilView::disc_of(blend(a.numbers(), b.numbers(), p.share),
+                                     std::get<PupilView::Disc>(nearest.kind_).iris)));
 }
 
 std::optional<Sample> PupilViewOverTime::sample(Vec3d p, double w, Vec2f u,

@@ -12,6 +12,7 @@
 // iris fully open (pupil_shape.h).
 #pragma once
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -47,12 +48,13 @@ class PupilView {
         double radius;   // of the unit of the shape, m; negative: an image turned by 180
                          // degrees
         double start;
-        Iris iris;
+        std::shared_ptr<const Iris> iris;
     };
     using Kind = std::variant<Hole, Disc, std::shared_ptr<const PupilShape>>;
     explicit PupilView(Kind kind) : kind_(std::move(kind)) {}
     static Kind view_of(const LensKind& lens);
-    static Disc disc_of(const ThinLens& lens, const ThinLens::Numbers& numbers);
+    static Disc disc_of(const ThinLens::Numbers& numbers,
+                        std::shared_ptr<const Iris> iris);
 
     Kind kind_;
 };
@@ -71,9 +73,17 @@ class PupilViewOverTime {
     template <typename Use>
     decltype(auto) with_lens(float time, const Use& use) const;
 
-    std::vector<float> times_;    // empty: one state
-    std::vector<LensKind> thin_;  // the keys of a thin lens, which changes evenly
-    std::vector<PupilView> states_;
+    /// Made when it is first asked for: few of a long exposure's states may be.
+    struct State {
+        LensKind lens;
+        std::once_flag once;
+        std::optional<PupilView> view;
+    };
+    const PupilView& view(std::size_t state) const;
+
+    std::vector<float> times_;  // empty: one state
+    bool evenly_ = false;       // thin lenses change evenly from one to the next
+    std::vector<std::unique_ptr<State>> states_;
 };
 
 }  // namespace dg
