@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from daguerre.export import aim, languages, osl
+from daguerre.export import aim, languages, lens_code, osl
 from daguerre.export.expression import Function, Name
 from daguerre.export.horner import derivative, horner
 
@@ -83,6 +83,27 @@ def _compiled(source, number, tmp_path, compiler, suffix):
     return run
 
 
+@pytest.mark.skipif(not shutil.which("glslangValidator"), reason="no glslangValidator here")
+@pytest.mark.parametrize("version", ["330", "300 es"])
+def test_glsl_is_valid(version, tmp_path):
+    plan = PLANS["blades"]
+    name = languages.identifier(plan.name)
+    text = f"""#version {version}
+precision highp float;
+{languages.glsl_file(plan, ["A lens."])}
+out vec4 colour;
+void main() {{
+    float x, y, z, dx, dy, dz, weight;
+    {name}_sample(1.0, 2.0, 0.5, 0.25, 550.0, 2.8, x, y, z, dx, dy, dz, weight);
+    colour = vec4(dx, dy, dz, weight);
+}}
+"""
+    file = tmp_path / "lens.frag"
+    file.write_text(text)
+    done = subprocess.run(["glslangValidator", str(file)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
 def test_osl_is_straight_and_has_no_name_of_its_globals():
     text = osl.osl_file(aim.with_aim(PLANS["symmetric"]), ["A lens."])
     code = re.sub(r'//.*|"[^"]*"', "", text)
@@ -111,6 +132,27 @@ def test_horner_and_its_derivative():
         room = {"np": np}
         exec(languages.NumPy().define(f).replace("return out", "return float(out)"), room)
         assert room["p"](**values) == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_the_density_is_the_aims_jacobian(symmetric):
+    """Central differences of a rough vector by its second point."""
+    rough = made_up(symmetric=symmetric, rough=0.2).aim.slope
+    f = Function("v", ("fx", "fy", "ax", "ay", "l"), ("x", "y", "j"))
+    fx, fy, ax, ay, wave = (Name(n) for n in f.inputs)
+    at = lens_code.coordinates(f, symmetric, (fx, fy), (ax, ay), wave)
+    values = (*lens_code.vector(f, rough, at), lens_code.slope_jacobian(f, rough, at))
+    for name, value in zip(f.outputs, values, strict=True):
+        f.let(name, value)
+    room = {"np": np}
+    exec(languages.NumPy().define(f), room)
+    v, h = room["v"], 1e-5
+    point = (0.4, -0.5, 0.3, 0.6, -0.2)
+    columns = []
+    for k in (2, 3):
+        up, down = ([x + s * h * (i == k) for i, x in enumerate(point)] for s in (1, -1))
+        columns.append((np.array(v(*up)[:2]) - v(*down)[:2]) / (2 * h))
+    assert v(*point)[2] == pytest.approx(np.linalg.det(columns), rel=1e-6)
 
 
 @plans

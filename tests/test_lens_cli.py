@@ -87,3 +87,39 @@ def test_what_cannot_be_is_said(
     error = capsys.readouterr().err
     assert says in error
     assert "Traceback" not in error
+
+
+def test_a_lens_is_exported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "lens.json"
+    given = ["--export", str(file), "--degree", "3", "--focus", "2", "--sensor", "apsc"]
+    assert main(["lens", LENS, *given]) == 0
+    data = json.loads(file.read_text())
+    assert data["degree"] == 3
+    assert data["setting"]["focus_m"] == 2
+    assert data["film"]["half"][0] < 16
+    said = capsys.readouterr()
+    assert "degree 3" in said.err
+    assert "rad RMS" in said.err
+    assert said.out == ""
+
+
+@pytest.mark.parametrize(
+    ("flags", "says"),
+    [
+        (["--export", "lens.txt"], "--export: wanted a name ending in .c, .glsl, .osl"),
+        (["--export", "lens.osl", "--degree", "4"], "degree: wanted an odd number"),
+        (["--export", "lens.osl", "--sensor", "huge"], "--sensor: wanted a size in mm"),
+        (["--degree", "5"], "--degree: wanted with --export FILE"),
+    ],
+)
+def test_a_wrong_export_is_refused(
+    flags: list[str],
+    says: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["lens", LENS, *flags]) == 2
+    assert says in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

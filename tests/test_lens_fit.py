@@ -89,7 +89,7 @@ def test_error_falls_with_the_degree_and_is_told_by_field() -> None:
 def test_bytes_are_the_same_fit(fitted: polynomial.LensFit) -> None:
     data = fitted.to_bytes()
     copy = polynomial.LensFit.from_bytes(data)
-    assert copy.to_dict() == fitted.to_dict()
+    assert copy.to_dict() == {**fitted.to_dict(), "setting": None}  # bytes hold polynomials alone
     assert polynomial.fit(NAME, 7, f_stop=4).to_bytes() == data  # the same bits again
     for damaged in (b"", data[:-1], data[:100] + b"x" + data[101:], data + b"x"):
         with pytest.raises(InputError, match="damaged"):

@@ -131,7 +131,23 @@ void bind_camera(nb::module_& m) {
         .def_static("image", [](const Picture& p) {
             return Iris::image(int(p.shape(1)), int(p.shape(0)),
                                std::vector<float>(p.data(), p.data() + p.size()));
-        });
+        })
+        .def_prop_ro("is_picture", [](const Iris& i) { return i.kind() == Iris::Kind::image; })
+        .def_prop_ro("edges",
+                     [](const Iris& i) {
+                         std::vector<std::array<double, 2>> edges;
+                         for (const Vec2d e : i.blades().edge) edges.push_back({e.x, e.y});
+                         return edges;
+                     },
+                     "Unit vectors to the middles of the edges; empty: no blades.")
+        .def_prop_ro("apothem", [](const Iris& i) { return i.blades().apothem; },
+                     "Distance of straight edges; one unit is the radius of the circle of equal area.")
+        .def_prop_ro("bend", [](const Iris& i) { return i.blades().bend; },
+                     "1: arcs bent outward, -1: inward, 0: straight.")
+        .def_prop_ro("arc_center", [](const Iris& i) { return i.blades().center; },
+                     "Of the arcs, along the vectors of the edges.")
+        .def_prop_ro("arc_radius", [](const Iris& i) { return i.blades().arc_radius; })
+        .def_prop_ro("outer_radius", &Iris::outer_radius);
     nb::class_<ThickLens>(m, "ThickLens")
         .def("__init__",
              [](ThickLens* self, const Prescription& lens, double f_stop, const Iris& iris,

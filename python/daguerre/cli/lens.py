@@ -13,7 +13,8 @@ from daguerre.errors import InputError, UsageError
 
 from .console import note
 from .flags import option
-from .quantities import angle_deg, distance_m, f_number, length_mm
+from .lens_export import check_export, write_export
+from .quantities import SENSORS, angle_deg, distance_m, f_number, length_mm
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
@@ -45,6 +46,28 @@ def lens(
             "--drawing",
             metavar="FILE.svg|png|pdf",
             help="The section with rays of three fields; .png, .pdf: extra `plot`.",
+            panel=FILES,
+        ),
+    ] = None,
+    export: Annotated[
+        Path | None,
+        option(
+            "--export",
+            metavar="FILE.osl|c|glsl|py|json",
+            help="The lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy, data.",
+            panel=FILES,
+        ),
+    ] = None,
+    degree: Annotated[
+        int | None,
+        option("--degree", metavar="N", help="Of those: odd, 1 to 13 [7].", panel=FILES),
+    ] = None,
+    sensor: Annotated[
+        str | None,
+        option(
+            "--sensor",
+            metavar="WxH|" + "|".join(SENSORS),
+            help="Film that they cover, mm [the lens's format].",
             panel=FILES,
         ),
     ] = None,
@@ -90,6 +113,7 @@ def lens(
 
     for flag, path in (("--plot", plot), ("--drawing", drawing)):
         _check_file(flag, path)
+    check_export(export, degree, sensor)
     if focus_by not in FOCUS_BY:
         raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
     if through_focus and psf is None:
@@ -99,6 +123,9 @@ def lens(
     for text in item.notes:
         note(text)
     setting = _setting(zoom, focus, f_stop)
+    if export is not None:
+        write_export(item, export, degree, sensor, {**setting, "by": focus_by})
+        return 0
 
     def bench() -> Bench:
         return set_up(item, by="best" if focus_by == "best" else "paraxial", **setting)

@@ -1,1 +1,5 @@
 """Fitted lenses as code: C, GLSL, OSL for Blender's custom camera, NumPy; and as JSON."""
+
+from .files import SUFFIXES, check_suffix, code, save
+
+__all__ = ["SUFFIXES", "check_suffix", "code", "save"]

@@ -26,8 +26,11 @@ DEGREE = 4  # in the variables of axial symmetry; without it, FREE_DEGREE in all
 FREE_DEGREE = 5
 RAYS = 6000
 MARGIN = 1.04  # how far beyond the iris the aim is fitted
-#: F, d and C, and what the eye makes of them in daylight (V(lambda) of CIE 1924, times D65)
-EXPOSURE_NM, EXPOSURE_WEIGHTS = (486.13, 587.56, 656.27), (0.194, 0.742, 0.064)
+EXPOSURE_NM = range(440, 680, 20)
+#: V(lambda) of CIE 1924, and D65 of ISO/CIE 11664-2: what the eye makes of daylight
+_EYE = (0.023, 0.06, 0.139, 0.323, 0.71, 0.954, 0.995, 0.87, 0.631, 0.381, 0.175, 0.061)
+_DAYLIGHT = (104.9, 117.8, 115.9, 109.4, 104.8, 104.4, 100, 95.8, 90, 87.7, 83.7, 80.2)
+EXPOSURE_WEIGHTS = np.array(_EYE) * _DAYLIGHT / np.dot(_EYE, _DAYLIGHT)
 OPENINGS = np.sqrt(np.linspace(0.02, 1.0, 8))  # shares of the iris radius
 EXPOSURE_TERMS = 3
 
@@ -73,7 +76,7 @@ def fit_aim(plan: LensPlan) -> Aim | None:
 def exposure(plan: LensPlan) -> tuple[float, ...]:
     """The mean weight on the axis in daylight, as `LensPlan.exposure` has it."""
     _, sample = callables(plan)
-    u1, u2 = _quasi_random(2, 4096).T
+    u1, u2 = quasi_random(2, 1024).T
     values = [
         sum(
             share * float(np.mean(sample(0.0, 0.0, u1, u2, nm, plan.f_stop / opening)[-1]))
@@ -91,7 +94,7 @@ def exposure(plan: LensPlan) -> tuple[float, ...]:
 def focal_length(plan: LensPlan) -> float:
     """Film height over the slope of the view there, near the axis, mm."""
     height = 0.01 * plan.film_half_mm[0]
-    u1, u2 = _quasi_random(2, 512).T
+    u1, u2 = quasi_random(2, 512).T
     slopes = []
     for x in (-height, height):
         dx, _, dz, weight = callables(plan)[1](x, 0.0, u1, u2, 550.0, plan.f_stop)[-4:]
@@ -103,7 +106,7 @@ def _film_rays(
     plan: LensPlan, evaluate: Callable[..., Any], iris_mm: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Film points (mm), slopes, wavelengths (nm) and iris points (mm) of rays."""
-    x = _quasi_random(5, RAYS)
+    x = quasi_random(5, RAYS)
     f = _disc(x[:, 0], x[:, 1]) if plan.symmetric else 2.0 * x[:, :2] - 1.0
     film = np.array(plan.film_center_mm) + f * plan.film_half_mm
     q = _disc(x[:, 2], x[:, 3])
@@ -172,7 +175,7 @@ def _disc(u1: FloatArray, u2: FloatArray) -> FloatArray:
     return np.stack([r * np.cos(angle), r * np.sin(angle)], axis=1)
 
 
-def _quasi_random(dimensions: int, count: int) -> FloatArray:
+def quasi_random(dimensions: int, count: int) -> FloatArray:
     """Points in [0, 1) by the generalised golden ratio (Roberts 2018): an additive recurrence."""
     g = 2.0
     for _ in range(50):

@@ -15,6 +15,8 @@ The element on the right is applied first, as matrices are. ``fit`` makes a lens
 a camera can use.
 """
 
+from daguerre._core import Iris
+
 from .elements import place, propagate, reflect, refract
 from .fitting import fit
 from .forms import Form, asphere, biconic, conic, cylinder, plane, sphere, toroid
@@ -27,6 +29,7 @@ from .wavelengths import wavelength_nodes
 __all__ = [
     "ErrorZone",
     "Form",
+    "Iris",
     "LensFit",
     "SceneRays",
     "SeidelTerms",

@@ -9,8 +9,10 @@ from daguerre import lenses
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import from_core
+from daguerre.lenses.focus import By
 
 from .lens_fit import LensFit
+from .setting import FitSetting, iris_shape
 
 #: The highest degree that is fitted.
 MAX_DEGREE = 13
@@ -24,6 +26,7 @@ def fit(
     *,
     f_stop: float | None = None,
     focus: float = math.inf,
+    focus_by: By = "paraxial",
     film: tuple[float, float] | None = None,
     zoom: float | None = None,
     segments: int = 1,
@@ -37,6 +40,7 @@ def fit(
         degree: Of the polynomials in the ray's four coordinates: odd, 1 to 13.
         f_stop: As wide as the lens opens if None.
         focus: Distance from the entrance pupil, m.
+        focus_by: The paraxial image, or the smallest spot on the axis: ``best``.
         film: Width and height, mm; the format of the lens's file if None, else 36 x 24 mm.
         zoom: Focal length of a zoom, mm; as it stands if None.
         segments: Parts of the film by radius, each with polynomials of its own; the worst part is
@@ -63,7 +67,7 @@ def fit(
     width, height = _film(lens, film)
     if f_stop is not None:
         number(f_stop, "lens fit: f_stop", 0.1, 1000)
-    sharp = lens.focused(focus, zoom_mm=zoom, f_stop=f_stop)
+    sharp = lens.focused(focus, zoom_mm=zoom, f_stop=f_stop, by=focus_by)
     try:
         core = _core.LensFit.fit(
             sharp.lens.prescription,
@@ -78,7 +82,14 @@ def fit(
         )
     except ValueError as error:
         raise from_core(error, lens.source) from None
-    return LensFit(core)
+    setting = FitSetting(
+        f_stop=f_stop or sharp.lens.first_order().f_number,
+        focus_m=focus,
+        zoom_mm=sharp.lens.zoom_mm,
+        source=lens.patent,
+        iris=None if iris is None else iris_shape(iris),
+    )
+    return LensFit(core, setting)
 
 
 def _film(lens: lenses.Lens, given: tuple[float, float] | None) -> tuple[float, float]:

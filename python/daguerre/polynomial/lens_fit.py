@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import daguerre._core as _core
 from daguerre.errors import InputError, UsageError
 
 from .fit_data import error_zone, from_dict, to_dict
+from .setting import FitSetting
 
 FloatArray = NDArray[np.float64]
 
@@ -82,8 +84,10 @@ class LensFit:
     (dx/dz, dy/dz) in the lens's frame, whose z points from the scene to the film.
     """
 
-    def __init__(self, core: _core.LensFit) -> None:
+    def __init__(self, core: _core.LensFit, setting: FitSetting | None = None) -> None:
+        """From the core's fit, and what it was made for, if that is known."""
         self.core = core
+        self.setting = setting
 
     @property
     def lens(self) -> str:
@@ -173,7 +177,20 @@ class LensFit:
 
     def to_dict(self) -> dict[str, Any]:
         """The whole fit as JSON-able data, ``daguerre-lens-fit/0.1``."""
-        return to_dict(self.core)
+        setting = self.setting and self.setting.to_dict()
+        return {**to_dict(self.core), "setting": setting}
+
+    def save(self, path: str | Path) -> None:
+        """Writes the lens as code or data: ``.osl``, ``.c``, ``.glsl``, ``.py`` or ``.json``.
+
+        Raises:
+            UsageError: Another suffix, or a fit that is too large for code without loops.
+            InputError: What the language cannot express.
+            OutputError: The file cannot be written.
+        """
+        from daguerre.export import save
+
+        save(self.to_dict(), path)
 
     @classmethod
     def from_dict(cls, data: Any) -> LensFit:
@@ -182,7 +199,9 @@ class LensFit:
         Raises:
             InputError: Data of another form; the message names the place.
         """
-        return cls(from_dict(data))
+        core = from_dict(data)
+        setting = data.get("setting")
+        return cls(core, None if setting is None else FitSetting.from_dict(setting))
 
     def to_bytes(self) -> bytes:
         """The fit for this machine, to the last bit."""

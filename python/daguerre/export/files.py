@@ -1,0 +1,87 @@
+"""Writes a fitted lens as a file whose suffix says the language."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from daguerre.errors import UsageError, suggest
+from daguerre.io.atomic import write_bytes
+
+from .aim import with_aim
+from .facts import facts
+from .from_fit import plan_of
+from .languages import c_file, glsl_file, numpy_file
+from .osl import osl_file
+from .plan import LensPlan
+
+_WRITERS: dict[str, Callable[[LensPlan, Sequence[str]], str]] = {
+    ".c": c_file,
+    ".glsl": glsl_file,
+    ".osl": osl_file,
+    ".py": numpy_file,
+}
+SUFFIXES = (*_WRITERS, ".json")
+#: Unrolled code beyond this takes compilers seconds.
+MOST_COEFFICIENTS = 20000
+
+
+def check_suffix(path: str | Path, where: str = "export") -> str:
+    """The suffix of a file that a lens can be written to.
+
+    Raises:
+        UsageError: No known one.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in SUFFIXES:
+        wanted = ", ".join(SUFFIXES)
+        raise UsageError(
+            f"{where}: wanted a name ending in {wanted}, got {str(path)!r}"
+            f"{suggest(suffix, SUFFIXES) if suffix else ''}"
+        )
+    return suffix
+
+
+def code(data: dict[str, Any], suffix: str) -> str:
+    """The text of an exported lens.
+
+    Args:
+        data: ``LensFit.to_dict()``.
+        suffix: ``.c``, ``.glsl``, ``.osl``, ``.py`` or ``.json``.
+
+    Raises:
+        InputError: What the language cannot express; the message says what.
+    """
+    if suffix == ".json":
+        return json.dumps(data, indent=1) + "\n"
+    plan = plan_of(data)
+    count = sum(_coefficients(s) for s in data["segments"])
+    if count > MOST_COEFFICIENTS:
+        raise UsageError(
+            f"export of {data['lens']}: wanted at most {MOST_COEFFICIENTS} coefficients, got "
+            f"{count}: take a lower degree or fewer segments, or .json"
+        )
+    return _WRITERS[suffix](with_aim(plan), facts(data))
+
+
+def save(data: dict[str, Any], path: str | Path) -> None:
+    """Writes a fitted lens; the suffix chooses the language.
+
+    Raises:
+        UsageError: An unknown suffix, or a fit too large for unrolled code.
+        InputError: What the language cannot express.
+        OutputError: The file cannot be written.
+    """
+    suffix = check_suffix(path)
+    write_bytes(path, code(data, suffix).encode())
+
+
+def _coefficients(part: Any) -> int:
+    """How many there are in a segment."""
+    if isinstance(part, dict):
+        if "coefficients" in part:
+            return sum(len(row) for row in part["coefficients"])
+        return sum(_coefficients(inner) for inner in part.values())
+    return 0
