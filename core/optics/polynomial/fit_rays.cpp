@@ -46,11 +46,14 @@ Vec2d line_through(const std::vector<Vec2d>& points) {
     return {(ff * q - f * fq) / det, (n * fq - f * q) / det};
 }
 
-/// Moves q so that its middle over the film is 0, and makes it as wide in x as in y.
-void center_pupil(const std::vector<FitSample>& found, FitPupil& p) {
+/// Moves q so that its middle over the film is 0, and makes it as wide in x as in y. Mirrors stay mirrors: their
+/// middle is 0 as it is.
+void center_pupil(const std::vector<FitSample>& found, const FitSymmetry& symmetry, FitPupil& p) {
     std::vector<Vec2d> x, y;
     for (const FitSample& s : found) x.push_back({s.f.x, s.q.x}), y.push_back({s.f.y, s.q.y});
-    const Vec2d line_x = line_through(x), line_y = line_through(y);
+    Vec2d line_x = line_through(x), line_y = line_through(y);
+    if (symmetry.mirror_x) line_x.x = 0;
+    if (symmetry.mirror_y) line_y.x = 0;
     p.shift = p.shift - Vec2d{line_x.x, line_y.x}, p.by_film = p.by_film - Vec2d{line_x.y, line_y.y};
     double xx = 0, yy = 0;
     for (const FitSample& s : found) {
@@ -106,7 +109,7 @@ void FitRays::find_domain(LensFit& fit) {
     }
     if (found.size() < 16)
         throw LensError(tracer_.prescription().name + ": no light reaches the film", "lens-no-light");
-    if (!fit.symmetry.axial) center_pupil(found, p);
+    if (!fit.symmetry.axial) center_pupil(found, fit.symmetry, p);
     double reach = 0;
     for (const FitSample& s : found) reach = std::max(reach, length(p.q(s.f, s.slope)));
     const double grow = 1 / (1.03 * reach);
