@@ -11,6 +11,7 @@
 #include "bind/thread_seconds.h"
 #include "camera/aim_state.h"
 #include "camera/exact.h"
+#include "camera/fit_state.h"
 #include "math/error.h"
 
 namespace nb = nanobind;
@@ -31,7 +32,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus_distance_m,
                                bool focus_from_sensor, double half_diagonal_mm,
                                bool only_slope_boxes, double film_z_mm, Pair tilt_deg,
-                               Pair film_center_mm, Pair film_half_mm) {
+                               Pair film_center_mm, Pair film_half_mm,
+                               std::optional<int> fit_degree) {
     return {f_stop,
             iris,
             focus_distance_m,
@@ -42,6 +44,7 @@ dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus
             vec(tilt_deg),
             vec(film_center_mm),
             vec(film_half_mm),
+            fit_degree ? std::optional(dg::FittedGlass{*fit_degree}) : std::nullopt,
             ""};
 }
 
@@ -82,6 +85,16 @@ auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
                           dg::bind::to_numpy(std::move(aims), {n}));
 }
 
+/// The aim_state of the lens if its fit were another.
+nb::bytes state_with_fit(const dg::ExactLens& lens, const dg::LensFit& fit) {
+    const std::string bytes = lens.aim_state(), key = bytes.substr(0, 32);
+    auto state = dg::aim_from_bytes(bytes, key);
+    if (!state || state->fit.empty()) throw dg::Error("exact lens: wanted a lens with a fit");
+    state->fit = dg::to_bytes(fit);
+    const std::string other = dg::to_bytes(*state, key);
+    return nb::bytes(other.data(), other.size());
+}
+
 /// Draws the samples `repeats` times in this thread: rays that passed, its CPU seconds.
 std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
                                                const dg::bind::Rows2f& film_mm,
@@ -112,10 +125,12 @@ void bind_optics(nb::module_& m) {
             [](ExactLens* self, const Prescription& lens, double f_stop, const Iris& iris,
                double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
                bool only_slope_boxes, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
-               Pair film_half_mm, const std::optional<nb::bytes>& cache) {
+               Pair film_half_mm, std::optional<int> fit_degree,
+               const std::optional<nb::bytes>& cache) {
                 ExactLensSettings s =
                     settings(f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm,
-                             only_slope_boxes, film_z_mm, tilt_deg, film_center_mm, film_half_mm);
+                             only_slope_boxes, film_z_mm, tilt_deg, film_center_mm, film_half_mm,
+                             fit_degree);
                 if (cache) s.cache.assign(cache->c_str(), cache->size());
                 nb::gil_scoped_release release;   // states of a lens are set up side by side
                 new (self) ExactLens(lens, s);
@@ -124,21 +139,25 @@ void bind_optics(nb::module_& m) {
             "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
             nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
             "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
-            "cache"_a = nb::none(),
+            "fit_degree"_a = nb::none(), "cache"_a = nb::none(),
+            "fit_degree: draw from polynomials of that degree instead of the surfaces. "
             "cache: aim_state of an earlier one; not used unless it fits.")
         .def_static(
             "aim_key",
             [](const Prescription& lens, double f_stop, const Iris& iris, double focus_distance_m,
                bool focus_from_sensor, double half_diagonal_mm, bool only_slope_boxes,
-               double film_z_mm, Pair tilt_deg, Pair film_center_mm, Pair film_half_mm) {
+               double film_z_mm, Pair tilt_deg, Pair film_center_mm, Pair film_half_mm,
+               std::optional<int> fit_degree) {
                 return aim_key(lens, settings(f_stop, iris, focus_distance_m, focus_from_sensor,
                                               half_diagonal_mm, only_slope_boxes, film_z_mm,
-                                              tilt_deg, film_center_mm, film_half_mm));
+                                              tilt_deg, film_center_mm, film_half_mm,
+                                              fit_degree));
             },
             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
             "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
             nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
             "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
+            "fit_degree"_a = nb::none(),
             "Name of the aim_state that a lens with these arguments has.")
         .def_prop_ro("aim_state",
                      [](const ExactLens& lens) {
@@ -146,6 +165,8 @@ void bind_optics(nb::module_& m) {
                          return nb::bytes(state.data(), state.size());
                      },
                      "What the set-up found out, for `cache` of the same lens another time.")
+        .def("state_with_fit", &state_with_fit, "fit"_a,
+             "Its aim_state with another fit in place of its own, for comparisons.")
         .def("with_dirt",
              [](const ExactLens& lens, const std::optional<Picture>& front,
                 const std::optional<Picture>& iris) {
@@ -158,6 +179,9 @@ void bind_optics(nb::module_& m) {
              },
              "front"_a.none(), "iris"_a.none(),
              "Dust and scratches: transmittances (H, W) over the clear front and the open iris.")
+        .def("without_fit", &ExactLens::without_fit, "The same lens, traced surface by surface.")
+        .def_prop_ro("fit", &ExactLens::fit, nb::rv_policy::reference_internal,
+                     "What rays are drawn from instead of the surfaces; None: they are traced.")
         .def_prop_ro("h0", &ExactLens::h0)
         .def_prop_ro("transmittance", &ExactLens::transmittance)
         .def_prop_ro("f_stop", &ExactLens::f_stop)

@@ -12,7 +12,7 @@ namespace dg {
 // archives.
 
 /// To be raised whenever the same lens would be aimed differently.
-constexpr int kAimVersion = 2;
+constexpr int kAimVersion = 3;
 
 template <typename A>
 void describe(A& a, const Vec2d& v) {
@@ -87,9 +87,14 @@ void describe(A& a, const Iris& iris) {
 template <typename A>
 void describe(A& a, const ExactLensSettings& s) {
     const auto& [f_stop, iris, focus, focus_from, half_diagonal, boxes, film_z, tilt, film_center,
-                 film_half, cache] = s;
+                 film_half, fitted, cache] = s;
     (void)cache;
-    a(f_stop, iris, focus, focus_from, half_diagonal, boxes, film_z, tilt, film_center, film_half);
+    a(f_stop, iris, focus, focus_from, half_diagonal, boxes, film_z, tilt, film_center, film_half, fitted);
+}
+template <typename A>
+void describe(A& a, const FittedGlass& g) {
+    const auto& [degree] = g;
+    a(degree);
 }
 
 // Both ways: T is const for a writer.
@@ -112,11 +117,11 @@ void describe(A& a, T& t) {
 template <typename A, typename T>
     requires std::is_same_v<std::remove_const_t<T>, AimState>
 void describe(A& a, T& s) {
-    auto& [aim, h0, transmittance] = s;
+    auto& [aim, h0, transmittance, fit] = s;
     auto& [slopes, free_slopes, tables, fit_error, iris_error, fallback_segments, covered] =
         aim;
     a(slopes.k, slopes.coefficients, free_slopes.degree, free_slopes.coefficients, tables, fit_error,
-      iris_error, fallback_segments, covered, h0, transmittance);
+      iris_error, fallback_segments, covered, h0, transmittance, fit);
 }
 
 namespace {

@@ -10,6 +10,7 @@ namespace dg {
 struct AimState {
     Aim aim;
     double h0 = 0, transmittance = 0;
+    std::string fit{};  // of a fitted lens, see fit_state.h
 };
 
 /// 32 hexadecimal digits that differ as soon as anything differs of which the state depends: numbers of

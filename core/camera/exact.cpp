@@ -4,10 +4,12 @@
 #include <functional>
 
 #include "camera/aim_state.h"
+#include "camera/fit_state.h"
 #include "camera/mean_ray.h"
 #include "camera/tilt.h"
 #include "optics/intersect.h"
 #include "optics/lens_error.h"
+#include "optics/polynomial/lens_fit_simd.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -34,6 +36,8 @@ Prescription polished(Prescription lens) {
 }
 
 constexpr double kMaxTilt = 45;  // degrees
+constexpr double kSharp = 2;     // um on the film: no fit needs to be better
+constexpr int kMostSegments = 8;
 
 /// Where the chief ray from straight ahead (camera frame: -z) meets the plane at `depth` behind the middle
 /// of the entrance pupil, camera frame, mm: a tilted lens does not move the middle of the picture.
@@ -62,6 +66,8 @@ struct ExactLens::State {
     Affine3d turn;   // camera from lens, about the middle of the entrance pupil
     Vec2d ahead{};   // camera frame, mm: the middle of the film
     LensTables tables;
+    std::optional<LensFit> fit;
+    FitTables fit_tables;
     std::string key;
     AimState found;
 
@@ -102,12 +108,16 @@ struct ExactLens::State {
         tables = make_lens_tables(Tracer(without_stop_aperture(lens)), film_plane(), true,
                                   &settings.iris, iris_radius);
         key = aim_key(lens, s);
-        if (auto known = aim_from_bytes(s.cache, key)) {
+        auto known = aim_from_bytes(s.cache, key);
+        if (known && s.fitted) fit = fit_from_bytes(known->fit);
+        if (known && fit.has_value() == s.fitted.has_value()) {
             found = std::move(*known);
         } else {
             found.aim = make_aim(tracer, request);
             set_exposure();
+            if (s.fitted) fit = fitted(request), found.fit = to_bytes(*fit);
         }
+        if (fit) fit_tables = make_fit_tables(*fit, tables.iris);
         settings.cache.clear();
     }
 
@@ -122,6 +132,19 @@ struct ExactLens::State {
         const Affine3d back = inverse(turn);
         const Vec3d center = back.vector({ahead.x, ahead.y, film_depth()});
         return {center + Vec3d{0, 0, order.entrance_pupil_z}, back.x, back.y};
+    }
+
+    /// Of the degree that is asked for; the film is divided by radius where that must be and helps.
+    LensFit fitted(const AimRequest& aim) const {
+        LensFitRequest request{aim.film_z, aim.film_radius, aim.iris, aim.iris_radius, aim.tilted, aim.film};
+        request.degree = settings.fitted->degree;
+        LensFit best = make_lens_fit(tracer, request);
+        while (best.symmetry.axial && best.error.all.film.rms > kSharp && request.segments < kMostSegments) {
+            request.segments *= 2;
+            LensFit finer = make_lens_fit(tracer, request);
+            if (finer.error.all.film.rms < best.error.all.film.rms) best = std::move(finer);
+        }
+        return best;
     }
 
     /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly. On the lens's own axis,
@@ -152,7 +175,18 @@ struct ExactLens::State {
 
 ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
     : state_(std::make_shared<State>(lens, settings)),
+      fitted_(state_->fit.has_value()),
       unit_(state_->found.h0) {}
+
+ExactLens ExactLens::without_fit() const {
+    ExactLens lens = *this;
+    lens.fitted_ = false;
+    return lens;
+}
+
+const LensFit* ExactLens::fit() const {
+    return fitted_ ? &*state_->fit : nullptr;
+}
 
 ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     ExactLens lens = *this;
@@ -221,8 +255,13 @@ void ExactLens::generate(std::span<const CameraSample> samples,
         for (int i = count; i < padded; ++i)
             b.samples.x[i] = b.samples.y[i] = b.samples.u[i] = b.samples.v[i] = 0,
             b.samples.nm[i] = 550;
-        guided_rays(state_->tables, state_->found.aim.tables, b.samples, b.scene, b.weight,
-                    nullptr, padded);
+        if (fitted_) {
+            aimed_rays(state_->tables, state_->found.aim.tables, b.samples, b.film, b.weight, padded);
+            fit_to_scene(state_->fit_tables, b.film, b.scene, padded);
+        } else {
+            guided_rays(state_->tables, state_->found.aim.tables, b.samples, b.scene, b.weight,
+                        nullptr, padded);
+        }
         for (int i = 0; i < count; ++i) {
             CameraRay& out = rays[begin + i];
             const float aim = b.weight[i] * inv_h0;
@@ -280,7 +319,10 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             }
             b.film.nm[i] = wavelength_nm[from];
         }
-        trace_to_film(state_->tables, b.scene, b.film, padded);
+        if (fitted_)
+            fit_to_film(state_->fit_tables, b.scene, b.film, padded);
+        else
+            trace_to_film(state_->tables, b.scene, b.film, padded);
         aim_weights(state_->tables, state_->found.aim.tables, b.film, b.scene, b.weight,
                     padded);
         for (int i = 0; i < count; ++i) {

@@ -11,9 +11,15 @@
 #include "camera/camera_sample.h"
 #include "camera/lens_mask.h"
 #include "optics/paraxial.h"
+#include "optics/polynomial/lens_fit.h"
 #include "optics/pupil.h"
 
 namespace dg {
+
+/// The glass as polynomials (optics/polynomial/lens_fit.h) instead of surface by surface.
+struct FittedGlass {
+    int degree = 7;
+};
 
 struct ExactLensSettings {
     double f_stop = 0;  // 0: as wide as the lens opens
@@ -30,6 +36,7 @@ struct ExactLensSettings {
     Vec2d tilt_deg{};
     /// The part of the film that will be asked for, mm, upright; half 0: all within half_diagonal_mm.
     Vec2d film_center_mm{}, film_half_mm{};
+    std::optional<FittedGlass> fitted{};
     /// aim_state() of an earlier lens; not used unless it was made for the same lens and settings.
     std::string cache{};
 };
@@ -47,6 +54,11 @@ class ExactLens {
     /// The same lens, dirty: rays lose what the pictures stop. H0 stays that of the clean one. Error if a
     /// value is not in [0, 1].
     ExactLens with_dirt(LensDirt dirt) const;
+
+    /// The same lens, traced surface by surface. Not fitted: itself.
+    ExactLens without_fit() const;
+    /// What rays are drawn from instead of surfaces, if anything; with its errors.
+    const LensFit* fit() const;
 
     /// Rays start on the first surface. Film points beyond half_diagonal_mm get weight 0.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
@@ -95,6 +107,7 @@ class ExactLens {
     float dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const;
     std::shared_ptr<const State> state_;
     std::shared_ptr<const LensDirt> dirt_;   // null: clean
+    bool fitted_;
     double unit_;            // the exposure of weight 1
     double advance_ = 0;     // camera frame, mm: z of the middle of the entrance pupil
     Vec2f film_shift_{0, 0};   // mm: of the body's film against this lens's own

@@ -116,6 +116,11 @@ void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
     }
 }
 
+HWY_INLINE LaneAim aimed(const LensTables& lens, const AimTables& aim, V x, V y, V u, V v, V l) {
+    return aim.free.degree > 0 ? draw_free_lanes(lens, aim, x, y, u, v, l)
+                               : draw_lanes(lens, aim, x, y, u, v, l);
+}
+
 void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
             SceneRays& out, float* weight, FilmRays* slopes, int count) {
     const D d;
@@ -129,9 +134,7 @@ void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
             LaneRays scale;
             set_wavelength(lens, nm, scale);
             const V u = hn::Load(d, in.u + at), v = hn::Load(d, in.v + at);
-            const LaneAim m = aim.free.degree > 0
-                                  ? draw_free_lanes(lens, aim, x, y, u, v, scale.l)
-                                  : draw_lanes(lens, aim, x, y, u, v, scale.l);
+            const LaneAim m = aimed(lens, aim, x, y, u, v, scale.l);
             start_on_film(lens, x, y, m.mx, m.my, nm, r[h]);
             hn::Store(m.weight, d, weight + at);
             if (slopes) {
@@ -142,6 +145,20 @@ void Guided(const LensTables& lens, const AimTables& aim, const LensSamples& in,
         }
         lanes_to_scene(lens, r[0], r[1]);
         for (int h = 0; h < 2; ++h) store_scene_rays(r[h], out, i + h * lanes);
+    }
+}
+
+void Drawn(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
+           float* weight, int count) {
+    const D d;
+    for (int i = 0; i < count; i += int(hn::Lanes(d))) {
+        const V x = hn::Load(d, in.x + i), y = hn::Load(d, in.y + i), nm = hn::Load(d, in.nm + i);
+        LaneRays scale;
+        set_wavelength(lens, nm, scale);
+        const LaneAim m = aimed(lens, aim, x, y, hn::Load(d, in.u + i), hn::Load(d, in.v + i), scale.l);
+        hn::Store(x, d, out.x + i), hn::Store(y, d, out.y + i), hn::Store(nm, d, out.nm + i);
+        hn::Store(m.mx, d, out.mx + i), hn::Store(m.my, d, out.my + i);
+        hn::Store(m.weight, d, weight + i);
     }
 }
 
@@ -204,6 +221,7 @@ namespace dg {
 HWY_EXPORT(ToScene);
 HWY_EXPORT(ToFilm);
 HWY_EXPORT(Guided);
+HWY_EXPORT(Drawn);
 HWY_EXPORT(Weights);
 HWY_EXPORT(Slopes);
 HWY_EXPORT(TargetName);
@@ -218,6 +236,10 @@ void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int cou
 void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in,
                  SceneRays& out, float* aim_weight, FilmRays* slopes, int count) {
     HWY_DYNAMIC_DISPATCH(Guided)(lens, aim, in, out, aim_weight, slopes, count);
+}
+void aimed_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
+                float* aim_weight, int count) {
+    HWY_DYNAMIC_DISPATCH(Drawn)(lens, aim, in, out, aim_weight, count);
 }
 void aim_weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
                  const SceneRays& traced, float* aim_weight, int count) {

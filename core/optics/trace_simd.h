@@ -41,6 +41,9 @@ void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int cou
 /// traced.
 void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in,
                  SceneRays& out, float* aim_weight, FilmRays* slopes, int count);
+/// The same rays as they leave the film, not traced.
+void aimed_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
+                float* aim_weight, int count);
 /// The same weight for given film rays whose iris points are known: as if the aim had
 /// drawn them.
 void aim_weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,

@@ -16,6 +16,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import daguerre._core as _core
 
@@ -119,6 +120,7 @@ def exact_lens(
     tilt_deg: tuple[float, float] = (0.0, 0.0),
     film_center_mm: tuple[float, float] = (0.0, 0.0),
     film_half_mm: tuple[float, float] = (0.0, 0.0),
+    fit_degree: int | None = None,
 ) -> _core.ExactLens:
     """A lens at one focus and f-stop, ready to draw rays; the same bits whether kept or not.
 
@@ -133,6 +135,7 @@ def exact_lens(
         tilt_deg: Turn of the lens about x, then y of the camera's frame, about its entrance pupil.
         film_center_mm: Middle of the part of the film that is used, upright.
         film_half_mm: Half its size; (0, 0): all within ``half_diagonal_mm``.
+        fit_degree: Draw from polynomials of that degree; None: from the surfaces.
 
     Returns:
         The lens.
@@ -142,23 +145,18 @@ def exact_lens(
     """
     args = (prescription, f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm)
 
-    def lens(cache: bytes | None) -> _core.ExactLens:
-        return _core.ExactLens(
-            *args,
-            film_z_mm=film_z_mm,
-            tilt_deg=tilt_deg,
-            film_center_mm=film_center_mm,
-            film_half_mm=film_half_mm,
-            cache=cache,
-        )
+    more: dict[str, Any] = {
+        "film_z_mm": film_z_mm,
+        "tilt_deg": tilt_deg,
+        "film_center_mm": film_center_mm,
+        "film_half_mm": film_half_mm,
+        "fit_degree": fit_degree,
+    }
 
-    key = _core.ExactLens.aim_key(
-        *args,
-        film_z_mm=film_z_mm,
-        tilt_deg=tilt_deg,
-        film_center_mm=film_center_mm,
-        film_half_mm=film_half_mm,
-    )
+    def lens(cache: bytes | None) -> _core.ExactLens:
+        return _core.ExactLens(*args, **more, cache=cache)
+
+    key = _core.ExactLens.aim_key(*args, **more)
     known = load(key)
     exact = lens(known)
     state = exact.aim_state

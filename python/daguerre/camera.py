@@ -66,7 +66,11 @@ class Camera:
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
-        lens_model: exact, thick, thin or pinhole; None: exact if a prescription is named.
+        lens_model: exact, polynomial, thick, thin or pinhole; None: exact if a prescription is
+            named.
+        degree: Of a polynomial lens, odd, 1 to 13; None: 7.
+        fit_tolerance: RMS error (px) of a polynomial lens on the film, above which the exact lens
+            takes its place; None: 0.5.
         focal_length: mm, of an ideal lens; None: 50. A prescription has its own and takes no other.
         zoom: Focal length at which a zoom stands, mm; None: as its file has it.
         decenter: Elements that stand off the axis of a prescription, as lenses that were dropped
@@ -117,6 +121,8 @@ class Camera:
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     lens: str | Lens | None = None
     lens_model: str | None = None
+    degree: int | None = None
+    fit_tolerance: float | None = None
     focal_length: float | None = None
     zoom: float | None = None
     decenter: tuple[Decenter, ...] = ()
@@ -198,6 +204,8 @@ class Camera:
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
             replaced |= {"zoom": None, "decenter": (), "ripple": None}
+        if changes.get("lens_model") not in (None, "polynomial"):
+            replaced |= {"degree": None, "fit_tolerance": None}
         for rivals in RIVALS:
             both = sorted(given & set(rivals))
             if len(both) > 1:

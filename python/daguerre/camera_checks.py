@@ -13,11 +13,13 @@ from .camera import IDEAL, LIMITS, Camera
 from .checks import number, numbers, short, whole
 from .errors import UsageError, suggest
 
-MODELS = ("exact", "thick", "thin", "pinhole")
+MODELS = ("exact", "polynomial", "thick", "thin", "pinhole")
+#: those that have a prescription's elements
+TRACED = ("exact", "polynomial")
 
 
 def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
-    """The prescription, if any, and exact, thick, thin or pinhole."""
+    """The prescription, if any, and which of ``MODELS``."""
     model = camera.lens_model
     if model is not None and model not in MODELS:
         raise UsageError(
@@ -30,7 +32,7 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
         )
     if camera.lens is None or camera.lens in IDEAL:
         kind = str(camera.lens or "thin")
-        if model in ("exact", "thick"):
+        if model in (*TRACED, "thick"):
             raise UsageError(
                 f"camera: lens_model {model}: wanted the name or file of a lens, got none"
             )
@@ -76,10 +78,13 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
             )
     for name in ("decenter", "ripple", "front_mask", "iris_mask"):
         given = getattr(camera, name)
-        if model != "exact" and given is not None and np.size(given):
+        if model not in TRACED and given is not None and np.size(given):
             raise UsageError(
                 f"camera: {name}: wanted lens_model exact, got {model}, which has no elements"
             )
+    if model == "polynomial" and camera.ripple is not None:
+        raise UsageError("camera: ripple: wanted lens_model exact, got polynomial, which is smooth")
+    _check_fit(camera, model)
     if (model != "thin" or prescription) and camera.aperture_diameter is not None:
         raise UsageError(f"camera: aperture_diameter: this {model} lens takes f_stop instead")
     stops = [n for n in ("f_stop", "aperture_diameter", "t_stop") if getattr(camera, n) is not None]
@@ -91,15 +96,27 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
         raise UsageError(f"camera: focus_by: wanted paraxial or best, got {camera.focus_by!r}")
     if camera.focus_from not in ("pupil", "sensor"):
         raise UsageError(f"camera: focus_from: wanted pupil or sensor, got {camera.focus_from!r}")
-    if model == "exact" and camera.aperture_image is not None and camera.shutter_type == "leaf":
+    if model in TRACED and camera.aperture_image is not None and camera.shutter_type == "leaf":
         raise UsageError(
             "camera: shutter_type leaf: the iris of an exact lens wanted blades, "
             "got an aperture_image"
         )
     if camera.blades and camera.aperture_image is not None:
         raise UsageError("camera: wanted either blades or aperture_image, got both")
-    if model in ("exact", "thick") and camera.natural_vignetting:
+    if model in (*TRACED, "thick") and camera.natural_vignetting:
         raise UsageError(f"camera: natural_vignetting: the {model} lens has its own vignetting")
+
+
+def _check_fit(camera: Camera, model: str) -> None:
+    for name in ("degree", "fit_tolerance"):
+        if getattr(camera, name) is not None and model != "polynomial":
+            raise UsageError(f"camera: {name}: wanted lens_model polynomial with it, got {model}")
+    if camera.degree is not None:
+        wanted = "an odd number from 1 to 13"
+        if whole(camera.degree, "camera: degree", 1, 13, wanted) % 2 == 0:
+            raise UsageError(f"camera: degree: wanted {wanted}, got {camera.degree}")
+    if camera.fit_tolerance is not None:
+        number(camera.fit_tolerance, "camera: fit_tolerance", above=0)
 
 
 def _positive(name: str, value: Any, hint: str = "", *, infinite: bool = False) -> None:

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import lenses, tilt
+from . import camera_fit, lenses, tilt
 from .aim_cache import exact_lens
 from .camera import Camera, Decenter
+from .camera_checks import TRACED
 from .camera_parts import dirt_facts, iris_facts, iris_of, mask_of
 from .checks import number, numbers, short, whole
 from .errors import UsageError
@@ -75,7 +76,7 @@ def set_up(
     pose: _core.Motion,
     focus: Focus,
 ) -> RealLens:
-    """Focuses a lens and makes the camera of the model: exact, thick, thin or pinhole.
+    """Focuses a lens and makes the camera of the model.
 
     Raises:
         UsageError: Autofocus on a pixel outside of the frame.
@@ -91,10 +92,15 @@ def set_up(
     distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
     sharp = _focused(camera, lens, distance, f_stop)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    squeeze = lens.squeeze if model == "exact" else 1.0  # other models have one focal length
+    squeeze = lens.squeeze if model in TRACED else 1.0  # other models have one focal length
     focus.notes += lens.notes
     focus.notes += _notes(camera, lens, model, squeeze, f_stop, transmittance)
-    core, h0 = _core_camera(camera, model, sharp, frame, pose, film, focus.notes)
+    fitted: dict[str, Any] = {}
+    if model in TRACED:
+        exact, fitted = _traced_lens(camera, model, sharp, frame, focus)
+        core, h0 = _core.Camera.exact(pose, exact), exact.h0
+    else:
+        core, h0 = _core_camera(camera, model, sharp, pose, film)
     facts = {
         "lens": lens.name,
         "lens_sha256": _hash_lens(lens),
@@ -114,6 +120,7 @@ def set_up(
         "h0": h0,
         "transmittance": transmittance,
         "ripple": None if camera.ripple is None else list(_ripple(camera)),
+        **fitted,
         **iris_facts(camera),
         **dirt_facts(camera),
     }
@@ -141,7 +148,7 @@ def _notes(
             f"{lens.name} is anamorphic: it squeezes the picture's width by {squeeze:.3g}; "
             f"view it with a pixel aspect of {squeeze:.3g} (the EXR file says so)"
         )
-    elif model != "exact" and lens.squeeze != 1:
+    elif model not in TRACED and lens.squeeze != 1:
         notes.append(
             f"{lens.name} is anamorphic: its {model} model has the focal length of the height "
             "alone, and squeezes nothing"
@@ -234,23 +241,29 @@ def _focused(camera: Camera, lens: lenses.Lens, distance: float, f_stop: float) 
     return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, f_stop)
 
 
-def _core_camera(
-    camera: Camera,
-    model: str,
-    sharp: _InFocus,
-    frame: tuple[float, float],
-    pose: _core.Motion,
-    film: float,
-    notes: list[str],
-) -> tuple[_core.Camera, float]:
-    """The camera and its H0."""
-    if model == "exact":
+def _traced_lens(
+    camera: Camera, model: str, sharp: _InFocus, frame: tuple[float, float], focus: Focus
+) -> tuple[_core.ExactLens, dict[str, Any]]:
+    """The lens by its surfaces or by polynomials, and what there is to say of those."""
+    facts: dict[str, Any] = {}
+    if model == "polynomial":
+        degree = camera.degree or camera_fit.DEFAULT_DEGREE
+        exact = _exact_lens(camera, sharp, frame, degree)
+        pitch = frame[0] / focus.resolution[0]
+        exact, facts = camera_fit.judged(exact, camera, sharp.lens.name, pitch, focus.notes)
+    else:
         exact = _exact_lens(camera, sharp, frame)
-        notes += frame_notes(exact, sharp.lens, frame, camera.shift)
-        masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
-        if any(mask is not None for mask in masks):
-            exact = exact.with_dirt(*masks)
-        return _core.Camera.exact(pose, exact), exact.h0
+    focus.notes += frame_notes(exact, sharp.lens, frame, camera.shift)
+    masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
+    if any(mask is not None for mask in masks):
+        exact = exact.with_dirt(*masks)
+    return exact, facts
+
+
+def _core_camera(
+    camera: Camera, model: str, sharp: _InFocus, pose: _core.Motion, film: float
+) -> tuple[_core.Camera, float]:
+    """Of a model without surfaces: the camera and its H0."""
     try:
         thick = _core.ThickLens(
             sharp.lens.prescription,
@@ -284,7 +297,7 @@ def _directions(
     distance: float,
 ) -> Directions:
     """View directions of film points at a focus distance that may not be the last one."""
-    if camera.focus_at is None or model != "exact" or any(camera.tilt):
+    if camera.focus_at is None or model not in TRACED or any(camera.tilt):
         film = framing_distance(_focused(camera, lens, distance, f_stop))
         return ideal_direction(film * tilt.cosine(camera.tilt))
     far = _exact_lens(camera, _focused(camera, lens, math.inf, f_stop), frame)
@@ -320,7 +333,9 @@ def framing_distance(sharp: _InFocus) -> float:
     return (sharp.film_z - order.back_principal_point) * from_pupil / from_principal
 
 
-def _exact_lens(camera: Camera, sharp: _InFocus, frame: tuple[float, float]) -> _core.ExactLens:
+def _exact_lens(
+    camera: Camera, sharp: _InFocus, frame: tuple[float, float], fit_degree: int | None = None
+) -> _core.ExactLens:
     half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
     try:
         return exact_lens(
@@ -334,6 +349,7 @@ def _exact_lens(camera: Camera, sharp: _InFocus, frame: tuple[float, float]) -> 
             tilt_deg=camera.tilt,
             film_center_mm=camera.shift,
             film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
+            fit_degree=fit_degree,
         )
     except ValueError as error:
         raise from_core(error, sharp.lens.source) from None

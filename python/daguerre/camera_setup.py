@@ -17,7 +17,7 @@ import daguerre._core as _core
 
 from . import camera_prescription, lenses, shutter, tilt
 from .camera import Camera
-from .camera_checks import check, lens_and_model
+from .camera_checks import TRACED, check, lens_and_model
 from .camera_parts import frame_size, iris_facts, iris_of
 from .camera_pose import motion_facts
 from .camera_pose import pose as pose_over
@@ -95,23 +95,26 @@ def set_up(
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
         behind = 1e-3 * setup.facts.get("entrance_pupil_offset_mm", 0.0) / tilt.cosine(camera.tilt)
         lens_motion = LensMotion(moving, changing, begin, end, *parts, behind, lens_of)
-        states = model in ("exact", "thick")  # as opposed to ideal lenses, which blend
+        states = model in (*TRACED, "thick")  # as opposed to ideal lenses, which blend
         efl = setup.facts["effective_focal_length_mm"] if states else None
         note = lens_motion.apply(setup.core, efl, size, size[0] / resolution[0])
         setup.notes += [note] if note else []
-    setup.facts |= {
-        "lens_model": model,
-        "sensor_size_mm": list(camera.sensor_size),
-        "frame_size_mm": list(size),
-        "sensor_fit": camera.sensor_fit,
-        "shift_mm": list(camera.shift),
-        "tilt_deg": list(camera.tilt),
-        "world_from_camera": np.asarray(world).tolist(),
-        "iso": camera.iso,
-        "exposure_compensation": camera.exposure_compensation,
-        "shutter": shutter.facts(camera, resolution),
-        **facts,
-    }
+    setup.facts = (
+        {"lens_model": model}
+        | setup.facts
+        | {
+            "sensor_size_mm": list(camera.sensor_size),
+            "frame_size_mm": list(size),
+            "sensor_fit": camera.sensor_fit,
+            "shift_mm": list(camera.shift),
+            "tilt_deg": list(camera.tilt),
+            "world_from_camera": np.asarray(world).tolist(),
+            "iso": camera.iso,
+            "exposure_compensation": camera.exposure_compensation,
+            "shutter": shutter.facts(camera, resolution),
+            **facts,
+        }
+    )
     return setup
 
 

@@ -34,8 +34,21 @@ class CameraFlags:
         Text,
         option(
             "--lens-model",
-            metavar="exact|thick|thin|pinhole",
+            metavar="exact|polynomial|thick|thin|pinhole",
             help="How the lens is computed [exact if --lens names one].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    degree: Annotated[
+        int | None,
+        option("--degree", metavar="N", help="Of a polynomial lens, odd [7].", panel=_CAMERA),
+    ] = None
+    fit_tolerance: Annotated[
+        float | None,
+        option(
+            "--fit-tolerance",
+            metavar="PX",
+            help="RMS error above which the exact lens takes a polynomial one's place [0.5].",
             panel=_CAMERA,
         ),
     ] = None
@@ -228,6 +241,8 @@ class CameraFlags:
         plain = {
             "lens": "lens",
             "lens_model": "lens_model",
+            "degree": "degree",
+            "fit_tolerance": "fit_tolerance",
             "focus_on": "focus_on",
             "focus_from": "focus_from",
             "focus_by": "focus_by",

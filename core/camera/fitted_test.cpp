@@ -1,0 +1,146 @@
+// fitted_test.cpp -- exact lenses that draw from polynomials, against themselves surface by surface.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "camera/aim_state.h"
+#include "camera/exact.h"
+#include "optics/test_lenses.h"
+
+using namespace dg;
+
+namespace {
+
+ExactLensSettings at(double f_stop, int degree, Vec2d tilt = {}, const Iris& iris = {}) {
+    ExactLensSettings s;
+    s.f_stop = f_stop, s.iris = iris, s.focus_distance_m = 2, s.half_diagonal_mm = 18;
+    s.tilt_deg = tilt, s.fitted = FittedGlass{degree};
+    return s;
+}
+
+Prescription squeezing() {
+    Prescription lens = test::tessar();
+    lens.surfaces[0].shape = Shape::biconic;
+    lens.surfaces[0].curvature_x = 1.05 * lens.surfaces[0].curvature;
+    return lens;
+}
+
+std::vector<CameraSample> some_samples(int count, double reach = 12) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> u(0, 1);
+    std::vector<CameraSample> samples(count);
+    for (CameraSample& s : samples)
+        s = {{float(reach) * (2 * u(random) - 1), float(reach) * (2 * u(random) - 1)},
+             {u(random), u(random)},
+             0,
+             390 + 380 * u(random)};
+    return samples;
+}
+
+std::vector<CameraRay> drawn(const ExactLens& lens, const std::vector<CameraSample>& samples) {
+    std::vector<CameraRay> rays(samples.size());
+    lens.generate(samples, rays);
+    return rays;
+}
+
+struct Case {
+    Prescription lens;
+    ExactLensSettings settings;
+};
+
+std::vector<Case> cases() {
+    return {{test::check_lens(true, 0.5), at(2.8, 7)},
+            {test::check_lens(true, 0.5), at(4, 7, {}, Iris::polygon(5, 10, 0))},
+            {test::tessar(), at(4, 7)},
+            {test::tessar(), at(5.6, 5, {4, -3})},
+            {squeezing(), at(5.6, 5)}};
+}
+
+}  // namespace
+
+TEST_CASE("a fitted lens draws the exact lens's rays, as near as it says") {
+    for (const Case& c : cases()) {
+        const ExactLens fitted(c.lens, c.settings), exact = fitted.without_fit();
+        REQUIRE(fitted.fit());
+        CHECK(!exact.fit());
+        CHECK(fitted.h0() == exact.h0());
+        const auto samples = some_samples(4000);
+        const auto a = drawn(fitted, samples), b = drawn(exact, samples);
+        int both = 0, either = 0;
+        double squares = 0, light = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            either += a[i].weight > 0 || b[i].weight > 0;
+            if (!(a[i].weight > 0 && b[i].weight > 0)) continue;
+            ++both;
+            CHECK(a[i].aim_weight == b[i].aim_weight);
+            const double e = length(to_double(a[i].ray.direction) - to_double(b[i].ray.direction));
+            squares += e * e;
+            const double t = (a[i].weight - b[i].weight) / b[i].aim_weight;
+            light += t * t;
+        }
+        CHECK(both > 2000);
+        CHECK(both > 0.995 * either);
+        const FitErrorZone& said = fitted.fit()->error.all;
+        CHECK(std::sqrt(squares / both) < 1.5 * said.direction.rms + 3e-7);
+        CHECK(std::sqrt(light / both) < 1.5 * said.transmittance.rms + 1e-6);
+    }
+}
+
+TEST_CASE("what a fitted lens draws it follows back to where it came from, with the same density") {
+    for (const Case& c : cases()) {
+        const ExactLens fitted(c.lens, c.settings);
+        const auto samples = some_samples(2000);
+        auto rays = drawn(fitted, samples);
+        std::vector<float> nm;
+        for (const CameraSample& s : samples) nm.push_back(s.wavelength_nm);
+        std::vector<Reprojection> back(rays.size());
+        fitted.reproject(rays, nm, back);
+        int passed = 0;
+        double worst = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (!(rays[i].weight > 0) || !(back[i].aim_weight > 0)) continue;
+            ++passed;
+            worst = std::max(worst, double(length(back[i].film_mm - samples[i].film_mm)));
+            CHECK(back[i].aim_weight == doctest::Approx(rays[i].aim_weight).epsilon(2e-3));
+            CHECK(back[i].transmittance * back[i].aim_weight == doctest::Approx(rays[i].weight).epsilon(3e-3));
+        }
+        CHECK(passed > 1000);
+        CHECK(worst < 2e-4);
+    }
+}
+
+TEST_CASE("a fitted lens is kept with its aim, under a name of its own") {
+    ExactLensSettings s = at(4, 5, {2, 0});
+    const Prescription lens = test::tessar();
+    const ExactLens cold(lens, s);
+    s.cache = cold.aim_state();
+    const ExactLens kept(lens, s);
+    CHECK(kept.aim_state() == s.cache);
+    CHECK(kept.fit()->error.all.film.rms == cold.fit()->error.all.film.rms);
+    const auto samples = some_samples(500);
+    const auto a = drawn(cold, samples), b = drawn(kept, samples);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK(a[i].weight == b[i].weight);
+        CHECK(a[i].ray.direction == b[i].ray.direction);
+    }
+    ExactLensSettings other = s, none = s;
+    other.fitted->degree = 7, none.fitted.reset();
+    CHECK(aim_key(lens, other) != aim_key(lens, s));
+    CHECK(aim_key(lens, none) != aim_key(lens, s));
+}
+
+TEST_CASE("a state of a body is fitted as it is drawn exactly") {
+    const Prescription lens = test::tessar();
+    ExactLensSettings near = at(4, 7);
+    near.focus_distance_m = 1.5;
+    const ExactLens middle(lens, at(4, 7)), state = ExactLens(lens, near).in_the_body_of(middle);
+    const auto samples = some_samples(1000, 8);
+    const auto a = drawn(state, samples), b = drawn(state.without_fit(), samples);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (!(a[i].weight > 0 && b[i].weight > 0)) continue;
+        CHECK(length(a[i].ray.direction - b[i].ray.direction) < 2e-4);
+        CHECK(length(a[i].ray.origin - b[i].ray.origin) < 1e-5);
+        CHECK(a[i].aim_weight == b[i].aim_weight);
+    }
+}
