@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +17,9 @@ from daguerre.lenses import glasses
 from tests.lens_names import CLASSICS
 
 D_LINE = 587.5618
+ROOT = Path(__file__).resolve().parent.parent
+#: What the page says under its heading of that name.
+FITTED = ("ErrorZone", "LensFit", "SceneRays", "fit")
 
 
 def rays_through(lens, count=200, share=0.3, seed=4):
@@ -291,3 +296,24 @@ def test_the_place_of_what_has_no_expansion_is_named():
     with pytest.raises(InputError, match=r"surface 3: Taylor expansion: .*smooth") as error:
         po.from_lens(lens.rebuilt(surfaces))
     assert lens.source in str(error.value)
+
+
+def test_the_page_runs_and_prints_what_it_says(capsys):
+    """The blocks of docs/polynomial.md up to the fitted lenses, one after another."""
+    page = (ROOT / "docs" / "polynomial.md").read_text().split("## Fitted lenses")[0]
+    names: dict[str, object] = {}
+    printed = []
+    for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(compile(block, "docs/polynomial.md", "exec"), names)
+        printed.append(capsys.readouterr().out)
+    (shown,) = re.findall(r"```\n\n```\n(.*?)```", page, re.DOTALL)
+    assert printed[0] == shown
+    spot = names["spot"]
+    assert isinstance(spot, np.ndarray)
+    assert spot.shape == (2, 2)
+    assert np.isfinite(spot).all()
+
+
+def test_every_function_of_the_kit_is_on_its_page():
+    page = (ROOT / "docs" / "polynomial.md").read_text()
+    assert [n for n in po.__all__ if n not in page and n not in FITTED] == []

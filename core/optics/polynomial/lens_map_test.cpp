@@ -306,6 +306,20 @@ TEST_CASE("a lens is the composition of its elements, cut before or after") {
     }
 }
 
+TEST_CASE("a form that is searched has the series of the same form met in closed form") {
+    Surface conic, biconic;
+    conic.curvature = biconic.curvature = biconic.curvature_x = 1 / 40.0;
+    conic.conic = biconic.conic = biconic.conic_x = -0.6;
+    biconic.shape = Shape::biconic;
+    const RayNumbers steep{8, 3, 0.6, -0.3};
+    for (const int degree : {2, 5, 9}) {
+        const RayMap closed = refraction(SurfaceForm(conic, 0), 1, 1.6, degree, steep);
+        const RayMap searched =
+            refraction(SurfaceForm(biconic, 0), 1, 1.6, degree, steep);
+        CHECK(difference(closed, searched, degree, {2, 2, 0.1, 0.1}) < 1e-9);
+    }
+}
+
 TEST_CASE("the inverse composes to the identity, and is the lens from behind") {
     for (const Prescription& lens : {test::tessar(), general_lens(false)}) {
         CAPTURE(lens.name);
@@ -313,8 +327,12 @@ TEST_CASE("the inverse composes to the identity, and is the lens from behind") {
         const LensWay way = film_way(tracer);
         const RayMap map = expansion(tracer, way, 5), undone = inverse(map);
         const RayNumbers unit = units(tracer);
-        const RayMap identity = propagation(0, 5);
-        CHECK(difference(compose(undone, map), identity, 5, unit) < 1e-10);
+        CHECK(difference(compose(undone, map), propagation(0, 5), 5, unit) < 1e-10);
+        LensWay aside = way;
+        aside.about = {1, -0.5, 0.02, 0.03};
+        const RayMap off = expansion(tracer, aside, 5);
+        CHECK(difference(compose(inverse(off), off), propagation(0, 5, aside.about), 5,
+                         unit) < 1e-10);
         RayMap there = propagation(0, 5, map.image());
         CHECK(difference(compose(map, undone), there, 5, unit) < 1e-10);
         // Light the other way has the cosines reversed: (x, -d) in and out.
@@ -383,20 +401,28 @@ TEST_CASE("ghosts: derivatives of the exact two-reflection trace, both ways") {
                          Error);
 }
 
-TEST_CASE("the iris on the way: of a ghost at each of its crossings") {
-    const Tracer tracer(test::tessar());
+TEST_CASE(
+    "the iris on the way: of a ghost at each of its crossings, in the iris's own frame") {
+    Prescription lens = test::tessar();
+    lens.surfaces[4].decenter = {0.2, -0.1, 0}, lens.surfaces[4].tilt = {3, 5, 40};
+    const Tracer tracer(lens);
     const LensIndices n = tracer.at(kDesignWavelength);
     LensWay way = film_way(tracer);
     const LensPath ghost = ghost_path(tracer, 2, 6, true);
     for (const int crossing : {0, 1, 2}) {
         way.path = path_to_stop(tracer, ghost, crossing), way.to_iris = true;
-        const RayNumbers r{0.3, -0.2, 0.01, 0.02};
+        const RayNumbers r{0.1, -0.07, 0.004, 0.006};
         const RayNumbers iris = expansion(tracer, way, 7).evaluate(r);
         TracedRay traced{{{r[0], r[1], way.start_z},
                           {r[2], r[3], std::sqrt(1 - r[2] * r[2] - r[3] * r[3])}}};
         REQUIRE(tracer.follow(traced, way.path, n, {false, nullptr, 0}) < 0);
         CHECK(iris[0] == doctest::Approx(traced.iris.x).epsilon(1e-7));
         CHECK(iris[1] == doctest::Approx(traced.iris.y).epsilon(1e-7));
+        const SurfaceFrame& place = tracer.form(4).place;
+        const Vec3d d =
+            place.turn_in(traced.ray.direction);  // nothing is refracted there
+        CHECK(iris[2] == doctest::Approx(d.x).epsilon(1e-7));
+        CHECK(iris[3] == doctest::Approx(d.y).epsilon(1e-7));
     }
     CHECK(path_to_stop(tracer, ghost, -1).size() ==
           path_to_stop(tracer, ghost, 2).size());
