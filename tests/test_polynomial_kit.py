@@ -92,6 +92,26 @@ def test_degree_three_is_the_seidel_sums_of_the_prescription(name, distance):
     assert 5.0 * terms.convergence == pytest.approx(convergence)
 
 
+def test_the_sums_of_one_surface_into_glass():
+    """Welford's S1 = -A^2 h (u'/n' - u/n), A = n (h c + u), behind which lies glass."""
+    system = po.propagate(120) @ po.refract(po.sphere(40), 1.0, 1.5)
+    assert system.matrix[0, 0] == pytest.approx(0, abs=1e-12)
+    h, slope = 3.0, -3.0 * 0.5 / 40 / 1.5
+    assert system.seidel().sums(h, 0.1)[0] == pytest.approx(-((h / 40) ** 2) * h * slope / 1.5)
+
+
+def test_a_pupil_is_seen_through_what_is_put_before_it():
+    lens = po.from_lens("tessar-50mm-f2.8")
+    assert lens.pupil is not None
+    assert (lens @ po.propagate(10)).pupil == pytest.approx(lens.pupil + 10)
+    before = po.propagate(7) @ po.refract(po.sphere(-90), 1.5, 1.0) @ po.propagate(5)
+    pupil = (lens @ before).pupil
+    assert pupil is not None
+    # A paraxial ray from the axis there crosses the axis again at the lens's own pupil.
+    x, _, d, _ = before.matrix @ [-pupil * 0.1, 0, 0.1, 0]
+    assert x + lens.pupil * d == pytest.approx(0, abs=1e-12)
+
+
 def test_a_lens_in_three_lines():
     system = (
         po.refract(po.sphere(-50), 1.5, 1.0) @ po.propagate(5) @ po.refract(po.sphere(50), 1.0, 1.5)
