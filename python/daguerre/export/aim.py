@@ -20,12 +20,14 @@ from .plan import Aim, LensPlan, Vector
 
 FloatArray = NDArray[np.float64]
 Exponents = list[tuple[int, ...]]
+#: film points (mm), slopes, wavelengths (nm) and iris points (mm)
+FilmRays = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 IRIS_OUTPUTS = RAY.index("iris_x"), RAY.index("iris_y")
-DEGREE = 4  # in the variables of axial symmetry; without it, FREE_DEGREE in all coordinates
-FREE_DEGREE = 5
+DEGREES = (4, 5)  # that are tried, in the variables of axial symmetry
+FREE_DEGREES = (5, 6)  # without it, in all coordinates
 RAYS = 6000
-MARGIN = 1.04  # how far beyond the iris the aim is fitted
+MARGIN = 1.06  # how far beyond the iris the aim is fitted
 EXPOSURE_NM = range(440, 680, 20)
 #: V(lambda) of CIE 1924, and D65 of ISO/CIE 11664-2: what the eye makes of daylight
 _EYE = (0.023, 0.06, 0.139, 0.323, 0.71, 0.954, 0.995, 0.87, 0.631, 0.381, 0.175, 0.061)
@@ -53,23 +55,25 @@ def callables(plan: LensPlan) -> tuple[Callable[..., Any], Callable[..., Any]]:
 def fit_aim(plan: LensPlan) -> Aim | None:
     """The film slope m(film point, iris point, l), fitted to rays of the plan; None: no good."""
     outer = plan.blades.outer if plan.blades else 1.0
-    radius = MARGIN * outer * plan.iris_radius_mm
-    evaluate, _ = callables(plan)
-    film, slope, nm, iris = _film_rays(plan, evaluate, radius)
-    train = len(nm) // 2
-    if train < 4 * len(_exponents(plan.symmetric)):
-        return None
+    rays = _film_rays(plan, MARGIN * outer * plan.iris_radius_mm)
+    tried = (_aim(plan, rays, n) for n in (DEGREES if plan.symmetric else FREE_DEGREES))
+    return next((aim for aim in tried if aim.enlargement < MARGIN), None)
+
+
+def _aim(plan: LensPlan, rays: FilmRays, degree: int) -> Aim:
+    """Of one degree; enlarged by its error on rays that it was not fitted to."""
+    film, slope, nm, iris = rays
+    radius = MARGIN * (plan.blades.outer if plan.blades else 1.0) * plan.iris_radius_mm
+    exponents = _exponents(plan.symmetric, degree)
     f = (film - plan.film_center_mm) / plan.film_half_mm
-    basis = _basis(plan, f, iris / radius, nm)
-    fitted, found = _least_squares(plan.symmetric, basis, slope, train)
-    fresh = [a[train:] for a in (film, found, nm, iris)]
-    met = _iris_points(plan, evaluate, *fresh[:3])
-    error = float(np.hypot(*(met - fresh[3]).T).max()) / plan.iris_radius_mm
-    enlargement = 1.002 + 2.0 * error  # covers what the aim would miss
-    if not enlargement < MARGIN:
-        return None
+    basis = _basis(plan, f, iris / radius, nm, exponents)
+    train = len(nm) // 2
+    fitted, found = _least_squares(plan.symmetric, basis, slope, train, exponents)
+    fresh = [a[train:] for a in (film, found, nm)]
+    error = np.hypot(*(_iris_points(plan, *fresh) - iris[train:]).T).max(initial=0)
     linear = np.linalg.lstsq(np.hstack([iris, film]), slope, rcond=None)[0][:2]
     orientation = 1.0 if np.linalg.det(linear) > 0 else -1.0
+    enlargement = 1.002 + 1.25 * float(error) / plan.iris_radius_mm
     return Aim(fitted, radius, enlargement, orientation)
 
 
@@ -102,10 +106,8 @@ def focal_length(plan: LensPlan) -> float:
     return float(2.0 * height / (slopes[1] - slopes[0]))
 
 
-def _film_rays(
-    plan: LensPlan, evaluate: Callable[..., Any], iris_mm: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Film points (mm), slopes, wavelengths (nm) and iris points (mm) of rays."""
+def _film_rays(plan: LensPlan, iris_mm: float) -> FilmRays:
+    """Rays all over the film that cross the iris so far from the axis at most."""
     x = quasi_random(5, RAYS)
     f = _disc(x[:, 0], x[:, 1]) if plan.symmetric else 2.0 * x[:, :2] - 1.0
     film = np.array(plan.film_center_mm) + f * plan.film_half_mm
@@ -113,37 +115,37 @@ def _film_rays(
     slope = (q - f * plan.q_by_film - plan.q_shift) / plan.q_by_slope
     offset, scale = plan.wavelength
     nm = 1e3 / np.sqrt((2.0 * x[:, 4] - 1.0 - offset) / scale)
-    iris = _iris_points(plan, evaluate, film, slope, nm)
+    iris = _iris_points(plan, film, slope, nm)
     inside = np.hypot(*iris.T) < iris_mm
     return film[inside], slope[inside], nm[inside], iris[inside]
 
 
-def _iris_points(
-    plan: LensPlan,
-    evaluate: Callable[..., Any],
-    film: FloatArray,
-    slope: FloatArray,
-    nm: FloatArray,
-) -> FloatArray:
+def _iris_points(plan: LensPlan, film: FloatArray, slope: FloatArray, nm: FloatArray) -> FloatArray:
+    evaluate, _ = callables(replace(plan, aim=None))
     outputs = evaluate(*film.T, *slope.T, nm, plan.f_stop)
     return np.stack([outputs[i] for i in IRIS_OUTPUTS], axis=1)
 
 
-def _basis(plan: LensPlan, f: FloatArray, a: FloatArray, nm: FloatArray) -> list[FloatArray]:
+def _basis(
+    plan: LensPlan, f: FloatArray, a: FloatArray, nm: FloatArray, exponents: Exponents
+) -> list[FloatArray]:
     """Columns (N, terms) of the two polynomials for x, and for y."""
     wave = plan.wavelength[0] + plan.wavelength[1] * 1e6 / nm**2
     if not plan.symmetric:
-        return [_monomials([*a.T, *f.T, wave], _exponents(False))]
+        return [_monomials([*a.T, *f.T, wave], exponents)]
     s, w, u = (f * a).sum(1), 2.0 * (a * a).sum(1) - 1.0, 2.0 * (f * f).sum(1) - 1.0
-    terms = _monomials([s, w, u, wave], _exponents(True))
+    terms = _monomials([s, w, u, wave], exponents)
     return [np.hstack([f[:, i : i + 1] * terms, a[:, i : i + 1] * terms]) for i in (0, 1)]
 
 
 def _least_squares(
-    symmetric: bool, basis: list[FloatArray], slope: FloatArray, train: int
+    symmetric: bool,
+    basis: list[FloatArray],
+    slope: FloatArray,
+    train: int,
+    exponents: Exponents,
 ) -> tuple[Vector, FloatArray]:
     """Coefficients from the first rays, and what they say for all."""
-    exponents = _exponents(symmetric)
     if symmetric:  # one set of coefficients for both components
         rows = np.concatenate([b[:train] for b in basis])
         c = np.linalg.lstsq(rows, slope[:train].T.ravel(), rcond=None)[0]
@@ -156,10 +158,9 @@ def _least_squares(
     return Vector(first, second), found
 
 
-def _exponents(symmetric: bool) -> Exponents:
+def _exponents(symmetric: bool, degree: int) -> Exponents:
     """Of a complete basis whose last variable, the wavelength, costs two."""
-    degree, count = (DEGREE, 4) if symmetric else (FREE_DEGREE, 5)
-    choices = product(range(degree + 1), repeat=count)
+    choices = product(range(degree + 1), repeat=4 if symmetric else 5)
     return [e for e in choices if sum(e) + e[-1] <= degree]
 
 
