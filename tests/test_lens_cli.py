@@ -91,11 +91,23 @@ def test_what_cannot_be_is_said(
 
 def test_a_lens_is_exported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "lens.json"
-    given = ["--export", str(file), "--degree", "3", "--focus", "2", "--sensor", "apsc"]
-    assert main(["lens", LENS, *given]) == 0
+    given = [
+        "--export",
+        str(file),
+        "--degree",
+        "3",
+        "--focus",
+        "2",
+        "--sensor",
+        "apsc",
+        "--blades",
+        "5",
+    ]
+    assert main(["lens", LENS, "--export", str(file), *given]) == 0
     data = json.loads(file.read_text())
     assert data["degree"] == 3
     assert data["setting"]["focus_m"] == 2
+    assert len(data["setting"]["iris"]["edges"]) == 5
     assert data["film"]["half"][0] < 16
     said = capsys.readouterr()
     assert "degree 3" in said.err
@@ -110,6 +122,8 @@ def test_a_lens_is_exported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         (["--export", "lens.osl", "--degree", "4"], "degree: wanted an odd number"),
         (["--export", "lens.osl", "--sensor", "huge"], "--sensor: wanted a size in mm"),
         (["--degree", "5"], "--degree: wanted with --export FILE"),
+        (["--blade-rotation", "5"], "--blade-rotation: wanted with --export FILE"),
+        (["--export", "lens.osl", "--blades", "2"], "blades: wanted 3 to 64"),
     ],
 )
 def test_a_wrong_export_is_refused(

@@ -13,7 +13,7 @@ from daguerre.errors import InputError, UsageError
 
 from .console import note
 from .flags import option
-from .lens_export import check_export, write_export
+from .lens_export import Export
 from .quantities import SENSORS, angle_deg, distance_m, f_number, length_mm
 
 if TYPE_CHECKING:
@@ -71,6 +71,17 @@ def lens(
             panel=FILES,
         ),
     ] = None,
+    blades: Annotated[
+        int | None,
+        option("--blades", metavar="N", help="Of their iris, 0 is round [0].", panel=FILES),
+    ] = None,
+    blade_rotation: Annotated[
+        str | None, option("--blade-rotation", metavar="DEG", help="Degrees [0].", panel=FILES)
+    ] = None,
+    blade_curvature: Annotated[
+        float | None,
+        option("--blade-curvature", metavar="C", help="-1 to 1; 1 is round [0].", panel=FILES),
+    ] = None,
     psf: Annotated[
         str | None,
         option(
@@ -113,7 +124,8 @@ def lens(
 
     for flag, path in (("--plot", plot), ("--drawing", drawing)):
         _check_file(flag, path)
-    check_export(export, degree, sensor)
+    polynomials = Export(degree, sensor, blades, blade_rotation, blade_curvature)
+    polynomials.check(export)
     if focus_by not in FOCUS_BY:
         raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
     if through_focus and psf is None:
@@ -124,7 +136,7 @@ def lens(
         note(text)
     setting = _setting(zoom, focus, f_stop)
     if export is not None:
-        write_export(item, export, degree, sensor, {**setting, "by": focus_by})
+        polynomials.write(item, export, {**setting, "by": focus_by})
         return 0
 
     def bench() -> Bench:
