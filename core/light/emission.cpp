@@ -42,7 +42,8 @@ struct Side {
         from = (sphere.radius - view.radius) / d;
     }
     Vec3f sample(Vec2f u) const {
-        const float z = from > -1 ? from + (1 - from) * std::sqrt(u.x) : 1 - 2 * u.x;
+        // A number stands for its 2^-24 of the line: at its very begin the density is 0.
+        const float z = from > -1 ? from + (1 - from) * std::sqrt(u.x + 0x1p-25f) : 1 - 2 * u.x;
         const float r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
         return Frame::from_normal(axis).to_world({r * std::cos(phi), r * std::sin(phi), z});
     }

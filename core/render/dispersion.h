@@ -92,11 +92,9 @@ class Footprint {
     /// n |f| s / total of a pixel; 0 where total is.
     float share(Pixel p) const;
     float sign(Pixel p) const;
-    /// n f s of a pixel, with its sign.
-    float value(Pixel p) const {
-        const float f = x_.of(p.x) * y_.of(p.y);
-        return f == 0 ? 0 : density_.count(p) * f;
-    }
+    /// f s of a column and of a row, with its sign: their product is that of the pixel.
+    float column(int x) const { return x_.of(x); }
+    float row(int y) const { return y_.of(y); }
     /// The pixels in reach: [x0, x1) x [y0, y1).
     struct Box {
         int x0, y0, x1, y1;

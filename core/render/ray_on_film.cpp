@@ -8,6 +8,7 @@ namespace {
 // Up to this radius (px) each pixel gets its share of a splat: with the default filter that has 0.45 of the
 // variance of a pixel that is chosen, integral of f^2 over that of f. Wider ones would cost more than that.
 constexpr float kWideFilter = 2.5f;
+constexpr int kWidestBox = 12;   // px: up to here the wavelengths of a path are one value per pixel
 
 }  // namespace
 
@@ -48,22 +49,48 @@ void RayOnFilm::splat(Film& film, Spectrum radiance, const Wavelengths& waveleng
 
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample) const {
+    if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, 0, 1);
+    const Footprint::Box all = box(0, landings_.size());
+    if (all.x1 - all.x0 <= kWidestBox && all.y1 - all.y0 <= kWidestBox)
+        return splat_box(film, light, wavelengths, sample, 0, landings_.size());
+    for (std::size_t i = 0; i < landings_.size(); ++i)   // far from each other
+        if (reaches(i)) splat_box(film, light, wavelengths, sample, i, i + 1);
+}
+
+/// The pixels that some of the landings reach.
+Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
     Footprint::Box all{1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
-    for (std::size_t i = 0; i < landings_.size(); ++i) {
+    for (std::size_t i = first; i < last; ++i) {
         if (!reaches(i)) continue;
         const Footprint::Box box = at_[i]->box();
         all = {std::min(all.x0, box.x0), std::min(all.y0, box.y0), std::max(all.x1, box.x1),
                std::max(all.y1, box.y1)};
     }
-    for (int y = all.y0; y < all.y1; ++y)
-        for (int x = all.x0; x < all.x1; ++x) {
-            Spectrum weight;
-            for (std::size_t i = 0; i < landings_.size(); ++i)
-                if (reaches(i)) weight.set(int(i), at_[i]->value({x, y}));
-            if (landings_.size() == 1) weight = Spectrum(weight[0]);
-            if (weight.max() == 0 && weight.min() == 0) continue;
-            film.splat(x, y, sample, wavelengths.to_xyz(light * weight));
+    return all;
+}
+
+/// What landings [first, last) bring, one value for each pixel.
+void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
+                          std::uint32_t sample, std::size_t first, std::size_t last) const {
+    const Footprint::Box all = box(first, last);
+    const int width = all.x1 - all.x0, height = all.y1 - all.y0;
+    Spectrum columns[kWidestBox], rows[kWidestBox];
+    for (std::size_t i = first; i < last; ++i) {
+        if (!reaches(i)) continue;
+        for (int x = 0; x < width; ++x) columns[x].set(int(i), at_[i]->column(all.x0 + x));
+        for (int y = 0; y < height; ++y) rows[y].set(int(i), at_[i]->row(all.y0 + y));
+    }
+    for (int y = 0; y < height; ++y) {
+        if (landings_.size() == 1) rows[y] = Spectrum(rows[y][0]);
+        const Spectrum in_row = light * rows[y];
+        for (int x = 0; x < width; ++x) {
+            const Pixel p{all.x0 + x, all.y0 + y};
+            const Spectrum share = landings_.size() == 1 ? Spectrum(columns[x][0]) : columns[x];
+            const Spectrum value = in_row * share * film_density_.count(p);
+            if (value.max() == 0 && value.min() == 0) continue;
+            film.splat(p.x, p.y, sample, wavelengths.to_xyz(value));
         }
+    }
 }
 
 void RayOnFilm::splat_chosen(Film& film, Spectrum light, const Wavelengths& wavelengths, Vec2f u,

@@ -35,6 +35,9 @@ class RayOnFilm {
                    std::uint32_t sample) const;
     void splat_chosen(Film& film, Spectrum light, const Wavelengths& wavelengths, Vec2f u,
                       std::uint32_t sample) const;
+    void splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
+                   std::size_t first, std::size_t last) const;
+    Footprint::Box box(std::size_t first, std::size_t last) const;
     bool reaches(std::size_t landing) const { return at_[landing] && at_[landing]->total() > 0; }
 
     const FilmDensity& film_density_;

@@ -66,7 +66,10 @@ Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time) const 
     if (point.light == EmissionPoint::kSky)
         return lights_.environment()->luminance(point.position, time);
     const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
-    if (!triangle) return lights_.sphere_light_at(point.light, time).luminance;
+    if (!triangle) {
+        if (dot(point.normal, toward) <= 0) return {0, 0, 0};   // through the ball
+        return lights_.sphere_light_at(point.light, time).luminance;
+    }
     if (!triangle->even || lights_.moves(point.light))
         return triangle_emission(point.light, point.barycentric, toward, time);
     if (!triangle->two_sided && dot(point.normal, toward) <= 0) return {0, 0, 0};
