@@ -58,7 +58,8 @@ std::array<Series, 4> substitute(const std::array<Series, 4>& outer,
         if (wanted[i]) wanted[m.divided(i, m.first_variable(i))] = true;
     }
     std::array<Series, 4> sum;
-    for (int o = 0; o < 4; ++o) sum[o] = outer[o].value() + 0.0 * inner[0];
+    const Series nothing(m, std::vector<double>(m.count()));
+    for (int o = 0; o < 4; ++o) sum[o] = nothing + outer[o].value();
     std::vector<Series> power(m.count());
     power[0] = 1;
     for (int i = 1; i < m.count(); ++i) {
