@@ -3,12 +3,13 @@
     python bench/polynomial_camera.py --json [--seconds 20] [--rounds 3] [--resolution 120x80]
 
 After Hanika and Dachsbacher 2014 (CGF 33(2)): one scene through a zoom of more than 30 surfaces
-(US 5,537,259, 70-200 mm f/2.8), with lamps out of focus. ``boxes``: exact, slopes from a box around
-the exit pupil per film radius; ``guided``: exact, points of the iris are aimed at; ``taylor``: the
-series of degree 5 about the axis in place of the fitted rays; ``fit N``: fitted to degree N. All but
-``boxes`` aim alike. Each draws for so many CPU seconds, in turn, and again with other seeds.
-``rel_mse`` is the mean of (x - r)^2 / (r^2 + 0.01) against ``guided`` with ``--reference`` times the
-seconds, ``ray_error`` the angle (rad, RMS) to the exact ray of the same samples.
+(US 5,537,259, 70-200 mm f/2.8), with lamps out of focus. ``boxes``: exact, slopes from a box
+around the exit pupil per film radius; ``guided``: exact, points of the iris are aimed at;
+``taylor``: the series of degree 5 about the axis in place of the fitted rays; ``fit N``: fitted to
+degree N. All but ``boxes`` aim alike. Each draws for so many CPU seconds, in turn, and again with
+other seeds. ``rel_mse`` is the mean of (x - r)^2 / (r^2 + 0.01) against ``guided`` with
+``--reference`` times the seconds, ``ray_error`` the angle (rad, RMS) to the exact ray of the same
+samples.
 """
 
 from __future__ import annotations
@@ -138,7 +139,7 @@ class Drawing:
 
         with (
             mock.patch.object(camera_prescription, "exact_lens", timed),
-            mock.patch.object(aim_cache, "load", lambda key: None),
+            mock.patch.object(aim_cache, "load", return_value=None),
         ):
             self.session = dg.Session(
                 made, camera, resolution=resolution, seed=seed, filter="box", light_paths="off"

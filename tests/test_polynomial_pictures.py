@@ -1,8 +1,8 @@
-"""Pictures through polynomial lenses are those through the exact ones: where points land and in which
-colour, the outlines of their discs of blur, the fall of light, focus pulled while the shutter is open.
+"""Pictures through polynomial lenses are those through the exact ones.
 
-Lamps are drawn from the light's side, so that discs are clean. A polynomial of degree 1 is the planted
-fault that each comparison must see.
+Where points land and in which colour, the outlines of their discs of blur, the fall of light, focus
+pulled while the shutter is open. Lamps are drawn from the light's side, so that discs are clean. A
+polynomial of degree 1 is the planted fault that comparisons must see.
 """
 
 from __future__ import annotations
