@@ -25,19 +25,20 @@ bool fits(bool mirror, bool odd, int power) {
 
 }  // namespace
 
-std::vector<FitTerm> axial_terms(int degree) {
+std::vector<FitTerm> axial_terms(int degree, int dispersion) {
     const int k = (degree - 1) / 2;
     std::vector<FitTerm> terms;
     for (int s = 0; s <= k; ++s)
         for (int w = 0; w <= k - s; ++w)
             for (int u = 0; u <= k - s - w; ++u)
-                for (int l = 0; l <= std::min(k - s - w - u, kMaxAxialDispersion); ++l)
+                for (int l = 0; l <= std::min(k - s - w - u + dispersion, kMaxAxialDispersion); ++l)
                     terms.push_back({s, w, u, l, 0});
     sort_by_degree(terms);
     return terms;
 }
 
-std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y) {
+std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y,
+                                int dispersion) {
     std::vector<FitTerm> terms;
     for (int qx = 0; qx <= degree; ++qx)
         for (int qy = 0; qy <= degree - qx; ++qy)
@@ -45,7 +46,7 @@ std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool od
                 for (int fy = 0; fy <= degree - qx - qy - fx; ++fy) {
                     if (!fits(symmetry.mirror_x, odd_x, qx + fx)) continue;
                     if (!fits(symmetry.mirror_y, odd_y, qy + fy)) continue;
-                    const int rest = (degree - qx - qy - fx - fy) / 2;
+                    const int rest = (degree - qx - qy - fx - fy) / 2 + dispersion;
                     for (int l = 0; l <= rest; ++l) terms.push_back({qx, qy, fx, fy, l});
                 }
     sort_by_degree(terms);

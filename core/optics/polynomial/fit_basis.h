@@ -24,10 +24,12 @@ struct FitSymmetry {
 
 /// Complete basis of a ray degree; constants first, in order of total degree, so that a lower degree is the
 /// head of a higher one.
-std::vector<FitTerm> axial_terms(int degree);
+/// `dispersion`: by how much the total may be exceeded through powers of l.
+std::vector<FitTerm> axial_terms(int degree, int dispersion = 0);
 /// The same for a lens of full ray degree without axial symmetry. `odd_x`: of a function that changes its sign
 /// with x (the x of a vector); mirrors leave odd or even powers only.
-std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y);
+std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y,
+                                int dispersion = 0);
 
 /// For the transmittance: it varies little over film and pupil, and in waves with the wavelength (coatings).
 /// Powers of l up to 8, of the other variables up to a ray degree of 4.

@@ -15,8 +15,9 @@ constexpr double kSearch = 1.8;  // paraxial exit pupils that are searched
 constexpr double kIrisWidened = 1.02;  // the iris is a hole: no need to follow far beyond its rim
 constexpr double kMaxPupilDistance = 1e4;  // mm: beyond, the film sees it at infinity
 
-double spread(bool toward_edges, double u) {
-    return toward_edges ? (1 - std::cos(kPiD * u)) / 2 : u;
+/// The density of Chebyshev's nodes, under which the worst error of a polynomial is nearly the mean one.
+double toward_edges(double u) {
+    return (1 - std::cos(kPiD * u)) / 2;
 }
 
 bool mirrored_x(const Prescription& lens) {
@@ -154,9 +155,10 @@ std::vector<FitSample> FitRays::draw(const FitDraw& what) const {
     std::vector<FitSample> samples;
     for (int n = 0; n < kTries * what.count && int(samples.size()) < what.count; ++n) {
         const auto u = quasi_random<5>(what.first + n);
-        const auto spread_out = [&](int k) { return spread(what.toward_edges, u[k]); };
+        const auto spread_out = [&](int k) { return what.toward_edges ? toward_edges(u[k]) : u[k]; };
         const double nm = 1 / std::sqrt(red + spread_out(0) * (blue - red));
-        const double w = std::sqrt(spread_out(1)), phi = 2 * kPiD * u[2];
+        // Over the pupil halfway to that density: mounts cut its edge anyway.
+        const double w = std::sqrt((u[1] + spread_out(1)) / 2), phi = 2 * kPiD * u[2];
         Vec2d f, q{w * std::cos(phi), w * std::sin(phi)};
         if (fit_.symmetry.axial) {
             f = {std::sqrt(what.u_low + spread_out(3) * (what.u_high - what.u_low)), 0};

@@ -50,38 +50,61 @@ HWY_INLINE void store(Pair v, float* p) {
     hn::Store(v.a, d, p), hn::Store(v.b, d, p + hn::Lanes(d));
 }
 
-/// Fills `values`, two vectors for each monomial.
-HWY_INLINE void run_program(const FitProgram& program, int size, const Pair (&at)[5], float* values) {
-    const D d;
-    const std::size_t step = 2 * hn::Lanes(d);
+/// Fills `values`, two vectors for each monomial, by the first runs of a program.
+HWY_INLINE void run_program(const FitProgram& program, int runs, const Pair (&at)[5], float* values) {
+    const std::size_t step = 2 * hn::Lanes(D());
     store(both(1), values);
-    for (int i = 1; i < size; ++i)
-        store(mul(load(values + program.parent[i] * step), at[program.variable[i]]), values + i * step);
+    for (int i = 0; i < runs; ++i) {
+        const FitRun& run = program.runs[i];
+        const Pair x = at[run.variable];
+        const float* from = values + run.parent * step;
+        float* to = values + run.first * step;
+        for (int k = 0; k < run.count; ++k, from += step, to += step) store(mul(load(from), x), to);
+    }
 }
 
-/// kCount neighbouring functions; small terms come first, so that rounding acts on the last few.
-template <int kCount>
+/// kCount neighbouring functions, in kChains sums each, so that enough of them are under way; small terms come
+/// first, so that rounding acts on the last few.
+template <int kCount, int kChains>
 HWY_INLINE void sum_terms(const FitFunctionTables& t, int first, const float* values, Pair* out) {
     const D d;
     const std::size_t step = 2 * hn::Lanes(d);
-    Pair sum[kCount];
-    for (int k = 0; k < kCount; ++k) sum[k] = both(0);
-    const float* c = t.coefficients.data() + first;
-    for (int i = int(t.at.size()) - 1; i >= 0; --i) {
+    Pair sum[kChains][kCount];
+    for (int c = 0; c < kChains; ++c)
+        for (int k = 0; k < kCount; ++k) sum[c][k] = both(0);
+    const float* coefficient = t.coefficients.data() + first;
+    const auto take = [&](int i, Pair (&to)[kCount]) HWY_ATTR {
         const Pair m = load(values + t.at[i] * step);
         for (int k = 0; k < kCount; ++k) {
-            const V ck = constant(c[i * t.count + k]);
-            sum[k] = {hn::MulAdd(ck, m.a, sum[k].a), hn::MulAdd(ck, m.b, sum[k].b)};
+            const V ck = constant(coefficient[i * t.count + k]);
+            to[k] = {hn::MulAdd(ck, m.a, to[k].a), hn::MulAdd(ck, m.b, to[k].b)};
         }
+    };
+    int i = int(t.at.size()) - 1;
+    for (; i >= kChains - 1; i -= kChains)
+        for (int c = 0; c < kChains; ++c) take(i - c, sum[c]);
+    for (; i >= 0; --i) take(i, sum[0]);
+    for (int k = 0; k < kCount; ++k) {
+        out[k] = sum[0][k];
+        for (int c = 1; c < kChains; ++c) out[k] = add(out[k], sum[c][k]);
     }
-    for (int k = 0; k < kCount; ++k) out[k] = sum[k];
 }
 
 HWY_INLINE void functions(const FitFunctionTables& t, const float* values, Pair* out) {
     int k = 0;
-    for (; k + 4 <= t.count; k += 4) sum_terms<4>(t, k, values, out + k);
-    if (t.count - k >= 2) sum_terms<2>(t, k, values, out + k), k += 2;
-    if (t.count - k == 1) sum_terms<1>(t, k, values, out + k);
+    for (; k + 4 <= t.count; k += 4) sum_terms<4, 1>(t, k, values, out + k);
+    if (t.count - k >= 2) sum_terms<2, 2>(t, k, values, out + k), k += 2;
+    if (t.count - k == 1) sum_terms<1, 4>(t, k, values, out + k);
+}
+
+HWY_INLINE Pair light(const FitLightTables& t, Pair l, const float* values) {
+    Pair value = both(0);
+    for (const FitFunctionTables& power : t.powers) {
+        Pair row;
+        sum_terms<1, 2>(power, 0, values, &row);
+        value = mul_add(value, l, row);
+    }
+    return value;
 }
 
 inline constexpr int kMostFunctions = 40;
@@ -132,14 +155,25 @@ HWY_INLINE Pair wavelength_variable(const WavelengthScale& scale, Pair nm) {
         nm);
 }
 
-/// sum (-t)^n / (2n + first)!, first 1 or 2: sin(x) / x and (1 - cos(x)) / x^2 of t = x^2.
-HWY_INLINE Pair angle_series(int terms, int first, Pair t) {
-    Pair sum = both(1);
-    for (int n = terms - 1; n > 0; --n) {
-        const float step = -1.0f / float((2 * n + first - 1) * (2 * n + first));
-        sum = mul_add(mul(sum, t), both(step), both(1));
+/// (-1)^n / (2n + first)!.
+struct AngleCoefficients {
+    float c[kMostAngleTerms];
+    explicit constexpr AngleCoefficients(int first) : c{} {
+        double term = first == 1 ? 1 : 0.5;
+        for (int n = 0; n < kMostAngleTerms; ++n) {
+            c[n] = float(term);
+            term /= -double((2 * n + first + 1) * (2 * n + first + 2));
+        }
     }
-    return first == 1 ? sum : mul(sum, both(0.5f));
+};
+
+/// sin(x) / x (first 1) and (1 - cos(x)) / x^2 (first 2) of t = x^2.
+template <int kFirst>
+HWY_INLINE Pair angle_series(int terms, Pair t) {
+    static constexpr AngleCoefficients k(kFirst);
+    Pair sum = both(k.c[terms - 1]);
+    for (int n = terms - 2; n >= 0; --n) sum = mul_add(sum, t, both(k.c[n]));
+    return sum;
 }
 
 struct PairRay {
@@ -149,7 +183,7 @@ struct PairRay {
 /// LensFit::scene_ray(): z from the first vertex.
 HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairVec& e) {
     const Pair t = dot(v, v);
-    const Pair sine = angle_series(fit.angle_terms, 1, t), versine = angle_series(fit.angle_terms, 2, t);
+    const Pair sine = angle_series<1>(fit.angle_terms, t), versine = angle_series<2>(fit.angle_terms, t);
     const Pair along = dot(e, v), back = mul(along, versine);
     PairRay r;
     r.dx = mul(v.x, sine), r.dy = mul(v.y, sine), r.dz = sub(mul(t, versine), both(1));
@@ -195,7 +229,7 @@ HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s
         axial_variables(f, q, mul_add(u, both(s.u_scale), both(s.u_offset)), l, at);
     else
         free_variables(f, q, l, at);
-    run_program(s.program, all ? s.program.size() : s.ray_size, at, values);
+    run_program(s.program, all ? int(s.program.runs.size()) : s.ray_runs, at, values);
     PairVec rays[2];
     vectors(s.rays, fit.axial, values, f, q, rays);
     out.direction = rays[0], out.offset = rays[1];
@@ -204,14 +238,15 @@ HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s
     vectors(s.points, fit.axial, values, f, q, points);
     out.iris = points[0];
     for (std::size_t i = 0; i < fit.outer2.size(); ++i) out.mounts[i] = points[i + 1];
-    sum_terms<1>(s.light.x, 0, values, &out.light);
+    out.light = light(s.light, l, values);
 }
 
-/// The segment of each ray. `all`: iris, mounts and light too.
-HWY_INLINE void evaluate_fit(const FitTables& fit, const PairVec& f, const PairVec& q, Pair l, bool all,
-                             float* values, FitLanes& out) {
+/// The segment of each ray; or that of all, if it is known. `all`: iris, mounts and light too.
+HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known, const PairVec& f,
+                             const PairVec& q, Pair l, bool all, float* values, FitLanes& out) {
     const Pair u = dot(f, f);
-    evaluate_segment(fit, fit.segments[0], f, q, u, l, all, values, out);
+    evaluate_segment(fit, known ? *known : fit.segments[0], f, q, u, l, all, values, out);
+    if (known) return;
     const D d;
     for (std::size_t k = 1; k < fit.segments.size(); ++k) {
         const FitSegmentTables& s = fit.segments[k];

@@ -13,14 +13,21 @@ namespace {
 
 constexpr int kMinDegree = 1, kMaxDegree = 13, kMostSegments = 16;
 constexpr int kMinRays = 400;
-constexpr int kRaysPerTerm = 6;
+constexpr int kRaysPerTerm = 8;
 constexpr int kMountRays = 2000, kErrorRays = 2000;
 // Rays and light are fitted to what passes and very little beyond; iris and mounts to more, since they say what
 // does not pass.
-constexpr double kClearWidened = 1.02, kPointsWidened = 1.15;
+constexpr double kClearWidened = 1.015, kPointsWidened = 1.15;
+// More powers of l are worth their time if they lower the error to this part of what it was.
+constexpr double kWorthIt = 0.8;
 // Iris and mounts decide who passes: two degrees less still place them a hundred times better than a
 // pixel of the bokeh needs.
 constexpr int kPointsBelow = 2, kLeastPoints = 3;
+
+struct FitBasis {
+    int degree = 1, dispersion = 0;
+    int keep = 0;  // terms of each vector; 0: all
+};
 
 /// The point of a sample at which functions are fitted.
 struct At {
@@ -86,26 +93,28 @@ FitFunctions fit_scalars(const std::vector<FitTerm>& terms, const std::vector<Fi
 }
 
 template <typename Place, typename Vectors>
-FitBlock fit_vectors(const FitSymmetry& symmetry, int degree, const std::vector<FitSample>& samples, int count,
-                     int keep, Place place, Vectors outputs) {
-    if (symmetry.axial) return {fit_axial(axial_terms(degree), samples, count, keep, place, outputs), {}};
-    return {fit_scalars(free_terms(degree, symmetry, true, false), samples, count, keep, place,
+FitBlock fit_vectors(const FitSymmetry& symmetry, const FitBasis& basis, const std::vector<FitSample>& samples,
+                     int count, Place place, Vectors outputs) {
+    const int keep = basis.keep, more = basis.dispersion;
+    if (symmetry.axial)
+        return {fit_axial(axial_terms(basis.degree, more), samples, count, keep, place, outputs), {}};
+    return {fit_scalars(free_terms(basis.degree, symmetry, true, false, more), samples, count, keep, place,
                         [&](const FitSample& s, int v) { return outputs(s, v).x; }),
-            fit_scalars(free_terms(degree, symmetry, false, true), samples, count, keep, place,
+            fit_scalars(free_terms(basis.degree, symmetry, false, true, more), samples, count, keep, place,
                         [&](const FitSample& s, int v) { return outputs(s, v).y; })};
 }
 
 FitBlock fit_rays_block(const LensFit& fit, const FitSegment& segment, const std::vector<FitSample>& samples,
-                        int terms) {
+                        const FitBasis& basis) {
     return fit_vectors(
-        fit.symmetry, fit.degree, samples, 2, terms,
+        fit.symmetry, basis, samples, 2,
         [&](const FitSample& s) { return At{fit.variables(s.f, s.q, s.l, segment), s.f, s.q}; },
         [](const FitSample& s, int v) { return v == 0 ? s.direction : s.offset; });
 }
 
 int rays_wanted(const LensFit& fit) {
-    const int terms = fit.symmetry.axial ? int(axial_terms(fit.degree).size())
-                                         : int(free_terms(fit.degree, fit.symmetry, true, false).size());
+    const int terms = fit.symmetry.axial ? int(axial_terms(fit.degree, 1).size())
+                                         : int(free_terms(fit.degree, fit.symmetry, true, false, 1).size());
     return std::max({kMinRays, kRaysPerTerm * terms, kRaysPerTerm * int(light_terms(fit.symmetry).size())});
 }
 
@@ -158,9 +167,12 @@ FitSegment fit_segment(const LensFit& fit, const std::vector<FitSample>& clear,
                        const std::vector<FitSample>& wide, double u_low, double u_high, int terms) {
     FitSegment found{u_low, u_high, {}, {}, {}};
     const auto place = [&](const FitSample& s) { return At{fit.variables(s.f, s.q, s.l, found), s.f, s.q}; };
-    found.rays = fit_rays_block(fit, found, clear, terms);
+    found.rays = fit_rays_block(fit, found, clear, {fit.degree, 0, terms});
+    FitSegment more = found;
+    more.rays = fit_rays_block(fit, found, clear, {fit.degree, 1, terms});
+    if (direction_residual(fit, more, clear) < kWorthIt * direction_residual(fit, found, clear)) found = more;
     const int points = std::min(fit.degree, std::max(kLeastPoints, fit.degree - kPointsBelow));
-    found.points = fit_vectors(fit.symmetry, points, wide, 1 + int(fit.mounts.size()), terms, place,
+    found.points = fit_vectors(fit.symmetry, {points, 0, terms}, wide, 1 + int(fit.mounts.size()), place,
                                [&](const FitSample& s, int v) {
                                    return v == 0 ? s.iris : s.met[fit.mounts[v - 1].surface];
                                });
@@ -196,7 +208,7 @@ FitInverse fit_inverse(const LensFit& fit, const std::vector<FitSample>& clear) 
         if (!fit.symmetry.axial) return At{{h.x, h.y, g.x, g.y, s.l}, g, h};
         return At{{dot(g, h), 2 * dot(h, h) - 1, 2 * dot(g, g) - 1, s.l, 0}, g, h};
     };
-    inverse.rays = fit_vectors(fit.symmetry, fit.degree, clear, 2, 0, place,
+    inverse.rays = fit_vectors(fit.symmetry, {fit.degree}, clear, 2, place,
                                [](const FitSample& s, int v) { return v == 0 ? s.f : s.q; });
     return inverse;
 }
@@ -216,7 +228,7 @@ LensFit refit_rays(const LensFit& fit, const std::vector<FitRay>& rays, const st
         for (const FitSample& s : samples)
             if (&fit.segment_at(s.f) - fit.segments.data() == &segment - other.segments.data())
                 mine.push_back(s);
-        segment.rays = fit_rays_block(fit, segment, mine, 0);
+        segment.rays = fit_rays_block(fit, segment, mine, {fit.degree, 1});
     }
     other.inverse = fit_inverse(other, samples);
     return other;

@@ -56,13 +56,14 @@ HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q,
     return pass;
 }
 
-void FitToScene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count, float* values) {
+void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const FilmRays& in, SceneRays& out,
+                int count, float* values) {
     const int step = 2 * int(hn::Lanes(D()));
     for (int i = 0; i < count; i += step) {
         const PairVec f = unit_film(fit, load(in.x + i, in.y + i));
         const PairVec q = pupil_point(fit.pupil, f, load(in.mx + i, in.my + i));
         FitLanes v;
-        evaluate_fit(fit, f, q, wavelength_variable(fit.scale, load(in.nm + i)), true, values, v);
+        evaluate_fit(fit, &segment, f, q, wavelength_variable(fit.scale, load(in.nm + i)), true, values, v);
         const PairRay r = scene_ray(fit, v.direction, v.offset);
         store(r.x, out.x + i), store(r.y, out.y + i), store(r.z, out.z + i);
         store(r.dx, out.dx + i), store(r.dy, out.dy + i), store(r.dz, out.dz + i);
@@ -101,7 +102,7 @@ HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, 
         axial_variables(g, h, sub(mul(both(2), dot(g, g)), both(1)), l, at);
     else
         free_variables(g, h, l, at);
-    run_program(fit.inverse_program, fit.inverse_program.size(), at, values);
+    run_program(fit.inverse_program, int(fit.inverse_program.runs.size()), at, values);
     vectors(fit.inverse, fit.axial, values, g, h, fq);
 }
 
@@ -114,16 +115,17 @@ HWY_INLINE PairVec difference(const PairVec& p, const PairVec& q) {
 /// whatever G's error, which is what is left of the distance in each round.
 HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l, float* values,
                        PairVec (&z)[2], FitLanes& there) {
+    const FitSegmentTables* known = fit.segments.size() == 1 ? &fit.segments[0] : nullptr;
     PairVec start[2];
     guess(fit, v, e, l, values, start);
     z[0] = start[0], z[1] = start[1];
     for (int round = 0; round < kInverseRounds; ++round) {
         PairVec back[2];
-        evaluate_fit(fit, z[0], z[1], l, false, values, there);
+        evaluate_fit(fit, known, z[0], z[1], l, false, values, there);
         guess(fit, there.direction, there.offset, l, values, back);
         for (int k = 0; k < 2; ++k) z[k] = sum(z[k], difference(start[k], back[k]));
     }
-    evaluate_fit(fit, z[0], z[1], l, true, values, there);
+    evaluate_fit(fit, known, z[0], z[1], l, true, values, there);
 }
 
 /// Whether the search arrived: direction (rad) and offset (mm) are those asked for.
@@ -175,16 +177,58 @@ HWY_EXPORT(FitLaneCount);
 
 /// Where a kernel keeps the values of its monomials.
 hwy::AlignedFreeUniquePtr<float[]> room_for_monomials(const FitTables& fit) {
-    int most = fit.inverse_program.size();
-    for (const FitSegmentTables& s : fit.segments) most = std::max(most, s.program.size());
+    int most = fit.inverse_program.size;
+    for (const FitSegmentTables& s : fit.segments) most = std::max(most, s.program.size);
     return hwy::AllocateAligned<float>(2 * HWY_DYNAMIC_DISPATCH(FitLaneCount)() * std::size_t(most));
+}
+
+/// Rays picked from a batch. The rest of the arrays repeats the last one, so that kernels see no ray of chance.
+int pick(const FilmRays& from, const std::vector<int>& at, FilmRays& to) {
+    for (int i = 0; i < kLensBatch; ++i) {
+        const int k = at[std::min<std::size_t>(i, at.size() - 1)];
+        to.x[i] = from.x[k], to.y[i] = from.y[k], to.mx[i] = from.mx[k], to.my[i] = from.my[k];
+        to.nm[i] = from.nm[k];
+    }
+    return int(at.size());
+}
+
+void put_back(const SceneRays& from, const std::vector<int>& at, SceneRays& to) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const int k = at[i];
+        to.x[k] = from.x[i], to.y[k] = from.y[i], to.z[k] = from.z[i];
+        to.dx[k] = from.dx[i], to.dy[k] = from.dy[i], to.dz[k] = from.dz[i];
+        to.pass[k] = from.pass[i], to.iris_x[k] = from.iris_x[i], to.iris_y[k] = from.iris_y[i];
+    }
+}
+
+/// Which rays of a batch each segment owns.
+std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& in, int count) {
+    std::vector<std::vector<int>> at(fit.segments.size());
+    for (int i = 0; i < count; ++i) {
+        const float fx = (in.x[i] - fit.center_x) / fit.half_x, fy = (in.y[i] - fit.center_y) / fit.half_y;
+        const float u = fx * fx + fy * fy;
+        std::size_t k = 0;
+        while (k + 1 < at.size() && u >= fit.segments[k + 1].u_low) ++k;
+        at[k].push_back(i);
+    }
+    return at;
 }
 
 }  // namespace
 
 void fit_to_scene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count) {
     const auto values = room_for_monomials(fit);
-    HWY_DYNAMIC_DISPATCH(FitToScene)(fit, in, out, count, values.get());
+    const auto kernel = HWY_DYNAMIC_DISPATCH(FitToScene);
+    if (fit.segments.size() == 1) return kernel(fit, fit.segments[0], in, out, count, values.get());
+    FilmRays film;
+    SceneRays scene;
+    const auto owned = by_segment(fit, in, count);
+    for (std::size_t k = 0; k < owned.size(); ++k) {
+        if (owned[k].empty()) continue;
+        const int rays = pick(in, owned[k], film);
+        kernel(fit, fit.segments[k], film, scene, rays, values.get());
+        put_back(scene, owned[k], out);
+    }
 }
 void fit_to_film(const FitTables& fit, SceneRays& in, FilmRays& out, int count) {
     const auto values = room_for_monomials(fit);

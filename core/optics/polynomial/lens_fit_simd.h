@@ -8,10 +8,14 @@
 
 namespace dg {
 
-/// Monomials one after the other: each is an earlier one times a variable; the first is 1.
+/// Monomials [first, first + count) are those from `parent` on times a variable.
+struct FitRun {
+    int first = 0, parent = 0, count = 0, variable = 0;
+};
+/// Monomials one after the other, the first of which is 1.
 struct FitProgram {
-    std::vector<int> parent, variable;
-    int size() const { return int(parent.size()); }
+    int size = 1;
+    std::vector<FitRun> runs;
 };
 
 /// Functions of lens_fit.h over the monomials of a program.
@@ -23,18 +27,26 @@ struct FitFunctionTables {
 struct FitBlockTables {
     FitFunctionTables x, y;
 };
+/// One function as a polynomial in l, whose coefficients are functions over monomials without l; highest power
+/// first, as Horner's rule wants them.
+struct FitLightTables {
+    std::vector<FitFunctionTables> powers;
+};
 
 struct FitSegmentTables {
     float u_low = 0, u_high = 1;
     float u_scale = 2, u_offset = -1;  // U = u_scale u + u_offset
-    int ray_size = 0;                  // monomials that the scene ray alone needs
+    int ray_runs = 0;                  // of the program: what the scene ray alone needs
     FitProgram program;
-    FitBlockTables rays, points, light;
+    FitBlockTables rays, points;
+    FitLightTables light;
 };
 
 struct FitPupilTables {
     float film_x = 0, film_y = 0, slope_x = 1, slope_y = 1, shift_x = 0, shift_y = 0;
 };
+
+inline constexpr int kMostAngleTerms = 12;
 
 /// What the kernels read of a fit.
 struct FitTables {
@@ -44,7 +56,7 @@ struct FitTables {
     FitPupilTables pupil;
     float pupil_z = 0;  // middle of the entrance pupil from the first vertex, mm
     float front_curvature = 0;
-    int angle_terms = 12;  // of the series of sin and cos
+    int angle_terms = kMostAngleTerms;  // of the series of sin and cos
     IrisTables iris;
     std::vector<float> outer2, inner2;  // mounts, mm^2
     std::vector<FitSegmentTables> segments;
