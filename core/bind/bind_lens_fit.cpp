@@ -1,4 +1,5 @@
-// bind_lens_fit.cpp -- fitted lenses: the parts of the data, and what they say of film rays.
+// bind_lens_fit.cpp -- fitted lenses: the parts of the data, and what they say of film
+// rays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -28,7 +29,8 @@ using Pair = std::pair<double, double>;
 using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Powers = nb::ndarray<const std::int32_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
+using Powers =
+    nb::ndarray<const std::int32_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using dg::bind::to_numpy;
 
@@ -42,7 +44,10 @@ dg::Vec2d vec(Pair p) {
 template <typename T, dg::Vec2d T::*kMember>
 void pair_member(nb::class_<T>& c, const char* name) {
     c.def_prop_rw(
-        name, [](const T& t) { return Pair{(t.*kMember).x, (t.*kMember).y}; },
+        name,
+        [](const T& t) {
+            return Pair{(t.*kMember).x, (t.*kMember).y};
+        },
         [](T& t, Pair p) { t.*kMember = vec(p); });
 }
 
@@ -54,26 +59,35 @@ void bind_parts(nb::module_& m) {
             [](FitFunctions* self, const Powers& powers, const Table& coefficients) {
                 FitFunctions f{int(coefficients.shape(1)), {}, {}};
                 if (powers.shape(0) != coefficients.shape(0))
-                    throw input_error("lens fit", "coefficients", "a row for each monomial",
+                    throw input_error("lens fit", "coefficients",
+                                      "a row for each monomial",
                                       std::to_string(coefficients.shape(0)));
                 for (std::size_t i = 0; i < powers.shape(0); ++i) {
                     FitTerm t{};
                     for (int k = 0; k < 5; ++k) t[k] = powers(i, k);
                     f.terms.push_back(t);
                 }
-                f.coefficients.assign(coefficients.data(), coefficients.data() + coefficients.size());
+                f.coefficients.assign(coefficients.data(),
+                                      coefficients.data() + coefficients.size());
                 new (self) FitFunctions(std::move(f));
             },
             "powers"_a, "coefficients"_a)
-        .def_prop_ro("powers",
-                     [](const FitFunctions& f) {
-                         std::vector<std::int32_t> flat;
-                         for (const FitTerm& t : f.terms) flat.insert(flat.end(), t.begin(), t.end());
-                         return to_numpy(std::move(flat), {f.terms.size(), 5});
-                     }, nb::rv_policy::automatic)
-        .def_prop_ro("coefficients", [](const FitFunctions& f) {
-            return to_numpy(std::vector<double>(f.coefficients), {f.terms.size(), std::size_t(f.count)});
-        }, nb::rv_policy::automatic);
+        .def_prop_ro(
+            "powers",
+            [](const FitFunctions& f) {
+                std::vector<std::int32_t> flat;
+                for (const FitTerm& t : f.terms)
+                    flat.insert(flat.end(), t.begin(), t.end());
+                return to_numpy(std::move(flat), {f.terms.size(), 5});
+            },
+            nb::rv_policy::automatic)
+        .def_prop_ro(
+            "coefficients",
+            [](const FitFunctions& f) {
+                return to_numpy(std::vector<double>(f.coefficients),
+                                {f.terms.size(), std::size_t(f.count)});
+            },
+            nb::rv_policy::automatic);
     nb::class_<FitBlock>(m, "FitBlock")
         .def(nb::init<>())
         .def_rw("x", &FitBlock::x)
@@ -129,14 +143,16 @@ void bind_error(nb::module_& m) {
 std::size_t equal_lengths(const Rows2d& film, const Rows2d& slopes, const Column& nm) {
     const std::size_t n = film.shape(0);
     if (slopes.shape(0) != n || nm.shape(0) != n)
-        throw dg::input_error("lens fit", "arrays", "as many slopes and wavelengths as film points",
+        throw dg::input_error("lens fit", "arrays",
+                              "as many slopes and wavelengths as film points",
                               std::to_string(n) + " film points");
     return n;
 }
 
-/// Directions (rad) and offsets, iris points, mounts (N, M, 2), transmittances, whether within, origins and unit
-/// directions of the scene rays.
-auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm) {
+/// Directions (rad) and offsets, iris points, mounts (N, M, 2), transmittances, whether
+/// within, origins and unit directions of the scene rays.
+auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
+              const Column& nm) {
     const std::size_t n = equal_lengths(film, slopes, nm), mounts = fit.mounts.size();
     std::vector<double> direction, offset, iris, mount, light, origin, unit;
     std::vector<std::uint8_t> within;
@@ -144,40 +160,51 @@ auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, 
         const dg::FitValue v =
             fit.evaluate({{film(i, 0), film(i, 1)}, {slopes(i, 0), slopes(i, 1)}, nm(i)});
         const dg::LensRay ray = fit.scene_ray(v.direction, v.offset);
-        const auto add = [](std::vector<double>& to, dg::Vec2d p) { to.insert(to.end(), {p.x, p.y}); };
+        const auto add = [](std::vector<double>& to, dg::Vec2d p) {
+            to.insert(to.end(), {p.x, p.y});
+        };
         add(direction, v.direction), add(offset, v.offset), add(iris, v.iris);
         for (const dg::Vec2d p : v.mounts) add(mount, p);
-        for (int k = 0; k < 3; ++k) origin.push_back(ray.origin[k]), unit.push_back(ray.direction[k]);
+        for (int k = 0; k < 3; ++k)
+            origin.push_back(ray.origin[k]), unit.push_back(ray.direction[k]);
         light.push_back(v.transmittance), within.push_back(v.within);
     }
-    return nb::make_tuple(to_numpy(std::move(direction), {n, 2}), to_numpy(std::move(offset), {n, 2}),
-                          to_numpy(std::move(iris), {n, 2}), to_numpy(std::move(mount), {n, mounts, 2}),
-                          to_numpy(std::move(light), {n}), to_numpy(std::move(within), {n}),
-                          to_numpy(std::move(origin), {n, 3}), to_numpy(std::move(unit), {n, 3}));
+    return nb::make_tuple(
+        to_numpy(std::move(direction), {n, 2}), to_numpy(std::move(offset), {n, 2}),
+        to_numpy(std::move(iris), {n, 2}), to_numpy(std::move(mount), {n, mounts, 2}),
+        to_numpy(std::move(light), {n}), to_numpy(std::move(within), {n}),
+        to_numpy(std::move(origin), {n, 3}), to_numpy(std::move(unit), {n, 3}));
 }
 
-/// Film points and slopes of scene rays (lens frame, mm); NaN where the search leaves the fit.
-auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions, const Column& nm) {
+/// Film points and slopes of scene rays (lens frame, mm); NaN where the search leaves the
+/// fit.
+auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions,
+             const Column& nm) {
     const std::size_t n = origins.shape(0);
     std::vector<double> film, slope;
     for (std::size_t i = 0; i < n; ++i) {
         const dg::LensRay ray{{origins(i, 0), origins(i, 1), origins(i, 2)},
                               {directions(i, 0), directions(i, 1), directions(i, 2)}};
         const auto found = fit.to_film(ray, nm(i));
-        const dg::FitRay r = found ? *found : dg::FitRay{{kNan, kNan}, {kNan, kNan}, nm(i)};
-        film.insert(film.end(), {r.film.x, r.film.y}), slope.insert(slope.end(), {r.slope.x, r.slope.y});
+        const dg::FitRay r =
+            found ? *found : dg::FitRay{{kNan, kNan}, {kNan, kNan}, nm(i)};
+        film.insert(film.end(), {r.film.x, r.film.y}),
+            slope.insert(slope.end(), {r.slope.x, r.slope.y});
     }
-    return nb::make_tuple(to_numpy(std::move(film), {n, 2}), to_numpy(std::move(slope), {n, 2}));
+    return nb::make_tuple(to_numpy(std::move(film), {n, 2}),
+                          to_numpy(std::move(slope), {n, 2}));
 }
 
-dg::LensFit fit(const dg::Prescription& lens, double f_stop, const dg::Iris& iris, double film_z_mm,
-                double film_radius_mm, Pair film_half_mm, int degree, int segments, int terms) {
+dg::LensFit fit(const dg::Prescription& lens, double f_stop, const dg::Iris& iris,
+                double film_z_mm, double film_radius_mm, Pair film_half_mm, int degree,
+                int segments, int terms) {
     dg::LensFitRequest request;
     request.film_z = film_z_mm, request.film_radius = film_radius_mm;
     request.film.half = vec(film_half_mm);
     const dg::FirstOrder order = dg::first_order(lens);
     request.iris = iris;
-    request.iris_radius = dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
+    request.iris_radius =
+        dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
     request.degree = degree, request.segments = segments, request.terms = terms;
     const nb::gil_scoped_release release;
     return make_lens_fit(dg::Tracer(lens), request);
@@ -195,14 +222,16 @@ auto describe(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& direc
         angles.insert(angles.end(), {d.direction.x, d.direction.y});
         offsets.insert(offsets.end(), {d.offset.x, d.offset.y});
     }
-    return nb::make_tuple(to_numpy(std::move(angles), {n, 2}), to_numpy(std::move(offsets), {n, 2}));
+    return nb::make_tuple(to_numpy(std::move(angles), {n, 2}),
+                          to_numpy(std::move(offsets), {n, 2}));
 }
 
-dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm,
-                     const Rows2d& angles, const Rows2d& offsets) {
+dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
+                     const Column& nm, const Rows2d& angles, const Rows2d& offsets) {
     const std::size_t n = equal_lengths(film, slopes, nm);
     if (angles.shape(0) != n || offsets.shape(0) != n)
-        throw dg::input_error("lens fit", "arrays", "as many angles and offsets as film points",
+        throw dg::input_error("lens fit", "arrays",
+                              "as many angles and offsets as film points",
                               std::to_string(n) + " film points");
     std::vector<dg::FitRay> rays;
     std::vector<dg::FitDirection> scene;
@@ -213,9 +242,10 @@ dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& s
     return dg::refit_rays(fit, rays, scene);
 }
 
-/// CPU seconds of this thread a ray through the kernels, both ways, over the given film rays.
-Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes, const Column& nm,
-                   int repeats) {
+/// CPU seconds of this thread a ray through the kernels, both ways, over the given film
+/// rays.
+Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
+                   const Column& nm, int repeats) {
     const std::size_t n = equal_lengths(film, slopes, nm);
     dg::IrisTables iris;
     iris.radius = float(fit.iris_radius);
@@ -225,7 +255,8 @@ Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slo
         dg::FilmRays& b = batches[i / dg::kLensBatch];
         const std::size_t k = i % dg::kLensBatch, from = i % n;
         b.x[k] = float(film(from, 0)), b.y[k] = float(film(from, 1));
-        b.mx[k] = float(slopes(from, 0)), b.my[k] = float(slopes(from, 1)), b.nm[k] = float(nm(from));
+        b.mx[k] = float(slopes(from, 0)), b.my[k] = float(slopes(from, 1)),
+        b.nm[k] = float(nm(from));
     }
     const auto scene = std::make_unique<dg::SceneRays>();
     const auto back = std::make_unique<dg::FilmRays>();
@@ -234,13 +265,14 @@ Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slo
         const double start = dg::bind::thread_seconds();
         for (int i = 0; i < repeats; ++i)
             for (const dg::FilmRays& b : batches) each(b);
-        return (dg::bind::thread_seconds() - start) / (double(repeats) * double(batches.size()) * dg::kLensBatch);
+        return (dg::bind::thread_seconds() - start) /
+               (double(repeats) * double(batches.size()) * dg::kLensBatch);
     };
-    const double out =
-        time([&](const dg::FilmRays& b) { fit_to_scene(tables, b, *scene, dg::kLensBatch); });
+    const double out = time(
+        [&](const dg::FilmRays& b) { fit_to_scene(tables, b, *scene, dg::kLensBatch); });
     std::copy(batches[0].nm, batches[0].nm + dg::kLensBatch, back->nm);
-    const double in =
-        time([&](const dg::FilmRays&) { fit_to_film(tables, *scene, *back, dg::kLensBatch); });
+    const double in = time(
+        [&](const dg::FilmRays&) { fit_to_film(tables, *scene, *back, dg::kLensBatch); });
     return {out, in};
 }
 
@@ -257,16 +289,19 @@ void bind_lens_fit(nb::module_& m) {
     nb::class_<LensFit> c(m, "LensFit");
     c.def(nb::init<>())
         .def_static("fit", &fit, "prescription"_a, "f_stop"_a, "iris"_a, "film_z_mm"_a,
-                    "film_radius_mm"_a, "film_half_mm"_a, "degree"_a, "segments"_a, "terms"_a,
-                    "f_stop 0: as wide as the lens opens; terms 0: all.")
+                    "film_radius_mm"_a, "film_half_mm"_a, "degree"_a, "segments"_a,
+                    "terms"_a, "f_stop 0: as wide as the lens opens; terms 0: all.")
         .def("describe", &describe, "origins"_a, "directions"_a)
-        .def("refitted", &refitted, "film_mm"_a, "slopes"_a, "wavelength_nm"_a, "angles"_a, "offsets"_a)
-        .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a, "repeats"_a,
-             "CPU seconds of the kernels: film to scene, scene to film.")
+        .def("refitted", &refitted, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
+             "angles"_a, "offsets"_a)
+        .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
+             "repeats"_a, "CPU seconds of the kernels: film to scene, scene to film.")
         .def("to_bytes", &bytes)
         .def_static(
             "from_bytes",
-            [](const nb::bytes& b) { return fit_from_bytes(std::string(b.c_str(), b.size())); },
+            [](const nb::bytes& b) {
+                return fit_from_bytes(std::string(b.c_str(), b.size()));
+            },
             "None if they are damaged.")
         .def("check", &check_lens_fit, "Error if its parts do not fit together.")
         .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
@@ -276,13 +311,16 @@ void bind_lens_fit(nb::module_& m) {
         .def_prop_rw(
             "symmetry",
             [](const LensFit& f) {
-                return std::tuple{f.symmetry.axial, f.symmetry.mirror_x, f.symmetry.mirror_y};
+                return std::tuple{f.symmetry.axial, f.symmetry.mirror_x,
+                                  f.symmetry.mirror_y};
             },
             [](LensFit& f, std::tuple<bool, bool, bool> s) {
                 f.symmetry = {std::get<0>(s), std::get<1>(s), std::get<2>(s)};
             })
         .def_prop_ro("wavelength_scale",
-                     [](const LensFit& f) { return Pair{f.scale.offset, f.scale.scale}; })
+                     [](const LensFit& f) {
+                         return Pair{f.scale.offset, f.scale.scale};
+                     })
         .def_prop_rw(
             "film_plane",
             [](const LensFit& f) {
@@ -290,7 +328,9 @@ void bind_lens_fit(nb::module_& m) {
                 return std::vector{flat(f.film.center), flat(f.film.x), flat(f.film.y)};
             },
             [](LensFit& f, const std::vector<std::array<double, 3>>& p) {
-                const auto vec3 = [](std::array<double, 3> v) { return Vec3d{v[0], v[1], v[2]}; };
+                const auto vec3 = [](std::array<double, 3> v) {
+                    return Vec3d{v[0], v[1], v[2]};
+                };
                 f.film = {vec3(p.at(0)), vec3(p.at(1)), vec3(p.at(2))};
             })
         .def_rw("pupil", &LensFit::pupil)

@@ -5,8 +5,8 @@
 
 namespace dg {
 
-// Both ways: T is const for a writer. Members are listed by structured bindings, as in aim_state.cpp: a struct that
-// gains one does not compile here until it is kept.
+// Both ways: T is const for a writer. Members are listed by structured bindings, as in
+// aim_state.cpp: a struct that gains one does not compile here until it is kept.
 template <typename T, typename U>
 concept Either = std::is_same_v<std::remove_const_t<T>, U>;
 
@@ -59,16 +59,19 @@ void describe(A& a, T& d) {
 }
 template <typename A, Either<FitErrorZone> T>
 void describe(A& a, T& z) {
-    auto& [low, high, rays, direction, film, iris, mount, transmittance, lost, leaked] = z;
+    auto& [low, high, rays, direction, film, iris, mount, transmittance, lost, leaked] =
+        z;
     a(low, high, rays, direction, film, iris, mount, transmittance, lost, leaked);
 }
 template <typename A, Either<LensFit> T>
 void describe(A& a, T& f) {
-    auto& [lens, degree, symmetry, scale, film, film_center, film_half, pupil, entrance_pupil_z, front_z,
-           front_curvature, iris_radius, iris_outer, mounts, segments, inverse, error] = f;
-    a(lens, degree, symmetry.axial, symmetry.mirror_x, symmetry.mirror_y, scale.offset, scale.scale,
-      film.center, film.x, film.y, film_center, film_half, pupil, entrance_pupil_z, front_z, front_curvature,
-      iris_radius, iris_outer, mounts, segments, inverse, error.all, error.zones);
+    auto& [lens, degree, symmetry, scale, film, film_center, film_half, pupil,
+           entrance_pupil_z, front_z, front_curvature, iris_radius, iris_outer, mounts,
+           segments, inverse, error] = f;
+    a(lens, degree, symmetry.axial, symmetry.mirror_x, symmetry.mirror_y, scale.offset,
+      scale.scale, film.center, film.x, film.y, film_center, film_half, pupil,
+      entrance_pupil_z, front_z, front_curvature, iris_radius, iris_outer, mounts,
+      segments, inverse, error.all, error.zones);
 }
 
 namespace {

@@ -14,8 +14,9 @@ int total(const FitTerm& t) {
 }
 
 void sort_by_degree(std::vector<FitTerm>& terms) {
-    std::stable_sort(terms.begin(), terms.end(),
-                     [](const FitTerm& a, const FitTerm& b) { return total(a) < total(b); });
+    std::stable_sort(terms.begin(), terms.end(), [](const FitTerm& a, const FitTerm& b) {
+        return total(a) < total(b);
+    });
 }
 
 /// Whether the parity of a power is what a mirror wants of it.
@@ -31,14 +32,15 @@ std::vector<FitTerm> axial_terms(int degree, int dispersion) {
     for (int s = 0; s <= k; ++s)
         for (int w = 0; w <= k - s; ++w)
             for (int u = 0; u <= k - s - w; ++u)
-                for (int l = 0; l <= std::min(k - s - w - u + dispersion, kMaxAxialDispersion); ++l)
+                for (int l = 0;
+                     l <= std::min(k - s - w - u + dispersion, kMaxAxialDispersion); ++l)
                     terms.push_back({s, w, u, l, 0});
     sort_by_degree(terms);
     return terms;
 }
 
-std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y,
-                                int dispersion) {
+std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x,
+                                bool odd_y, int dispersion) {
     std::vector<FitTerm> terms;
     for (int qx = 0; qx <= degree; ++qx)
         for (int qy = 0; qy <= degree - qx; ++qy)
@@ -54,7 +56,8 @@ std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool od
 }
 
 std::vector<FitTerm> light_terms(const FitSymmetry& symmetry) {
-    constexpr int kMostDispersion = 8, kPrice = 3;  // powers of l that a ray degree of 2 costs
+    constexpr int kMostDispersion = 8,
+                  kPrice = 3;  // powers of l that a ray degree of 2 costs
     std::vector<FitTerm> terms;
     if (symmetry.axial) {
         for (const FitTerm& t : axial_terms(5))
@@ -71,14 +74,16 @@ std::vector<FitTerm> light_terms(const FitSymmetry& symmetry) {
     return terms;
 }
 
-void monomials(const std::vector<FitTerm>& terms, const FitVariables& at, double* values) {
+void monomials(const std::vector<FitTerm>& terms, const FitVariables& at,
+               double* values) {
     double power[5][kMaxPower];
     for (int v = 0; v < 5; ++v) {
         power[v][0] = 1;
         for (int e = 1; e < kMaxPower; ++e) power[v][e] = power[v][e - 1] * at[v];
     }
     for (const FitTerm& t : terms)
-        *values++ = power[0][t[0]] * power[1][t[1]] * power[2][t[2]] * power[3][t[3]] * power[4][t[4]];
+        *values++ = power[0][t[0]] * power[1][t[1]] * power[2][t[2]] * power[3][t[3]] *
+                    power[4][t[4]];
 }
 
 void FitFunctions::evaluate(const FitVariables& at, double* values) const {
@@ -86,7 +91,8 @@ void FitFunctions::evaluate(const FitVariables& at, double* values) const {
     monomials(terms, at, term.data());
     std::fill(values, values + count, 0.0);
     for (std::size_t i = terms.size(); i-- > 0;)
-        for (int k = 0; k < count; ++k) values[k] += term[i] * coefficients[i * count + k];
+        for (int k = 0; k < count; ++k)
+            values[k] += term[i] * coefficients[i * count + k];
 }
 
 }  // namespace dg

@@ -1,9 +1,10 @@
 // fit_basis.h -- the monomials of a fitted lens, and functions over them.
 //
-// Axially symmetric lenses: vectors f A(s, W, U, l) + q B(s, W, U, l), scalars C(s, W, U, l), f the film point,
-// q the second point of the film ray (see lens_fit.h), s = f.q, W = 2|q|^2 - 1, U = |f|^2 over the segment's
-// range mapped to [-1, 1], l the wavelength variable. A ray degree of 2k + 1 is all powers of total degree up
-// to k, those of l up to 3 (symmetry: Hullin, Hanika and Heidrich 2012, CGF 31(4)). Lenses without that
+// Axially symmetric lenses: vectors f A(s, W, U, l) + q B(s, W, U, l), scalars C(s, W, U,
+// l), f the film point, q the second point of the film ray (see lens_fit.h), s = f.q, W =
+// 2|q|^2 - 1, U = |f|^2 over the segment's range mapped to [-1, 1], l the wavelength
+// variable. A ray degree of 2k + 1 is all powers of total degree up to k, those of l up
+// to 3 (symmetry: Hullin, Hanika and Heidrich 2012, CGF 31(4)). Lenses without that
 // symmetry: all monomials of the four coordinates, a power of l costs two.
 #pragma once
 #include <array>
@@ -22,17 +23,19 @@ struct FitSymmetry {
     bool axial = true, mirror_x = true, mirror_y = true;  // x -> -x, y -> -y
 };
 
-/// Complete basis of a ray degree; constants first, in order of total degree, so that a lower degree is the
-/// head of a higher one.
-/// `dispersion`: by how much the total may be exceeded through powers of l.
+/// Complete basis of a ray degree; constants first, in order of total degree, so that a
+/// lower degree is the head of a higher one. `dispersion`: by how much the total may be
+/// exceeded through powers of l.
 std::vector<FitTerm> axial_terms(int degree, int dispersion = 0);
-/// The same for a lens of full ray degree without axial symmetry. `odd_x`: of a function that changes its sign
-/// with x (the x of a vector); mirrors leave odd or even powers only.
-std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x, bool odd_y,
-                                int dispersion = 0);
+/// The same for a lens of full ray degree without axial symmetry. `odd_x`: of a function
+/// that changes its sign with x (the x of a vector); mirrors leave odd or even powers
+/// only.
+std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool odd_x,
+                                bool odd_y, int dispersion = 0);
 
-/// For the transmittance: it varies little over film and pupil, and in waves with the wavelength (coatings).
-/// Powers of l up to 8, of the other variables up to a ray degree of 4.
+/// For the transmittance: it varies little over film and pupil, and in waves with the
+/// wavelength (coatings). Powers of l up to 8, of the other variables up to a ray degree
+/// of 4.
 std::vector<FitTerm> light_terms(const FitSymmetry& symmetry);
 
 /// Value of every term.

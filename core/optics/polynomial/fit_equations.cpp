@@ -8,7 +8,8 @@
 namespace dg {
 namespace {
 
-constexpr double kDependent = 1e-20;  // of a column's squared length: nothing of its own is left
+constexpr double kDependent =
+    1e-20;  // of a column's squared length: nothing of its own is left
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;
@@ -32,7 +33,8 @@ std::vector<int> FitEquations::choose(int side, int keep) const {
     std::vector<double> rest(rows()), length(columns);
     for (int i = 0; i < rows(); ++i) {
         rest[i] = rhs[std::size_t(i) * sides + side];
-        for (int j = 0; j < columns; ++j) column[j][i] = matrix[std::size_t(i) * columns + j];
+        for (int j = 0; j < columns; ++j)
+            column[j][i] = matrix[std::size_t(i) * columns + j];
     }
     for (int j = 0; j < columns; ++j) length[j] = product(column[j], column[j]);
     std::vector<int> chosen;
@@ -40,8 +42,10 @@ std::vector<int> FitEquations::choose(int side, int keep) const {
         int best = -1;
         double most = 0;
         for (int j = 0; j < columns; ++j) {
-            const double left = product(column[j], column[j]), along = product(column[j], rest);
-            if (!(left > kDependent * length[j]) || !(along * along > most * left)) continue;
+            const double left = product(column[j], column[j]),
+                         along = product(column[j], rest);
+            if (!(left > kDependent * length[j]) || !(along * along > most * left))
+                continue;
             best = j, most = along * along / left;
         }
         if (best < 0) break;
@@ -64,7 +68,8 @@ std::vector<double> FitEquations::solve_sparse(int keep) const {
         const std::vector<int> chosen = choose(side, keep);
         FitEquations few{int(chosen.size()), 1};
         for (int i = 0; i < rows(); ++i) {
-            for (const int j : chosen) few.matrix.push_back(matrix[std::size_t(i) * columns + j]);
+            for (const int j : chosen)
+                few.matrix.push_back(matrix[std::size_t(i) * columns + j]);
             few.rhs.push_back(rhs[std::size_t(i) * sides + side]);
         }
         if (chosen.empty()) continue;

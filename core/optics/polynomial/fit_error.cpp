@@ -27,12 +27,14 @@ struct Compared {
     bool exact = false, fitted = false;
 };
 
-/// Where the exact lens sends the fitted scene ray on the film, mm from where the film ray began; negative if it
-/// does not get there.
-double film_error(const Tracer& tracer, const LensFit& fit, const FitValue& v, const FitSample& s) {
+/// Where the exact lens sends the fitted scene ray on the film, mm from where the film
+/// ray began; negative if it does not get there.
+double film_error(const Tracer& tracer, const LensFit& fit, const FitValue& v,
+                  const FitSample& s) {
     LensRay ray = fit.scene_ray(v.direction, v.offset);
     // Far enough in front of the first surface: its vertex sphere is not its sag.
-    ray.direction = -ray.direction, ray.origin = ray.origin - ray.direction * (2 * length(ray.origin) + 10);
+    ray.direction = -ray.direction,
+    ray.origin = ray.origin - ray.direction * (2 * length(ray.origin) + 10);
     const auto out = tracer.to_film(ray, tracer.at(s.nm), {false, nullptr, 0});
     if (!out) return -1;
     const Vec3d n = fit.film.normal();
@@ -70,9 +72,11 @@ FitErrorZone summary(const std::vector<Compared>& rays, double low, double high)
         transmittance.add(c.transmittance);
         if (c.film >= 0) film.add(1e3 * c.film);
     }
-    zone.direction = direction.total(), zone.film = film.total(), zone.iris = iris.total();
+    zone.direction = direction.total(), zone.film = film.total(),
+    zone.iris = iris.total();
     zone.mount = mount.total(), zone.transmittance = transmittance.total();
-    if (zone.rays) zone.lost = double(lost) / zone.rays, zone.leaked = double(leaked) / zone.rays;
+    if (zone.rays)
+        zone.lost = double(lost) / zone.rays, zone.leaked = double(leaked) / zone.rays;
     return zone;
 }
 
@@ -80,13 +84,20 @@ FitErrorZone summary(const std::vector<Compared>& rays, double low, double high)
 
 FitError measure_fit(const FitRays& rays, const LensFit& fit, int count) {
     std::vector<Compared> compared;
-    for (const FitSample& s : rays.draw({.count = count, .first = kFreshRays, .widened = kErrorWidened, .met = true}))
+    for (const FitSample& s : rays.draw({.count = count,
+                              .first = kFreshRays,
+                              .widened = kErrorWidened,
+                              .met = true}))
         compared.push_back(compare(rays.tracer(), fit, s));
-    const double radius = fit.symmetry.axial ? fit.film_half.x : length(fit.film_half) + length(fit.film_center);
+    const double radius = fit.symmetry.axial
+                              ? fit.film_half.x
+                              : length(fit.film_half) + length(fit.film_center);
     FitError error;
     error.all = summary(compared, 0, 2 * radius);
     for (int k = 0; k < kZones; ++k)
-        error.zones.push_back(summary(compared, radius * k / kZones, radius * (k + 1) / kZones * (k + 1 == kZones ? 1.0001 : 1)));
+        error.zones.push_back(
+            summary(compared, radius * k / kZones,
+                    radius * (k + 1) / kZones * (k + 1 == kZones ? 1.0001 : 1)));
     return error;
 }
 

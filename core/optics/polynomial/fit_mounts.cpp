@@ -6,7 +6,8 @@
 namespace dg {
 namespace {
 
-constexpr double kMissed = 1e-4;  // share of the passing rays that mounts which are not kept may stop
+constexpr double kMissed =
+    1e-4;  // share of the passing rays that mounts which are not kept may stop
 
 bool stops(const Surface& s, Vec2d at) {
     const double r = length(at);
@@ -15,7 +16,8 @@ bool stops(const Surface& s, Vec2d at) {
 
 }  // namespace
 
-std::vector<FitMount> limiting_mounts(const Tracer& tracer, const std::vector<FitSample>& samples) {
+std::vector<FitMount> limiting_mounts(const Tracer& tracer,
+                                      const std::vector<FitSample>& samples) {
     const auto& surfaces = tracer.prescription().surfaces;
     std::vector<const FitSample*> stopped;
     int passing = 0;
@@ -29,11 +31,13 @@ std::vector<FitMount> limiting_mounts(const Tracer& tracer, const std::vector<Fi
         for (const FitSample* s : stopped)
             for (std::size_t i = 0; i < surfaces.size(); ++i)
                 count[i] += int(i) != tracer.stop() && stops(surfaces[i], s->met[i]);
-        const int busiest = int(std::max_element(count.begin(), count.end()) - count.begin());
+        const int busiest =
+            int(std::max_element(count.begin(), count.end()) - count.begin());
         if (count[busiest] <= kMissed * passing) return mounts;
         const Surface& mount = surfaces[busiest];
         mounts.push_back({busiest, clear_radius(mount), mount.inner_semi_diameter});
-        std::erase_if(stopped, [&](const FitSample* s) { return stops(mount, s->met[busiest]); });
+        std::erase_if(stopped,
+                      [&](const FitSample* s) { return stops(mount, s->met[busiest]); });
     }
 }
 

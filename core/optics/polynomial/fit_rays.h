@@ -21,17 +21,18 @@ struct FitSample {
 /// Which rays are drawn.
 struct FitDraw {
     int count = 0;
-    int first = 0;                 // of the sequence
-    double widened = 1;            // clear apertures and iris may be left by this factor
-    bool toward_edges = false;     // of film, pupil and wavelengths, where polynomials err most
-    bool met = false;              // whether `met` and `passes` are wanted
+    int first = 0;       // of the sequence
+    double widened = 1;  // clear apertures and iris may be left by this factor
+    bool toward_edges =
+        false;         // of film, pupil and wavelengths, where polynomials err most
+    bool met = false;  // whether `met` and `passes` are wanted
     double u_low = 0, u_high = 1;  // |f|^2
 };
 
 class FitRays {
   public:
-    /// Finds what of the film is lit and where its light comes from, and sets the domain of `fit`: film, pupil,
-    /// symmetry. Error if no light reaches the film.
+    /// Finds what of the film is lit and where its light comes from, and sets the domain
+    /// of `fit`: film, pupil, symmetry. Error if no light reaches the film.
     FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& fit);
 
     /// Rays that get through, fewer than asked for where few do.
@@ -40,7 +41,8 @@ class FitRays {
 
   private:
     void find_domain(LensFit& fit);
-    std::optional<FitSample> trace(Vec2d f, Vec2d q, double nm, const FitDraw& what) const;
+    std::optional<FitSample> trace(Vec2d f, Vec2d q, double nm,
+                                   const FitDraw& what) const;
     bool add_met(const LensRay& scene, const LensIndices& index, FitSample& s) const;
 
     const Tracer& tracer_;

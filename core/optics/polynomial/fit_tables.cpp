@@ -36,17 +36,20 @@ class Programmer {
     void want(const FitFunctions& f) {
         for (const FitTerm& t : f.terms) add(t);
     }
-    /// Degree after degree, by variable, in the order of the parents: so those that share a variable follow one
-    /// another as their parents do, and a complete basis has one run for each degree and variable.
+    /// Degree after degree, by variable, in the order of the parents: so those that share
+    /// a variable follow one another as their parents do, and a complete basis has one
+    /// run for each degree and variable.
     FitProgram program() {
         add({});
-        std::map<std::array<int, 3>, FitTerm> order;  // degree, variable, place of the parent
+        std::map<std::array<int, 3>, FitTerm>
+            order;  // degree, variable, place of the parent
         FitProgram p;
         p.size = 0;
         for (int degree = 0; p.size < int(terms_.size()); ++degree) {
             order.clear();
             for (const FitTerm& t : terms_)
-                if (total(t) == degree) order[{degree, last_variable(t), place_[parent_of(t)]}] = t;
+                if (total(t) == degree)
+                    order[{degree, last_variable(t), place_[parent_of(t)]}] = t;
             for (const auto& [key, t] : order) {
                 if (degree > 0) extend(p, key[2], key[1]);
                 place_[t] = p.size++;
@@ -96,8 +99,8 @@ std::vector<FitFunctions> by_power(const FitFunctions& f, int variable) {
 }
 
 FitPupilTables pupil_tables(const FitPupil& p) {
-    return {float(p.by_film.x), float(p.by_film.y),  float(p.by_slope.x),
-            float(p.by_slope.y), float(p.shift.x), float(p.shift.y)};
+    return {float(p.by_film.x),  float(p.by_film.y), float(p.by_slope.x),
+            float(p.by_slope.y), float(p.shift.x),   float(p.shift.y)};
 }
 
 FitSegmentTables segment_tables(const FitSegment& s, bool axial) {
@@ -123,7 +126,8 @@ FitSegmentTables segment_tables(const FitSegment& s, bool axial) {
 int angle_terms(double theta) {
     double term = 1;
     int n = 1;
-    for (; n < kMostAngleTerms && term > kAngleError; ++n) term *= theta * theta / ((2 * n) * (2 * n + 1));
+    for (; n < kMostAngleTerms && term > kAngleError; ++n)
+        term *= theta * theta / ((2 * n) * (2 * n + 1));
     return n;
 }
 
@@ -139,9 +143,11 @@ FitTables make_fit_tables(const LensFit& fit, const IrisTables& iris) {
     t.front_curvature = float(fit.front_curvature);
     t.angle_terms = angle_terms(1.2 * fit.inverse.direction);
     for (const FitMount& m : fit.mounts) {
-        t.outer2.push_back(float(m.radius * m.radius)), t.inner2.push_back(float(m.inner * m.inner));
+        t.outer2.push_back(float(m.radius * m.radius)),
+            t.inner2.push_back(float(m.inner * m.inner));
     }
-    for (const FitSegment& s : fit.segments) t.segments.push_back(segment_tables(s, t.axial));
+    for (const FitSegment& s : fit.segments)
+        t.segments.push_back(segment_tables(s, t.axial));
     t.inverse_direction = float(1 / fit.inverse.direction);
     t.inverse_pupil = pupil_tables(fit.inverse.pupil);
     Programmer p;

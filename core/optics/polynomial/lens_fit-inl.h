@@ -1,4 +1,5 @@
-// lens_fit-inl.h -- the polynomials of a fitted lens in SIMD lanes. Included once per instruction set.
+// lens_fit-inl.h -- the polynomials of a fitted lens in SIMD lanes. Included once per
+// instruction set.
 #if defined(DG_OPTICS_LENS_FIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_LENS_FIT_INL_H_
 #undef DG_OPTICS_LENS_FIT_INL_H_
@@ -14,7 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Two vectors of rays at once: one's chains of dependent operations hide behind the other's.
+/// Two vectors of rays at once: one's chains of dependent operations hide behind the
+/// other's.
 struct Pair {
     V a, b;
 };
@@ -31,13 +33,21 @@ HWY_INLINE Pair each(F f, Pair p, Pair q) {
     return {f(p.a, q.a), f(p.b, q.b)};
 }
 
-HWY_INLINE Pair add(Pair p, Pair q) { return {hn::Add(p.a, q.a), hn::Add(p.b, q.b)}; }
-HWY_INLINE Pair sub(Pair p, Pair q) { return {hn::Sub(p.a, q.a), hn::Sub(p.b, q.b)}; }
-HWY_INLINE Pair mul(Pair p, Pair q) { return {hn::Mul(p.a, q.a), hn::Mul(p.b, q.b)}; }
+HWY_INLINE Pair add(Pair p, Pair q) {
+    return {hn::Add(p.a, q.a), hn::Add(p.b, q.b)};
+}
+HWY_INLINE Pair sub(Pair p, Pair q) {
+    return {hn::Sub(p.a, q.a), hn::Sub(p.b, q.b)};
+}
+HWY_INLINE Pair mul(Pair p, Pair q) {
+    return {hn::Mul(p.a, q.a), hn::Mul(p.b, q.b)};
+}
 HWY_INLINE Pair mul_add(Pair p, Pair q, Pair r) {
     return {hn::MulAdd(p.a, q.a, r.a), hn::MulAdd(p.b, q.b, r.b)};
 }
-HWY_INLINE Pair both(float v) { return {constant(v), constant(v)}; }
+HWY_INLINE Pair both(float v) {
+    return {constant(v), constant(v)};
+}
 HWY_INLINE Pair dot(const PairVec& p, const PairVec& q) {
     return mul_add(p.x, q.x, mul(p.y, q.y));
 }
@@ -51,7 +61,8 @@ HWY_INLINE void store(Pair v, float* p) {
 }
 
 /// Fills `values`, two vectors for each monomial, by the first runs of a program.
-HWY_INLINE void run_program(const FitProgram& program, int runs, const Pair (&at)[5], float* values) {
+HWY_INLINE void run_program(const FitProgram& program, int runs, const Pair (&at)[5],
+                            float* values) {
     const std::size_t step = 2 * hn::Lanes(D());
     store(both(1), values);
     for (int i = 0; i < runs; ++i) {
@@ -59,21 +70,23 @@ HWY_INLINE void run_program(const FitProgram& program, int runs, const Pair (&at
         const Pair x = at[run.variable];
         const float* from = values + run.parent * step;
         float* to = values + run.first * step;
-        for (int k = 0; k < run.count; ++k, from += step, to += step) store(mul(load(from), x), to);
+        for (int k = 0; k < run.count; ++k, from += step, to += step)
+            store(mul(load(from), x), to);
     }
 }
 
-/// kCount neighbouring functions, in kChains sums each, so that enough of them are under way; small terms come
-/// first, so that rounding acts on the last few.
+/// kCount neighbouring functions, in kChains sums each, so that enough of them are under
+/// way; small terms come first, so that rounding acts on the last few.
 template <int kCount, int kChains>
-HWY_INLINE void sum_terms(const FitFunctionTables& t, int first, const float* values, Pair* out) {
+HWY_INLINE void sum_terms(const FitFunctionTables& t, int first, const float* values,
+                          Pair* out) {
     const D d;
     const std::size_t step = 2 * hn::Lanes(d);
     Pair sum[kChains][kCount];
     for (int c = 0; c < kChains; ++c)
         for (int k = 0; k < kCount; ++k) sum[c][k] = both(0);
     const float* coefficient = t.coefficients.data() + first;
-    const auto take = [&](int i, Pair (&to)[kCount]) HWY_ATTR {
+    const auto take = [&](int i, Pair(&to)[kCount]) HWY_ATTR {
         const Pair m = load(values + t.at[i] * step);
         for (int k = 0; k < kCount; ++k) {
             const V ck = constant(coefficient[i * t.count + k]);
@@ -110,8 +123,8 @@ HWY_INLINE Pair light(const FitLightTables& t, Pair l, const float* values) {
 inline constexpr int kMostFunctions = 40;
 
 /// The vectors of a block: f A + q B, or x and y apart.
-HWY_INLINE void vectors(const FitBlockTables& block, bool axial, const float* values, const PairVec& f,
-                        const PairVec& q, PairVec* out) {
+HWY_INLINE void vectors(const FitBlockTables& block, bool axial, const float* values,
+                        const PairVec& f, const PairVec& q, PairVec* out) {
     Pair x[kMostFunctions];
     functions(block.x, values, x);
     if (axial) {
@@ -126,20 +139,26 @@ HWY_INLINE void vectors(const FitBlockTables& block, bool axial, const float* va
     for (int i = 0; i < block.x.count; ++i) out[i] = {x[i], y[i]};
 }
 
-HWY_INLINE void axial_variables(const PairVec& f, const PairVec& q, Pair u, Pair l, Pair (&at)[5]) {
+HWY_INLINE void axial_variables(const PairVec& f, const PairVec& q, Pair u, Pair l,
+                                Pair (&at)[5]) {
     const Pair w = dot(q, q);
-    at[0] = dot(f, q), at[1] = sub(add(w, w), both(1)), at[2] = u, at[3] = l, at[4] = both(1);
+    at[0] = dot(f, q), at[1] = sub(add(w, w), both(1)), at[2] = u, at[3] = l,
+    at[4] = both(1);
 }
-HWY_INLINE void free_variables(const PairVec& f, const PairVec& q, Pair l, Pair (&at)[5]) {
+HWY_INLINE void free_variables(const PairVec& f, const PairVec& q, Pair l,
+                               Pair (&at)[5]) {
     at[0] = q.x, at[1] = q.y, at[2] = f.x, at[3] = f.y, at[4] = l;
 }
 
-HWY_INLINE PairVec pupil_point(const FitPupilTables& p, const PairVec& f, const PairVec& m) {
+HWY_INLINE PairVec pupil_point(const FitPupilTables& p, const PairVec& f,
+                               const PairVec& m) {
     return {mul_add(f.x, both(p.film_x), mul_add(m.x, both(p.slope_x), both(p.shift_x))),
             mul_add(f.y, both(p.film_y), mul_add(m.y, both(p.slope_y), both(p.shift_y)))};
 }
-HWY_INLINE PairVec pupil_slope(const FitPupilTables& p, const PairVec& f, const PairVec& q) {
-    const auto slope = [](Pair f, Pair q, float by_film, float by_slope, float shift) HWY_ATTR {
+HWY_INLINE PairVec pupil_slope(const FitPupilTables& p, const PairVec& f,
+                               const PairVec& q) {
+    const auto slope = [](Pair f, Pair q, float by_film, float by_slope,
+                          float shift) HWY_ATTR {
         return mul(sub(sub(q, both(shift)), mul(f, both(by_film))), both(1 / by_slope));
     };
     return {slope(f.x, q.x, p.film_x, p.slope_x, p.shift_x),
@@ -150,7 +169,8 @@ HWY_INLINE Pair wavelength_variable(const WavelengthScale& scale, Pair nm) {
     return each(
         [&](V v) HWY_ATTR {
             const V inv_um = hn::Div(constant(1e3f), v);
-            return hn::MulAdd(hn::Mul(inv_um, inv_um), constant(scale.scale), constant(scale.offset));
+            return hn::MulAdd(hn::Mul(inv_um, inv_um), constant(scale.scale),
+                              constant(scale.offset));
         },
         nm);
 }
@@ -183,7 +203,8 @@ struct PairRay {
 /// LensFit::scene_ray(): z from the first vertex.
 HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairVec& e) {
     const Pair t = dot(v, v);
-    const Pair sine = angle_series<1>(fit.angle_terms, t), versine = angle_series<2>(fit.angle_terms, t);
+    const Pair sine = angle_series<1>(fit.angle_terms, t),
+               versine = angle_series<2>(fit.angle_terms, t);
     const Pair along = dot(e, v), back = mul(along, versine);
     PairRay r;
     r.dx = mul(v.x, sine), r.dy = mul(v.y, sine), r.dz = sub(mul(t, versine), both(1));
@@ -211,7 +232,9 @@ struct FitLanes {
     Pair light;
 };
 
-HWY_INLINE V choose(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
+HWY_INLINE V choose(M mask, V yes, V no) {
+    return hn::IfThenElse(mask, yes, no);
+}
 
 struct PairMask {
     M a, b;
@@ -222,8 +245,9 @@ HWY_INLINE void choose(const PairMask& m, const PairVec& from, PairVec& to) {
 }
 
 /// Of the rays of one segment, whatever segment they belong to.
-HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s, const PairVec& f,
-                                 const PairVec& q, Pair u, Pair l, bool all, float* values, FitLanes& out) {
+HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s,
+                                 const PairVec& f, const PairVec& q, Pair u, Pair l,
+                                 bool all, float* values, FitLanes& out) {
     Pair at[5];
     if (fit.axial)
         axial_variables(f, q, mul_add(u, both(s.u_scale), both(s.u_offset)), l, at);
@@ -241,9 +265,11 @@ HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s
     out.light = light(s.light, l, values);
 }
 
-/// The segment of each ray; or that of all, if it is known. `all`: iris, mounts and light too.
-HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known, const PairVec& f,
-                             const PairVec& q, Pair l, bool all, float* values, FitLanes& out) {
+/// The segment of each ray; or that of all, if it is known. `all`: iris, mounts and light
+/// too.
+HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known,
+                             const PairVec& f, const PairVec& q, Pair l, bool all,
+                             float* values, FitLanes& out) {
     const Pair u = dot(f, f);
     evaluate_segment(fit, known ? *known : fit.segments[0], f, q, u, l, all, values, out);
     if (known) return;
@@ -255,11 +281,14 @@ HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known
         if (hn::AllFalse(d, hn::Or(mine.a, mine.b))) continue;
         FitLanes here;
         evaluate_segment(fit, s, f, q, u, l, all, values, here);
-        choose(mine, here.direction, out.direction), choose(mine, here.offset, out.offset);
+        choose(mine, here.direction, out.direction),
+            choose(mine, here.offset, out.offset);
         if (!all) continue;
         choose(mine, here.iris, out.iris);
-        for (std::size_t i = 0; i < fit.outer2.size(); ++i) choose(mine, here.mounts[i], out.mounts[i]);
-        out.light = {choose(mine.a, here.light.a, out.light.a), choose(mine.b, here.light.b, out.light.b)};
+        for (std::size_t i = 0; i < fit.outer2.size(); ++i)
+            choose(mine, here.mounts[i], out.mounts[i]);
+        out.light = {choose(mine.a, here.light.a, out.light.a),
+                     choose(mine.b, here.light.b, out.light.b)};
     }
 }
 

@@ -20,9 +20,9 @@ struct AngleRatios {
     }
 };
 
-
 /// The vectors of a block: f A + q B, or x and y apart.
-int vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f, Vec2d q, Vec2d* out) {
+int vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f, Vec2d q,
+            Vec2d* out) {
     std::vector<double> x(block.x.count), y(block.y.count);
     block.x.evaluate(at, x.data());
     if (!axial) block.y.evaluate(at, y.data());
@@ -109,7 +109,8 @@ const FitSegment& LensFit::segment_at(Vec2d f) const {
     return segments.back();
 }
 
-FitDirection LensFit::scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q, double l) const {
+FitDirection LensFit::scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q,
+                                    double l) const {
     Vec2d out[2];
     vectors(segment.rays, variables(f, q, l, segment), symmetry.axial, f, q, out);
     return {out[0], out[1]};
@@ -127,8 +128,9 @@ FitValue LensFit::evaluate(const FitRay& ray) const {
     value.iris = out[0];
     value.mounts.assign(out.begin() + 1, out.begin() + 1 + mounts.size());
     segment.light.x.evaluate(at, &value.transmittance);
-    value.within = dot(q, q) <= 1 && (symmetry.axial ? dot(f, f) <= 1
-                                                     : std::max(std::abs(f.x), std::abs(f.y)) <= 1);
+    value.within =
+        dot(q, q) <= 1 &&
+        (symmetry.axial ? dot(f, f) <= 1 : std::max(std::abs(f.x), std::abs(f.y)) <= 1);
     for (std::size_t i = 0; i < mounts.size(); ++i) {
         const double r = length(value.mounts[i]);
         value.within = value.within && r <= mounts[i].radius && r >= mounts[i].inner;
@@ -144,7 +146,8 @@ LensRay LensFit::scene_ray(Vec2d v, Vec2d e) const {
     const Vec2d across = e - v * (along * ratio.versine);
     const Vec3d foot{across.x, across.y, entrance_pupil_z - front_z + along * ratio.sine};
     // c |p + t d|^2 = 2 (p + t d).z about the vertex, the root that is stable for planes.
-    const double c = front_curvature, b = c * dot(foot, d) - d.z, k = c * dot(foot, foot) - 2 * foot.z;
+    const double c = front_curvature, b = c * dot(foot, d) - d.z,
+                 k = c * dot(foot, foot) - 2 * foot.z;
     const double root = b * b - c * k;
     const double t = root > 0 ? -k / (b + std::sqrt(root)) : 0;
     return {foot + d * t + Vec3d{0, 0, front_z}, d};
@@ -157,11 +160,12 @@ LensRay LensFit::film_ray(const FitRay& ray) const {
 std::optional<FitRay> LensFit::to_film(const LensRay& scene, double nm) const {
     const FitDirection d = describe_ray(scene, entrance_pupil_z);
     const double l = scale(nm);
-    const Vec2d g = d.direction * (1 / inverse.direction), h = inverse.pupil.q(g, d.offset);
+    const Vec2d g = d.direction * (1 / inverse.direction),
+                h = inverse.pupil.q(g, d.offset);
     Vec2d start[2];
-    const FitVariables at = symmetry.axial
-                                ? FitVariables{dot(g, h), 2 * dot(h, h) - 1, 2 * dot(g, g) - 1, l, 0}
-                                : FitVariables{h.x, h.y, g.x, g.y, l};
+    const FitVariables at = symmetry.axial ? FitVariables{dot(g, h), 2 * dot(h, h) - 1,
+                                                          2 * dot(g, g) - 1, l, 0}
+                                           : FitVariables{h.x, h.y, g.x, g.y, l};
     vectors(inverse.rays, at, symmetry.axial, g, h, start);
     Four z{start[0].x, start[0].y, start[1].x, start[1].y};
     const Four target{d.direction.x, d.direction.y, d.offset.x, d.offset.y};
@@ -170,13 +174,15 @@ std::optional<FitRay> LensFit::to_film(const LensRay& scene, double nm) const {
         if (!newton_step(*this, target, l, z)) return std::nullopt;
         double moved = 0, size = 0;
         for (int k = 0; k < 4; ++k)
-            moved = std::max(moved, std::abs(z[k] - before[k])), size = std::max(size, std::abs(z[k]));
+            moved = std::max(moved, std::abs(z[k] - before[k])),
+            size = std::max(size, std::abs(z[k]));
         if (!(size < 4)) return std::nullopt;
         if (moved > 1e-12) continue;
         const Vec2d f{z[0], z[1]};
-        return FitRay{{film_center.x + film_half.x * f.x, film_center.y + film_half.y * f.y},
-                      pupil.slope(f, {z[2], z[3]}),
-                      nm};
+        return FitRay{
+            {film_center.x + film_half.x * f.x, film_center.y + film_half.y * f.y},
+            pupil.slope(f, {z[2], z[3]}),
+            nm};
     }
     return std::nullopt;
 }

@@ -7,9 +7,10 @@
 #include <algorithm>
 
 #include "hwy/aligned_allocator.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep; before all that is compiled again
+
 #include "hwy/contrib/math/math-inl.h"
+#include "hwy/highway.h"
 #include "optics/polynomial/lens_fit-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,7 +20,9 @@ namespace HWY_NAMESPACE {
 /// Rounds of the inverse at most; each gains two digits or more.
 constexpr int kInverseRounds = 4;
 
-HWY_INLINE PairVec load(const float* x, const float* y) { return {load(x), load(y)}; }
+HWY_INLINE PairVec load(const float* x, const float* y) {
+    return {load(x), load(y)};
+}
 
 HWY_INLINE PairVec unit_film(const FitTables& fit, const PairVec& p) {
     return {mul(sub(p.x, both(fit.center_x)), both(1 / fit.half_x)),
@@ -37,11 +40,13 @@ HWY_INLINE V open(const FitTables& fit, V fx, V fy, V qx, V qy) {
 }
 
 /// Transmittance, iris, mounts and domain.
-HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q, const FitLanes& v) {
+HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q,
+                       const FitLanes& v) {
     const V zero = hn::Zero(D());
     const auto one = [&](V fx, V fy, V qx, V qy, V ix, V iy, V light) HWY_ATTR {
         const V pass = hn::Mul(open(fit, fx, fy, qx, qy), hn::Max(light, zero));
-        return fit.iris.radius > 0 ? hn::Mul(pass, iris_transmission(fit.iris, ix, iy)) : pass;
+        return fit.iris.radius > 0 ? hn::Mul(pass, iris_transmission(fit.iris, ix, iy))
+                                   : pass;
     };
     Pair pass = {one(f.x.a, f.y.a, q.x.a, q.y.a, v.iris.x.a, v.iris.y.a, v.light.a),
                  one(f.x.b, f.y.b, q.x.b, q.y.b, v.iris.x.b, v.iris.y.b, v.light.b)};
@@ -56,14 +61,15 @@ HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q,
     return pass;
 }
 
-void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const FilmRays& in, SceneRays& out,
-                int count, float* values) {
+void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const FilmRays& in,
+                SceneRays& out, int count, float* values) {
     const int step = 2 * int(hn::Lanes(D()));
     for (int i = 0; i < count; i += step) {
         const PairVec f = unit_film(fit, load(in.x + i, in.y + i));
         const PairVec q = pupil_point(fit.pupil, f, load(in.mx + i, in.my + i));
         FitLanes v;
-        evaluate_fit(fit, &segment, f, q, wavelength_variable(fit.scale, load(in.nm + i)), true, values, v);
+        evaluate_fit(fit, &segment, f, q, wavelength_variable(fit.scale, load(in.nm + i)),
+                     true, values, v);
         const PairRay r = scene_ray(fit, v.direction, v.offset);
         store(r.x, out.x + i), store(r.y, out.y + i), store(r.z, out.z + i);
         store(r.dx, out.dx + i), store(r.dy, out.dy + i), store(r.dz, out.dz + i);
@@ -73,8 +79,8 @@ void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const Fil
 }
 
 /// describe_ray() of rays toward the scene, z from the first vertex.
-HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, V dz, V& vx, V& vy, V& ex,
-                               V& ey) {
+HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, V dz,
+                               V& vx, V& vy, V& ex, V& ey) {
     const D d;
     const V one = constant(1), z0 = hn::Sub(z, constant(fit.pupil_z));
     const V away = hn::Sub(one, dz);  // 1 + cos(theta)
@@ -82,7 +88,8 @@ HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, 
     const V h = hn::Div(sine, away);  // tan(theta / 2)
     const M small = hn::Lt(h, constant(1e-3f));
     const V series = hn::NegMulAdd(hn::Mul(h, h), constant(1.0f / 3), one);
-    const V ratio = hn::IfThenElse(small, series, hn::Div(hn::Atan(d, h), hn::Max(h, constant(1e-6f))));
+    const V ratio = hn::IfThenElse(small, series,
+                                   hn::Div(hn::Atan(d, h), hn::Max(h, constant(1e-6f))));
     const V stretch = hn::Div(hn::Add(ratio, ratio), away);  // theta / sin(theta)
     vx = hn::Mul(dx, stretch), vy = hn::Mul(dy, stretch);
     const V along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, hn::Mul(z0, dz)));
@@ -93,10 +100,11 @@ HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, 
 }
 
 /// The fitted inverse: f and q of v and e.
-HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l, float* values,
-                      PairVec (&fq)[2]) {
+HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
+                      float* values, PairVec (&fq)[2]) {
     const Pair unit = both(fit.inverse_direction);
-    const PairVec g{mul(v.x, unit), mul(v.y, unit)}, h = pupil_point(fit.inverse_pupil, g, e);
+    const PairVec g{mul(v.x, unit), mul(v.y, unit)},
+        h = pupil_point(fit.inverse_pupil, g, e);
     Pair at[5];
     if (fit.axial)
         axial_variables(g, h, sub(mul(both(2), dot(g, g)), both(1)), l, at);
@@ -106,15 +114,18 @@ HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, 
     vectors(fit.inverse, fit.axial, values, g, h, fq);
 }
 
-HWY_INLINE PairVec sum(const PairVec& p, const PairVec& q) { return {add(p.x, q.x), add(p.y, q.y)}; }
+HWY_INLINE PairVec sum(const PairVec& p, const PairVec& q) {
+    return {add(p.x, q.x), add(p.y, q.y)};
+}
 HWY_INLINE PairVec difference(const PairVec& p, const PairVec& q) {
     return {sub(p.x, q.x), sub(p.y, q.y)};
 }
 
-/// With G the fitted inverse and F the fit: z <- z + G(target) - G(F(z)). Its fixed point is F(z) = target
-/// whatever G's error, which is what is left of the distance in each round.
-HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l, float* values,
-                       PairVec (&z)[2], FitLanes& there) {
+/// With G the fitted inverse and F the fit: z <- z + G(target) - G(F(z)). Its fixed point
+/// is F(z) = target whatever G's error, which is what is left of the distance in each
+/// round.
+HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
+                       float* values, PairVec (&z)[2], FitLanes& there) {
     const FitSegmentTables* known = fit.segments.size() == 1 ? &fit.segments[0] : nullptr;
     PairVec start[2];
     guess(fit, v, e, l, values, start);
@@ -129,7 +140,8 @@ HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e,
 }
 
 /// Whether the search arrived: direction (rad) and offset (mm) are those asked for.
-HWY_INLINE Pair arrived(const PairVec& v, const PairVec& e, const FitLanes& there, Pair pass) {
+HWY_INLINE Pair arrived(const PairVec& v, const PairVec& e, const FitLanes& there,
+                        Pair pass) {
     const PairVec dv = difference(there.direction, v), de = difference(there.offset, e);
     const auto close = [](V a, V b, V p) HWY_ATTR {
         const M ok = hn::And(hn::Lt(a, constant(1e-10f)), hn::Lt(b, constant(1e-6f)));
@@ -139,16 +151,18 @@ HWY_INLINE Pair arrived(const PairVec& v, const PairVec& e, const FitLanes& ther
     return {close(a.a, b.a, pass.a), close(a.b, b.b, pass.b)};
 }
 
-void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count, float* values) {
+void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count,
+               float* values) {
     const int step = 2 * int(hn::Lanes(D()));
     for (int i = 0; i < count; i += step) {
-        const Pair x = load(in.x + i), y = load(in.y + i), z = load(in.z + i), dx = load(in.dx + i),
-                   dy = load(in.dy + i), dz = load(in.dz + i);
+        const Pair x = load(in.x + i), y = load(in.y + i), z = load(in.z + i),
+                   dx = load(in.dx + i), dy = load(in.dy + i), dz = load(in.dz + i);
         PairVec v, e, fq[2];
         describe_lanes(fit, x.a, y.a, z.a, dx.a, dy.a, dz.a, v.x.a, v.y.a, e.x.a, e.y.a);
         describe_lanes(fit, x.b, y.b, z.b, dx.b, dy.b, dz.b, v.x.b, v.y.b, e.x.b, e.y.b);
         FitLanes there;
-        invert(fit, v, e, wavelength_variable(fit.scale, load(out.nm + i)), values, fq, there);
+        invert(fit, v, e, wavelength_variable(fit.scale, load(out.nm + i)), values, fq,
+               there);
         const PairVec m = pupil_slope(fit.pupil, fq[0], fq[1]);
         store(mul_add(fq[0].x, both(fit.half_x), both(fit.center_x)), out.x + i);
         store(mul_add(fq[0].y, both(fit.half_y), both(fit.center_y)), out.y + i);
@@ -179,14 +193,17 @@ HWY_EXPORT(FitLaneCount);
 hwy::AlignedFreeUniquePtr<float[]> room_for_monomials(const FitTables& fit) {
     int most = fit.inverse_program.size;
     for (const FitSegmentTables& s : fit.segments) most = std::max(most, s.program.size);
-    return hwy::AllocateAligned<float>(2 * HWY_DYNAMIC_DISPATCH(FitLaneCount)() * std::size_t(most));
+    return hwy::AllocateAligned<float>(2 * HWY_DYNAMIC_DISPATCH(FitLaneCount)() *
+                                       std::size_t(most));
 }
 
-/// Rays picked from a batch. The rest of the arrays repeats the last one, so that kernels see no ray of chance.
+/// Rays picked from a batch. The rest of the arrays repeats the last one, so that kernels
+/// see no ray of chance.
 int pick(const FilmRays& from, const std::vector<int>& at, FilmRays& to) {
     for (int i = 0; i < kLensBatch; ++i) {
         const int k = at[std::min<std::size_t>(i, at.size() - 1)];
-        to.x[i] = from.x[k], to.y[i] = from.y[k], to.mx[i] = from.mx[k], to.my[i] = from.my[k];
+        to.x[i] = from.x[k], to.y[i] = from.y[k], to.mx[i] = from.mx[k],
+        to.my[i] = from.my[k];
         to.nm[i] = from.nm[k];
     }
     return int(at.size());
@@ -197,15 +214,18 @@ void put_back(const SceneRays& from, const std::vector<int>& at, SceneRays& to) 
         const int k = at[i];
         to.x[k] = from.x[i], to.y[k] = from.y[i], to.z[k] = from.z[i];
         to.dx[k] = from.dx[i], to.dy[k] = from.dy[i], to.dz[k] = from.dz[i];
-        to.pass[k] = from.pass[i], to.iris_x[k] = from.iris_x[i], to.iris_y[k] = from.iris_y[i];
+        to.pass[k] = from.pass[i], to.iris_x[k] = from.iris_x[i],
+        to.iris_y[k] = from.iris_y[i];
     }
 }
 
 /// Which rays of a batch each segment owns.
-std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& in, int count) {
+std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& in,
+                                         int count) {
     std::vector<std::vector<int>> at(fit.segments.size());
     for (int i = 0; i < count; ++i) {
-        const float fx = (in.x[i] - fit.center_x) / fit.half_x, fy = (in.y[i] - fit.center_y) / fit.half_y;
+        const float fx = (in.x[i] - fit.center_x) / fit.half_x,
+                    fy = (in.y[i] - fit.center_y) / fit.half_y;
         const float u = fx * fx + fy * fy;
         std::size_t k = 0;
         while (k + 1 < at.size() && u >= fit.segments[k + 1].u_low) ++k;
@@ -219,7 +239,8 @@ std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& i
 void fit_to_scene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count) {
     const auto values = room_for_monomials(fit);
     const auto kernel = HWY_DYNAMIC_DISPATCH(FitToScene);
-    if (fit.segments.size() == 1) return kernel(fit, fit.segments[0], in, out, count, values.get());
+    if (fit.segments.size() == 1)
+        return kernel(fit, fit.segments[0], in, out, count, values.get());
     FilmRays film;
     SceneRays scene;
     const auto owned = by_segment(fit, in, count);

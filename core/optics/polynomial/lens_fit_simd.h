@@ -1,5 +1,6 @@
-// lens_fit_simd.h -- a fitted lens on batches of rays: float, SIMD with run-time dispatch. The reference is
-// lens_fit.h; tests hold them equal on every target. The signatures are those of trace_simd.h.
+// lens_fit_simd.h -- a fitted lens on batches of rays: float, SIMD with run-time
+// dispatch. The reference is lens_fit.h; tests hold them equal on every target. The
+// signatures are those of trace_simd.h.
 #pragma once
 #include <vector>
 
@@ -27,8 +28,8 @@ struct FitFunctionTables {
 struct FitBlockTables {
     FitFunctionTables x, y;
 };
-/// One function as a polynomial in l, whose coefficients are functions over monomials without l; highest power
-/// first, as Horner's rule wants them.
+/// One function as a polynomial in l, whose coefficients are functions over monomials
+/// without l; highest power first, as Horner's rule wants them.
 struct FitLightTables {
     std::vector<FitFunctionTables> powers;
 };
@@ -68,9 +69,11 @@ struct FitTables {
 
 FitTables make_fit_tables(const LensFit& fit, const IrisTables& iris);
 
-/// Film -> scene, as trace_to_scene(). Rays outside of the fit's film or pupil are stopped.
+/// Film -> scene, as trace_to_scene(). Rays outside of the fit's film or pupil are
+/// stopped.
 void fit_to_scene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count);
-/// Scene -> film, as trace_to_film(): the film ray that fit_to_scene() sends there, to float precision.
+/// Scene -> film, as trace_to_film(): the film ray that fit_to_scene() sends there, to
+/// float precision.
 void fit_to_film(const FitTables& fit, SceneRays& in, FilmRays& out, int count);
 
 }  // namespace dg

@@ -35,12 +35,14 @@ struct Subject {
     Subject(const Prescription& lens, double film_radius, int degree, int segments = 1) {
         const FirstOrder order = first_order(lens);
         LensFitRequest r;
-        r.film_z = film_position(lens, order, 1e9), r.film_radius = film_radius, r.degree = degree;
+        r.film_z = film_position(lens, order, 1e9), r.film_radius = film_radius,
+        r.degree = degree;
         r.iris_radius = iris_radius(lens, order, order.f_number), r.segments = segments;
         const Tracer tracer(lens);
         fit = make_lens_fit(tracer, r);
         const Iris round;
-        tables = make_fit_tables(fit, make_lens_tables(tracer, r.film_z, true, &round, r.iris_radius).iris);
+        tables = make_fit_tables(
+            fit, make_lens_tables(tracer, r.film_z, true, &round, r.iris_radius).iris);
     }
 
     /// Rays all over film and pupil, and a little beyond.
@@ -51,8 +53,10 @@ struct Subject {
             const Vec2d f = Vec2d{std::cos(a), std::sin(a)} * (1.02 * std::sqrt(u[2]));
             const Vec2d q = Vec2d{std::cos(b), std::sin(b)} * (1.02 * std::sqrt(u[3]));
             const Vec2d m = fit.pupil.slope(f, q);
-            rays.x[i] = float(f.x * fit.film_half.x), rays.y[i] = float(f.y * fit.film_half.y);
-            rays.mx[i] = float(m.x), rays.my[i] = float(m.y), rays.nm[i] = float(380 + 400 * u[4]);
+            rays.x[i] = float(f.x * fit.film_half.x),
+            rays.y[i] = float(f.y * fit.film_half.y);
+            rays.mx[i] = float(m.x), rays.my[i] = float(m.y),
+            rays.nm[i] = float(380 + 400 * u[4]);
         }
     }
 };
@@ -96,7 +100,8 @@ TEST_CASE("a lens fit in lanes is the fit in double, on every target") {
                 const Vec3d d{out->dx[i], out->dy[i], out->dz[i]};
                 CHECK(length(d - exact.direction) < 2e-6);
                 CHECK(length(cross(at - exact.origin, d)) < 1e-4);  // the same line
-                CHECK(length(Vec2d{out->iris_x[i], out->iris_y[i]} - v.iris) < 1e-5 * (1 + fit.iris_radius));
+                CHECK(length(Vec2d{out->iris_x[i], out->iris_y[i]} - v.iris) <
+                      1e-5 * (1 + fit.iris_radius));
                 CHECK(std::abs(out->pass[i] - v.transmittance) < 1e-5);
             }
             CHECK(passed > 60);
@@ -118,11 +123,14 @@ TEST_CASE("lanes from the scene find the film ray of the same fit, on every targ
             fit_to_film(subject.tables, *scene, *back, kLensBatch);
             for (int i = 0; i < kLensBatch; ++i) {
                 if (!(pass[i] > 0)) continue;
-                const FitRay ray{{film->x[i], film->y[i]}, {film->mx[i], film->my[i]}, film->nm[i]};
+                const FitRay ray{
+                    {film->x[i], film->y[i]}, {film->mx[i], film->my[i]}, film->nm[i]};
                 if (margin(subject.fit, ray, subject.fit.evaluate(ray)) < 1e-3) continue;
                 CHECK(std::abs(scene->pass[i] - pass[i]) < 2e-5);
-                CHECK(std::hypot(back->x[i] - film->x[i], back->y[i] - film->y[i]) < 1e-4);
-                CHECK(std::hypot(back->mx[i] - film->mx[i], back->my[i] - film->my[i]) < 1e-5);
+                CHECK(std::hypot(back->x[i] - film->x[i], back->y[i] - film->y[i]) <
+                      1e-4);
+                CHECK(std::hypot(back->mx[i] - film->mx[i], back->my[i] - film->my[i]) <
+                      1e-5);
             }
         });
     }
