@@ -60,6 +60,11 @@ CAMERAS = {
     "thin": {},
     "pinhole": {"f_stop": None},
     "exact": {"lens": "double-gauss-50mm-f2", "focal_length": None},
+    "polynomial": {
+        "lens": "double-gauss-50mm-f2",
+        "focal_length": None,
+        "lens_model": "polynomial",
+    },
 }
 
 

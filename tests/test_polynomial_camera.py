@@ -137,3 +137,21 @@ def test_a_white_world_through_both() -> None:
     apart = np.abs(pictures[1] - pictures[0]) / pictures[0]
     assert (apart > 1e-3).mean() < 0.1
     np.testing.assert_allclose(pictures[1].mean((0, 1)), pictures[0].mean((0, 1)), rtol=1e-3)
+
+
+def test_states_of_a_lens_that_changes_are_what_its_middle_is() -> None:
+    camera = dg.Camera(
+        lens=GAUSS,
+        lens_model="polynomial",
+        degree=1,
+        f_stop=2.8,
+        focus_distance=dg.keys([(0.0, 2.0), (1.0, 3.0)]),
+        shutter_time=1.0,
+        shutter_offset=0.0,
+    )
+    setup = set_up(dg.Scene(), camera, RESOLUTION, None)
+    exact = set_up(dg.Scene(), camera.with_(lens_model="exact"), RESOLUTION, None)
+    assert setup.facts["lens_model"] == "exact"
+    u, nm = np.random.default_rng(3).random((200, 2)), np.full(200, 550.0)
+    for a, b in zip(draw(setup, 9 * u, u, nm), draw(exact, 9 * u, u, nm), strict=True):
+        np.testing.assert_array_equal(a, b)

@@ -80,12 +80,17 @@ def set_up(
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
     _set_up_lens(setup, camera, lens, model, pose, focus)
 
+    traced = []  # models of the states of a lens that changes
+
     def lens_of(now: Camera) -> _core.Camera:
         """Of another moment; its focus distance is known."""
-        check(now, model, prescription=lens is not None)
+        like = setup.facts.get("lens_model", model)  # what stands in for it at mid-shutter
+        now = now if like == model else now.with_(lens_model=like)
+        check(now, like, prescription=lens is not None)
         made = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
         known = Focus(scene, now, resolution, size, world, None, [])
-        _set_up_lens(made, now, lens, model, pose, known)
+        _set_up_lens(made, now, lens, like, pose, known)
+        traced.append(made.facts.get("lens_model", like))
         return made.core
 
     if any(camera.tilt) and model != "pinhole":
@@ -99,6 +104,11 @@ def set_up(
         efl = setup.facts["effective_focal_length_mm"] if states else None
         note = lens_motion.apply(setup.core, efl, size, size[0] / resolution[0])
         setup.notes += [note] if note else []
+        if "polynomial" in traced and "exact" in traced:
+            setup.notes.append(
+                f"{traced.count('exact')} of the {len(traced)} states of the lens are not fitted "
+                "well enough: the exact lens draws them"
+            )
     setup.facts = (
         {"lens_model": model}
         | setup.facts
