@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes four scenes for lenses: an arcade, a wall of lamps, a long table, a table at night.
+"""Makes five scenes for lenses: an arcade, lamps, a long table, a table at night, caustics.
 
     python examples/lens_scenes.py [-o FOLDER] [--only NAME]     (default: out/lens_scenes)
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from kit.command import write_scenes
 
-SCENES = ("arcade", "lamps", "long_table", "photographer")
+SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics")
 
 if __name__ == "__main__":
     write_scenes("lens_scenes", SCENES, __doc__ or "")

@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 
 ROOT = Path(__file__).resolve().parent.parent
-SCENES = ("arcade", "lamps", "long_table", "photographer")
+SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics")
 
 
 @pytest.fixture(scope="module")

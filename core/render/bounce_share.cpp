@@ -17,15 +17,25 @@ bool is_point(const SurfaceHit& hit) {
 
 }  // namespace
 
-BounceShare::Vertex::Vertex(const Scene& scene, const Material& material, SurfaceHit hit,
+BounceShare::Vertex::Vertex(const Scene& scene, const Material& material, const SurfaceHit& hit,
                             const Wavelengths& wavelengths, const Bsdf& shaded)
-    : hit_(at_point(hit)),
-      both_(material, scene.textures(), hit_, wavelengths, is_point(hit) ? &shaded : nullptr) {}
+    : scene_(scene),
+      material_(material),
+      wavelengths_(wavelengths),
+      shaded_(shaded),
+      point_(is_point(hit)),
+      hit_(at_point(hit)) {}
+
+TwoWay& BounceShare::Vertex::both() {
+    if (!both_)
+        both_.emplace(material_, scene_.textures(), hit_, wavelengths_, point_ ? &shaded_ : nullptr);
+    return *both_;
+}
 
 /// p'_back of the vertex; of the first one p'_lens / D.
 double BounceShare::back(Vertex& vertex, const Scattering& s) const {
     const SurfaceHit& hit = vertex.hit_;
-    const double pdf = scattered_ ? s.light_pdf : first_.lens_over_camera(hit.position);
+    const double pdf = vertices_ > 0 ? s.light_pdf : first_.lens_over_camera(hit.position);
     return odds_ * pdf / std::abs(double(dot(hit.ng, hit.wo)));
 }
 
@@ -37,13 +47,14 @@ bool BounceShare::cross(VolumeWalk& volume, Vertex& vertex, Vec3f wi) {
         [&](const auto& b) {
             return !b.bounds_volume() || volume.cross(b.interior(), entering);
         },
-        vertex.both_.seen_from(hit.wo));
+        vertex.shaded_);
 }
 
 float BounceShare::of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
                              const Wavelengths& wavelengths) const {
+    if (vertices_ < 1) return 1;
     const SurfaceHit& hit = vertex.hit_;
-    const Scattering s = vertex.both_.scattering(hit.wo, light.wi);
+    const Scattering s = vertex.both().scattering(hit.wo, light.wi);
     if (s.hero_only || s.f_cos.is_black()) return 1;
     VolumeWalk volume = volume_;
     if (!cross(volume, vertex, light.wi)) return 1;
@@ -64,7 +75,7 @@ float BounceShare::of_sample(const Scene& scene, Vertex& vertex, const LightSamp
 
 float BounceShare::of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance,
                               float time, float light_over_bsdf) const {
-    if (!open_ || !scattered_) return 1;
+    if (!open_ || vertices_ < 2) return 1;
     const bool infinite = light == LightSet::kEnvironment;
     if (infinite && volume_.where != VolumeWalk::Where::air) return 1;
     const float emission = first_.weight().emission_rays().pdf(std::int32_t(light), from, direction,
@@ -78,12 +89,16 @@ void BounceShare::leave(Vertex& vertex, const BsdfSample& sample) {
     open_ = !sample.hero_only && cross(volume_, vertex, sample.wi);
     if (!open_) return;
     if (sample.specular) {
-        open_ = scattered_ && vertex.both_.reversible(hit.wo, sample.wi);
+        open_ = vertices_++ > 0 && vertex.both().reversible(hit.wo, sample.wi);
         return;
     }
-    const Scattering s = vertex.both_.scattering(hit.wo, sample.wi);
+    Scattering s;
+    if (vertices_ == 0 && vertex.point_)
+        s.camera_pdf = sample.pdf;   // the light's is not asked for
+    else
+        s = vertex.both().scattering(hit.wo, sample.wi);
     odds_ = back(vertex, s) * std::abs(double(dot(hit.ng, sample.wi))) / s.camera_pdf;
-    scattered_ = true;
+    ++vertices_;
     open_ = odds_ > 0 && std::isfinite(odds_);
 }
 

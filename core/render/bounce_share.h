@@ -1,7 +1,8 @@
 // bounce_share.h -- what is left to a path from the camera of the light that it finds after a bounce or
-// more, where light paths find it too (light_path.h).
+// more, where light paths find it too (light_path.h). Direct light (k = 2) is the camera's own: next-event
+// estimation has less noise there than light that lands by chance.
 //
-// Path x_0 (lens), x_1, ..., x_k (emitter), k >= 2. With densities p' per projected solid angle all
+// Path x_0 (lens), x_1, ..., x_k (emitter), k >= 3. With densities p' per projected solid angle all
 // geometry terms cancel (Veach 1997, Robust Monte Carlo Methods, 10.2), and
 //   light     M p(x_k) p'_emit  p'_back(x_k-1) ... p'_back(x_2)  p'_lens(x_1)
 //   ------ = ----------------------------------------------------------------------
@@ -28,14 +29,20 @@ class BounceShare {
     /// A vertex that the path has come to.
     class Vertex {
       public:
-        /// `hit` as found; `shaded`: its BSDF.
-        Vertex(const Scene& scene, const Material& material, SurfaceHit hit,
+        /// `hit` as found; `shaded`: its BSDF. All outlives this.
+        Vertex(const Scene& scene, const Material& material, const SurfaceHit& hit,
                const Wavelengths& wavelengths, const Bsdf& shaded);
 
       private:
         friend class BounceShare;
+        TwoWay& both();   // made where it is asked for
+        const Scene& scene_;
+        const Material& material_;
+        const Wavelengths& wavelengths_;
+        const Bsdf& shaded_;
+        bool point_;      // no footprint: the BSDF is that of a point
         SurfaceHit hit_;
-        TwoWay both_;
+        std::optional<TwoWay> both_;
     };
 
     /// Of light that next-event estimation finds; `visible` by its shadow ray.
@@ -53,7 +60,7 @@ class BounceShare {
     static bool cross(VolumeWalk& volume, Vertex& vertex, Vec3f wi);
     const FirstRay& first_;
     bool open_;
-    bool scattered_ = false;   // a vertex has been left
+    int vertices_ = 0;         // that have been left
     double odds_ = 1;          // the formula so far, from p'_lens(x_1) / D on
     VolumeWalk volume_;
 };

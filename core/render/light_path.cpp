@@ -96,7 +96,8 @@ bool LightPaths::bounce(Walk& walk, std::vector<LightArrival>& arrivals) const {
     walk.straight += hit.t;
     const MaterialAt material = scene_.material(hit);
     TwoWay both(material, scene_.textures(), hit, walk.wavelengths);
-    if (!last && !is_specular(both.seen_from(hit.wo))) connect(walk, both, hit, u_lens, u_pixel, arrivals);
+    // Direct light is left to the camera's paths.
+    if (!last && walk.vertices > 0 && !is_specular(both.seen_from(hit.wo))) connect(walk, both, hit, u_lens, u_pixel, arrivals);
     const auto step = both.step(hit.wo, u_lobe, u_direction);
     if (!step || !advance(walk, both, hit, *step)) return false;
     if (last && walk.straight == 0) return false;

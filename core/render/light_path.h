@@ -2,7 +2,8 @@
 // goes to the lens (light tracing: Arvo 1986, Backward Ray Tracing; Veach 1997, 10.3). So caustics converge
 // that a path from the camera meets by chance.
 //
-// Each path finds what the camera's find by next-event estimation and by meeting emitters, and no more:
+// Each path finds what the camera's find by next-event estimation and by meeting emitters, and no more, and
+// not what comes straight to the first surface that the lens sees (bounce_share.h):
 // light of a delta light begins at the first surface that scatters it, and none of it passes the boundary
 // of a volume before.
 #pragma once

@@ -54,7 +54,7 @@ TEST_CASE("camera, light and both: a table with things of all materials on it") 
     std::vector<std::pair<const char*, World>> worlds;
     const auto world = [&](const char* name, World w) { worlds.emplace_back(name, std::move(w)); };
     world("glossy", World({"table", plain(0.35f)}).light(kLamp));
-    world("corner", World().add(0, {"wall", plain(1, {0.8f, 0.2f, 0.2f})}, placed({0, 0.3f, -0.3f}, 0.6f))
+    world("point in the corner", World()
                         .light(PointLight{{-0.2f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}}));
     world("mirror", World().add(0, {"mirror", ConductorMaterial{{0.9f, 0.9f, 0.9f}, 0}}, placed({0, 0.3f, -0.2f}, 0.3f)).light(kLargeLamp));
     world("glass ball", World().add(1, {"glass", kGlass}, kBallPlace).light(kLargeLamp));

@@ -132,12 +132,13 @@ inline Affine3f placed(Vec3f at, float scale, bool lies = false) {
     return a;
 }
 
-/// A table that faces up.
+/// A table that faces up, before a wall: light that lands on one brightens the other.
 struct World {
     SceneDescription d;
     World(Material table = {"table", plain()}) {
         d.meshes = {quad_mesh(), ball_mesh(3)};
         add(0, std::move(table), placed({0, 0, 0}, 0.6f, true));
+        add(0, {"wall", plain(1, {0.8f, 0.8f, 0.9f})}, placed({0, 0.3f, -0.35f}, 0.6f));
     }
     World& add(std::uint32_t mesh, Material material, Affine3f where) {
         d.instances.push_back({"it", mesh, std::uint32_t(d.materials.size()), where});

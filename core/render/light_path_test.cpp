@@ -67,8 +67,7 @@ TEST_CASE("camera, light and both: what moves, before a shutter that rolls") {
 }
 
 TEST_CASE("camera, light and both: few bounces") {
-    const auto scene = World().add(0, {"wall", plain()}, placed({0, 0.3f, -0.3f}, 0.6f))
-                           .light(PointLight{{-0.2f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}}).scene();
+    const auto scene = World().light(PointLight{{-0.2f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}}).scene();
     for (const int depth : {0, 1, 2}) {
         Look look;
         look.settings.path.max_depth = depth;
@@ -76,4 +75,19 @@ TEST_CASE("camera, light and both: few bounces") {
         if (depth == 0) CHECK(whole(by_both).mean == 0);
         else check_one_picture(*scene, thin(), look);
     }
+}
+
+TEST_CASE("camera, light and both: light that all comes by way of a dark card behind the lens") {
+    // What leaves the card is weak enough for roulette, and nothing else lights the table: a density that is
+    // 6 % wrong, or roulette that is not made up for, is seen.
+    Affine3f card;
+    card.x = {-0.7f, 0, 0}, card.y = {0, 0.7f, 0}, card.z = {0, 0, -0.7f};
+    card.origin = {0, 0.5f, 1.75f};
+    const auto scene = World().add(0, {"card", plain(1, {0.2f, 0.2f, 0.2f})}, card)
+                           .light(SpotLight{{0, 0.4f, 1.2f}, {0, 0, 1}, {9, 9, 9}, 0.6f, 0.9f}).scene();
+    Look look;
+    look.m2 = 20000, look.camera_spp = 150;
+    check_one_picture(*scene, thin(), look);
+    const Blocks by_camera = draw(*scene, thin(), look, Technique::camera);
+    CHECK(equality(by_camera, draw(*scene, thin(), look, Technique::light), 1.06) < 1e-3);
 }
