@@ -7,6 +7,7 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
+#include "render/light_guide.h"
 #include "render/render.h"
 
 namespace nb = nanobind;
@@ -119,6 +120,15 @@ void bind_render(nb::module_& m) {
                          s.light = {std::get<0>(m), std::get<1>(m)};
                      },
                      "Per sample index: straight from an emitter to the lens, and with bounces.")
+        .def("prepare_light",
+             [](RenderSettings& s, const Scene& scene, const Camera& camera) {
+                 s.light_guide.reset();
+                 if (s.light.off()) return;
+                 s.light_guide = std::make_shared<const LightGuide>(scene, camera, s.sensor,
+                                                                    s.filter.radius(), s.light);
+             },
+             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             "Finds once what light paths are drawn with; to be called again after any change.")
         .def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
                      [](RenderSettings& s, const std::string& name) {
                          if (name == "both") s.technique = Technique::both;

@@ -1,29 +1,21 @@
 #include "render/light_weight.h"
 
-#include "render/frame_view.h"
-
 namespace dg {
 
 LightWeight::LightWeight(const Scene& scene, const Camera& camera, const Sensor& sensor,
-                         const FilmDensity& density, LightPlan plan, Technique technique)
-    : scene_(scene),
-      camera_(camera),
-      plan_(plan),
-      technique_(technique) {
+                         const FilmDensity& density, LightPlan plan, Technique technique,
+                         std::shared_ptr<const LightGuide> guide)
+    : scene_(scene), camera_(camera), plan_(plan), technique_(technique), guide_(std::move(guide)) {
     if (plan.off()) return;
-    const float margin = density.filter().radius() + 1;
-    const bool sky_turns = scene.description().environment_keys.has_value();
-    const std::vector<ViewCone> views = frame_views(camera, sensor, margin, sky_turns);
-    lens_radius_ = views.front().from.radius;
-    if (plan.m1 > 0) emission_ = EmissionSampler(scene.lights(), views);
-    if (plan.m2 > 0) rays_ = EmissionRays(scene.lights(), scene.emission_reach());
-    pupil_.emplace(camera);
+    if (!guide_)
+        guide_ = std::make_shared<const LightGuide>(scene, camera, sensor,
+                                                    density.filter().radius(), plan);
     scale_ = density.filter().absolute_integral();
     if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
 }
 
 Viewpoint LightWeight::viewpoint(float time) const {
-    return {to_float(camera_.world_from_camera.at(time).origin), lens_radius_};
+    return {to_float(camera_.world_from_camera.at(time).origin), guide_->lens_radius};
 }
 
 std::optional<float> FirstRay::share(Vec3d at, double w, float emission_pdf, float cosine) const {
@@ -32,7 +24,7 @@ std::optional<float> FirstRay::share(Vec3d at, double w, float emission_pdf, flo
     const Vec3d p = w > 0 ? to_camera.point(at) : to_camera.vector(at);
     const double light = weight_.of_light(emission_pdf, weight_.pupil().pdf(p, w, ray_), cosine);
     if (!(light > 0)) return std::nullopt;
-    return weight_.camera_share(light, density_);
+    return weight_.camera_share(light, density());
 }
 
 std::optional<float> FirstRay::share_of_triangle(const SurfaceHit& hit) const {
@@ -54,7 +46,7 @@ std::optional<float> FirstRay::share_of_sky(Vec3f direction) const {
 
 double FirstRay::lens_over_camera(Vec3f point) const {
     const Vec3d p = inverse(weight_.pose(ray_.time)).point(to_double(point));
-    return weight_.pupil().pdf(p, 1, ray_) / density_;
+    return weight_.pupil().pdf(p, 1, ray_) / density();
 }
 
 }  // namespace dg

@@ -12,28 +12,29 @@
 #include <span>
 
 #include "camera/camera.h"
-#include "camera/pupil_view.h"
 #include "camera/sensor.h"
 #include "geometry/hit.h"
-#include "light/emission.h"
-#include "light/emission_ray.h"
 #include "render/dispersion.h"
+#include "render/light_guide.h"
 #include "render/light_plan.h"
+#include "render/ray_on_film.h"
 #include "scene/scene.h"
 
 namespace dg {
 
 class LightWeight {
   public:
-    /// `plan`: paths per unit of the density's counts. All else outlives this.
+    /// `plan`: paths per unit of the density's counts. `guide`: of an earlier pass of this picture, or null.
+    /// All else outlives this.
     LightWeight(const Scene& scene, const Camera& camera, const Sensor& sensor,
-                const FilmDensity& density, LightPlan plan, Technique technique);
+                const FilmDensity& density, LightPlan plan, Technique technique,
+                std::shared_ptr<const LightGuide> guide);
 
     bool off() const { return plan_.off(); }
-    bool bounces() const { return plan_.m2 > 0 && !rays_.empty(); }
-    const EmissionSampler& emission() const { return emission_; }
-    const EmissionRays& emission_rays() const { return rays_; }
-    const PupilViewOverTime& pupil() const { return *pupil_; }
+    bool bounces() const { return plan_.m2 > 0 && !guide_->rays.empty(); }
+    const EmissionSampler& emission() const { return guide_->emission; }
+    const EmissionRays& emission_rays() const { return guide_->rays; }
+    const PupilViewOverTime& pupil() const { return guide_->pupil; }
     Viewpoint viewpoint(float time) const;
     Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
     const Scene& scene() const { return scene_; }
@@ -63,10 +64,7 @@ class LightWeight {
     LightPlan plan_;
     Technique technique_;
     double scale_ = 1;
-    EmissionSampler emission_;
-    EmissionRays rays_;
-    std::optional<PupilViewOverTime> pupil_;
-    float lens_radius_ = 0;
+    std::shared_ptr<const LightGuide> guide_;   // null where nothing is drawn
 };
 
 /// The first ray of a camera path, while it has met nothing but windows: the share of an emitter's light that
@@ -74,9 +72,10 @@ class LightWeight {
 /// light: that of a point.
 class FirstRay {
   public:
-    /// `ray`: camera frame; `density`: RayOnFilm::camera_density.
-    FirstRay(const LightWeight& weight, const Ray& ray, double density)
-        : weight_(weight), ray_(ray), density_(density) {}
+    /// `ray`: camera frame; `landings`: of its wavelengths, as of RayOnFilm. They outlive this.
+    FirstRay(const LightWeight& weight, const Ray& ray, const FilmDensity& density,
+             const Sensor& sensor, std::span<const Reprojection> landings)
+        : weight_(weight), ray_(ray), film_(density), sensor_(sensor), landings_(landings) {}
 
     std::optional<float> share_of_triangle(const SurfaceHit& hit) const;
     std::optional<float> share_of_sphere(std::uint32_t sphere, const SurfaceHit& hit) const;
@@ -88,9 +87,16 @@ class FirstRay {
 
   private:
     std::optional<float> share(Vec3d at, double w, float emission_pdf, float cosine) const;
+    /// Of the camera's samples; most paths are never asked.
+    double density() const {
+        return RayOnFilm(film_, sensor_, landings_, ray_.time).camera_density();
+    }
+
     const LightWeight& weight_;
     Ray ray_;
-    double density_;
+    const FilmDensity& film_;
+    const Sensor& sensor_;
+    std::span<const Reprojection> landings_;
 };
 
 }  // namespace dg

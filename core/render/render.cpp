@@ -88,7 +88,8 @@ class Renderer {
                          std::holds_alternative<ExactLens>(camera.lens)),
           density_(settings.filter, film.layout(), uneven(settings.round.count),
                    &settings.shutter),
-          weight_(scene, camera, settings.sensor, density_, plan(), settings.technique) {
+          weight_(scene, camera, settings.sensor, density_, plan(), settings.technique,
+                  settings.light_guide) {
         if (weight_.draws_light())
             light_.emplace(scene, camera, film, settings, density_, weight_);
         // Where light paths share in what is found, the hero's own landing is needed too.
@@ -213,10 +214,8 @@ class Renderer {
         const std::size_t traced = std::size_t(std::max(0, end_traced_ - first_traced_));
         const std::span landings(work.reprojections.data() + passed * traced, traced);
         std::optional<FirstRay> first;
-        if (!weight_.off()) {
-            const RayOnFilm film_ray(density_, settings_.sensor, landings, camera_ray.ray.time);
-            first.emplace(weight_, camera_ray.ray, film_ray.camera_density());
-        }
+        if (!weight_.off())
+            first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
         AovSample aov;
         AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
         const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler,

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "camera/camera.h"
@@ -15,6 +16,8 @@
 #include "scene/scene.h"
 
 namespace dg {
+
+struct LightGuide;   // light_guide.h
 
 /// What becomes of the other wavelengths of a path once glass has bent the hero's ray.
 enum class Dispersion {
@@ -52,6 +55,7 @@ struct RenderSettings {
     Dispersion dispersion = Dispersion::reproject;
     LightPlan light;                            // none: off
     Technique technique = Technique::both;
+    std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
 };
 
 struct RenderCounters {

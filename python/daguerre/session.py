@@ -130,6 +130,7 @@ class Session:
         self._settings.technique = technique
         self.light_paths = self._plan() if wanted is None else wanted
         self._settings.light_paths = self.light_paths
+        self._settings.prepare_light(self._core_scene, self._setup.core)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
