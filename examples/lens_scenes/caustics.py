@@ -1,4 +1,4 @@
-"""Light that glass has gathered: a ball, a glass of wine and a bowl of brass under one small lamp.
+"""Light that glass has gathered: a ball, a glass of wine and a ring of brass under one small lamp.
 
 The lamp is a ball of 6 mm radius; what glass and brass do with its light on the table are caustics,
 which a path from the lens meets by chance alone: it would have to hit the lamp through the glass.
@@ -17,7 +17,6 @@ from night.stage import WARM, Stage
 
 EYE, SUBJECT = (0.06, 0.30, 0.62), (0.0, 0.028, 0.0)
 WINE = (0.055, 0.0001, -0.015)
-WINE = (0.055, 0.0001, -0.015)
 LAMP, LAMP_RADIUS, INTENSITY = (-0.42, 0.36, -0.34), 0.006, 15.0  # m, m, cd
 
 
@@ -31,7 +30,7 @@ def make() -> Glb:
     clear = stage.clear("crystal", (0.99, 0.995, 0.99), 0.2, 1.52)
     stage.put("ball", shapes.ball(0.038, 64, 128), clear, translation=[-0.105, 0.0381, 0.03])
     _add_wine(stage, clear)
-    _add_bowl(stage)
+    _add_ring(stage)
     stage.lamp(LAMP, LAMP_RADIUS, WARM, round(INTENSITY / (np.pi * LAMP_RADIUS**2)))
     return stage.glb
 
@@ -68,7 +67,7 @@ def _add_wine(stage: Stage, clear: int) -> None:
     stage.put("wine", shapes.lathe(body, 128, 60), wine, translation=WINE)
 
 
-def _add_bowl(stage: Stage) -> None:
+def _add_ring(stage: Stage) -> None:
     """A ring of polished brass: the curve that light draws in a cup."""
     brass = stage.matter(
         "polished_brass",
