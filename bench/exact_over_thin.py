@@ -43,7 +43,7 @@ def main() -> None:
     sys.path.insert(0, str(options.scene_dir))
     from dof_field import build, camera, cpu_seconds
 
-    scene, lens = build(), dg.lenses.load(LENS)
+    scene, lens = build("thin"), dg.lenses.load(LENS)
     cameras = {
         model: camera("thin").with_(lens=lens, lens_model=model, f_stop=F_STOP)
         for model in ("exact", "thin")

@@ -8,6 +8,7 @@
 #include "bind/arrays.h"
 #include "math/error.h"
 #include "render/light_guide.h"
+#include "render/pilot.h"
 #include "render/render.h"
 
 namespace nb = nanobind;
@@ -164,6 +165,15 @@ void bind_render(nb::module_& m) {
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
           "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, "
           "stopped rays, rays, light paths, splats off the film).");
+
+    m.def("pilot",
+          [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+              nb::gil_scoped_release release;
+              const LightPlan plan = pilot(scene, camera, settings);
+              return std::tuple{plan.m1, plan.m2};
+          },
+          "scene"_a, "camera"_a, "settings"_a,
+          "Numbers of light paths per sample index that pay: straight to the lens, and with bounces.");
 
     m.attr("ROUND_PARTS") = SampleRound::kParts;
     m.def("render_round",

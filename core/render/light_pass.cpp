@@ -133,9 +133,18 @@ void LightPass::finish(Workspace& work, const LightArrival& path,
     if (!is_traceable(path.shadow)) return;
     const Spectrum visible = scene_.visibility_along(path.shadow, path.wavelengths);
     if (visible.is_black()) return;
-    const double divisor = weight_.divisor(path.density, film_ray.camera_density());
-    film_ray.splat(film_, path.radiance * visible * float(1 / divisor),
-                   path.wavelengths, path.u_pixel, path.sample);
+    const double light = path.density, camera = film_ray.camera_density();
+    const Spectrum radiance = path.radiance * visible;
+    if (!work.log) {
+        film_ray.splat(film_, radiance * float(1 / weight_.divisor(light, camera)), path.wavelengths,
+                       path.u_pixel, path.sample);
+        return;
+    }
+    std::array<RayOnFilm::Splat, kWavelengths> splats;
+    const int count =
+        film_ray.choose(radiance * float(1 / light), path.wavelengths, path.u_pixel, splats);
+    for (int k = 0; k < count; ++k)
+        work.log->push_back({splats[k].pixel, splats[k].xyz, camera / light, film_ray.spread()});
 }
 
 }  // namespace dg

@@ -52,12 +52,22 @@ class LightPass {
     bool end_secondary_;
 };
 
+/// What light paths alone would add by one arrival, were it to one pixel; how much more densely camera samples
+/// draw the same; and RayOnFilm::spread().
+struct LoggedSplat {
+    Pixel pixel;
+    Vec3f xyz;
+    double camera_over_light;
+    float spread;
+};
+
 struct LightPass::Workspace {
     std::vector<LightArrival> paths;
     std::vector<CameraRay> rays;
     std::vector<float> nm;
     std::vector<Reprojection> landings;
     RenderCounters counters;
+    std::vector<LoggedSplat>* log = nullptr;   // of a pilot, instead of the film
 };
 
 }  // namespace dg

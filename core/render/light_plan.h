@@ -17,7 +17,7 @@ struct LightPlan {
 };
 
 /// Who draws what both could find: tests hold one against the other. What only one can find is always its
-/// own.
-enum class Technique { both, camera, light };
+/// own. rest: nobody does, which leaves that.
+enum class Technique { both, camera, light, rest };
 
 }  // namespace dg

@@ -56,7 +56,9 @@ class LightWeight {
         if (technique_ == Technique::both) return float(camera / (light + camera));
         return technique_ == Technique::camera ? 1.f : 0.f;
     }
-    bool draws_light() const { return !off() && technique_ != Technique::camera; }
+    bool draws_light() const {
+        return !off() && (technique_ == Technique::both || technique_ == Technique::light);
+    }
 
   private:
     const Scene& scene_;

@@ -38,13 +38,34 @@ RayOnFilm::RayOnFilm(const FilmDensity& density, const Sensor& sensor,
 
 void RayOnFilm::splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                       std::uint32_t sample) const {
+    if (film_density_.filter().radius() <= kWideFilter) {
+        splat_all(film, radiance * response(), wavelengths, sample);
+        return;
+    }
+    std::array<Splat, kWavelengths> splats;
+    const int count = choose(radiance, wavelengths, u, splats);
+    for (int k = 0; k < count; ++k)
+        film.splat(splats[k].pixel.x, splats[k].pixel.y, sample, splats[k].xyz);
+}
+
+Spectrum RayOnFilm::response() const {
     Spectrum response;
     for (int i = 0; i < kWavelengths; ++i)
         response.set(i, float(landings_[landings_.size() == 1 ? 0 : i].response * exposure_));
-    if (film_density_.filter().radius() <= kWideFilter)
-        splat_all(film, radiance * response, wavelengths, sample);
-    else
-        splat_chosen(film, radiance * response, wavelengths, u, sample);
+    return response;
+}
+
+float RayOnFilm::spread() const {
+    if (film_density_.filter().radius() > kWideFilter) return 1;
+    for (std::size_t i = 0; i < landings_.size(); ++i) {
+        if (!reaches(i)) continue;
+        const Footprint::Box box = at_[i]->box();
+        float squares = 0;
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x) squares += at_[i]->value({x, y}) * at_[i]->value({x, y});
+        return squares / (at_[i]->total() * at_[i]->total());
+    }
+    return 1;
 }
 
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
@@ -93,8 +114,9 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
     }
 }
 
-void RayOnFilm::splat_chosen(Film& film, Spectrum light, const Wavelengths& wavelengths, Vec2f u,
-                             std::uint32_t sample) const {
+int RayOnFilm::choose(Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
+                      std::array<Splat, kWavelengths>& splats) const {
+    const Spectrum light = radiance * response();
     std::array<Landing, kWavelengths> found;
     int count = 0;
     for (int i = 0; i < kWavelengths; ++i) {
@@ -107,8 +129,8 @@ void RayOnFilm::splat_chosen(Film& film, Spectrum light, const Wavelengths& wave
         found[k].weight.set(i, at_[from]->sign(pixel) * at_[from]->total());
     }
     for (int k = 0; k < count; ++k)
-        film.splat(found[k].pixel.x, found[k].pixel.y, sample,
-                   wavelengths.to_xyz(light * found[k].weight));
+        splats[k] = {found[k].pixel, wavelengths.to_xyz(light * found[k].weight)};
+    return count;
 }
 
 }  // namespace dg

@@ -30,11 +30,21 @@ class RayOnFilm {
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                std::uint32_t sample) const;
 
+    /// What comes of light in one pixel, in XYZ.
+    struct Splat {
+        Pixel pixel{};
+        Vec3f xyz{0, 0, 0};
+    };
+    /// What splat() adds where it chooses, whatever the filter, as camera samples do; how many there are.
+    int choose(Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
+               std::array<Splat, kWavelengths>& splats) const;
+    /// The sum of squares of what splat() adds, over that of what is chosen.
+    float spread() const;
+
   private:
+    Spectrum response() const;
     void splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
                    std::uint32_t sample) const;
-    void splat_chosen(Film& film, Spectrum light, const Wavelengths& wavelengths, Vec2f u,
-                      std::uint32_t sample) const;
     void splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
                    std::size_t first, std::size_t last) const;
     Footprint::Box box(std::size_t first, std::size_t last) const;

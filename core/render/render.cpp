@@ -1,9 +1,6 @@
 #include "render/render.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +12,7 @@
 #include "camera/pixel_cone.h"
 #include "render/dispersion.h"
 #include "render/light_pass.h"
+#include "render/parallel.h"
 
 namespace dg {
 namespace {
@@ -304,15 +302,7 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
         }
         if (progress && !progress(double(++done) / double(tasks))) stop = true;
     };
-    // TBB keeps to the number of cores unless more is allowed.
-    std::optional<oneapi::tbb::global_control> allowed;
-    if (settings.threads > oneapi::tbb::this_task_arena::max_concurrency())
-        allowed.emplace(oneapi::tbb::global_control::max_allowed_parallelism, settings.threads);
-    oneapi::tbb::task_arena arena(settings.threads > 0 ? settings.threads
-                                                       : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::int64_t(0), tasks, draw);
-    });
+    parallel_tasks(settings.threads, tasks, draw);
     RenderCounters counters;
     for (Workspace& work : workspaces) counters = counters + work.counters + work.light.counters;
     return counters;

@@ -153,7 +153,8 @@ class Session:
 
     def _plan(self) -> Plan:
         """What pays in this scene."""
-        return OFF
+        m1, m2 = _core.pilot(self._core_scene, self._setup.core, self._settings)
+        return m1, m2
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop

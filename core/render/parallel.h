@@ -1,0 +1,23 @@
+// parallel.h -- tasks on as many threads as the user allows.
+#pragma once
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace dg {
+
+/// Runs run(0), ..., run(tasks - 1) on so many threads; 0: all.
+template <typename Run>
+void parallel_tasks(int threads, std::int64_t tasks, const Run& run) {
+    // TBB keeps to the number of cores unless more is allowed.
+    std::optional<oneapi::tbb::global_control> allowed;
+    if (threads > oneapi::tbb::this_task_arena::max_concurrency())
+        allowed.emplace(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+    arena.execute([&] { oneapi::tbb::parallel_for(std::int64_t(0), tasks, run); });
+}
+
+}  // namespace dg

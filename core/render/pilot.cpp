@@ -1,0 +1,141 @@
+#include "render/pilot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/hash.h"
+#include "render/light_pass.h"
+#include "render/parallel.h"
+#include "render/plan_choice.h"
+
+namespace dg {
+namespace {
+
+constexpr int kCoarse = 6;                  // px of the picture along a side of a pilot's pixel
+constexpr std::uint32_t kSamples = 2;       // of each: the fewest that tell a variance
+constexpr int kPixelsPerPath = 16;
+constexpr std::uint64_t kFewestPaths = 256, kMostPaths = 1 << 18;
+constexpr std::uint64_t kPathsPerTask = 1024;
+constexpr std::uint64_t kOwnRandom = 0x9170;
+
+// Prices in rays, one of which with all that happens where it ends takes 350 to 750 ns. Measured on the
+// table of examples/lens_scenes/photographer.py with bench/night.py's cameras; they need not be sharp, as
+// the error is flat about the best plan.
+constexpr double kSample = 0.4;             // a camera sample without its rays and its lens
+constexpr double kPath = 0.4;               // a light path without these
+constexpr double kShare = 0.4;              // what a camera sample leaves to light, and the ray's own landing
+double price_of(const LensKind& lens) {     // one sample through it, all wavelengths
+    return std::holds_alternative<ExactLens>(lens) ? 0.8 : 0.1;
+}
+
+/// The picture in larger pixels.
+RenderSettings coarse(const RenderSettings& picture) {
+    RenderSettings s = picture;
+    s.sensor.width = (picture.sensor.width + kCoarse - 1) / kCoarse;
+    s.sensor.height = (picture.sensor.height + kCoarse - 1) / kCoarse;
+    s.sample_begin = 0, s.sample_end = kSamples;
+    s.round = {};
+    s.seed = hash64(picture.seed, kOwnRandom);
+    ShutterSettings shutter = picture.shutter.settings();
+    shutter.line_time_s *= kCoarse;
+    s.shutter = Shutter(shutter, s.sensor.width, s.sensor.height);
+    s.light = {1, 0};
+    s.technique = Technique::rest;
+    return s;
+}
+
+class Pilot {
+  public:
+    Pilot(const Scene& scene, const Camera& camera, const RenderSettings& settings)
+        : scene_(scene),
+          camera_(camera),
+          settings_(settings),
+          coarse_(coarse(settings)),
+          frame_{settings.sensor.width, settings.sensor.height},
+          density_(settings.filter, frame_, {}, &settings.shutter) {
+        settings_.seed = hash64(settings.seed, kOwnRandom, 1);
+        settings_.light = {1, 0};
+        settings_.technique = Technique::both;
+    }
+
+    LightPlan choose() {
+        const LightWeight weight(scene_, camera_, settings_.sensor, density_, settings_.light,
+                                 settings_.technique);
+        if (weight.emission().empty()) return {};
+        const std::vector<PilotArrival> straight = fly_straight(weight);
+        if (straight.empty()) return {};
+        const std::vector<PilotBlock> blocks = look();
+        costs_.camera = pixels() * (kSample + price_of(camera_.lens) + rays_per_sample_);
+        costs_.sharing = pixels() * kShare;
+        return choose_plan(blocks, pixels() / double(blocks.size()), {straight, paths()}, {}, costs_);
+    }
+
+  private:
+    double pixels() const { return double(frame_.width) * frame_.height; }
+    std::uint64_t paths() const {
+        return std::clamp(std::uint64_t(pixels()) / kPixelsPerPath, kFewestPaths, kMostPaths);
+    }
+
+    /// What camera samples find beside what light paths would bring straight from emitters.
+    std::vector<PilotBlock> look() {
+        const Sensor& sensor = coarse_.sensor;
+        Film film(FilmLayout{sensor.width, sensor.height});
+        const RenderCounters counters = render(scene_, camera_, film, coarse_, {});
+        rays_per_sample_ = double(counters.rays) / double(std::max<std::uint64_t>(1, counters.camera_rays));
+        const std::vector<float> mean = film.mean_xyz(), variance = film.variance_rgb();
+        std::vector<PilotBlock> blocks(mean.size() / 3);
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            blocks[b].mean = rgb_from_xyz({mean[3 * b], mean[3 * b + 1], mean[3 * b + 2]});
+            blocks[b].variance =
+                Vec3f{variance[3 * b], variance[3 * b + 1], variance[3 * b + 2]} * float(kSamples);
+        }
+        return blocks;
+    }
+
+    std::vector<PilotArrival> fly_straight(const LightWeight& weight) {
+        Film nowhere(FilmLayout{1, 1});   // all is logged
+        const LightPass pass(scene_, camera_, nowhere, settings_, density_, weight);
+        const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
+        std::vector<std::vector<LoggedSplat>> found(tasks);
+        std::vector<std::uint64_t> rays(tasks);
+        parallel_tasks(settings_.threads, std::int64_t(tasks), [&](std::int64_t task) {
+            LightPass::Workspace work;
+            work.log = &found[task];
+            const std::uint64_t first = std::uint64_t(task) * kPathsPerTask;
+            pass.draw(work, first, std::min(first + kPathsPerTask, paths()));
+            rays[task] = work.counters.rays;
+        });
+        std::vector<PilotArrival> all;   // in the order of the paths, whatever thread drew them
+        double ray_count = 0;
+        for (std::uint64_t t = 0; t < tasks; ++t) {
+            for (const LoggedSplat& s : found[t])
+                all.push_back({block_of(s.pixel), rgb_from_xyz(s.xyz), float(s.camera_over_light),
+                               s.spread});
+            ray_count += double(rays[t]);
+        }
+        costs_.straight = kPath + price_of(camera_.lens) + ray_count / double(paths());
+        return all;
+    }
+
+    std::uint32_t block_of(Pixel pixel) const {
+        const int x = std::clamp(pixel.x, 0, frame_.width - 1) / kCoarse;
+        const int y = std::clamp(pixel.y, 0, frame_.height - 1) / kCoarse;
+        return std::uint32_t(y) * std::uint32_t(coarse_.sensor.width) + std::uint32_t(x);
+    }
+
+    const Scene& scene_;
+    const Camera& camera_;
+    RenderSettings settings_, coarse_;
+    FilmLayout frame_;
+    FilmDensity density_;
+    PlanCosts costs_;
+    double rays_per_sample_ = 0;
+};
+
+}  // namespace
+
+LightPlan pilot(const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+    return Pilot(scene, camera, settings).choose();
+}
+
+}  // namespace dg

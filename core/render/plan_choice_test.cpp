@@ -1,0 +1,116 @@
+#include "render/plan_choice.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "math/hash.h"
+#include "math/statistics.h"
+
+using namespace dg;
+
+namespace {
+
+constexpr double kPixels = 36;   // of a block
+constexpr int kBlocks = 400;
+
+float uniform(std::uint64_t a, std::uint64_t b) { return float(hash_uniform(a, b)); }
+
+/// A lamp whose disc covers `lit` blocks evenly: one camera sample in 1 / p meets it there.
+struct Disc {
+    int lit;
+    double p;        // that a camera sample of a lit pixel meets the lamp
+    double mean;     // of a lit pixel
+    double share;    // of light paths that reach the film
+
+    double pixels() const { return lit * kPixels; }
+    /// A light path adds to one lit pixel: density share / pixels of being that one's.
+    PilotArrival arrival(std::uint32_t block) const {
+        const double light = share / pixels();           // per path, of hitting one certain pixel
+        const float y = float(mean / light);
+        return {block, {y, y, y}, float(p / light)};
+    }
+    double variance(double m) const {   // of a sample, summed over the lit pixels
+        const double light = share / pixels(), y = mean / light, r = p / light;
+        return pixels() * light * y * y / (r + m) - pixels() * std::pow(mean * r / (r + m), 2);
+    }
+    std::vector<PilotArrival> arrivals(int paths) const {
+        std::vector<PilotArrival> all;
+        for (int i = 0; i < paths; ++i)
+            if (uniform(1, i) < share) all.push_back(arrival(std::uint32_t(uniform(2, i) * float(lit))));
+        return all;
+    }
+};
+
+std::vector<PilotBlock> even_blocks(float mean, float variance) {
+    return std::vector<PilotBlock>(
+        kBlocks, {{mean, mean, mean}, {variance, variance, variance}});
+}
+
+}  // namespace
+
+TEST_CASE("plan choice: second moments of both techniques are what drawing them gives") {
+    const Disc disc{4, 0.02, 2.0, 0.5};
+    for (const double m : {0.0, 64.0, 512.0}) {
+        const PilotArrival a = disc.arrival(0);
+        const double weight_light = m / (a.ratio + m), weight_camera = a.ratio / (a.ratio + m);
+        std::vector<double> values;   // of one pixel, samples of camera and light together
+        for (int i = 0; i < 200'000; ++i) {
+            double v = uniform(3, i) < disc.p ? disc.mean / disc.p * weight_camera : 0;
+            // PilotArrivals at one pixel: binomial, here few enough to be drawn as one chance.
+            const double chance = m * disc.share / disc.pixels();
+            double left = chance;
+            for (int k = 0; left > 0; ++k, left -= 0.25)
+                if (uniform(100 + k, i) < std::min(left, 0.25)) v += a.value.x / m * weight_light;
+            values.push_back(v);
+        }
+        const auto found = moments(values);
+        CHECK(found.mean == doctest::Approx(disc.mean).epsilon(0.04));
+        // A chance of 1/4 at most: its variance is that of independent arrivals less an eighth or so.
+        const double expected = disc.variance(m) / disc.pixels();
+        CHECK(found.variance == doctest::Approx(expected).epsilon(0.2));
+    }
+}
+
+TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") {
+    const Disc disc{20, 1.0 / 400, 2.0, 0.4};
+    const float rest = 1e-3f;
+    const std::vector<PilotBlock> blocks = even_blocks(0.1f, rest);
+    const std::vector<PilotArrival> all = disc.arrivals(40'000);
+    for (const double cost : {2e-6, 2e-5, 2e-4}) {
+        const LightPlan plan = choose_plan(blocks, kPixels, {all, 40'000}, {}, {.straight = cost, .bounced = cost});
+        const double dark = kBlocks * kPixels * rest / (0.01 + 0.01);   // a few blocks more, as good as all
+        const double lit = std::pow(2.1, 2) + 0.01;
+        double best = 1e300, wanted = 0;
+        for (double m = 256; m < 1e8; m *= 2) {
+            const double total = (dark + disc.variance(m) / lit) * (1 + cost * m);
+            if (total < best) best = total, wanted = m;
+        }
+        CHECK(plan.m1 >= wanted / 2);
+        CHECK(plan.m1 <= wanted * 2);
+        CHECK(plan.m2 == 0);
+    }
+}
+
+TEST_CASE("plan choice: no paths where they gain nothing, or by luck alone") {
+    const std::vector<PilotBlock> blocks = even_blocks(1, 0.3f);
+    CHECK(choose_plan(blocks, kPixels, {}, {}, {.straight = 1e-5, .bounced = 1e-5}).off());
+
+    // A broad light that every camera sample meets.
+    const Disc broad{kBlocks, 1.0, 1.0, 0.5};
+    const std::vector<PilotArrival> many = broad.arrivals(20'000);
+    CHECK(choose_plan(even_blocks(0, 0.1f), kPixels, {many, 20'000}, {}, {.straight = 1e-5, .bounced = 1e-5}).off());
+    CHECK(choose_plan(blocks, kPixels, {}, {many, 20'000}, {.straight = 1e-5, .bounced = 1e-5}).off());
+
+    // One arrival that no camera sample would have found: half of the pilot has never seen it.
+    const std::vector<PilotArrival> lucky{{3, {1e5f, 1e5f, 1e5f}, 1e-4f}};
+    CHECK(choose_plan(blocks, kPixels, {}, {lucky, 20'000}, {.straight = 1e-5, .bounced = 1e-5}).off());
+    // Many of them are a caustic.
+    const Disc caustic{3, 1e-3, 1, 0.2};
+    const std::vector<PilotArrival> bright = caustic.arrivals(20'000);
+    const LightPlan plan = choose_plan(even_blocks(1, 0.01f), kPixels, {}, {bright, 20'000},
+                                       {.straight = 1e-5, .bounced = 1e-5});
+    CHECK(plan.m1 == 0);
+    CHECK(plan.m2 > 0);
+}

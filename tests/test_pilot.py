@@ -1,0 +1,55 @@
+"""The pilot that chooses numbers of light paths: what it depends on, and what it chooses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from daguerre.light_paths import OFF
+from daguerre.session import Session
+
+from . import scenes
+
+SIZE = (240, 160)
+CAMERA = dg.Camera(lens="thin", focal_length=50, f_stop=2.0, focus_distance=1.2)
+
+
+def lamps(radius: float) -> dg.Scene:
+    """Lamps 3 m away over a wall that a larger lamp lights, out of the frame."""
+    scene = dg.Scene()
+    points, faces = scenes.quad(3, -4)
+    scene.add_instance(scene.add_mesh(points, faces), dg.Material(dg.Diffuse((0.5, 0.5, 0.5))))
+    for x in np.linspace(-0.8, 0.8, 9):
+        luminance = 0.03 / (np.pi * radius**2)
+        scene.add_light(dg.SphereLight((luminance,) * 3, radius), scenes.at(float(x), 0.2, -3.0))
+    scene.add_light(dg.SphereLight((20, 20, 20), 0.3), scenes.at(0, 3.0, -2.0))
+    return scene
+
+
+def plan(scene: dg.Scene, camera: dg.Camera = CAMERA, **options: Any) -> tuple[float, float]:
+    return Session(scene, camera, **({"resolution": SIZE} | options)).light_paths
+
+
+def test_small_lamps_out_of_focus_get_light_paths() -> None:
+    assert plan(lamps(0.002))[0] >= 1000
+
+
+@pytest.mark.parametrize("change", [{"threads": 3}, {"crop": (10, 20, 90, 60)}, {"aovs": True}])
+def test_the_plan_depends_on_no_threads_and_no_crop(change: dict[str, Any]) -> None:
+    scene = lamps(0.002)
+    assert plan(scene, threads=1) == plan(scene, **change)
+
+
+def test_nothing_where_nothing_shines_that_light_could_start_from() -> None:
+    assert plan(scenes.furnace(dg.Material(dg.Diffuse((0.5, 0.5, 0.5))))) == OFF
+    assert plan(scenes.furnace(), dg.Camera(lens="pinhole")) == OFF
+    assert plan(dg.Scene()) == OFF
+    assert plan(lamps(0.002), dg.Camera(transform=np.diag([-1.0, 1, -1, 1]))) == OFF  # behind it
+
+
+def test_a_plan_that_is_told_is_kept() -> None:
+    assert plan(lamps(0.002), light_paths="off") == OFF
+    assert plan(lamps(0.002), light_paths=(17, 3)) == (17, 3)
