@@ -216,7 +216,7 @@ def pictures(
 def by_chance(case: Case, camera: NDArray[np.float64], light: NDArray[np.float64]) -> Reference:
     """Camera pictures whose pixels know how rarely they meet a lamp.
 
-    At the edge of a disc no ray may have met it yet, and a spread of nothing. A value of mean m that
+    At the edge of a disc no ray may have met it yet, and there is no spread. A value of mean m that
     is never above b has a variance of m b at most, which it has where b is met or nothing.
     """
     known = Reference(camera.mean(axis=0), camera.var(axis=0, ddof=1) / len(camera), len(camera))

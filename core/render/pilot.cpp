@@ -23,7 +23,10 @@ constexpr std::uint64_t kOwnRandom = 0x9170;
 // the error is flat about the best plan.
 constexpr double kSample = 0.4;             // a camera sample without its rays and its lens
 constexpr double kPath = 0.4;               // a light path without these
-constexpr double kShare = 0.4;              // what a camera sample leaves to light, and the ray's own landing
+constexpr double kConnected = 0.5;          // rays of a light path with bounces that go to the lens
+constexpr double kSplat = 1.3;              // what arrives, beside its shadow ray
+constexpr double kShare = 0.5;              // where a camera sample leaves something to light: its own landing
+constexpr double kShareOfRay = 0.7;         // and to light with bounces: densities of the way back, per ray
 double price_of(const LensKind& lens) {     // one sample through it, all wavelengths
     return std::holds_alternative<ExactLens>(lens) ? 0.8 : 0.1;
 }
@@ -54,20 +57,28 @@ class Pilot {
           frame_{settings.sensor.width, settings.sensor.height},
           density_(settings.filter, frame_, {}, &settings.shutter) {
         settings_.seed = hash64(settings.seed, kOwnRandom, 1);
-        settings_.light = {1, 0};
+        settings_.light = {1, 1};
         settings_.technique = Technique::both;
     }
 
     LightPlan choose() {
         const LightWeight weight(scene_, camera_, settings_.sensor, density_, settings_.light,
                                  settings_.technique);
-        if (weight.emission().empty()) return {};
-        const std::vector<PilotArrival> straight = fly_straight(weight);
-        if (straight.empty()) return {};
+        if (weight.emission().empty() && !weight.bounces()) return {};
+        const double lens = price_of(camera_.lens);
+        double rays = 0;
+        const std::vector<PilotArrival> straight = fly(weight, &LightPass::draw, rays);
+        costs_.straight = kPath + lens + rays * (1 + kSplat);
+        std::vector<PilotArrival> bounced;
+        if (weight.bounces()) bounced = fly(weight, &LightPass::draw_bounced, rays);
+        costs_.bounced = kPath + rays * (1 + kConnected * lens);
+        if (straight.empty() && bounced.empty()) return {};
         const std::vector<PilotBlock> blocks = look();
-        costs_.camera = pixels() * (kSample + price_of(camera_.lens) + rays_per_sample_);
+        costs_.camera = pixels() * (kSample + lens + rays_per_sample_);
         costs_.sharing = pixels() * kShare;
-        return choose_plan(blocks, pixels() / double(blocks.size()), {straight, paths()}, {}, costs_);
+        costs_.sharing_bounced = pixels() * kShareOfRay * rays_per_sample_;
+        return choose_plan(blocks, pixels() / double(blocks.size()), {straight, paths()},
+                           {bounced, paths()}, costs_);
     }
 
   private:
@@ -92,7 +103,9 @@ class Pilot {
         return blocks;
     }
 
-    std::vector<PilotArrival> fly_straight(const LightWeight& weight) {
+    /// Light paths of one kind, and the rays of one of them.
+    template <typename Draw>
+    std::vector<PilotArrival> fly(const LightWeight& weight, Draw draw, double& rays_per_path) const {
         Film nowhere(FilmLayout{1, 1});   // all is logged
         const LightPass pass(scene_, camera_, nowhere, settings_, density_, weight);
         const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
@@ -102,7 +115,7 @@ class Pilot {
             LightPass::Workspace work;
             work.log = &found[task];
             const std::uint64_t first = std::uint64_t(task) * kPathsPerTask;
-            pass.draw(work, first, std::min(first + kPathsPerTask, paths()));
+            (pass.*draw)(work, first, std::min(first + kPathsPerTask, paths()));
             rays[task] = work.counters.rays;
         });
         std::vector<PilotArrival> all;   // in the order of the paths, whatever thread drew them
@@ -113,7 +126,7 @@ class Pilot {
                                s.spread});
             ray_count += double(rays[t]);
         }
-        costs_.straight = kPath + price_of(camera_.lens) + ray_count / double(paths());
+        rays_per_path = ray_count / double(paths());
         return all;
     }
 

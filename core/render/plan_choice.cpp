@@ -88,7 +88,8 @@ struct Judge {
     }
     double gain(int k1, int k2, const PlanCosts& c) const {
         const double light = c.straight * paths_of(k1) + c.bounced * paths_of(k2);
-        const double cost = c.camera + light + (k1 + k2 > 0 ? c.sharing : 0);
+        const double sharing = (k1 + k2 > 0 ? c.sharing : 0) + (k2 > 0 ? c.sharing_bounced : 0);
+        const double cost = c.camera + light + sharing;
         return error(0, 0) * c.camera / std::max(1e-300, error(k1, k2) * cost);
     }
 };

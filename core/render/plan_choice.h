@@ -46,6 +46,7 @@ struct PilotBlock {
 struct PlanCosts {
     double camera = 1;          // one sample of every pixel
     double sharing = 0;         // what is added to it where light paths share in what it finds
+    double sharing_bounced = 0; // and where those with bounces do
     double straight = 0;        // a light path that goes straight to the lens
     double bounced = 0;         // a light path with bounces, to its end
 };
