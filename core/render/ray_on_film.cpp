@@ -62,8 +62,11 @@ float RayOnFilm::spread() const {
         const Footprint::Box box = at_[i]->box();
         float squares = 0;
         for (int y = box.y0; y < box.y1; ++y)
-            for (int x = box.x0; x < box.x1; ++x) squares += at_[i]->value({x, y}) * at_[i]->value({x, y});
-        return squares / (at_[i]->total() * at_[i]->total());
+            for (int x = box.x0; x < box.x1; ++x) {
+                const float share = at_[i]->share({x, y});
+                squares += share * share;
+            }
+        return squares;
     }
     return 1;
 }
