@@ -62,8 +62,10 @@ class Pilot {
     }
 
     LightPlan choose() {
+        settings_.light_guide = coarse_.light_guide = std::make_shared<const LightGuide>(
+            scene_, camera_, settings_.sensor, settings_.filter.radius(), settings_.light);
         const LightWeight weight(scene_, camera_, settings_.sensor, density_, settings_.light,
-                                 settings_.technique);
+                                 settings_.technique, settings_.light_guide);
         if (weight.emission().empty() && !weight.bounces()) return {};
         const double lens = price_of(camera_.lens);
         double rays = 0;
