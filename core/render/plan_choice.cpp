@@ -11,6 +11,7 @@ constexpr float kDark = 0.01f;      // of relative errors: (value^2 + kDark)
 constexpr int kCandidates = 18;     // 0, then powers of two
 constexpr double kFirst = 256;      // the least plan that is no trifle
 constexpr int kHalves = 2;
+constexpr double kWorthBounced = 3;   // times the gain without them: what they promise is seldom all theirs
 
 double paths_of(int candidate) {
     return candidate == 0 ? 0 : kFirst * std::exp2(candidate - 1);
@@ -76,6 +77,23 @@ Curve curve_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, do
     return curve;
 }
 
+/// Without the hundredth that the camera would suffer most: light after bounces has rare bright arrivals of all
+/// kinds, each of which alone would ask for more paths than all others.
+std::vector<PilotArrival> without_rare(const PilotArrivals& arrivals, std::span<const Vec3f> weights) {
+    const auto suffered = [&](const PilotArrival& a) {
+        return double(dot(a.value * a.value, weights[a.block])) / double(a.ratio);
+    };
+    std::vector<double> order;
+    for (const PilotArrival& a : arrivals.all) order.push_back(suffered(a));
+    if (order.empty()) return {};
+    const auto limit = order.begin() + std::ptrdiff_t(order.size() - 1 - order.size() / 100);
+    std::ranges::nth_element(order, limit);
+    std::vector<PilotArrival> kept;
+    for (const PilotArrival& a : arrivals.all)
+        if (suffered(a) <= *limit) kept.push_back(a);
+    return kept;
+}
+
 /// Error and cost of each pair of candidates, as one half of the arrivals has it.
 struct Judge {
     Curve straight, bounced;
@@ -99,20 +117,23 @@ struct Judge {
 LightPlan choose_plan(std::span<const PilotBlock> blocks, double pixels, const PilotArrivals& straight,
                       const PilotArrivals& bounced, const PlanCosts& costs) {
     const std::vector<Vec3f> weights = weights_of(blocks, pixels, straight);
+    const std::vector<PilotArrival> usual = without_rare(bounced, weights);
     std::array<Judge, kHalves> judges;
     for (int half = 0; half < kHalves; ++half)
         judges[half] = {curve_of(straight, weights, pixels, half),
-                        curve_of(bounced, weights, pixels, half), rest_of(blocks, weights, pixels)};
+                        curve_of({usual, bounced.paths}, weights, pixels, half), rest_of(blocks, weights, pixels)};
     LightPlan best;
     double best_gain = kWorth;
-    for (int k1 = 0; k1 < (straight.all.empty() ? 1 : kCandidates); ++k1)
-        for (int k2 = 0; k2 < (bounced.all.empty() ? 1 : kCandidates); ++k2) {
+    for (int k2 = 0; k2 < (bounced.all.empty() ? 1 : kCandidates); ++k2) {
+        if (k2 == 1) best_gain *= kWorthBounced;
+        for (int k1 = 0; k1 < (straight.all.empty() ? 1 : kCandidates); ++k1) {
             double gain = judges[0].gain(k1, k2, costs);
             for (const Judge& judge : judges) gain = std::min(gain, judge.gain(k1, k2, costs));
             if (gain <= best_gain) continue;
             best_gain = gain;
             best = {paths_of(k1), paths_of(k2)};
         }
+    }
     return best;
 }
 
