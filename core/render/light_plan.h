@@ -11,7 +11,7 @@ inline constexpr double kMostLightPaths = 1e9;
 /// that it has without them.
 struct LightPlan {
     double m1 = 0;   // from an emitter straight to the lens
-    double m2 = 0;   // with one bounce or more
+    double m2 = 0;   // over two surfaces or more; direct light is the camera's
 
     bool off() const { return m1 <= 0 && m2 <= 0; }
 };

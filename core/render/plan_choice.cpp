@@ -12,6 +12,9 @@ constexpr int kCandidates = 18;     // 0, then powers of two
 constexpr double kFirst = 256;      // the least plan that is no trifle
 constexpr int kHalves = 2;
 constexpr double kWorthBounced = 3;   // times the gain without them: what they promise is seldom all theirs
+// A sample with light paths may cost twice what it costs without: who asks for so many samples has a time in
+// mind, and rare light (caustics) would ask for light paths without end.
+constexpr double kMostCost = 2;
 
 double paths_of(int candidate) {
     return candidate == 0 ? 0 : kFirst * std::exp2(candidate - 1);
@@ -104,13 +107,18 @@ struct Judge {
         const double others = std::max(rest, bounced[0]);
         return straight[k1] + others - (bounced[0] - bounced[k2]);
     }
-    double gain(int k1, int k2, const PlanCosts& c) const {
-        const double light = c.straight * paths_of(k1) + c.bounced * paths_of(k2);
-        const double sharing = (k1 + k2 > 0 ? c.sharing : 0) + (k2 > 0 ? c.sharing_bounced : 0);
-        const double cost = c.camera + light + sharing;
-        return error(0, 0) * c.camera / std::max(1e-300, error(k1, k2) * cost);
+    /// Of two costs; see cost_of.
+    double gain(int k1, int k2, double without, double with) const {
+        return error(0, 0) * without / std::max(1e-300, error(k1, k2) * with);
     }
 };
+
+/// A sample of every pixel, with its light paths.
+double cost_of(int k1, int k2, const PlanCosts& c) {
+    const double light = c.straight * paths_of(k1) + c.bounced * paths_of(k2);
+    const double sharing = (k1 + k2 > 0 ? c.sharing : 0) + (k2 > 0 ? c.sharing_bounced : 0);
+    return c.camera + light + sharing;
+}
 
 }  // namespace
 
@@ -121,14 +129,18 @@ LightPlan choose_plan(std::span<const PilotBlock> blocks, double pixels, const P
     std::array<Judge, kHalves> judges;
     for (int half = 0; half < kHalves; ++half)
         judges[half] = {curve_of(straight, weights, pixels, half),
-                        curve_of({usual, bounced.paths}, weights, pixels, half), rest_of(blocks, weights, pixels)};
+                        curve_of({usual, bounced.paths}, weights, pixels, half),
+                        rest_of(blocks, weights, pixels)};
     LightPlan best;
     double best_gain = kWorth;
     for (int k2 = 0; k2 < (bounced.all.empty() ? 1 : kCandidates); ++k2) {
         if (k2 == 1) best_gain *= kWorthBounced;
         for (int k1 = 0; k1 < (straight.all.empty() ? 1 : kCandidates); ++k1) {
-            double gain = judges[0].gain(k1, k2, costs);
-            for (const Judge& judge : judges) gain = std::min(gain, judge.gain(k1, k2, costs));
+            const double cost = cost_of(k1, k2, costs);
+            if (cost > kMostCost * costs.camera) continue;
+            double gain = judges[0].gain(k1, k2, costs.camera, cost);
+            for (const Judge& judge : judges)
+                gain = std::min(gain, judge.gain(k1, k2, costs.camera, cost));
             if (gain <= best_gain) continue;
             best_gain = gain;
             best = {paths_of(k1), paths_of(k2)};

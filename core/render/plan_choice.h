@@ -54,7 +54,8 @@ struct PlanCosts {
 /// The numbers of light paths for which cost x error is least, error being the mean over pixels and
 /// channels of variance / (mean^2 + 0.01), as of --noise. `pixels`: of a block. The arrivals are judged in
 /// two halves, and what counts is the lesser gain: one lucky path is no reason. Gains of less than kWorth
-/// are left alone, and paths with bounces must promise three times what the best plan without them gains.
+/// are left alone, and paths with bounces must promise three times what the best plan without them gains. No
+/// plan more than doubles the cost of a sample.
 LightPlan choose_plan(std::span<const PilotBlock> blocks, double pixels, const PilotArrivals& straight,
                       const PilotArrivals& bounced, const PlanCosts& costs);
 
