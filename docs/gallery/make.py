@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from pictures import GLASS, MOTION, NIGHT, PICTURES, Picture
+from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -37,6 +37,20 @@ ABOUT_GLASS = """## Glass
 
 Real lenses, by their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
 through each of the library.
+"""
+
+ABOUT_LIGHT = """## Light that finds its way to the sensor
+
+Light is followed from the lamps too; [light-paths.md](../light-paths.md) tells how. Nothing is
+denoised here.
+"""
+
+ABOUT_BLENDER = """## A lens that left
+
+![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
+
+Blender's default scene through a double Gauss at f/2 that Daguerre exported; the commands, and the
+same by Blender's own camera: [export.md](../export.md).
 """
 
 CREDITS = """
@@ -103,7 +117,7 @@ def section(pictures: list[Picture]) -> list[str]:
 
 def main() -> None:
     """Renders what was asked for, then writes the page."""
-    every = [*PICTURES, *GLASS, *MOTION]
+    every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
     parser.add_argument("--only", action="append", choices=[p.name for p in every])
@@ -117,7 +131,7 @@ def main() -> None:
             if wanted and (given.data or not picture.needs_data):
                 render(picture, given.data and given.data.resolve())
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS)]
-    page += [ABOUT_MOTION, *section(MOTION)]
+    page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER, ABOUT_MOTION, *section(MOTION)]
     (HERE / "README.md").write_text("\n".join(page) + CREDITS)
 
 

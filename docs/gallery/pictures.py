@@ -370,3 +370,17 @@ GLASS = [
         columns=2,
     ),
 ]
+
+PHOTOGRAPHER = f"{GAUSS} --f-stop 2 --res 600x338"
+LIGHT = [
+    Picture(
+        "night_lamps",
+        "A hundred lamps of 2 mm behind a photographer's table, in equal CPU time: paths from the "
+        "lens only, above, and light paths beside them, below.",
+        "out/lens_scenes/photographer.glb",
+        (
+            f"{PHOTOGRAPHER} --spp 48 --light-paths off",
+            f"{PHOTOGRAPHER} --spp 40 --light-paths 65536",
+        ),
+    ),
+]

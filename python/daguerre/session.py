@@ -152,9 +152,11 @@ class Session:
         }
 
     def _plan(self) -> Plan:
-        """What pays in this scene."""
+        """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
         m1, m2 = _core.pilot(self._core_scene, self._setup.core, self._settings)
-        return m1, m2
+        x0, y0, x1, y1 = self.crop
+        share = (x1 - x0) * (y1 - y0) / (self.width * self.height)
+        return m1 * share, m2 * share
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
