@@ -17,7 +17,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import lenses, polynomial
+    from . import lenses, polynomial, post
     from .frame import Frame
     from .session import Session, iter_render, render
 
@@ -50,6 +50,7 @@ __all__ = [
     "lenses",
     "load",
     "polynomial",
+    "post",
     "render",
     "spin",
 ]
@@ -59,7 +60,7 @@ _LAZY = {"Frame": "frame", "Session": "session", "iter_render": "session", "rend
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("lenses", "polynomial"):
+    if name in ("lenses", "polynomial", "post"):
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)

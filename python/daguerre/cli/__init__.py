@@ -22,6 +22,7 @@ from .info import info
 from .lens import lens
 from .lenses import lenses
 from .merge import merge
+from .post import post
 from .render import render
 from .version import version
 
@@ -37,7 +38,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (render, merge, info, lenses, lens, version):
+for command in (render, merge, post, info, lenses, lens, version):
     app.command(name=command.__name__)(command)
 
 

@@ -38,11 +38,46 @@ class Status:
     noise: float | None = None
     noise_wanted: float | None = None
 
+    @property
+    def words(self) -> list[str]:
+        """Samples and rates."""
+        return [
+            *([_noise(self)] if self.noise_wanted else []),
+            f"{round(self.samples, 1):g}/{round(self.samples_wanted, 1):g} spp",
+            f"{quantity(self.samples_per_s)} samples/s",
+            f"{quantity(self.rays_per_s)} rays/s",
+        ]
+
+
+@dataclass(frozen=True)
+class RowStatus:
+    """How far a picture is whose rows are made once, from top to bottom.
+
+    Attributes:
+        fraction: Share of the rows that is made, 0 .. 1.
+        pixels_per_s: Pixels per second.
+        elapsed_s: Since the first row was asked for.
+        left_s: Estimated time left; None until there is a rate.
+    """
+
+    fraction: float
+    pixels_per_s: float
+    elapsed_s: float
+    left_s: float | None
+
+    @property
+    def words(self) -> list[str]:
+        """The rate."""
+        return [f"{quantity(self.pixels_per_s)} pixels/s"]
+
+
+AnyStatus = Status | RowStatus
+
 
 class Silent:
     """Says nothing; the base of the others."""
 
-    def update(self, status: Status) -> None:
+    def update(self, status: AnyStatus) -> None:
         """Shows the newest status."""
 
     def event(self, name: str, **facts: Any) -> None:
@@ -68,7 +103,7 @@ class Lines(Silent):
     def __init__(self) -> None:
         self._next = time.monotonic() + self.period_s
 
-    def update(self, status: Status) -> None:
+    def update(self, status: AnyStatus) -> None:
         """Prints a line if it is time."""
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + self.period_s
@@ -84,7 +119,7 @@ class JsonLines(Silent):
         self._next = 0.0
         console.writer = lambda line: self.event("message", text=line)
 
-    def update(self, status: Status) -> None:
+    def update(self, status: AnyStatus) -> None:
         """Prints an object twice a second, and at the end."""
         if time.monotonic() >= self._next or status.fraction >= 1:
             self._next = time.monotonic() + self.period_s
@@ -115,7 +150,7 @@ class Bar(Silent):
         )
         self._task = self._progress.add_task("starting", total=1.0)
 
-    def update(self, status: Status) -> None:
+    def update(self, status: AnyStatus) -> None:
         """Moves the bar."""
         self._progress.update(
             self._task, completed=status.fraction, description=describe(status, percent=False)
@@ -148,17 +183,10 @@ def choose(*, quiet: bool, as_json: bool) -> Silent:
     return Bar() if sys.stderr.isatty() else Lines()
 
 
-def describe(status: Status, *, percent: bool = True) -> str:
-    """One line: samples, rates, elapsed and left."""
+def describe(status: AnyStatus, *, percent: bool = True) -> str:
+    """One line: how much, rates, elapsed and left."""
     left = "?" if status.left_s is None else duration(status.left_s)
-    words = [
-        *([_noise(status)] if status.noise_wanted else []),
-        f"{round(status.samples, 1):g}/{round(status.samples_wanted, 1):g} spp",
-        f"{quantity(status.samples_per_s)} samples/s",
-        f"{quantity(status.rays_per_s)} rays/s",
-        f"elapsed {duration(status.elapsed_s)}",
-        f"left {left}",
-    ]
+    words = [*status.words, f"elapsed {duration(status.elapsed_s)}", f"left {left}"]
     return ", ".join([f"{100 * status.fraction:.1f}%", *words] if percent else words)
 
 

@@ -1,0 +1,11 @@
+"""The darkroom: imperfections of a lens in 2D, for scene-linear pictures of any renderer.
+
+Each effect is a function on arrays of shape (H, W, C), and an entry of ``daguerre post --list``
+with the same parameters. None changes its argument.
+"""
+
+from __future__ import annotations
+
+from .vignetting import unvignette, vignette
+
+__all__ = ["unvignette", "vignette"]

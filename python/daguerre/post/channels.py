@@ -1,0 +1,39 @@
+"""Which channel of a file holds depth or motion: every renderer has names of its own."""
+
+from __future__ import annotations
+
+from daguerre.errors import InputError
+
+from .picture import Canvas
+
+#: Usual names by role, ours first; compared without regard to case.
+USUAL = {
+    "depth": ("depth.Z", "Z", "depth.V", "depth.R", "depth", "ViewLayer.Depth.Z"),
+    "motion.u": ("motion.U", "motion.X", "Vector.X", "velocity.X", "forward.u", "motionvector.R"),
+    "motion.v": ("motion.V", "motion.Y", "Vector.Y", "velocity.Y", "forward.v", "motionvector.G"),
+}
+PARTS = {"motion": ("motion.u", "motion.v")}
+
+
+def roles_of(need: str) -> tuple[str, ...]:
+    """The channels that a need stands for: "motion" is two."""
+    return PARTS.get(need, (need,))
+
+
+def find(canvas: Canvas, role: str) -> str:
+    """The channel for a role: the one that the user named, or one of a usual name.
+
+    Raises:
+        InputError: There is none; the message says what there is.
+    """
+    given = canvas.roles.get(role)
+    wanted = (given,) if given is not None else USUAL[role]
+    names = {name.lower(): name for name in canvas.planes}
+    for name in wanted:
+        if name.lower() in names:
+            return names[name.lower()]
+    have = ", ".join(canvas.planes[:24]) or "none besides colour"
+    raise InputError(
+        f"{canvas.where}: channel for {role}: wanted {' or '.join(wanted)}, got {have} "
+        f"(--channel {role}=NAME names another)"
+    )

@@ -1,0 +1,8 @@
+"""The list of effects: a line for each."""
+
+from __future__ import annotations
+
+from .effect import Effect
+from .vignetting import VIGNETTING
+
+EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (VIGNETTING,)}

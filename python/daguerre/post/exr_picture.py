@@ -1,0 +1,91 @@
+"""Pictures in OpenEXR files as sources of rows; what is no colour passes through as it is."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+import numpy as np
+
+from daguerre.errors import InputError, UsageError
+from daguerre.io.exr_bands import ExrReader, Planes
+
+from .picture import Band, Canvas, Image, Rows
+
+
+class ExrPicture:
+    """The first part of an OpenEXR file; counts values that are NaN or infinite, and keeps them."""
+
+    def __init__(self, path: str | os.PathLike[str], roles: Mapping[str, str] = {}) -> None:
+        """Opens a file.
+
+        Raises:
+            UsageError: Not an .exr by its name.
+            InputError: It cannot be read, or has no colour.
+        """
+        check_linear(path)
+        self.reader = ExrReader(path)
+        reader = self.reader
+        colours = _colours(list(reader.channels), str(path))
+        corner = tuple(a - b for a, b in zip(reader.corner, reader.full_corner, strict=True))
+        self.canvas = Canvas(
+            reader.width,
+            reader.height,
+            (corner[0], corner[1]),
+            reader.full_size,
+            colours,
+            tuple(name for name in reader.channels if name not in colours),
+            reader.facts,
+            str(path),
+            roles,
+        )
+        self._counted = np.zeros(reader.height, bool)
+        self.bad_pixels = 0
+
+    def rows(self, rows: Rows) -> Band:
+        """Reads rows."""
+        found = self.reader.rows(rows.begin, rows.end)
+        image = np.stack([found[name] for name in self.canvas.colours], axis=2, dtype=np.float32)
+        new = ~self._counted[rows.begin : rows.end]
+        if new.any():
+            self.bad_pixels += int((~np.isfinite(image[new])).any(axis=2).sum())
+            self._counted[rows.begin : rows.end] = True
+        return Band(rows, image, {name: found[name] for name in self.canvas.planes})
+
+    def planes(self, band: Band) -> Planes:
+        """A band as channels of the file, in its types; halves end at their largest value."""
+        types = self.reader.channels
+        out = dict(band.planes)
+        for k, name in enumerate(self.canvas.colours):
+            out[name] = _typed(band.image[..., k], types[name])
+        return {name: _typed(plane, types[name]) for name, plane in out.items()}
+
+
+def check_linear(path: str | os.PathLike[str]) -> None:
+    """Only scene-linear light can be bent, blurred or darkened as a lens does it.
+
+    Raises:
+        UsageError: Another format than OpenEXR.
+    """
+    suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
+    if suffix != ".exr":
+        raise UsageError(
+            f"{path}: wanted a scene-linear .exr, got {suffix or 'no suffix'!r}: pictures for "
+            "screens follow a curve and end at white, so their values are no amounts of light; "
+            "convert it to linear OpenEXR first"
+        )
+
+
+def _colours(names: list[str], where: str) -> tuple[str, ...]:
+    for colours in (("R", "G", "B"), ("Y",)):
+        if all(name in names for name in colours):
+            return (*colours, "A") if "A" in names else colours
+    raise InputError(f"{where}: channels: wanted R, G, B or Y, got {', '.join(names[:24])}")
+
+
+def _typed(plane: Image, dtype: str) -> Image:
+    """float16 ends at 65504: beyond it light stays bright, rather than becoming infinite."""
+    if dtype == "float16" and plane.dtype == np.float32:
+        finite = np.isfinite(plane)
+        plane = np.where(finite, np.clip(plane, -65504, 65504), plane)
+    return plane.astype(dtype, copy=False)

@@ -1,0 +1,109 @@
+"""Millimetres and pixels: what effects that come from a lens need to know of the camera."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeGuard
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import UsageError
+
+from .effect import Values
+from .parameter import Parameter
+from .picture import Canvas, Rows
+
+if TYPE_CHECKING:
+    from daguerre.analysis.bench import Bench
+
+FOCAL_LENGTH = Parameter("focal_length", "of the camera; the file's if it says one", "mm", low=1e-3)
+SENSOR = Parameter("sensor", "width x height; the file's if it says one", "mm", kind="size")
+LENS = (
+    Parameter("lens", "a name of `daguerre lenses`, or a lens file", kind="text"),
+    Parameter("focus", "distance in focus, from the entrance pupil", "m", math.inf, low=1e-3),
+    Parameter("zoom", "focal length at which a zoom stands", "mm", low=1e-3),
+    Parameter("f_stop", "of the lens; wide open if absent", low=1e-2),
+)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The film behind a picture.
+
+    Attributes:
+        centre: Where the axis meets it, px.
+        pitch_mm: Of a pixel.
+    """
+
+    centre: tuple[float, float]
+    pitch_mm: float
+
+    def radii(self, canvas: Canvas, rows: Rows) -> NDArray[np.float32]:
+        """Distances of pixels from the axis, mm, shape (rows, W)."""
+        x, y = offsets(canvas, rows, self.centre)
+        return np.hypot(x, y) * np.float32(self.pitch_mm)
+
+
+def offsets(
+    canvas: Canvas, rows: Rows, centre: tuple[float, float]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Columns (1, W) and rows (rows, 1) of pixels from a point of the display window, px."""
+    x = np.arange(canvas.width) + (canvas.corner[0] + 0.5 - centre[0])
+    y = np.arange(rows.begin, rows.end) + (canvas.corner[1] + 0.5 - centre[1])
+    return x[None, :].astype(np.float32), y[:, None].astype(np.float32)
+
+
+def film_plane(canvas: Canvas, values: Values) -> Plane:
+    """The film from ``sensor``, or from what the file says; the picture spans its width.
+
+    Raises:
+        UsageError: Neither says how large it is.
+    """
+    size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
+    if size is None and _positive(pitch):
+        return Plane(canvas.centre, pitch[0] * 1e-3)
+    size = size or canvas.facts.get("sensorOverallDimensions")
+    if not _positive(size):
+        raise UsageError(
+            f"{canvas.where}: sensor: wanted its size, such as sensor=36x24 (mm): "
+            "the file does not say it"
+        )
+    return Plane(canvas.centre, size[0] / canvas.full_size[0])
+
+
+def focal_length_mm(canvas: Canvas, values: Values) -> float:
+    """The focal length from ``focal_length``, or from what the file says.
+
+    Raises:
+        UsageError: Neither says it.
+    """
+    if values.get("focal_length"):
+        return float(values["focal_length"])
+    for name in ("pinholeFocalLength", "effectiveFocalLength", "nominalFocalLength"):
+        found = canvas.facts.get(name)
+        if isinstance(found, float) and 0 < found < math.inf:
+            return found
+    raise UsageError(
+        f"{canvas.where}: focal_length: wanted a number of mm: the file does not say it"
+    )
+
+
+def bench(values: Values) -> Bench:
+    """The lens at its focus, zoom and f-stop.
+
+    Raises:
+        InputError: No such lens, or it cannot be set so.
+    """
+    from daguerre import lenses
+    from daguerre.analysis.bench import set_up
+
+    item = lenses.load(values["lens"])
+    return set_up(
+        item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom")
+    )
+
+
+def _positive(pair: Any) -> TypeGuard[tuple[float, float]]:
+    return isinstance(pair, tuple) and len(pair) == 2 and all(0 < v < math.inf for v in pair)

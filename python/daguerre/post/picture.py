@@ -1,0 +1,127 @@
+"""What effects work on: bands of rows of a picture, and what is known of the whole of it.
+
+Places are in px of the display window: x to the right, y down, (0, 0) its top left corner, so that
+the middle of its first pixel is (0.5, 0.5). Rows are counted from the first row that there is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.float32]
+
+
+class Rows(NamedTuple):
+    """Rows [begin, end) of the pixels that a picture has."""
+
+    begin: int
+    end: int
+
+    def grown(self, by: int) -> Rows:
+        """With so many more on either side; the engine cuts off what the picture does not have."""
+        return Rows(self.begin - by, self.end + by)
+
+    def within(self, height: int) -> Rows:
+        """Cut to the rows of a picture; where nothing is left, its nearest row."""
+        begin = min(max(self.begin, 0), height - 1)
+        return Rows(begin, min(max(self.end, begin + 1), height))
+
+
+@dataclass(frozen=True)
+class Canvas:
+    """What is known of a picture before its pixels are read.
+
+    Attributes:
+        width: Of its pixels (the data window), px.
+        height: Of its pixels, px.
+        corner: Their first pixel in the display window, px.
+        full_size: Width and height of the display window, px: what effects are centred on.
+        colours: Names of the colour channels; the last one may be alpha.
+        planes: Names of all other channels, as in the file.
+        facts: Attributes of the file by name.
+        where: Its name, for messages.
+        roles: The channels that stand for "depth", "motion.u", "motion.v", where they are not
+            found under a usual name.
+    """
+
+    width: int
+    height: int
+    corner: tuple[int, int] = (0, 0)
+    full_size: tuple[int, int] = (0, 0)
+    colours: tuple[str, ...] = ("R", "G", "B")
+    planes: tuple[str, ...] = ()
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    where: str = "picture"
+    roles: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.full_size == (0, 0):
+            object.__setattr__(self, "full_size", (self.width, self.height))
+
+    @property
+    def alpha(self) -> bool:
+        """Whether the last of the colours is alpha."""
+        return self.colours[-1] == "A"
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Of the display window, px."""
+        return 0.5 * self.full_size[0], 0.5 * self.full_size[1]
+
+    @classmethod
+    def of(cls, shape: tuple[int, ...], planes: tuple[str, ...], where: str) -> Canvas:
+        """That of an array of shape (H, W, C): 1 or 3 colours, one more is alpha."""
+        height, width, count = shape
+        names = {1: ("Y",), 2: ("Y", "A"), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
+        colours = names.get(count, tuple(f"C{k}" for k in range(count)))
+        return cls(width, height, colours=colours, planes=planes, where=where)
+
+
+@dataclass(frozen=True)
+class Band:
+    """Some rows of a picture.
+
+    Attributes:
+        rows: Which.
+        image: Colours, scene-linear, and alpha if there is one: float32 (rows, W, C). Not to be
+            changed in place.
+        planes: The other channels by name, (rows, W), in the types of the file.
+    """
+
+    rows: Rows
+    image: Image
+    planes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+
+    def cut(self, rows: Rows) -> Band:
+        """Fewer of its rows."""
+        if rows == self.rows:
+            return self
+        part = slice(rows.begin - self.rows.begin, rows.end - self.rows.begin)
+        planes = {name: plane[part] for name, plane in self.planes.items()}
+        return Band(rows, self.image[part], planes)
+
+    def with_image(self, image: Image) -> Band:
+        """The same rows with other colours."""
+        return replace(self, image=np.ascontiguousarray(image, np.float32))
+
+
+class Source(Protocol):
+    """A picture that gives any of its rows when it is asked."""
+
+    @property
+    def canvas(self) -> Canvas:
+        """What is known of it."""
+
+    def rows(self, rows: Rows) -> Band:
+        """These rows, all of which the picture has."""
+
+
+def bands(source: Source, height: int) -> Iterator[Band]:
+    """All rows of a picture from top to bottom, so many at a time."""
+    for begin in range(0, source.canvas.height, height):
+        yield source.rows(Rows(begin, min(begin + height, source.canvas.height)))

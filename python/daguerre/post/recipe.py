@@ -1,0 +1,101 @@
+"""Which effects in which order: ``NAME:key=value,...`` on a command line, or a JSON recipe."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from daguerre.errors import InputError, UsageError, suggest
+
+from .effect import Effect, Values
+from .effects import EFFECTS
+
+
+@dataclass(frozen=True)
+class Planned:
+    """An effect with all its values."""
+
+    effect: Effect
+    values: Values
+    where: str
+    given: Values
+
+
+def from_words(words: Sequence[str]) -> list[Planned]:
+    """What ``--effect`` was given.
+
+    Args:
+        words: Such as ``vignetting:model=natural,inverse=1``.
+
+    Raises:
+        UsageError: An unknown effect or parameter, or a value that it cannot have.
+    """
+    planned = []
+    for word in words:
+        name, _, rest = word.partition(":")
+        where = f"--effect {name}"
+        given: dict[str, Any] = {}
+        for part in filter(None, rest.split(",")):
+            key, equals, value = part.partition("=")
+            key = key.strip()
+            if not equals:
+                raise UsageError(f"{where}: wanted key=value, got {part!r}")
+            if key in given:
+                raise UsageError(f"{where}: {key}: wanted once, got it twice")
+            given[key] = value.strip()
+        planned.append(plan(name.strip(), given, where, UsageError))
+    return planned
+
+
+def from_file(path: Path) -> list[Planned]:
+    """A recipe: a list of objects such as ``{"effect": "vignetting", "model": "natural"}``.
+
+    Raises:
+        InputError: It cannot be read, or asks for something unknown; with the place in the file.
+    """
+    from daguerre.io.json_text import parse
+
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot read: {error.strerror or error}") from error
+    root = parse(data, str(path)).value
+    if not isinstance(root, list) or not all(isinstance(entry, dict) for entry in root):
+        raise InputError(f'{path}: wanted a list of objects such as {{"effect": "vignetting"}}')
+    planned = []
+    for k, entry in enumerate(root):
+        where = f"{path}: [{k}]"
+        given = {key: value for key, value in entry.items() if key != "effect"}
+        planned.append(plan(entry.get("effect"), given, where, InputError))
+    return planned
+
+
+def plan(
+    name: Any, given: Values, where: str, error: type[InputError | UsageError] = UsageError
+) -> Planned:
+    """An effect of the list with values for all its parameters."""
+    if not isinstance(name, str) or name not in EFFECTS:
+        raise error(
+            f"{where}: effect: wanted a name of `daguerre post --list`, got {name!r}"
+            f"{suggest(str(name), EFFECTS)}"
+        )
+    effect = EFFECTS[name]
+    return Planned(effect, effect.values(given, where, error), where, dict(given))
+
+
+def in_order(planned: Sequence[Planned]) -> tuple[list[Planned], list[str]]:
+    """Effects of the film behind those of the lens; and what was moved, for a note."""
+    first = [p for p in planned if not p.effect.last]
+    last = [p for p in planned if p.effect.last]
+    done = [*first, *last]
+    moved = sorted({p.effect.name for p, q in zip(planned, done, strict=True) if p is not q})
+    return done, [name for name in moved if EFFECTS[name].last]
+
+
+def as_json(planned: Sequence[Planned]) -> str:
+    """A recipe again, as it is kept in the metadata of what it made."""
+    entries: list[Mapping[str, Any]] = [{"effect": p.effect.name, **p.given} for p in planned]
+    return json.dumps(entries)

@@ -1,0 +1,80 @@
+"""A chain of effects over a picture, a band of rows at a time: it is never whole in memory.
+
+Rows are pulled: whoever writes asks the last effect for a band, which asks the one before it for
+the rows that it reads, and so on down to the file. Each effect keeps the blocks of its last
+request, so that rows which two bands have in common are made once; blocks begin at fixed rows, so
+that no bit depends on who asks for what.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .effect import Step
+from .picture import Band, Canvas, Rows, Source
+
+BLOCK = 256  # rows
+
+
+class Stage:
+    """A step and the picture that it is applied to: a picture again."""
+
+    def __init__(self, step: Step, source: Source) -> None:
+        self.step, self.source = step, source
+        height = source.canvas.height
+        block = BLOCK if step.block is None else step.block
+        self._block = min(block, height) or height
+        self._kept: dict[int, Band] = {}
+
+    @property
+    def canvas(self) -> Canvas:
+        """Effects change no window."""
+        return self.source.canvas
+
+    def rows(self, rows: Rows) -> Band:
+        """Makes the blocks that these rows lie in, but for those that are still there."""
+        wanted = range(rows.begin // self._block, (rows.end - 1) // self._block + 1)
+        self._kept = {k: band for k, band in self._kept.items() if k in wanted}
+        for k in wanted:
+            if k not in self._kept:
+                self._kept[k] = self._made(k)
+        return joined([self._kept[k] for k in wanted], rows)
+
+    def _made(self, k: int) -> Band:
+        height = self.canvas.height
+        rows = Rows(k * self._block, min((k + 1) * self._block, height))
+        band = self.step.apply(self.source.rows(self.step.reads(rows).within(height)), rows)
+        shape = (rows.end - rows.begin, self.canvas.width, len(self.canvas.colours))
+        if band.rows != rows or band.image.shape != shape:
+            raise AssertionError(f"{self.step}: {rows}, {shape}; made {band.rows}")
+        return band
+
+
+class WholeImage:
+    """A picture that is whole in memory, as a source."""
+
+    def __init__(self, canvas: Canvas, band: Band) -> None:
+        self.canvas, self._band = canvas, band
+
+    def rows(self, rows: Rows) -> Band:
+        """A view of these rows."""
+        return self._band.cut(rows)
+
+
+def chained(steps: Sequence[Step], source: Source) -> Source:
+    """The picture after all steps, each of which has had its look at what it is applied to."""
+    for step in steps:
+        step.prepare(source)
+        source = Stage(step, source)
+    return source
+
+
+def joined(parts: Sequence[Band], rows: Rows) -> Band:
+    """Bands below each other, cut to some rows."""
+    cut = [p.cut(Rows(max(p.rows.begin, rows.begin), min(p.rows.end, rows.end))) for p in parts]
+    if len(cut) == 1:
+        return cut[0]
+    planes = {name: np.concatenate([p.planes[name] for p in cut]) for name in cut[0].planes}
+    return Band(rows, np.concatenate([p.image for p in cut]), planes)
