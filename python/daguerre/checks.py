@@ -46,15 +46,23 @@ def optional_array(
     return numbers
 
 
-def to_numbers(values: Any, where: str, what: str, wanted: str) -> NDArray[Any]:
+def to_numbers(
+    values: Any, where: str, what: str, wanted: str, error: type[DaguerreError] = InputError
+) -> NDArray[Any]:
     """A numeric array; what is none is named by its type."""
     try:
         numbers = np.asarray(values)
     except ValueError:
-        raise InputError(f"{where}: {what}: wanted {wanted}, got rows of unequal length") from None
+        raise error(f"{where}: {what}: wanted {wanted}, got rows of unequal length") from None
     if numbers.dtype.kind not in "iufb":
-        raise InputError(f"{where}: {what}: wanted {wanted}, got {short(values)}")
+        raise error(f"{where}: {what}: wanted {wanted}, got {short(values)}")
     return numbers
+
+
+def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float64]:
+    """A parameter as an array of numbers, of whatever shape: in order, as the core reads it."""
+    numbers = to_numbers(values, where, what, wanted, UsageError)
+    return np.asarray(numbers, np.float64, order="C")
 
 
 def frozen(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
@@ -127,7 +135,7 @@ def number(
         raise error(f"{where}: wanted {wanted}, got {short(value)}")
     try:
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise error(f"{where}: wanted {wanted}, got {short(value)}") from None
     fits = result >= low if above is None else result > above
     if math.isinf(result) and infinite:
@@ -143,7 +151,7 @@ def numbers(value: Any, where: str, count: int, wanted: str) -> tuple[float, ...
     """``count`` finite numbers."""
     try:
         result = tuple(float(v) for v in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise UsageError(f"{where}: wanted {wanted}, got {short(value)}") from None
     if len(result) != count or not all(math.isfinite(v) for v in result):
         raise UsageError(f"{where}: wanted {wanted}, got {short(value)}")

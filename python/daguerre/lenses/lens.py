@@ -130,7 +130,7 @@ class Lens:
         Raises:
             InputError: The lens is afocal.
         """
-        _check_wavelength(np.asarray(wavelength_nm, np.float64))
+        check_wavelength(np.asarray(wavelength_nm, np.float64))
         try:
             f = self.prescription.first_order(float(wavelength_nm), section)
         except ValueError as error:
@@ -176,7 +176,7 @@ class Lens:
             0 to 1, the shape of the wavelengths; NaN where no ray passes along the axis.
         """
         nm = np.asarray(wavelength_nm, np.float64)
-        _check_wavelength(nm)
+        check_wavelength(nm)
         flat = np.ascontiguousarray(nm.reshape(-1))
         start = np.tile([0.0, 0.0, -1.0], (flat.size, 1))
         along = np.tile([0.0, 0.0, 1.0], (flat.size, 1))
@@ -336,7 +336,7 @@ class Lens:
                 f"{self.name}: trace: wavelength_nm: wanted one number or shape ({o.shape[0]},), "
                 f"got shape {nm.shape}"
             )
-        _check_wavelength(nm)
+        check_wavelength(nm)
         nm = np.ascontiguousarray(np.broadcast_to(nm, (o.shape[0],)))
         z = self.image_z if image_z is None else float(image_z)
         points, _ = self.prescription.trace(o, d, nm, z, clip)
@@ -385,7 +385,8 @@ def _rays(
     return o, d
 
 
-def _check_wavelength(nm: NDArray[np.float64]) -> None:
+def check_wavelength(nm: NDArray[np.float64]) -> None:
+    """Glasses have an index from 200 to 2500 nm."""
     if not ((nm >= 200) & (nm <= 2500)).all():
         raise InputError(f"wavelength_nm: wanted 200 to 2500 nm, got {nm.min():g} .. {nm.max():g}")
 

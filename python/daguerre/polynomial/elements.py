@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import daguerre._core as _core
+from daguerre.checks import doubles, number, numbers, short, whole
 from daguerre.errors import DaguerreError, UsageError
 
 from .forms import Form
@@ -33,8 +34,9 @@ def propagate(distance: float, *, degree: int = 5, about: ArrayLike = AXIS) -> S
         about: Base ray of the expansion, shape (4,); the axis if not given.
     """
     nodes, rays = _about(about, [])
+    length = number(distance, "propagate: distance in mm")
     with _said():
-        return System(_core.polynomial_propagation(distance, checked(degree), nodes, rays))
+        return System(_core.polynomial_propagation(length, checked(degree), nodes, rays))
 
 
 def refract(
@@ -62,9 +64,10 @@ def refract(
     """
     nodes, rays = _about(about, with_glass(nodes_of(wavelength), n1, n2))
     first, second = index_at(n1, nodes), index_at(n2, nodes)
+    surface = _surface(form)
     with _said(form):
         return System(
-            _core.polynomial_refraction(form.surface, first, second, checked(degree), nodes, rays)
+            _core.polynomial_refraction(surface, first, second, checked(degree), nodes, rays)
         )
 
 
@@ -77,8 +80,9 @@ def reflect(form: Form, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
         about: Base ray, shape (4,).
     """
     nodes, rays = _about(about, [])
+    surface = _surface(form)
     with _said(form):
-        return System(_core.polynomial_reflection(form.surface, checked(degree), nodes, rays))
+        return System(_core.polynomial_reflection(surface, checked(degree), nodes, rays))
 
 
 def place(
@@ -105,9 +109,8 @@ def place(
         degree: 1 to 15.
         about: Base ray, shape (4,).
     """
-    shift, turn = (np.asarray(v, np.float64) for v in (decenter, tilt))
-    if shift.shape != (3,) or turn.shape != (3,) or not np.isfinite([shift, turn]).all():
-        raise UsageError(f"place: wanted three finite numbers each, got {decenter!r}, {tilt!r}")
+    shift = numbers(decenter, "place: decenter", 3, "three finite numbers, mm")
+    turn = numbers(tilt, "place: tilt", 3, "three finite numbers, degrees")
     nodes, rays = _about(about, [])
     with _said():
         return System(
@@ -121,20 +124,24 @@ def checked(degree: int) -> int:
     Raises:
         UsageError: It is none of 1 .. 15.
     """
-    if degree not in range(1, MAX_DEGREE + 1):
-        raise UsageError(f"degree: wanted a whole number from 1 to {MAX_DEGREE}, got {degree!r}")
-    return int(degree)
+    return whole(degree, "degree", 1, MAX_DEGREE, f"1 to {MAX_DEGREE}")
 
 
 def _about(about: ArrayLike, nodes: list[float]) -> tuple[list[float], list[list[float]]]:
     """Base rays for the core: one, or one for each node."""
-    rays = np.atleast_2d(np.asarray(about, np.float64))
+    rays = np.atleast_2d(doubles(about, "polynomial system", "about", "a ray (x, y, dx, dy)"))
     if rays.ndim != 2 or rays.shape[1] != 4 or len(rays) not in (1, len(nodes)):
         raise UsageError(
             f"about: wanted a ray (x, y, dx, dy), or one for each of {len(nodes)} wavelengths, "
             f"got shape {np.shape(about)}"
         )
     return nodes, rays.tolist()
+
+
+def _surface(form: Form) -> _core.Surface:
+    if not isinstance(form, Form):
+        raise UsageError(f"form: wanted one of sphere(50), plane() ..., got {short(form)}")
+    return form.surface
 
 
 @contextmanager

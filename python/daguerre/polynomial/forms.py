@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import daguerre._core as _core
+from daguerre.checks import number, short, whole
 from daguerre.errors import UsageError
+from daguerre.lenses.surface_reader import MAX_POWER
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +36,14 @@ def plane() -> Form:
 
 def sphere(radius: float) -> Form:
     """A sphere of a radius, mm."""
-    return _form(f"sphere({radius:g})", "spherical", curvature=_curvature(radius))
+    radius = _length(radius)
+    return _form(f"sphere({radius:g})", "spherical", curvature=1 / radius)
 
 
 def conic(radius: float, k: float) -> Form:
     """A conic of revolution: radius at the vertex, mm, and conic constant (-1: paraboloid)."""
-    return _form(f"conic({radius:g}, {k:g})", "aspheric", curvature=_curvature(radius), conic=k)
+    radius, k = _length(radius), number(k, "conic: k")
+    return _form(f"conic({radius:g}, {k:g})", "aspheric", curvature=1 / radius, conic=k)
 
 
 def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
@@ -50,56 +54,57 @@ def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
         terms: Power of r to its coefficient, r in mm. Odd powers have no expansion at the vertex.
         k: Conic constant.
     """
-    if not all(int(p) == p and p >= 1 for p in terms):
-        raise UsageError(f"asphere: powers of r: wanted whole numbers from 1, got {list(terms)}")
-    return _form(
-        f"asphere({radius:g}, {dict(terms)}, {k:g})",
-        "aspheric",
-        curvature=_curvature(radius),
-        conic=k,
-        asphere=dict(terms),
-    )
+    if not isinstance(terms, Mapping):
+        raise UsageError(f"asphere: wanted powers of r and their factors, got {short(terms)}")
+    powers = {
+        whole(p, "asphere: powers of r", 1, MAX_POWER): number(a, f"asphere: factor of r^{p}")
+        for p, a in terms.items()
+    }
+    radius, k = _length(radius), number(k, "asphere: k")
+    name = f"asphere({radius:g}, {powers}, {k:g})"
+    return _form(name, "aspheric", curvature=1 / radius, conic=k, asphere=powers)
 
 
 def cylinder(radius: float, axis: Literal["x", "y"] = "x", k: float = 0.0) -> Form:
     """A cylinder whose axis lies along x or y, so that it bends light across that."""
     if axis not in ("x", "y"):
         raise UsageError(f"cylinder: axis: wanted 'x' or 'y', got {axis!r}")
-    name = f"cylinder({radius:g}, {axis!r})"
-    return _form(name, f"cyl-{axis}", curvature=_curvature(radius), conic=k)
+    radius, k = _length(radius), number(k, "cylinder: k")
+    return _form(f"cylinder({radius:g}, {axis!r})", f"cyl-{axis}", curvature=1 / radius, conic=k)
 
 
 def biconic(radius_x: float, radius_y: float, k_x: float = 0.0, k_y: float = 0.0) -> Form:
     """A radius and a conic constant for each of the sections x-z and y-z."""
-    return _form(
-        f"biconic({radius_x:g}, {radius_y:g})", "biconic", **_two(radius_x, radius_y, k_x, k_y)
-    )
+    return _two("biconic", radius_x, radius_y, k_x, k_y)
 
 
 def toroid(radius_x: float, radius_y: float, k_y: float = 0.0) -> Form:
     """The section y-z turned about an axis along y through the centre of the section x-z."""
+    return _two("toroid", radius_x, radius_y, 0.0, k_y)
+
+
+def _two(
+    kind: Literal["biconic", "toroid"], radius_x: float, radius_y: float, k_x: float, k_y: float
+) -> Form:
+    x, y = _length(radius_x), _length(radius_y)
     return _form(
-        f"toroid({radius_x:g}, {radius_y:g})", "toroid", **_two(radius_x, radius_y, 0.0, k_y)
+        f"{kind}({x:g}, {y:g})",
+        kind,
+        curvature=1 / y,
+        curvature_x=1 / x,
+        conic=number(k_y, f"{kind}: k_y"),
+        conic_x=number(k_x, f"{kind}: k_x"),
     )
 
 
-def _two(radius_x: float, radius_y: float, k_x: float, k_y: float) -> dict[str, float]:
-    return {
-        "curvature": _curvature(radius_y),
-        "curvature_x": _curvature(radius_x),
-        "conic": k_y,
-        "conic_x": k_x,
-    }
-
-
-def _curvature(radius: float) -> float:
-    if math.isnan(radius) or radius == 0:
+def _length(radius: float) -> float:
+    """A radius; either infinity is that of a plane."""
+    given = radius if radius in (math.inf, -math.inf) else number(radius, "radius in mm")
+    if not given or math.isinf(1 / given):
         raise UsageError(f"radius: wanted a length in mm other than 0, got {radius!r}")
-    return 1 / radius
+    return float(given)
 
 
 def _form(name: str, kind: str, *, curvature: float = 0.0, **more: Any) -> Form:
-    if not all(math.isfinite(v) for v in more.values() if isinstance(v, float)):
-        raise UsageError(f"{name}: wanted finite numbers")
     air = _core.Glass.constant(1.0)
     return Form(name, _core.Surface(curvature, 0.0, math.inf, air, False, kind, **more))

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import daguerre._core as _core
+from daguerre.checks import doubles, number, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import Focused
-from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens, check_wavelength
 from daguerre.lenses.library import load
 
 from .elements import AXIS, checked
@@ -65,11 +66,14 @@ def from_lens(
     if film_z is None:
         film_z = prescribed.image_z if own_film is None else own_film
     ray = _ray(about)
-    if not (math.isfinite(object_z) and math.isfinite(film_z)):
-        raise UsageError(f"from_lens: planes: wanted finite z in mm, got {object_z!r}, {film_z!r}")
-    planes = (film_z, object_z) if reverse else (object_z, film_z)
+    planes = number(object_z, "from_lens: object_z"), number(film_z, "from_lens: film_z")
+    if reverse:
+        planes = planes[::-1]
     pair = None if ghost is None else _pair(ghost)
+    if to_iris is not None:
+        to_iris = whole(to_iris, "from_lens: to_iris", -1, 2)
     nm = nodes_of(wavelength)
+    check_wavelength(np.asarray(nm))
     degree = checked(degree)
     with reported(prescribed.source):
         core = _core.polynomial_of_lens(
@@ -84,22 +88,26 @@ def from_lens(
 def _pupil_ahead(lens: Lens, object_z: float) -> float | None:
     """Of the entrance pupil ahead of a plane, mm; None: at infinity, or the lens is afocal."""
     try:
-        z = lens.first_order().entrance_pupil.z - object_z
+        z = lens.first_order().entrance_pupil.z - float(object_z)
     except ValueError:
         return None
     return z if math.isfinite(z) else None
 
 
 def _ray(about: ArrayLike) -> list[float]:
-    ray = np.asarray(about, np.float64)
+    ray = doubles(about, "from_lens", "about", "(x, y, dx, dy)")
     if ray.shape != (4,):
         raise UsageError(f"from_lens: about: wanted (x, y, dx, dy), got shape {ray.shape}")
     return [float(v) for v in ray]
 
 
 def _pair(ghost: tuple[int, int]) -> tuple[int, int]:
+    """Two whole numbers; whether there are such surfaces is the core's to say."""
     try:
-        one, other = (int(i) for i in ghost)
+        one, other = ghost
     except (TypeError, ValueError):
-        raise UsageError(f"from_lens: ghost: wanted two surfaces (i, j), got {ghost!r}") from None
-    return one, other
+        raise UsageError(
+            f"from_lens: ghost: wanted two surfaces (i, j), got {short(ghost)}"
+        ) from None
+    first, second = (whole(i, "from_lens: ghost: two surfaces", -1, 1 << 30) for i in (one, other))
+    return first, second

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.checks import doubles, number, whole
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -108,13 +109,12 @@ class System:
 
     def truncated(self, degree: int) -> System:
         """Without the monomials above a degree."""
-        if not 1 <= degree <= self.degree:
-            raise UsageError(f"truncated: wanted a degree from 1 to {self.degree}, got {degree!r}")
+        degree = whole(degree, "truncated: degree", 1, self.degree)
         return replace(self, core=self.core.truncated(degree))
 
     def at(self, wavelength: float) -> System:
         """The system at one wavelength, nm: between its nodes as they say."""
-        return replace(self, core=_said(self.core.at, float(wavelength)))
+        return replace(self, core=_said(self.core.at, number(wavelength, "wavelength in nm")))
 
     def seidel(
         self,
@@ -132,8 +132,16 @@ class System:
             object_distance: Of the object from that pupil, mm.
 
         Raises:
-            UsageError: Degree 3 is missing, or axial symmetry.
+            UsageError: Degree 3 is missing, or axial symmetry; a place that is none.
         """
+        if wavelength is not None:
+            wavelength = number(wavelength, "seidel: wavelength in nm")
+        if pupil is not None:
+            pupil = number(pupil, "seidel: pupil in mm")
+        if abs(object_distance) != np.inf and not number(
+            object_distance, "seidel: object_distance"
+        ):
+            raise UsageError("seidel: object_distance: wanted mm from the pupil, got 0")
         terms = self._terms(wavelength, pupil, object_distance)
         if terms is None:
             raise UsageError(
@@ -164,7 +172,8 @@ class System:
             return first.pupil
         matrix = first.matrix if first.matrix.ndim == 2 else first.matrix[0]
         (a, b), (c, d) = matrix[0, [0, 2]], matrix[2, [0, 2]]
-        return float((b + self.pupil * d) / (a + self.pupil * c))
+        behind = a + self.pupil * c
+        return float((b + self.pupil * d) / behind) if behind else None
 
     def _wavelength(self, wavelength: ArrayLike | None) -> ArrayLike:
         if wavelength is not None:
@@ -174,8 +183,9 @@ class System:
     def _arguments(
         self, rays: ArrayLike, wavelength: ArrayLike | None
     ) -> tuple[FloatArray, FloatArray]:
-        rows = np.ascontiguousarray(np.atleast_2d(np.asarray(rays, np.float64)))
-        nm = np.ascontiguousarray(np.atleast_1d(np.asarray(self._wavelength(wavelength), float)))
+        who = "polynomial system"
+        rows = np.atleast_2d(doubles(rays, who, "rays", "(x, y, dx, dy) of shape (N, 4)"))
+        nm = np.atleast_1d(doubles(self._wavelength(wavelength), who, "wavelength", "nm"))
         if rows.ndim != 2 or rows.shape[1] != 4 or nm.ndim != 1:
             raise UsageError(
                 "polynomial system: wanted rays (x, y, dx, dy) of shape (N, 4) and wavelengths of "

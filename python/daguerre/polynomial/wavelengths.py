@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.checks import doubles, number, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -35,12 +36,13 @@ def wavelength_nodes(from_nm: float, to_nm: float, count: int) -> NDArray[np.flo
     Returns:
         The nodes of Chebyshev with both ends, nm, shape (count,).
     """
-    if not (0 < from_nm < to_nm < np.inf) or not 2 <= count <= 64:
+    count = whole(count, "wavelength nodes", 2, 64, "2 to 64")
+    low, high = number(from_nm, "wavelength nodes", above=0), number(to_nm, "wavelength nodes")
+    if not low < high:
         raise UsageError(
-            f"wavelength nodes: wanted 0 < from < to in nm and 2 to 64 of them, "
-            f"got {from_nm!r} to {to_nm!r}, {count!r}"
+            f"wavelength nodes: wanted 0 < from < to in nm, got {from_nm!r} to {to_nm!r}"
         )
-    return np.asarray(_core.wavelength_nodes(from_nm, to_nm, count), np.float64)
+    return np.asarray(_core.wavelength_nodes(low, high, count), np.float64)
 
 
 def nodes_of(wavelength: ArrayLike | None) -> list[float]:
@@ -51,7 +53,7 @@ def nodes_of(wavelength: ArrayLike | None) -> list[float]:
     """
     if wavelength is None:
         return []
-    nm = np.atleast_1d(np.asarray(wavelength, np.float64))
+    nm = np.atleast_1d(doubles(wavelength, "polynomial system", "wavelength", "nm"))
     if (
         nm.ndim != 1
         or not nm.size
@@ -81,7 +83,8 @@ def index_at(n: Index, nm: list[float]) -> list[float]:
     """
     if hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)):
         return [float(n.index(x)) for x in nm]
-    numbers = np.atleast_1d(np.asarray(n, np.float64))
+    wanted = "a glass, a number, or one for each wavelength"
+    numbers = np.atleast_1d(doubles(n, "polynomial element", "refractive index", wanted))
     if numbers.ndim != 1 or len(numbers) not in (1, max(1, len(nm))):
         raise UsageError(
             f"refractive index: wanted a glass, a number, or one for each of {len(nm)} "
