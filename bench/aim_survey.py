@@ -89,9 +89,8 @@ def measure(
     """One f-stop: pass fraction, rays per second, fallback and set-up."""
     efl = lens.first_order(587.5618).efl
     started = time.thread_time()
-    exact = _core.ExactLens(
-        lens, f_stop, _core.Iris(), 0.05 * abs(efl), False, half, only_slope_boxes=boxes
-    )
+    draw = _core.PupilDraw.slope_boxes if boxes else _core.PupilDraw.aimed
+    exact = _core.ExactLens(lens, f_stop, _core.Iris(), 0.05 * abs(efl), False, half, draw)
     setup = time.thread_time() - started
     random = np.random.default_rng(1)
     size = 2 * half * np.array([3, 2]) / math.sqrt(13)

@@ -3,11 +3,12 @@
     python bench/polynomial_camera.py --json [--seconds 20] [--rounds 3] [--resolution 120x80]
 
 After Hanika and Dachsbacher 2014 (CGF 33(2)): one scene through a zoom of more than 30 surfaces
-(US 5,537,259, 70-200 mm f/2.8), with lamps out of focus. ``boxes``: exact, slopes from a box
-around the exit pupil per film radius; ``guided``: exact, points of the iris are aimed at;
+(US 5,537,259, 70-200 mm f/2.8), with lamps out of focus. ``rear disc``: exact, points of the last
+surface are drawn, and most rays are stopped; ``boxes``: exact, slopes from a box around the exit
+pupil per film radius; ``guided``: exact, points of the iris are aimed at;
 ``taylor``: the series of degree 5 about the axis in place of the fitted rays; ``fit N``: fitted to
-degree N. All but ``boxes`` aim alike. Each draws for so many CPU seconds, in turn, and again with
-other seeds. ``rel_mse`` is the mean of (x - r)^2 / (r^2 + 0.01) against ``guided`` with
+degree N. All but the first two aim alike. Each draws for so many CPU seconds, in turn, and
+again with other seeds. ``rel_mse`` is the mean of (x - r)^2 / (r^2 + 0.01) against ``guided`` with
 ``--reference`` times the seconds, ``ray_error`` the angle (rad, RMS) to the exact ray of the same
 samples.
 """
@@ -64,7 +65,17 @@ def guided(*args: Any, **more: Any) -> _core.ExactLens:
 
 def boxes(*args: Any, **more: Any) -> _core.ExactLens:
     """With boxes around the exit pupil."""
-    return _core.ExactLens(*args, only_slope_boxes=True, **more)
+    return drawn(_core.PupilDraw.slope_boxes, *args, **more)
+
+
+def rear_disc(*args: Any, **more: Any) -> _core.ExactLens:
+    """Toward the whole last surface, as without any knowledge of the iris."""
+    return drawn(_core.PupilDraw.rear_disc, *args, **more)
+
+
+def drawn(draw: _core.PupilDraw, *args: Any, **more: Any) -> _core.ExactLens:
+    """The exact lens, drawn otherwise."""
+    return _core.ExactLens(*args, draw, **more)
 
 
 def fitted(degree: int) -> Maker:
@@ -114,6 +125,7 @@ def disc(u: Picture) -> Picture:
 def variants() -> dict[str, Maker]:
     """What is compared, by name."""
     return {
+        "rear disc": rear_disc,
         "boxes": boxes,
         "guided": guided,
         "taylor": taylor,

@@ -134,6 +134,9 @@ def guided(
 Comparison = tuple[float, float, float, float]  # drawn, its variance, brute force, its variance
 
 
+DRAWN = {"guided": _core.PupilDraw.aimed, "boxes": _core.PupilDraw.slope_boxes}
+
+
 def comparisons(case: Case, rays: int) -> dict[str, list[Comparison]]:
     """At 5 film radii x 3 stops, wavelengths in turn."""
     lens, film_z, rear = prescription(case)
@@ -144,7 +147,7 @@ def comparisons(case: Case, rays: int) -> dict[str, list[Comparison]]:
     for stop, f_stop in enumerate((widest, 2 * widest, 4 * widest)):
         exact = {
             kind: _core.ExactLens(
-                lens, f_stop, _core.Iris(), 3.0, False, case.half_mm, kind == "boxes", **settings
+                lens, f_stop, _core.Iris(), 3.0, False, case.half_mm, DRAWN[kind], **settings
             )
             for kind in found
         }

@@ -1,6 +1,9 @@
 """A fitted lens leaves Daguerre: what its code says is what the fit says, and nearly the lens."""
 
+import ctypes
 import json
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -73,6 +76,24 @@ def test_c_says_what_the_fit_says(double_gauss, tmp_path):
     rows = np.column_stack([points, slope, nm, np.full(len(nm), double_gauss.setting.f_stop)])
     run = _compiled(code(double_gauss.to_dict(), ".c"), "double", tmp_path, "gcc", ".c")
     check_evaluation(double_gauss, run("evaluate", rows, 10), points, slope, nm)
+
+
+def test_c_compiles_alone_and_in_several_files_without_a_warning(double_gauss, tmp_path):
+    if shutil.which("gcc") is None:
+        pytest.skip("gcc is not installed")
+    double_gauss.save(tmp_path / "lens.c")
+    strict = ["gcc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"]
+    lens = "double_gauss_50_mm_f_2"
+    for name in ("one", "two"):
+        used = f"{lens}_evaluate(0, 0, 0, 0, 550, 4, o, o, o, o, o, o, o, o, o, o);"
+        used += f"{lens}_sample(0, 0, 0, 0, 550, 4, o, o, o, o, o, o, o);"
+        used = f"void use_{name}(double *o);\nvoid use_{name}(double *o) {{ {used} }}"
+        text = f'#define DAGUERRE_API static\n#include "lens.c"\n#include "lens.c"\n{used}\n'
+        (tmp_path / f"{name}.c").write_text(text)
+    subprocess.run([*strict, "-shared", "-fPIC", "lens.c", "-o", "a.so"], cwd=tmp_path, check=True)
+    both = [*strict, "-shared", "-fPIC", "one.c", "two.c", "-o", "b.so"]
+    subprocess.run(both, cwd=tmp_path, check=True)
+    assert hasattr(ctypes.CDLL(str(tmp_path / "a.so")), f"{lens}_sample")
 
 
 def test_drawn_rays_go_back_through_the_glass_to_their_film_points(double_gauss):

@@ -31,7 +31,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus_distance_m,
                                bool focus_from_sensor, double half_diagonal_mm,
-                               bool only_slope_boxes, double film_z_mm, Pair tilt_deg,
+                               dg::PupilDraw draw, double film_z_mm, Pair tilt_deg,
                                Pair film_center_mm, Pair film_half_mm,
                                std::optional<int> fit_degree) {
     return {f_stop,
@@ -39,7 +39,7 @@ dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus
             focus_distance_m,
             focus_from_sensor ? dg::FocusFrom::sensor : dg::FocusFrom::pupil,
             half_diagonal_mm,
-            only_slope_boxes,
+            draw,
             std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
             vec(tilt_deg),
             vec(film_center_mm),
@@ -119,24 +119,28 @@ void bind_optics(nb::module_& m) {
     using namespace dg;
     m.def("simd_target", &simd_target_name,
           "Instruction set of the lens kernels on this machine.");
+    nb::enum_<PupilDraw>(m, "PupilDraw")
+        .value("aimed", PupilDraw::aimed)
+        .value("slope_boxes", PupilDraw::slope_boxes)
+        .value("rear_disc", PupilDraw::rear_disc);
     nb::class_<ExactLens>(m, "ExactLens")
         .def(
             "__init__",
             [](ExactLens* self, const Prescription& lens, double f_stop, const Iris& iris,
                double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
-               bool only_slope_boxes, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
+               PupilDraw draw, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
                Pair film_half_mm, std::optional<int> fit_degree,
                const std::optional<nb::bytes>& cache) {
                 ExactLensSettings s =
                     settings(f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm,
-                             only_slope_boxes, film_z_mm, tilt_deg, film_center_mm, film_half_mm,
+                             draw, film_z_mm, tilt_deg, film_center_mm, film_half_mm,
                              fit_degree);
                 if (cache) s.cache.assign(cache->c_str(), cache->size());
                 nb::gil_scoped_release release;   // states of a lens are set up side by side
                 new (self) ExactLens(lens, s);
             },
             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
-            "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
+            "focus_from_sensor"_a, "half_diagonal_mm"_a, "draw"_a = PupilDraw::aimed,
             nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
             "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
             "fit_degree"_a = nb::none(), "cache"_a = nb::none(),
@@ -145,16 +149,16 @@ void bind_optics(nb::module_& m) {
         .def_static(
             "aim_key",
             [](const Prescription& lens, double f_stop, const Iris& iris, double focus_distance_m,
-               bool focus_from_sensor, double half_diagonal_mm, bool only_slope_boxes,
+               bool focus_from_sensor, double half_diagonal_mm, PupilDraw draw,
                double film_z_mm, Pair tilt_deg, Pair film_center_mm, Pair film_half_mm,
                std::optional<int> fit_degree) {
                 return aim_key(lens, settings(f_stop, iris, focus_distance_m, focus_from_sensor,
-                                              half_diagonal_mm, only_slope_boxes, film_z_mm,
+                                              half_diagonal_mm, draw, film_z_mm,
                                               tilt_deg, film_center_mm, film_half_mm,
                                               fit_degree));
             },
             "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
-            "focus_from_sensor"_a, "half_diagonal_mm"_a, "only_slope_boxes"_a = false,
+            "focus_from_sensor"_a, "half_diagonal_mm"_a, "draw"_a = PupilDraw::aimed,
             nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
             "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
             "fit_degree"_a = nb::none(),

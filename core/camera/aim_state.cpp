@@ -86,10 +86,10 @@ void describe(A& a, const Iris& iris) {
 }
 template <typename A>
 void describe(A& a, const ExactLensSettings& s) {
-    const auto& [f_stop, iris, focus, focus_from, half_diagonal, boxes, film_z, tilt, film_center,
+    const auto& [f_stop, iris, focus, focus_from, half_diagonal, draw, film_z, tilt, film_center,
                  film_half, fitted, cache] = s;
     (void)cache;
-    a(f_stop, iris, focus, focus_from, half_diagonal, boxes, film_z, tilt, film_center, film_half, fitted);
+    a(f_stop, iris, focus, focus_from, half_diagonal, draw, film_z, tilt, film_center, film_half, fitted);
 }
 template <typename A>
 void describe(A& a, const FittedGlass& g) {

@@ -101,7 +101,7 @@ struct ExactLens::State {
             ahead = straight_ahead(tracer, turn, order.entrance_pupil_z, film_depth());
         }
         AimRequest request{film_z, kFilmMargin * s.half_diagonal_mm, s.iris, iris_radius,
-                           s.only_slope_boxes};
+                           s.draw};
         if (tilted) request.tilted = film_plane();
         // The image is upside down on the film.
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};

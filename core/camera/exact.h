@@ -27,8 +27,7 @@ struct ExactLensSettings {
     double focus_distance_m = std::numeric_limits<double>::infinity();
     FocusFrom focus_from = FocusFrom::pupil;
     double half_diagonal_mm = 21.64;  // of the film that must be covered, shift included
-    bool only_slope_boxes =
-        false;  // exit-pupil boxes instead of the guided aim (comparison)
+    PupilDraw draw = PupilDraw::aimed;
     /// z of the film in the lens frame, mm, if focus was solved elsewhere; focus_distance_m is not used then.
     std::optional<double> film_z{};
     /// The lens is turned about the centre of its entrance pupil, see tilt.h. Its axis meets the film at

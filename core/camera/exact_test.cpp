@@ -166,7 +166,7 @@ TEST_CASE(
         for (const double stops : {1.0, 2.0, 4.0}) {
             const ExactLens lens(prescription, at(widest * stops));
             ExactLensSettings box_settings = at(widest * stops);
-            box_settings.only_slope_boxes = true;
+            box_settings.draw = PupilDraw::slope_boxes;
             const ExactLens box(prescription, box_settings);
             const double wavelengths[] = {400, 550, 720};
             for (int i = 0; i < 5; ++i) {

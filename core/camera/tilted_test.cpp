@@ -126,7 +126,7 @@ TEST_CASE("tilted: guided = boxes = rear disc in double; a cosine that is missin
                 const ExactLensSettings s =
                     tilted(first_order(prescription).f_number * stops, tilt);
                 ExactLensSettings box_settings = s;
-                box_settings.only_slope_boxes = true;
+                box_settings.draw = PupilDraw::slope_boxes;
                 const ExactLens lens(prescription, s), box(prescription, box_settings);
                 const double nm[] = {400, 550, 720};
                 for (const Vec2d film : {Vec2d{0, 0}, Vec2d{11, -8}, Vec2d{-16, 3}}) {

@@ -264,7 +264,7 @@ Aim FreeAimMaker::make() {
     std::vector<bool> bad(kCells, true);
     std::optional<Aim> best;
     const auto count = [](const std::vector<bool>& b) { return std::count(b.begin(), b.end(), true); };
-    if (request_.only_slope_boxes) {
+    if (request_.draw != PupilDraw::aimed) {
         fit(kMinDegree);
     } else {
         for (int degree = kMinDegree; degree <= kMaxDegree; ++degree) {

@@ -24,13 +24,19 @@ inline constexpr double kShapeMargin = 1.02;
 /// which no one-to-one map follows.
 inline constexpr double kWidened = 1.05;
 
+/// What of a lens is drawn. The others are there to be compared with.
+enum class PupilDraw : std::uint8_t {
+    aimed,        // the iris, through polynomials
+    slope_boxes,  // a box of slopes around what passes
+    rear_disc,    // the whole last surface (symmetric lenses; for others as slope_boxes)
+};
+
 struct AimRequest {
     double film_z = 0;       // mm, lens frame
     double film_radius = 0;  // mm, the farthest film point
     Iris iris;
     double iris_radius = 0;  // mm
-    bool only_slope_boxes =
-        false;  // skip the polynomial: exit-pupil boxes everywhere (comparison)
+    PupilDraw draw = PupilDraw::aimed;
     std::optional<FilmPlane> tilted{};  // instead of film_z
     FilmRectangle film{};  // its part that is asked for; half 0: all within film_radius
 };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "math/error.h"
 #include "optics/pupil_visible.h"
 #include "optics/quasi_random.h"
 #include "optics/symmetric_fit.h"
@@ -26,6 +27,7 @@ class AimMaker {
 
   private:
     SlopeBox slope_box(double r) const;
+    Columns rear_slopes(int segment) const;
     void choose_regions();
     void set_region(int segment, AimRegion region, const Columns& columns);
     std::vector<bool> uncovered_segments() const;
@@ -64,6 +66,37 @@ SlopeBox AimMaker::slope_box(double r) const {
                         std::max(a.y, b.y)};
     };
     return passing_box(open_, {r, 0}, outer_, range);
+}
+
+/// Slopes toward the last surface, between its vertex and its rim, from the film radii of a segment: the
+/// discs as which it is seen from their ends, and all between.
+Columns AimMaker::rear_slopes(int segment) const {
+    constexpr int kSteps = 8, kPoints = 4 * kColumns + 1;
+    const SurfaceForm& rear = rays_.tracer().form(
+        int(rays_.tracer().prescription().surfaces.size()) - 1);
+    if (!std::isfinite(rear.clear))
+        throw input_error("exact lens", "rear disc", "a last surface with a clear radius", "none");
+    std::vector<std::array<double, 2>> discs;  // middle and radius
+    double reach = 0;
+    for (int i = 0; i <= kSteps; ++i)
+        for (int k = 0; k <= kSteps; ++k) {
+            const double r = aim_.tables.film_radius * (segment + double(i) / kSteps) /
+                             kRadialSegments,
+                         away = request_.film_z - rear.place.origin.z +
+                                rear.height * (1 - 2.0 * k / kSteps);
+            discs.push_back({r / away, 1.02 * rear.clear / away});
+            reach = std::max(reach, discs.back()[0] + discs.back()[1]);
+        }
+    Outline seen = Outline::dark(reach, kPoints);
+    for (int i = 0; i < kPoints; ++i)
+        for (const auto& [middle, radius] : discs) {
+            const double x = seen.x(i) - middle;
+            if (std::abs(x) < radius)
+                seen.high[i] = std::max(seen.high[i], std::sqrt(radius * radius - x * x));
+        }
+    for (int i = 0; i < kPoints; ++i)
+        if (seen.high[i] > 0) seen.low[i] = -seen.high[i];
+    return cover(seen);
 }
 
 void AimMaker::set_region(int segment, AimRegion region, const Columns& columns) {
@@ -164,7 +197,7 @@ Aim AimMaker::make() {
     std::vector<bool> bad(kRadialSegments, true);
     std::optional<Aim> best;
     const auto count = [](const std::vector<bool>& b) { return std::count(b.begin(), b.end(), true); };
-    if (!request_.only_slope_boxes) {
+    if (request_.draw == PupilDraw::aimed) {
         for (int k = kMinDegree; k <= kMaxDegree; ++k) {
             if (!rays_.fit(aim_, k)) break;
             choose_regions();
@@ -176,6 +209,11 @@ Aim AimMaker::make() {
         if (best) aim_ = *best;
     } else {
         rays_.fit(aim_, kMinDegree);
+    }
+    if (request_.draw == PupilDraw::rear_disc) {
+        for (int i = 0; i < kRadialSegments; ++i)
+            set_region(i, AimRegion::slopes, rear_slopes(i));
+        return aim_;
     }
     std::array<std::optional<SlopeBox>, kNodes> node;
     const auto box_at = [&](int i) {

@@ -12,6 +12,7 @@ class SymmetricRays {
     /// `outer`: mm, radius around the enlarged iris. Error if no ray leads from the film's centre to it.
     SymmetricRays(const Tracer& tracer, const AimRequest& request, double outer);
 
+    const Tracer& tracer() const { return tracer_; }
     /// Film slope toward an iris point (mm) from a film radius (mm): first order.
     Vec2d slope(double r, Vec2d iris) const;
     /// Fits `aim.slopes` and its tables at degree k. False, with nothing fitted, if too few rays reach the

@@ -97,7 +97,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         dg::ExactLensSettings settings;
         settings.f_stop = in.flag() ? in.number() : 0;
         if (in.flag()) settings.focus_distance_m = in.number();
-        settings.only_slope_boxes = in.below(16) != 0;  // the fit takes seconds here
+        // The fit takes seconds here.
+        settings.draw = in.below(16) ? dg::PupilDraw::slope_boxes : dg::PupilDraw::aimed;
         const dg::Prescription lens = dg::any_lens(in);
         dg::draw(dg::ExactLens(lens, settings), in);
     } catch (const dg::Error&) {

@@ -84,10 +84,10 @@ RayMap placement(const Vec3d& decenter, const Vec3d& tilt, bool back, int degree
     const SeriesRay there =
         back ? SeriesRay{place.out_of(ray.origin), place.turn_out(ray.direction)}
              : SeriesRay{place.into(ray.origin), place.turn_in(ray.direction)};
-    if (!(there.direction.z.value() > 0))
+    if (!(there.direction.z.value() > 1e-12))  // what rounding leaves of cos(90 degrees)
         throw input_error("polynomial element", "tilt",
                           "a frame in which the base ray goes forward",
-                          "one in which it goes back");
+                          "one in which it goes along the plane or back");
     return {about, on_plane(there, 0)};
 }
 

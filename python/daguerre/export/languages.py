@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .expression import Function
 from .lens_code import evaluate_function, sample_function
 from .plan import LensPlan
-from .printers import C, Glsl, NumPy, Printer
+from .printers import VISIBLE, C, Glsl, NumPy, Printer
 
 USE_SAMPLE = """\
 {name}_sample(film_x, film_y, u1, u2, nm, f_stop) -> x, y, z, dx, dy, dz, weight
@@ -25,6 +25,10 @@ USE_EVALUATE = """\
     and dy/dz of the ray behind the lens. The ray toward the scene goes through (x, y, z).
     transmittance: 0 if stopped, which is 1 or 0."""
 
+C_NOTE = """\
+Outputs are pointers, after the inputs. Needs -lm. Compile this file by itself, or include it; where
+more than one file of a program does, define DAGUERRE_API as static before."""
+
 
 def identifier(name: str) -> str:
     """A lens's name as a name in any language."""
@@ -39,12 +43,13 @@ def functions(plan: LensPlan, name: str) -> list[Function]:
 
 
 def c_file(plan: LensPlan, facts: Sequence[str]) -> str:
-    """One file of C99, to be included."""
+    """One file of C99, to be compiled or included."""
     guard = f"DAGUERRE_{identifier(plan.name).upper()}"
-    parts = [*_start(plan, facts), "Outputs are pointers, after the inputs. Needs -lm."]
+    parts = [*_start(plan, facts), *C_NOTE.splitlines()]
     head = "\n".join(f"// {line}".rstrip() for line in parts)
     body = definitions(plan, C())
-    return f"{head}\n#ifndef {guard}\n#define {guard}\n#include <math.h>\n\n{body}\n\n#endif\n"
+    guards = f"#ifndef {guard}\n#define {guard}\n#ifndef {VISIBLE}\n#define {VISIBLE}\n#endif"
+    return f"{head}\n{guards}\n#include <math.h>\n\n{body}\n\n#endif\n"
 
 
 def glsl_file(plan: LensPlan, facts: Sequence[str]) -> str:

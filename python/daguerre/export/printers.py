@@ -119,6 +119,11 @@ class Printer:
         return f"{f.name}({', '.join(passed)});"
 
 
+#: Endings of what users call, and the macro that says who else sees it.
+CALLED = ("_sample", "_evaluate")
+VISIBLE = "DAGUERRE_API"
+
+
 class C(Printer):
     """C99 in double."""
 
@@ -131,6 +136,11 @@ class C(Printer):
         "max": "fmax",
     }
     prefix = "static "
+
+    def signature(self, f: Function) -> str:
+        """What users call is as visible as they say; the rest stays in the file."""
+        line = super().signature(f)
+        return line.replace(self.prefix, f"{VISIBLE} ", 1) if f.name.endswith(CALLED) else line
 
     def output(self, name: str) -> str:
         """A pointer."""
