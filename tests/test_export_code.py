@@ -173,6 +173,14 @@ def test_c_equals_numpy(plan, tmp_path):
     np.testing.assert_allclose(run("sample", samples, 7), drawn_there, rtol=0, atol=1e-11)
 
 
+def test_no_language_has_a_variable_that_nothing_reads():
+    plan = made_up(segments=1, rough=0.0005, inner=0.0, symmetric=False)
+    text = languages.c_file(plan, [])
+    names = re.findall(r"double (\w+) =", text)
+    assert len(names) > 20
+    assert [name for name in names if len(re.findall(rf"\b{name}\b", text)) < 2] == []
+
+
 @plans
 def test_glsl_equals_numpy(plan, tmp_path):
     """GLSL is compiled as C++: its out parameters as references."""

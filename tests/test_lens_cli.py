@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,16 @@ def test_a_lens_is_exported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "degree 3" in said.err
     assert "rad RMS" in said.err
     assert said.out == ""
+
+
+def test_an_export_says_where_it_does_not_follow_the_lens(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "fisheye.json"
+    assert main(["lens", "fisheye-16mm-f2.8", "--export", str(file), "--degree", "3"]) == 0
+    said = capsys.readouterr().err
+    assert re.search(r"off by more than 20 um RMS from [\d.]+ to 2[12].* mm off the middle", said)
+    assert "a higher --degree" in said
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,11 @@ from .quantities import angle_deg, sensor_mm
 if TYPE_CHECKING:
     from daguerre._core import Iris
     from daguerre.lenses import Lens
+    from daguerre.polynomial import LensFit
 
 DEFAULT_DEGREE = 7
+#: RMS error on the film that is worth a sentence, um: half a pixel of 960 over 36 mm.
+WORTH_TELLING = 20.0
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,8 @@ class Export:
             f"{error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film",
             file=sys.stderr,
         )
+        if weak := weak_region(fitted):
+            print(f"{path}: {weak}", file=sys.stderr)
 
     def _iris(self) -> Iris:
         from daguerre.camera import Camera
@@ -76,3 +81,19 @@ class Export:
                 blade_curvature=self.blade_curvature or 0.0,
             )
         )
+
+
+def weak_region(fitted: LensFit) -> str | None:
+    """Where on the film the fit does not follow the lens, if anywhere.
+
+    A file has no exact lens to fall back to.
+    """
+    weak = [z for z in fitted.zones if z.rays and z.film_um[0] > WORTH_TELLING]
+    if not weak:
+        return None
+    worst = max(z.film_um[0] for z in weak)
+    return (
+        f"note: the fit is off by more than {WORTH_TELLING:g} um RMS from {weak[0].low:.3g} to "
+        f"{weak[-1].high:.3g} mm off the middle, up to {worst:.2g} um: a higher --degree follows "
+        "the lens farther"
+    )

@@ -97,7 +97,9 @@ def evaluate_function(plan: LensPlan, name: str) -> list[Function]:
     qx = f.let("qx", ax * fx + bx * slope_x + cx)
     qy = f.let("qy", ay * fy + by * slope_y + cy)
     wave = wavelength(f, plan, nm)
-    u = f.let("u_film", fx * fx + fy * fy)
+    u: Expression = fx * fx + fy * fy
+    if plan.symmetric or len(plan.segments) > 1:
+        u = f.let("u_film", u)
     inside = tuple(u < s.u_high for s in plan.segments[:-1])
     tx, ty, ox, oy, ix, iy, passed, cut = f.one_of(inside, tuple(segments), fx, fy, qx, qy, wave)
     ray = scene_ray(f, plan, (tx, ty), (ox, oy))
