@@ -43,12 +43,30 @@ class Reference:
     samples: int = 0
 
 
-Values = NDArray[np.float64] | Reference
+@dataclass(frozen=True)
+class Rare:
+    """Independent batches (n, H, W, C) of which some pixels have met a bright path seldom or never.
+
+    Such pixels do not know their own spread: ``floor`` (H, W, C) is the least variance of the mean.
+    Pixels have independent errors as far as it goes.
+    """
+
+    batches: NDArray[np.float64]
+    floor: NDArray[np.float64]
+
+    def moments(self) -> Reference:
+        own = _moments(self.batches)
+        return Reference(own.mean, np.maximum(own.variance, self.floor), own.batches)
+
+
+Values = NDArray[np.float64] | Reference | Rare
 
 
 def _moments(values: Values) -> Reference:
     if isinstance(values, Reference):
         return values
+    if isinstance(values, Rare):
+        return values.moments()
     return Reference(values.mean(axis=0), values.var(axis=0, ddof=1) / len(values), len(values))
 
 
@@ -117,6 +135,10 @@ def _blocks(values: Values) -> Values:
     if isinstance(values, Reference):
         mean, variance = _tiles(values.mean), _tiles(values.variance)
         return Reference(mean.mean(axis=-2), variance.sum(axis=-2) / BLOCK**4, values.batches)
+    if isinstance(values, Rare):
+        return Rare(
+            _tiles(values.batches).mean(axis=-2), _tiles(values.floor).sum(axis=-2) / BLOCK**4
+        )
     return np.asarray(_tiles(values).mean(axis=-2))
 
 
@@ -126,6 +148,10 @@ def _mean(values: Values) -> Values:
         height, width, _ = values.mean.shape
         variance = values.variance.sum(axis=(0, 1)) / (height * width) ** 2
         return Reference(values.mean.mean(axis=(0, 1)), variance, values.batches)
+    if isinstance(values, Rare):
+        height, width, _ = values.floor.shape
+        floor = values.floor.sum(axis=(0, 1)) / (height * width) ** 2
+        return Rare(values.batches.mean(axis=(1, 2)), floor)
     return np.asarray(values.mean(axis=(1, 2)))
 
 
