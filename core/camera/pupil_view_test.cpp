@@ -132,7 +132,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("the density is how far rays spread as the lens sample moves") {
+/// Of every lens with an opening, and its points: check(view, point).
+template <typename Check>
+void from_each_point(const Check& check) {
     for (const test::ViewCase& c : test::view_cases()) {
         if (std::holds_alternative<Pinhole>(c.camera.lens)) continue;
         const PupilViewOverTime view(c.camera);
@@ -140,31 +142,37 @@ TEST_CASE("the density is how far rays spread as the lens sample moves") {
             CAPTURE(c.name);
             CAPTURE(p.at.x);
             CAPTURE(p.w);
-            Random random(13);
-            std::vector<double> ratios;
-            for (int i = 0; i < 100; ++i) {
-                const Vec2f u = square(random) * 0.96f + Vec2f{0.02f, 0.02f};
-                const float time = square(random).x, h = 0.002f;
-                const auto at = [&](float x, float y) {
-                    return view.sample(p.at, p.w, {u.x + x, u.y + y}, time);
-                };
-                const auto s = at(0, 0), a = at(h, 0), b = at(-h, 0), d = at(0, h),
-                           e = at(0, -h);
-                if (!s || !a || !b || !d || !e) continue;
-                const Vec3d z = to_double(s->direction);
-                const auto moved = [&](const PupilView::Sample& m,
-                                       const PupilView::Sample& n) {
-                    const Vec3d by =
-                        p.w == 0 ? to_double(m.origin) - to_double(n.origin)
-                                 : to_double(m.direction) - to_double(n.direction);
-                    return by * (0.5 / h);
-                };
-                ratios.push_back(std::abs(dot(z, cross(moved(*a, *b), moved(*d, *e)))) *
-                                 s->pdf);
-            }
-            check_most(ratios, 0.01);
+            check(view, p);
         }
     }
+}
+
+TEST_CASE("the density is how far rays spread as the lens sample moves") {
+    from_each_point([](const PupilViewOverTime& view, const test::ViewPoint& p) {
+        Random random(13);
+        std::vector<double> ratios;
+        for (int i = 0; i < 100; ++i) {
+            const Vec2f u = square(random) * 0.96f + Vec2f{0.02f, 0.02f};
+            const float time = square(random).x, h = 0.002f;
+            const auto at = [&](float x, float y) {
+                return view.sample(p.at, p.w, {u.x + x, u.y + y}, time);
+            };
+            const auto s = at(0, 0), a = at(h, 0), b = at(-h, 0), d = at(0, h),
+                       e = at(0, -h);
+            if (!s || !a || !b || !d || !e) continue;
+            const Vec3d z = to_double(s->direction);
+            const auto moved = [&](const PupilView::Sample& m,
+                                   const PupilView::Sample& n) {
+                const Vec3d by =
+                    p.w == 0 ? to_double(m.origin) - to_double(n.origin)
+                             : to_double(m.direction) - to_double(n.direction);
+                return by * (0.5 / h);
+            };
+            ratios.push_back(std::abs(dot(z, cross(moved(*a, *b), moved(*d, *e)))) *
+                             s->pdf);
+        }
+        check_most(ratios, 0.01);
+    });
 }
 
 TEST_CASE("what the camera draws lies in the region, seen from any point of its ray") {
@@ -204,50 +212,43 @@ TEST_CASE("what the camera draws lies in the region, seen from any point of its 
 
 // By rays toward a disc across the direction to the point, all alike.
 TEST_CASE("the density integrates to one, and is that of what is drawn") {
-    for (const test::ViewCase& c : test::view_cases()) {
-        if (std::holds_alternative<Pinhole>(c.camera.lens)) continue;
-        const PupilViewOverTime view(c.camera);
-        for (const test::ViewPoint& p : c.points) {
-            CAPTURE(c.name);
-            CAPTURE(p.at.x);
-            CAPTURE(p.w);
-            Random random(7);
-            const Vec3d e = normalize(p.at), x = normalize(cross(Vec3d{0.3, 1, 0.2}, e)),
-                        y = cross(e, x);
-            Vec3d sum{};
-            double reach = 0;
-            std::vector<Vec3d> met;
-            for (int i = 0; i < 2000; ++i) {
-                const float time = square(random).x;
-                const auto s = view.sample(p.at, p.w, square(random), time);
-                if (!s) continue;
-                const Ray ray{
-                    .origin = s->origin, .direction = s->direction, .time = time};
-                CHECK(view.pdf(p.at, p.w, ray) == doctest::Approx(s->pdf).epsilon(1e-4));
-                const Vec3d o = to_double(s->origin), d = to_double(s->direction);
-                met.push_back(o - d * (dot(o, e) / dot(d, e)));
-                sum += met.back();
-            }
-            REQUIRE(met.size() > 1000);
-            const Vec3d middle = sum * (1.0 / double(met.size()));
-            for (const Vec3d& q : met) reach = std::max(reach, 1.2 * length(q - middle));
-            double total = 0, squares = 0;
-            const int count = 40000;
-            for (int i = 0; i < count; ++i) {
-                const Vec2d u =
-                    reach * concentric_disc({square(random).x, square(random).y});
-                const Vec3d q = middle + x * u.x + y * u.y, way = p.at - p.w * q;
-                const double far = length(way), cosine = dot(way, e) / far;
-                const Ray ray{.origin = to_float(q),
-                              .direction = to_float(way * (1 / far)),
-                              .time = square(random).x};
-                const double f = view.pdf(p.at, p.w, ray) * kPiD * reach * reach *
-                                 (p.w == 0 ? 1 : cosine / (far * far));
-                total += f, squares += f * f;
-            }
-            const double mean = total / count;
-            CHECK(std::abs(mean - 1) <
-                  4.5 * std::sqrt((squares / count - mean * mean) / count) + 1e-4);
+    from_each_point([](const PupilViewOverTime& view, const test::ViewPoint& p) {
+        Random random(7);
+        const Vec3d e = normalize(p.at), x = normalize(cross(Vec3d{0.3, 1, 0.2}, e)),
+                    y = cross(e, x);
+        Vec3d sum{};
+        double reach = 0;
+        std::vector<Vec3d> met;
+        for (int i = 0; i < 2000; ++i) {
+            const float time = square(random).x;
+            const auto s = view.sample(p.at, p.w, square(random), time);
+            if (!s) continue;
+            const Ray ray{
+                .origin = s->origin, .direction = s->direction, .time = time};
+            CHECK(view.pdf(p.at, p.w, ray) == doctest::Approx(s->pdf).epsilon(1e-4));
+            const Vec3d o = to_double(s->origin), d = to_double(s->direction);
+            met.push_back(o - d * (dot(o, e) / dot(d, e)));
+            sum += met.back();
         }
-    }
+        REQUIRE(met.size() > 1000);
+        const Vec3d middle = sum * (1.0 / double(met.size()));
+        for (const Vec3d& q : met) reach = std::max(reach, 1.2 * length(q - middle));
+        double total = 0, squares = 0;
+        const int count = 40000;
+        for (int i = 0; i < count; ++i) {
+            const Vec2d u =
+                reach * concentric_disc({square(random).x, square(random).y});
+            const Vec3d q = middle + x * u.x + y * u.y, way = p.at - p.w * q;
+            const double far = length(way), cosine = dot(way, e) / far;
+            const Ray ray{.origin = to_float(q),
+                          .direction = to_float(way * (1 / far)),
+                          .time = square(random).x};
+            const double f = view.pdf(p.at, p.w, ray) * kPiD * reach * reach *
+                             (p.w == 0 ? 1 : cosine / (far * far));
+            total += f, squares += f * f;
+        }
+        const double mean = total / count;
+        CHECK(std::abs(mean - 1) <
+              4.5 * std::sqrt((squares / count - mean * mean) / count) + 1e-4);
+    });
 }
