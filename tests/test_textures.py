@@ -21,9 +21,7 @@ PIXELS = (32, 20)
 
 def picture(scene: dg.Scene, spp: int, seed: int = 0, **camera) -> np.ndarray:
     camera = dg.Camera(lens="pinhole", **camera)
-    # Light paths start at points of an emitter, and know no footprint of a pixel.
-    options = {"resolution": PIXELS, "max_depth": 1, "light_paths": "off"}
-    return dg.render(scene, camera, spp=spp, seed=seed, **options).rgb
+    return dg.render(scene, camera, resolution=PIXELS, spp=spp, seed=seed, max_depth=1).rgb
 
 
 def ground(min_filter: str, **material) -> dg.Scene:

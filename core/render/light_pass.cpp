@@ -38,13 +38,14 @@ std::array<std::uint64_t, 2> light_path_range(double begin, double end, double p
 
 LightPass::LightPass(const Scene& scene, const Camera& camera, Film& film,
                      const RenderSettings& settings, const FilmDensity& density,
-                     const LightWeight& weight)
+                     const LightWeight& weight, const PixelCone& cone)
     : scene_(scene),
       camera_(camera),
       film_(film),
       settings_(settings),
       density_(density),
       weight_(weight),
+      cone_(cone),
       bounced_(scene, camera, settings, weight) {
     const bool exact = std::holds_alternative<ExactLens>(camera.lens);
     end_secondary_ = exact && settings.dispersion == Dispersion::end_secondary;
@@ -92,12 +93,16 @@ std::optional<LightArrival> LightPass::begin(std::uint64_t index) const {
     const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
     path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
-    const Rgb luminance = scene_.emission(*point, -world.direction, moment.time);
-    if (!(max_component(luminance) > 0)) return std::nullopt;
-    path.shadow = shadow_ray(*point, world);
     path.wavelengths = Wavelengths::sample(u.lambda);
     if (end_secondary_) path.wavelengths.end_secondary();
-    path.radiance = path.wavelengths.emission(luminance);
+    if (scene_.is_uneven(*point)) {
+        path.source = *point;
+    } else {
+        const Rgb luminance = scene_.emission(*point, -world.direction, moment.time);
+        if (!(max_component(luminance) > 0)) return std::nullopt;
+        path.radiance = path.wavelengths.emission(luminance);
+    }
+    path.shadow = shadow_ray(*point, world);
     path.u_pixel = sampler.next_2d();
     path.sample = std::uint32_t(double(index) / settings_.light.m1);
     return path;
@@ -114,7 +119,8 @@ void LightPass::trace(Workspace& work) const {
     work.landings.assign(work.rays.size(), Reprojection{});
     if (!work.rays.empty()) reproject(camera_, work.rays, work.nm, work.landings);
     for (std::size_t i = 0; i < work.paths.size(); ++i) {
-        const std::span own(work.landings.data() + i * landings_, std::size_t(landings_));
+        const std::span<Reprojection> own(work.landings.data() + i * landings_, std::size_t(landings_));
+        if (work.paths[i].source) look(work.paths[i], own);
         if (!camera_.setting.values.empty()) {
             const Vec2f shift = setting_at(camera_, work.paths[i].lens.ray.time).film_shift_mm;
             for (Reprojection& l : own) l.film_mm = l.film_mm - shift;
@@ -124,11 +130,21 @@ void LightPass::trace(Workspace& work) const {
     work.paths.clear();
 }
 
+/// What a camera sample finds that draws this ray: of a texture, what its cone covers.
+void LightPass::look(LightArrival& path, std::span<const Reprojection> landings) const {
+    const auto hero = std::ranges::find_if(landings, [](const auto& l) { return l.etendue > 0; });
+    if (hero == landings.end()) return;
+    const RayCone cone = cone_.at(hero->film_mm, path.lens.ray);
+    const Rgb luminance = scene_.emission(*path.source, path.shadow.direction, path.shadow.time,
+                                          cone.after(path.shadow.t_max).width);
+    path.radiance = path.wavelengths.emission(luminance);
+}
+
 void LightPass::finish(Workspace& work, const LightArrival& path,
                        std::span<const Reprojection> landings) const {
     const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
     work.counters.splats_off_film += film_ray.off_frame();
-    if (!film_ray.in_reach()) return;
+    if (!film_ray.in_reach() || path.radiance.is_black()) return;
     ++work.counters.rays;
     if (!is_traceable(path.shadow)) return;
     const Spectrum visible = scene_.visibility_along(path.shadow, path.wavelengths);

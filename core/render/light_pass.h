@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "camera/pixel_cone.h"
 #include "render/light_path.h"
 #include "render/light_weight.h"
 #include "render/ray_on_film.h"
@@ -26,7 +27,7 @@ class LightPass {
   public:
     /// All outlives this.
     LightPass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
-              const FilmDensity& density, const LightWeight& weight);
+              const FilmDensity& density, const LightWeight& weight, const PixelCone& cone);
 
     /// Buffers of one thread.
     struct Workspace;
@@ -39,6 +40,7 @@ class LightPass {
   private:
     std::optional<LightArrival> begin(std::uint64_t index) const;
     void trace(Workspace& work) const;
+    void look(LightArrival& path, std::span<const Reprojection> landings) const;
     void finish(Workspace& work, const LightArrival& path, std::span<const Reprojection> landings) const;
 
     const Scene& scene_;
@@ -47,6 +49,7 @@ class LightPass {
     const RenderSettings& settings_;
     const FilmDensity& density_;
     const LightWeight& weight_;
+    const PixelCone& cone_;   // of camera samples
     LightPaths bounced_;
     int landings_;         // per path: one for each wavelength that has a way of its own
     bool end_secondary_;

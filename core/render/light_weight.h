@@ -70,8 +70,7 @@ class LightWeight {
 };
 
 /// The first ray of a camera path, while it has met nothing but windows: the share of an emitter's light that
-/// is left to it. Nothing where no light path could have found it. Where one could, both must find the same
-/// light: that of a point.
+/// is left to it. Nothing where no light path could have found it.
 class FirstRay {
   public:
     /// `ray`: camera frame; `landings`: of its wavelengths, as of RayOnFilm. They outlive this.

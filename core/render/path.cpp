@@ -25,6 +25,7 @@ struct Walk {
     Vec3f previous;              // where the ray left from, for the density of light sampling
     float bsdf_pdf = 0;
     bool from_delta = true;      // camera, or a mirror: light sampling cannot have found this
+    bool in_view = true;         // straight from the camera, or by way of mirrors and smooth glass alone
     float straight = 0;          // m from there to the ray's origin, through clear sheets
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
@@ -66,9 +67,9 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
                           PathSettings::Strategy strategy) {
     if (!emits(material)) return 0.f;
     SurfaceHit seen = hit;
-    const auto left = walk.first ? walk.first->share_of_triangle(hit) : std::nullopt;
-    // Where light sampling could have come from, both must find the same light: that of a point.
-    if (!walk.from_delta || left) seen.footprint[0] = seen.footprint[1] = {};
+    // What light sampling and light paths could find too must be the same light: that of a point. Light paths
+    // straight to the lens know the cone of the camera's sample, and see what it covers.
+    if (!walk.in_view) seen.footprint[0] = seen.footprint[1] = {};
     const Rgb luminance = emitted(material, scene.textures(), seen);
     if (max_component(luminance) <= 0) return 0.f;
     const LightSet& lights = scene.lights();
@@ -78,7 +79,7 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
             ? 0
             : lights.pdf_triangle(hit.instance, hit.primitive, distance,
                                   std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
-    float share = left.value_or(1.f);
+    float share = walk.first ? walk.first->share_of_triangle(hit).value_or(1.f) : 1.f;
     if (walk.bounces) {
         const std::int64_t light = lights.triangle_index(hit.instance, hit.primitive);
         if (light >= 0) share *= bounced_share(walk, light, distance, pdf);
@@ -180,6 +181,7 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
     }
     walk.bsdf_pdf = sample.pdf;
     walk.from_delta = sample.specular;
+    walk.in_view = walk.in_view && sample.specular;
     walk.previous = hit.position;
     walk.straight = 0;
 }

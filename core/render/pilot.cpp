@@ -59,6 +59,7 @@ class Pilot {
         settings_.seed = hash64(settings.seed, kOwnRandom, 1);
         settings_.light = {1, 1};
         settings_.technique = Technique::both;
+        if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
     }
 
     LightPlan choose() {
@@ -109,7 +110,7 @@ class Pilot {
     template <typename Draw>
     std::vector<PilotArrival> fly(const LightWeight& weight, Draw draw, double& rays_per_path) const {
         Film nowhere(FilmLayout{1, 1});   // all is logged
-        const LightPass pass(scene_, camera_, nowhere, settings_, density_, weight);
+        const LightPass pass(scene_, camera_, nowhere, settings_, density_, weight, cone_);
         const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
         std::vector<std::vector<LoggedSplat>> found(tasks);
         std::vector<std::uint64_t> rays(tasks);
@@ -143,6 +144,7 @@ class Pilot {
     RenderSettings settings_, coarse_;
     FilmLayout frame_;
     FilmDensity density_;
+    PixelCone cone_;
     PlanCosts costs_;
     double rays_per_sample_ = 0;
 };

@@ -88,12 +88,12 @@ class Renderer {
                    &settings.shutter),
           weight_(scene, camera, settings.sensor, density_, plan(), settings.technique,
                   settings.light_guide) {
+        if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
         if (weight_.draws_light())
-            light_.emplace(scene, camera, film, settings, density_, weight_);
+            light_.emplace(scene, camera, film, settings, density_, weight_, cone_);
         // Where light paths share in what is found, the hero's own landing is needed too.
         first_traced_ = weight_.off() ? 1 : 0;
         end_traced_ = exact_ ? kWavelengths : weight_.off() ? 0 : 1;
-        if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
     }
 
     /// Indices of the light paths that belong to these samples, `per_sample` to each.
@@ -265,9 +265,9 @@ class Renderer {
     bool end_secondary_;
     FilmDensity density_;
     LightWeight weight_;
+    PixelCone cone_;           // none where the scene has no textures
     std::optional<LightPass> light_;
     int first_traced_, end_traced_;
-    PixelCone cone_;           // none where the scene has no textures
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // emission.cpp -- emissive meshes become triangle lights.
 #include "scene/emission.h"
 
+#include "scene/footprint.h"
+
 namespace dg {
 namespace {
 
@@ -94,15 +96,18 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
 
 Rgb emission_at(const InstanceRecord& record, const Material& material,
                 const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front, float time, std::optional<Vec3f> toward) {
+                Vec2f barycentric, bool front, float time, std::optional<Vec3f> toward,
+                float width) {
     SurfaceHit hit;
     hit.time = time;
     hit.front = front;
-    if (emission_is_coated(material)) {
+    if (width != 0 || emission_is_coated(material)) {
         PlacementRoom made;
-        surface_at(record, record.placement(time, made), primitive, barycentric.x, barycentric.y,
-                   hit);
+        const Placement& placement = record.placement(time, made);
+        surface_at(record, placement, primitive, barycentric.x, barycentric.y, hit);
+        hit.primitive = primitive;
         hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
+        if (width != 0) set_footprint(record, placement, width, hit);
     } else {
         interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
     }

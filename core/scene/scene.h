@@ -104,8 +104,10 @@ class Scene {
                                             const Wavelengths& wavelengths) const;
 
     /// Emission (cd/m2) of a point of an emitter `toward` (unit) where it is seen from, as a ray that hits it
-    /// would find it on average.
-    Rgb emission(const EmissionPoint& point, Vec3f toward, float time) const;
+    /// would find it on average; `width` (m) of its cone there, across it.
+    Rgb emission(const EmissionPoint& point, Vec3f toward, float time, float width = 0) const;
+    /// It depends on where on the emitter the point is, and so on the width.
+    bool is_uneven(const EmissionPoint& point) const;
 
     /// Where light may go.
     EmissionReach emission_reach() const;
@@ -136,7 +138,8 @@ class Scene {
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
     void find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const;
     Bounds bounds_of(std::uint32_t instance) const;
-    Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time) const;
+    Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time,
+                          float width = 0) const;
     Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
                           const Wavelengths& wavelengths) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,

@@ -52,17 +52,24 @@ std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f po
     return sample;
 }
 
-Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward, float time) const {
+Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward, float time,
+                             float width) const {
     const TriangleLight light = *lights_.triangle_at(index, time);
     const InstanceRecord& record = records_[light.instance];
     const Vec3f winding = cross(light.b - light.a, light.c - light.a);
     const bool front = (dot(winding, toward) > 0) != light.mirrored;
     const MaterialAt material = material_at(record.material, time);
     return emission_at(record, material, description_.textures, light.primitive, barycentric, front, time,
-                       toward);
+                       toward, width);
 }
 
-Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time) const {
+bool Scene::is_uneven(const EmissionPoint& point) const {
+    if (point.light == EmissionPoint::kSky) return false;
+    const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
+    return triangle && !triangle->even;
+}
+
+Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time, float width) const {
     if (point.light == EmissionPoint::kSky)
         return lights_.environment()->luminance(point.position, time);
     const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
@@ -71,7 +78,7 @@ Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time) const 
         return lights_.sphere_light_at(point.light, time).luminance;
     }
     if (!triangle->even || lights_.moves(point.light))
-        return triangle_emission(point.light, point.barycentric, toward, time);
+        return triangle_emission(point.light, point.barycentric, toward, time, width);
     if (!triangle->two_sided && dot(point.normal, toward) <= 0) return {0, 0, 0};
     return triangle->mean_luminance;
 }
