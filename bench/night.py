@@ -150,13 +150,12 @@ def batches(
     scene: dg.Scene,
     camera: dg.Camera,
     crop: tuple[int, ...],
-    side: str,
+    paths: Any,
     spp: int,
     first: int,
     options: Any,
 ) -> np.ndarray:
     """Independent pictures of a crop, (n, H, W, 3)."""
-    paths = "off" if side == "camera" else "auto"
     every = [
         dg.render(
             scene,
@@ -178,12 +177,20 @@ def check(options: argparse.Namespace) -> dict[str, Any]:
     from tests.statistical import differences
 
     scene, camera = night_table(options.radius[0] / 1e3)
-    out: dict[str, Any] = {}
+    # As many light paths as the frame gets: a crop's own plan is its small share of them.
+    plan = Session(
+        scene,
+        camera,
+        resolution=(options.w, options.h),
+        max_depth=8,
+        light_paths=options.light_paths,
+    ).light_paths
+    out: dict[str, Any] = {"light_paths": plan}
     for name, (x, y) in CROPS.items():
         x0, y0 = int(x * options.w), int(y * options.h)
         crop = (x0, y0, x0 + CROP_PX, y0 + CROP_PX)
-        alone = batches(scene, camera, crop, "camera", options.spp // options.batches, 1, options)
-        both = batches(scene, camera, crop, "both", options.both_spp, 1001, options)
+        alone = batches(scene, camera, crop, "off", options.spp // options.batches, 1, options)
+        both = batches(scene, camera, crop, plan, options.both_spp, 1001, options)
         out[name] = {
             "crop": crop,
             "camera_mean": alone.mean(axis=(0, 1, 2)).round(5).tolist(),

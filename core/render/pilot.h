@@ -7,8 +7,9 @@
 // pilot has met is not missed. Together they take about as long as a sixth of one sample of every pixel.
 //
 // No clock is asked: costs are counted in rays, with fixed prices for what else a path does. So the plan is a
-// function of scene, camera and settings alone: of no number of threads, no crop and no range of samples. The
-// pilot's random numbers are not the picture's, which would bias it.
+// function of scene, camera and settings alone: of no number of threads and no range of samples. It is one for
+// the whole frame, whatever is drawn of it: a session that draws a crop takes the share that the crop has of
+// the frame's pixels. The pilot's random numbers are not the picture's, which would bias it.
 #pragma once
 #include "render/render.h"
 
