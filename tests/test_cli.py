@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import OpenEXR
@@ -356,7 +357,7 @@ def interrupted_checkpoint() -> None:
     ("flags", "text"),
     [
         (["--f-stop", "4"], "different: the camera"),
-        (["--seed", "3"], "different: resolution, crop, seed, filter, depth, AOVs"),
+        (["--seed", "3"], "different: seed 0 (wanted 3)"),
         (["--spp", "2"], "holds samples 0:4, wanted only 0:2"),
     ],
 )
@@ -451,6 +452,21 @@ def test_stats(capsys: pytest.CaptureFixture[str]) -> None:
     err = capsys.readouterr().err
     assert "peak memory" in err
     assert "camera samples: 192 (" in err
+    assert "light paths: off" in err
+
+
+def test_stats_count_light_beside_the_frame(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Lit(fake_session.FakeSession):
+        def __init__(self, *args: Any, **options: Any) -> None:
+            super().__init__(*args, **options)
+            self.light_paths, self.light_path_count, self.splats_off_film = (50.0, 0.0), 200, 30
+
+    monkeypatch.setattr(sys.modules["daguerre.session"], "Session", Lit)
+    assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0
+    said = capsys.readouterr().err
+    assert "light paths: 200 (50,0 per sample), 30 beside the frame" in said
 
 
 def test_passes_grow_on_aligned_powers_of_two() -> None:

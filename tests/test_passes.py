@@ -123,11 +123,18 @@ def test_overlap_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    "options",
-    [{"seed": 1}, {"filter": "box"}, {"resolution": (24, 18)}, {"crop": (0, 0, 8, 8)}],
+    ("options", "says"),
+    [
+        ({"seed": 1}, r"seed 1 \(wanted 0\)$"),
+        ({"filter": "box"}, r"filter box \(wanted blackman_harris\)$"),
+        ({"resolution": (24, 18)}, r"resolution 24,18 \(wanted 24,16\), crop 0,0,24,18"),
+        ({"crop": (0, 0, 8, 8)}, r"crop 0,0,8,8 \(wanted 0,0,24,16\)$"),
+        ({"light_paths": 30}, r"light paths 30,0 \(wanted off\)$"),
+        ({"max_depth": 3}, "resolution, crop, seed, filter, depth, AOVs, light paths"),
+    ],
 )
-def test_passes_of_other_settings_are_refused(options: dict[str, object]) -> None:
-    with pytest.raises(MismatchError, match=r"different: .*resolution, crop, seed, filter"):
+def test_passes_of_other_settings_are_refused(options: dict[str, object], says: str) -> None:
+    with pytest.raises(MismatchError, match=rf"different: .*{says}"):
         merging.merge([drawn((0, 4)), drawn((4, 8), **options)])
 
 

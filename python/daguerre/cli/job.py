@@ -153,6 +153,19 @@ class Job:
                 f"--noise {wanted:g} is not reached: --spp {self.plan.wanted[1]} ended it before"
             )
 
+    def _light_stats(self) -> dict[str, str]:
+        """Of light paths, and how many passed the lens and missed the frame."""
+        from daguerre.light_paths import show_plan
+
+        session = self.session
+        plan = show_plan(session.light_paths)
+        if plan is None:
+            return {"light paths": "off"}
+        return {
+            "light paths": f"{session.light_path_count} ({plan} per sample), "
+            f"{session.splats_off_film} beside the frame"
+        }
+
     def _print_stats(self, elapsed: float) -> None:
         import resource
 
@@ -168,6 +181,7 @@ class Job:
             "processor": f"{usage.ru_utime + usage.ru_stime:.2f} s",
             "camera samples": f"{drawn} ({quantity(drawn / elapsed)} per s)",
             "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
+            **self._light_stats(),
             "bad samples": str(self.session.bad_samples[0]),
             "peak memory": f"{usage.ru_maxrss / 1024:.0f} MB",
         }

@@ -49,6 +49,8 @@ WORDS = {
     "settings": "resolution, crop, seed, filter, depth, AOVs, light paths",
     "build": "the build of daguerre",
 }
+#: Of the settings, what a header tells as it is.
+SETTINGS = ("resolution", "crop", "seed", "filter", "light_paths")
 
 
 @dataclass(frozen=True)
@@ -162,15 +164,32 @@ def check_key(first: Pass, other: Pass) -> None:
     names = sorted({*first.key, *other.key})
     differing = [name for name in names if first.key.get(name) != other.key.get(name)]
     if differing:
-        words = [
-            f"{WORDS.get(name, name)} ({_short(other.key.get(name))}, "
-            f"wanted {_short(first.key.get(name))})"
-            for name in differing
-        ]
+        words = [_difference(name, first, other) for name in differing]
         raise MismatchError(
             f"{other.path or 'this render'}: does not belong to {first.path or 'this render'}; "
             f"different: {'; '.join(words)}"
         )
+
+
+def _difference(name: str, first: Pass, other: Pass) -> str:
+    """What differs under a name of the key: the values where they are known, else the hashes."""
+    if name == "settings":
+        values = [
+            (fact.replace("_", " "), *(_value(p.metadata.get(fact)) for p in (other, first)))
+            for fact in SETTINGS
+        ]
+        told = [f"{fact} {got} (wanted {wanted})" for fact, got, wanted in values if got != wanted]
+        if told:
+            return ", ".join(told)
+    got, wanted = _short(other.key.get(name)), _short(first.key.get(name))
+    return f"{WORDS.get(name, name)} ({got}, wanted {wanted})"
+
+
+def _value(fact: Any) -> str:
+    """A setting as text; what is not in a header is off."""
+    if fact is None:
+        return "off"
+    return ",".join(map(str, fact)) if isinstance(fact, list | tuple) else str(fact)
 
 
 def _state_parts(source: Any) -> Iterator[int]:

@@ -203,7 +203,7 @@ def frame_notes(
     circle = 2 * float(np.hypot(*film[lit].T).max())
     return [
         f"the image circle of {lens.name} is about {circle:.2g} mm across: "
-        f"{100 * (1 - lit.mean()):.0f} % of the frame of {frame} stays dark"
+        f"{100 * (1 - lit.mean()):.2g} % of the frame of {frame} stays dark"
     ]
 
 
