@@ -26,8 +26,8 @@ def planes(height: int = 70, width: int = 40) -> dict[str, np.ndarray]:
         "R": rng.exponential(1, (height, width)).astype(np.float32),
         "G": rng.exponential(1, (height, width)).astype(np.float16),
         "B": rng.exponential(9, (height, width)).astype(np.float32),
-        "A": rng.random((height, width)).astype(np.float32),
-        "depth.Z": rng.exponential(5, (height, width)).astype(np.float32),
+        "A": np.ones((height, width), np.float32),  # the file can be packed
+        "depth.Z": np.full((height, width), 5.5, np.float32),
         "object_id": rng.integers(0, 2**32, (height, width), dtype=np.uint32),
     }
 
