@@ -19,6 +19,7 @@ void bind_shutter(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_truth(nb::module_& m);
+void bind_post_warp(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
@@ -42,4 +43,5 @@ NB_MODULE(_core, m) {
     bind_film(m);
     bind_render(m);
     bind_truth(m);
+    bind_post_warp(m);
 }

@@ -17,7 +17,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import lenses, polynomial, post
+    from . import distortion, lenses, polynomial, post
     from .frame import Frame
     from .session import Session, iter_render, render
 
@@ -45,6 +45,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "distortion",
     "iter_render",
     "keys",
     "lenses",
@@ -60,7 +61,7 @@ _LAZY = {"Frame": "frame", "Session": "session", "iter_render": "session", "rend
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("lenses", "polynomial", "post"):
+    if name in ("distortion", "lenses", "polynomial", "post"):
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)

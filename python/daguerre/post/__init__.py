@@ -6,6 +6,7 @@ with the same parameters. None changes its argument.
 
 from __future__ import annotations
 
+from .distortion import distort, undistort
 from .vignetting import unvignette, vignette
 
-__all__ = ["unvignette", "vignette"]
+__all__ = ["distort", "undistort", "unvignette", "vignette"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.errors import UsageError
 
-from .effect import Effect, Values
+from .effect import Effect, Step, Values
 from .picture import Band, Canvas, Image, Rows
 from .tiles import WholeImage
 
@@ -32,17 +32,26 @@ def on_array(
     Raises:
         UsageError: A wrong shape, or a wrong parameter.
     """
+    given = {name: value for name, value in values.items() if value is not None}
+    known = effect.values(given, effect.name, UsageError)
+    return step_on_array(effect.name, image, lambda canvas: effect.make(canvas, known), planes)
+
+
+def step_on_array(
+    name: str,
+    image: Image,
+    make: Callable[[Canvas], Step],
+    planes: Mapping[str, NDArray[Any]] | None = None,
+) -> Image:
+    """A step on a whole picture; ``name`` is for messages."""
     array = np.asarray(image)
     if array.ndim != 3 or array.dtype.kind not in "fiu" or 0 in array.shape:
         raise UsageError(
-            f"{effect.name}: image: wanted numbers of shape (H, W, C), got {array.shape} "
-            f"{array.dtype}"
+            f"{name}: image: wanted numbers of shape (H, W, C), got {array.shape} {array.dtype}"
         )
-    given = {name: value for name, value in values.items() if value is not None}
-    known = effect.values(given, effect.name, UsageError)
-    canvas = Canvas.of(array.shape, tuple(planes or ()), effect.name)
+    canvas = Canvas.of(array.shape, tuple(planes or ()), name)
     whole = Rows(0, canvas.height)
     band = Band(whole, np.ascontiguousarray(array, np.float32), planes or {})
-    step = effect.make(canvas, known)
+    step = make(canvas)
     step.prepare(WholeImage(canvas, band))
     return step.apply(band, whole).image

@@ -1,0 +1,36 @@
+// remap_tile.h -- what remap.cpp knows of one tile, and the SIMD kernel that fills its rows.
+#pragma once
+#include "post/remap.h"
+
+namespace dg {
+
+inline constexpr int kTileWidth = 64, kTileHeight = 32;   // whole cells
+
+/// The light around a tile, channel by channel, its edges continued outward.
+struct RemapRegion {
+    int x0 = 0, y0 = 0, width = 0, height = 0;   // in the source
+    std::vector<float> values;
+
+    const float* plane(int channel) const {
+        return values.data() + std::size_t(channel) * width * height;
+    }
+};
+
+/// Where the pixels of one row of a tile lie in a region: the first of 4 x 4 values, and how far past
+/// the second of them.
+struct RemapRow {
+    std::int32_t offset[kTileWidth];
+    float tx[kTileWidth], ty[kTileWidth];
+};
+
+/// Weights of four values as cubics in t: coefficient of t^k of weight i is at [k][i].
+struct RemapWeights {
+    alignas(16) float at[4][4];
+};
+const RemapWeights& weights_of(RemapFilter filter);
+
+/// Values of `count` pixels, a multiple of 4, from a plane of a region of width `stride`.
+void remap_row(const float* plane, int stride, const RemapRow& row, const RemapWeights& weights,
+               int count, float* out);
+
+}  // namespace dg

@@ -1,0 +1,89 @@
+#include "post/source_map.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+constexpr int kCell = SourceMap::kCell;
+
+/// Lagrange's cubic through values at -1, 0, 1, 2: its coefficients at 1, t, t^2, t^3.
+std::array<float, 4> cubic(float a, float b, float c, float d) {
+    a -= b, c -= b, d -= b;   // so that equal values give it exactly
+    return {b, c - a / 3 - d / 6, (a + c) / 2, (d - a) / 6 - c / 2};
+}
+
+float value(const std::array<float, 4>& k, float t) {
+    return k[0] + t * (k[1] + t * (k[2] + t * k[3]));
+}
+
+/// One coordinate of a cell between nodes: along columns first, then along each row.
+void between(const SourceMap& map, int column, int row, int axis, float (&out)[kCell][kCell]) {
+    const std::size_t stride = 2 * std::size_t(map.columns + 3);
+    const float* first = map.nodes.data() + row * stride + 2 * std::size_t(column) + axis;
+    std::array<std::array<float, 4>, 4> down;
+    for (int i = 0; i < 4; ++i) {
+        const float* n = first + 2 * i;
+        down[i] = cubic(n[0], n[stride], n[2 * stride], n[3 * stride]);
+    }
+    for (int v = 0; v < kCell; ++v) {
+        const float t = float(v) / kCell;
+        const auto along =
+            cubic(value(down[0], t), value(down[1], t), value(down[2], t), value(down[3], t));
+        for (int u = 0; u < kCell; ++u) out[v][u] = value(along, float(u) / kCell);
+    }
+}
+
+}  // namespace
+
+void SourceMap::check() const {
+    const auto want = [](const char* what, std::size_t wanted, std::size_t got) {
+        if (wanted != got)
+            throw input_error("map", what, std::to_string(wanted) + " values", std::to_string(got));
+    };
+    if (columns < 1 || rows < 1 || top < 0 || top % kCell != 0)
+        throw input_error("map", "cells", "some, from a multiple of 16", std::to_string(top));
+    want("nodes", std::size_t(rows + 3) * (columns + 3) * 2, nodes.size());
+    want("exact", std::size_t(rows) * columns, exact.size());
+    const std::size_t cell = 2 * kCell * kCell;
+    if (exact_cells.size() % cell != 0) want("exact_cells", cell, exact_cells.size());
+    for (std::int32_t k : exact)
+        if (k < -1 || k >= std::int64_t(exact_cells.size() / cell))
+            throw input_error("map", "exact", "-1 or a cell", std::to_string(k));
+}
+
+std::vector<float> SourceMap::displacements(int width, int begin, int end) const {
+    std::vector<float> out(std::size_t(end - begin) * width * 2);
+    CellMap cell;
+    for (int row = (begin - top) / kCell; row < (end - top + kCell - 1) / kCell; ++row)
+        for (int column = 0; column * kCell < width; ++column) {
+            cell.read(*this, column, row);
+            const int y0 = top + row * kCell, x0 = column * kCell;
+            for (int y = std::max(y0, begin); y < std::min(y0 + kCell, end); ++y)
+                for (int x = x0; x < std::min(x0 + kCell, width); ++x) {
+                    float* to = out.data() + 2 * (std::size_t(y - begin) * width + x);
+                    to[0] = cell.dx[y - y0][x - x0], to[1] = cell.dy[y - y0][x - x0];
+                }
+        }
+    return out;
+}
+
+void CellMap::read(const SourceMap& map, int column, int row) {
+    const std::int32_t k = map.exact[std::size_t(row) * map.columns + column];
+    if (k < 0) {
+        between(map, column, row, 0, dx);
+        between(map, column, row, 1, dy);
+        return;
+    }
+    const float* p = map.exact_cells.data() + std::size_t(k) * kCell * kCell * 2;
+    for (int i = 0; i < kCell * kCell; ++i) {
+        dx[i / kCell][i % kCell] = p[2 * i];
+        dy[i / kCell][i % kCell] = p[2 * i + 1];
+    }
+}
+
+}  // namespace dg

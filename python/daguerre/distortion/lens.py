@@ -1,0 +1,90 @@
+"""The distortion of a real lens: its chief rays, at its focus and zoom, for one wavelength."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from daguerre.analysis.bench import Bench
+from daguerre.analysis.chief import chief_rays
+from daguerre.errors import InputError
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+from .model import FloatArray, Radial
+from .monotone import SAMPLES, Monotone
+from .opencv import tangent
+
+HEIGHTS = 48
+DEGREE = 20
+
+
+@dataclass(frozen=True)
+class LensDistortion(Radial):
+    """Where a lens puts the points of a flat picture at its focus distance.
+
+    The ideal picture is that of a pinhole in the middle of the paraxial entrance pupil. It has the
+    scale of the lens near the axis at the design wavelength, whatever this model's wavelength is:
+    so models of several wavelengths differ by the lens's lateral colour.
+
+    Attributes:
+        bench: The lens, set up.
+        reach_mm: Largest image height that will be asked for, mm.
+        wavelength_nm: nm.
+    """
+
+    bench: Bench
+    reach_mm: float
+    wavelength_nm: float = DESIGN_WAVELENGTH_NM
+
+    def __post_init__(self) -> None:
+        if not self.bench.lens.prescription.is_axially_symmetric:
+            raise InputError(
+                f"{self.bench.lens.name}: distortion: wanted a lens that is the same on all sides"
+            )
+
+    @cached_property
+    def focal_length_mm(self) -> float:
+        """Image height over the tangent of the angle, near the axis, mm."""
+        angle, _ = _angles(self.bench, self.reach_mm, DESIGN_WAVELENGTH_NM)
+        return 1 / float(angle(0.0))
+
+    @cached_property
+    def _to_ideal(self) -> Monotone:
+        ratio, reach = _angles(self.bench, self.reach_mm, self.wavelength_nm)
+        focal = self.focal_length_mm
+
+        def ideal(radius: FloatArray) -> FloatArray:
+            height = radius * focal
+            return tangent(height * ratio(height * height))
+
+        return Monotone(ideal, np.linspace(0, reach / focal, SAMPLES))
+
+    def _bent(self, radius: FloatArray) -> FloatArray:
+        return self._to_ideal.inverse(radius)
+
+    def _straight(self, radius: FloatArray) -> FloatArray:
+        return self._to_ideal(radius)
+
+
+def _angles(bench: Bench, reach_mm: float, nm: float) -> tuple[Chebyshev, float]:
+    """Angle over image height as a function of its square, and how far it holds, mm."""
+    heights = reach_mm * np.sin(0.5 * np.pi * (np.arange(HEIGHTS) + 0.5) / HEIGHTS)
+    rays = chief_rays(bench, heights, nm)
+    slope = rays.directions[:, 1] / rays.directions[:, 2]
+    angles = rays.angles
+    if math.isfinite(bench.focus_mm):
+        plane = bench.order.entrance_pupil.z - bench.focus_mm
+        seen = rays.points[:, 1] + slope * (plane - rays.points[:, 2])
+        angles = np.arctan2(np.abs(seen), bench.focus_mm)
+    good = np.isfinite(angles) & (rays.directions[:, 2] > 0.02)
+    count = len(good) if good.all() else int(np.argmin(good))
+    if count < 8:
+        raise InputError(f"{bench.lens.name}: distortion: wanted chief rays, got hardly any")
+    end = heights[count - 1] if count < len(good) else reach_mm
+    x, y = heights[:count] ** 2, angles[:count] / heights[:count]
+    fit = Chebyshev.fit(x, y, min(DEGREE, count // 2), domain=[0, end**2])
+    return fit, float(end)

@@ -1,0 +1,196 @@
+"""Pictures through maps: where the light of each pixel lies in the source.
+
+A map is a function of points, px of the display window. It is asked at nodes 16 px apart, and at
+every pixel of the cells where a cubic between nodes would be off by more than TOLERANCE; the core
+does the rest (``core/post/source_map.h``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import SourceMap, remap, remap_nearest
+
+from .effect import Step
+from .parameter import Parameter
+from .picture import Band, Canvas, Rows
+
+FloatArray = NDArray[np.float64]
+PointMap = Callable[[FloatArray], FloatArray]  # (N, 2) -> (N, 2), px; NaN: nothing is there
+
+CELL = 16
+TOLERANCE = 1e-4  # px
+CHUNK = 2048  # cells whose pixels are computed at a time
+MARGIN = 8  # rows that filters read around a point
+
+FILTER = (
+    Parameter(
+        "filter", "between pixels", kind="choice", default="cubic", choices=("cubic", "linear")
+    ),
+    Parameter("antialias", "average where the map shrinks", kind="flag", default=True),
+)
+
+
+@dataclass(frozen=True)
+class Warp:
+    """A map, known for all pixels of a picture.
+
+    Attributes:
+        nodes: Displacements, px, shape (rows + 3, columns + 3, 2), from one cell before the first.
+        exact: Which of ``cells`` a cell is, or -1, shape (rows, columns).
+        cells: Displacements at each pixel, shape (N, 16, 16, 2).
+        height: Of the picture, px.
+    """
+
+    nodes: NDArray[np.float32]
+    exact: NDArray[np.int32]
+    cells: NDArray[np.float32]
+    height: int
+
+    @classmethod
+    def of(cls, canvas: Canvas, place: PointMap) -> Warp:
+        """Asks a map for all that is needed of it."""
+        columns, rows = -(-canvas.width // CELL), -(-canvas.height // CELL)
+        x = (np.arange(columns + 3) - 1.0) * CELL
+        y = (np.arange(rows + 3) - 1.0) * CELL
+        points = np.stack(np.meshgrid(x, y), axis=2)
+        nodes = _displacements(points, canvas, place)
+        bad = _bad_cells(nodes)
+        exact = np.full((rows, columns), -1, np.int32)
+        exact[bad] = np.arange(bad.sum())
+        cells = np.empty((int(bad.sum()), CELL, CELL, 2), np.float32)
+        corners = np.argwhere(bad)[:, ::-1] * CELL
+        inside = np.stack(np.meshgrid(np.arange(CELL), np.arange(CELL)), axis=2)
+        for k in range(0, len(corners), CHUNK):
+            points = corners[k : k + CHUNK, None, None, :] + inside
+            cells[k : k + CHUNK] = _displacements(points, canvas, place)
+        return cls(nodes.astype(np.float32), exact, cells, canvas.height)
+
+    @cached_property
+    def core(self) -> Any:
+        """As the core has it."""
+        return SourceMap(self.nodes, self.exact, self.cells, 0)
+
+    def reads(self, rows: Rows) -> Rows:
+        """The rows of the source that these rows of the result are made of."""
+        low, high = self._reach
+        cells = slice(rows.begin // CELL, (rows.end - 1) // CELL + 1)
+        if not (low[cells] <= high[cells]).any():
+            return Rows(rows.begin, rows.begin + 1)
+        return Rows(int(np.floor(low[cells].min())), int(np.ceil(high[cells].max())) + 1)
+
+    @cached_property
+    def _reach(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest row that each row of cells reads; inf, -inf: nothing."""
+        rows, columns = self.exact.shape
+        first = (np.arange(rows + 3) - 1.0)[:, None] * CELL
+        y = np.asarray(self.nodes[:, :, 1] + first, np.float64)
+        wide = 2 * _stretch(y, CELL)
+        low, high = np.full(rows, np.inf), np.full(rows, -np.inf)
+        for j in range(2):  # the nodes above and below, and those to the left and right of cells
+            part = slice(1 + j, 1 + j + rows)
+            here, more = y[part, 1 : columns + 2], wide[part, 1 : columns + 2]
+            seen = (here > -2 * CELL) & (here < self.height + 2 * CELL)
+            low = np.minimum(low, np.where(seen, here - more, np.inf).min(axis=1))
+            high = np.maximum(high, np.where(seen, here + more, -np.inf).max(axis=1))
+        for j, i in np.argwhere(self.exact >= 0):
+            at = self.cells[self.exact[j, i], :, :, 1] + np.arange(CELL)[:, None] + j * CELL
+            more = 2 * _stretch(np.asarray(at, np.float64), 1)
+            seen = (at >= -1) & (at <= self.height)
+            low[j] = min(low[j], np.where(seen, at - more, np.inf).min())
+            high[j] = max(high[j], np.where(seen, at + more, -np.inf).max())
+        return np.maximum(low - MARGIN, 0), np.minimum(high + MARGIN, self.height - 1)
+
+
+class WarpStep(Step):
+    """Each pixel takes its light from elsewhere; what is no colour, from the nearest pixel there.
+
+    Args:
+        canvas: The picture.
+        warps: One for all channels, or one each for red, green and blue.
+        filter: cubic or linear.
+        antialias: Whether to average where a map shrinks.
+    """
+
+    def __init__(
+        self, canvas: Canvas, warps: Sequence[Warp], *, filter: str, antialias: bool
+    ) -> None:
+        self._height, self._warps = canvas.height, list(warps)
+        self._filter, self._antialias = filter, antialias
+        middle = len(self._warps) // 2
+        count = len(canvas.colours)
+        self._map_of = [middle] * count
+        if len(self._warps) == 3 and count >= 3:
+            self._map_of[:3] = [0, 1, 2]
+        self._middle = self._warps[middle]
+        self._undefined = 0
+
+    def reads(self, rows: Rows) -> Rows:
+        """Where the maps lead."""
+        parts = [warp.reads(rows) for warp in self._warps]
+        return Rows(min(p.begin for p in parts), max(p.end for p in parts))
+
+    def apply(self, band: Band, rows: Rows) -> Band:
+        """All channels, so that they stay one above the other."""
+        maps = [warp.core for warp in self._warps]
+        image, undefined = remap(
+            band.image, band.rows.begin, self._height, maps, self._map_of, *rows,
+            self._filter, self._antialias,
+        )  # fmt: skip
+        self._undefined += undefined
+        planes = {name: self._nearest(plane, band, rows) for name, plane in band.planes.items()}
+        return Band(rows, image, planes)
+
+    def _nearest(self, plane: NDArray[Any], band: Band, rows: Rows) -> NDArray[Any]:
+        words = plane.astype(np.float32) if plane.dtype == np.float16 else plane
+        bits = np.ascontiguousarray(words).view(np.uint32)
+        moved = remap_nearest(bits, band.rows.begin, self._height, self._middle.core, *rows)
+        return np.asarray(moved.view(words.dtype).astype(plane.dtype, copy=False))
+
+    def remarks(self) -> list[str]:
+        """Where a model had no answer."""
+        if not self._undefined:
+            return []
+        return [f"{self._undefined} pixels, for which the model has no answer, were set to 0"]
+
+
+def _displacements(points: NDArray[Any], canvas: Canvas, place: PointMap) -> FloatArray:
+    """Of pixels by index: the middle of pixel 0 is at corner + 0.5 of the display window."""
+    flat = points.reshape(-1, 2) + (np.array(canvas.corner) + 0.5)
+    return np.asarray((place(flat) - flat).reshape(points.shape))
+
+
+def _bad_cells(nodes: FloatArray) -> NDArray[np.bool_]:
+    """Cells where Lagrange's cubic is not good enough, or where the map ends; (rows, columns).
+
+    Its error is at most 3/128 of the fourth difference.
+    """
+    rows, columns = nodes.shape[0] - 3, nodes.shape[1] - 3
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(nodes).all(axis=2))
+    windows = np.lib.stride_tricks.sliding_window_view(known, (4, 4))
+    whole, some = windows.all(axis=(2, 3)), windows.any(axis=(2, 3))
+    off = np.zeros((rows, columns))
+    for axis in (0, 1):
+        if nodes.shape[axis] < 5:
+            off[:] = np.inf  # a picture of a cell or two
+            continue
+        fourth = np.abs(np.diff(np.where(known[:, :, None], nodes, 0), 4, axis)).max(axis=2)
+        pad = [(0, 0), (0, 0)]
+        pad[axis] = (2, 2)
+        spread = np.pad(fourth, pad, mode="edge")
+        near = np.lib.stride_tricks.sliding_window_view(spread, (4, 4)).max(axis=(2, 3))
+        off = np.maximum(off, 3 / 128 * near)
+    return np.asarray(some & ~(whole & (off <= TOLERANCE)))
+
+
+def _stretch(y: FloatArray, step: int) -> FloatArray:
+    """How many rows of the source a pixel covers, 1 .. 16; y: rows at points ``step`` px apart."""
+    with np.errstate(invalid="ignore"):
+        most = np.hypot(*np.gradient(y)) / step
+    return np.asarray(np.clip(np.nan_to_num(most, nan=16.0), 1, 16))
