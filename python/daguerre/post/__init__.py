@@ -7,6 +7,17 @@ with the same parameters. None changes its argument.
 from __future__ import annotations
 
 from .distortion import distort, undistort
+from .lateral_colour import lateral_colour, remove_lateral_colour
+from .saturation import unvignette_saturation, vignette_saturation
 from .vignetting import unvignette, vignette
 
-__all__ = ["distort", "undistort", "unvignette", "vignette"]
+__all__ = [
+    "distort",
+    "lateral_colour",
+    "remove_lateral_colour",
+    "undistort",
+    "unvignette",
+    "unvignette_saturation",
+    "vignette",
+    "vignette_saturation",
+]

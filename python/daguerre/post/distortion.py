@@ -129,9 +129,9 @@ def camera(
         for k, name in enumerate(("cx", "cy"))
     )
     if values["model"] == "lens":
-        lens_models, focal_mm = lens(canvas, values)
-        pixels = (values["focal_length"] or focal_mm) / film_plane(canvas, values).pitch_mm
-        return lens_models, (pixels, pixels), (centre[0], centre[1])
+        colours = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
+        made, pixels = lens_models(canvas, values, colours)
+        return made, (pixels, pixels), (centre[0], centre[1])
     if values["fx"] is not None:
         focal = (values["fx"], values["fy"] or values["fx"])
     else:
@@ -140,19 +140,23 @@ def camera(
     return [_model(values)], focal, (centre[0], centre[1])
 
 
-def lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], float]:
-    """Models of a lens of the library, and the focal length (mm) that they are in units of."""
+def lens_models(
+    canvas: Canvas, values: Values, wavelengths_nm: Sequence[float]
+) -> tuple[list[Distortion], float]:
+    """Models of a lens of the library, one per wavelength, and the focal length of the picture, px.
+
+    That is the lens's own: near the axis nothing moves.
+    """
     from daguerre.distortion.lens import LensDistortion
 
     if values["lens"] is None:
-        raise UsageError("distortion: lens: wanted a name with model=lens, got nothing")
+        raise UsageError("lens: wanted a name or a file with model=lens, got nothing")
+    pitch_mm = film_plane(canvas, values).pitch_mm
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
     reach = np.abs(corners + canvas.corner - canvas.centre).max(axis=0)
-    reach_mm = 1.02 * math.hypot(*reach) * film_plane(canvas, values).pitch_mm
     item = bench(values)
-    colours = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
-    made = [LensDistortion(item, reach_mm, nm) for nm in colours]
-    return list(made), made[0].focal_length_mm
+    made = [LensDistortion(item, 1.02 * math.hypot(*reach) * pitch_mm, nm) for nm in wavelengths_nm]
+    return list(made), made[0].focal_length_mm / pitch_mm
 
 
 def _model(values: Values) -> Distortion:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from .distortion import DISTORTION
 from .effect import Effect
+from .lateral_colour import LATERAL_COLOUR
+from .saturation import SATURATION
 from .vignetting import VIGNETTING
 
-EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (DISTORTION, VIGNETTING)}
+EFFECTS: dict[str, Effect] = {
+    effect.name: effect for effect in (DISTORTION, LATERAL_COLOUR, VIGNETTING, SATURATION)
+}
