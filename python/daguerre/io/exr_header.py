@@ -103,6 +103,31 @@ def header_bytes(header: ExrHeader) -> bytes:
     return b"".join([*out, b"\0"])
 
 
+def new_header(
+    names: tuple[str, ...], corner: tuple[int, int], size: tuple[int, int], full: tuple[int, int]
+) -> ExrHeader:
+    """Of a new file of float channels.
+
+    Args:
+        names: Of the channels, sorted.
+        corner: First pixel of the data window, px.
+        size: Width and height of the data window, px.
+        full: Those of the display window, which begins at (0, 0), px.
+    """
+    window = struct.pack("<4i", *corner, corner[0] + size[0] - 1, corner[1] + size[1] - 1)
+    attributes = {
+        "channels": ("chlist", channel_list([ExrChannel(name, "float32") for name in names])),
+        "compression": ("compression", b"\3"),
+        "dataWindow": ("box2i", window),
+        "displayWindow": ("box2i", struct.pack("<4i", 0, 0, full[0] - 1, full[1] - 1)),
+        "lineOrder": ("lineOrder", b"\0"),
+        "pixelAspectRatio": ("float", struct.pack("<f", 1.0)),
+        "screenWindowCenter": ("v2f", struct.pack("<2f", 0.0, 0.0)),
+        "screenWindowWidth": ("float", struct.pack("<f", 1.0)),
+    }
+    return ExrHeader(attributes, 0, 1)
+
+
 def channel_list(channels: list[ExrChannel]) -> bytes:
     """The value of the attribute ``channels``."""
     rows = [

@@ -9,12 +9,15 @@ from __future__ import annotations
 from .distortion import distort, undistort
 from .lateral_colour import lateral_colour, remove_lateral_colour
 from .saturation import unvignette_saturation, vignette_saturation
+from .stmap import apply_stmap, stmap
 from .vignetting import unvignette, vignette
 
 __all__ = [
+    "apply_stmap",
     "distort",
     "lateral_colour",
     "remove_lateral_colour",
+    "stmap",
     "undistort",
     "unvignette",
     "unvignette_saturation",

@@ -112,12 +112,12 @@ def _make(canvas: Canvas, values: Values) -> Step:
     maps = [
         point_map(m, focal, centre, scale=values["scale"], inverse=values["inverse"]) for m in given
     ]
-    return WarpStep(
-        canvas,
-        [Warp.of(canvas, place) for place in maps],
-        filter=values["filter"],
-        antialias=values["antialias"],
-    )
+    warps = [Warp.of(canvas, place) for place in maps]
+    if values["stmap"] is not None:
+        from .stmap import write_stmap
+
+        write_stmap(values["stmap"], warps[len(warps) // 2], canvas)
+    return WarpStep(canvas, warps, filter=values["filter"], antialias=values["antialias"])
 
 
 def camera(
@@ -193,6 +193,7 @@ DISTORTION = Effect(
         Parameter("lateral_colour", "of a lens: its own", kind="flag", default=True),
         Parameter("scale", "of the ideal picture; below 1 shows more of it", default=1.0, low=1e-3),
         *FILTER,
+        Parameter("stmap", "an .exr to write the map to as well (of green)", kind="text"),
         Parameter("inverse", "straighten instead", kind="flag", default=False),
     ),
     _make,

@@ -46,12 +46,14 @@ class Warp:
         exact: Which of ``cells`` a cell is, or -1, shape (rows, columns).
         cells: Displacements at each pixel, shape (N, 16, 16, 2).
         height: Of the picture, px.
+        top: Row at which the first cell begins, a multiple of 16.
     """
 
     nodes: NDArray[np.float32]
     exact: NDArray[np.int32]
     cells: NDArray[np.float32]
     height: int
+    top: int = 0
 
     @classmethod
     def of(cls, canvas: Canvas, place: PointMap) -> Warp:
@@ -72,15 +74,32 @@ class Warp:
             cells[k : k + CHUNK] = _displacements(points, canvas, place)
         return cls(nodes.astype(np.float32), exact, cells, canvas.height)
 
+    @classmethod
+    def of_pixels(cls, moved: NDArray[np.float32], height: int, top: int) -> Warp:
+        """One that is known at every pixel of some rows.
+
+        Args:
+            moved: Displacements, px, shape (rows, width, 2); NaN: nothing is there.
+            height: Of the whole picture, px.
+            top: The first row, a multiple of 16.
+        """
+        rows, columns = (-(-n // CELL) for n in moved.shape[:2])
+        padded = np.full((rows * CELL, columns * CELL, 2), np.nan, np.float32)
+        padded[: moved.shape[0], : moved.shape[1]] = moved
+        cells = padded.reshape(rows, CELL, columns, CELL, 2).swapaxes(1, 2)
+        nodes = np.full((rows + 3, columns + 3, 2), np.nan, np.float32)
+        exact = np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
+        return cls(nodes, exact, cells.reshape(-1, CELL, CELL, 2), height, top)
+
     @cached_property
     def core(self) -> Any:
         """As the core has it."""
-        return SourceMap(self.nodes, self.exact, self.cells, 0)
+        return SourceMap(self.nodes, self.exact, self.cells, self.top)
 
     def reads(self, rows: Rows) -> Rows:
         """The rows of the source that these rows of the result are made of."""
         low, high = self._reach
-        cells = slice(rows.begin // CELL, (rows.end - 1) // CELL + 1)
+        cells = slice((rows.begin - self.top) // CELL, (rows.end - 1 - self.top) // CELL + 1)
         if not (low[cells] <= high[cells]).any():
             return Rows(rows.begin, rows.begin + 1)
         return Rows(int(np.floor(low[cells].min())), int(np.ceil(high[cells].max())) + 1)
@@ -89,7 +108,7 @@ class Warp:
     def _reach(self) -> tuple[FloatArray, FloatArray]:
         """Least and greatest row that each row of cells reads; inf, -inf: nothing."""
         rows, columns = self.exact.shape
-        first = (np.arange(rows + 3) - 1.0)[:, None] * CELL
+        first = (np.arange(rows + 3) - 1.0)[:, None] * CELL + self.top
         y = np.asarray(self.nodes[:, :, 1] + first, np.float64)
         wide = 2 * _stretch(y, CELL)
         low, high = np.full(rows, np.inf), np.full(rows, -np.inf)
@@ -99,12 +118,13 @@ class Warp:
             seen = (here > -2 * CELL) & (here < self.height + 2 * CELL)
             low = np.minimum(low, np.where(seen, here - more, np.inf).min(axis=1))
             high = np.maximum(high, np.where(seen, here + more, -np.inf).max(axis=1))
-        for j, i in np.argwhere(self.exact >= 0):
-            at = self.cells[self.exact[j, i], :, :, 1] + np.arange(CELL)[:, None] + j * CELL
-            more = 2 * _stretch(np.asarray(at, np.float64), 1)
-            seen = (at >= -1) & (at <= self.height)
-            low[j] = min(low[j], np.where(seen, at - more, np.inf).min())
-            high[j] = max(high[j], np.where(seen, at + more, -np.inf).max())
+        row = np.argwhere(self.exact >= 0)[:, 0]
+        if len(row):
+            line = (row * CELL + self.top)[:, None, None] + np.arange(CELL)[:, None]
+            at = np.asarray(self.cells[self.exact[self.exact >= 0], :, :, 1] + line, np.float64)
+            more, seen = 2 * _stretch(at, 1), (at >= -1) & (at <= self.height)
+            np.minimum.at(low, row, np.where(seen, at - more, np.inf).min(axis=(1, 2)))
+            np.maximum.at(high, row, np.where(seen, at + more, -np.inf).max(axis=(1, 2)))
         return np.maximum(low - MARGIN, 0), np.minimum(high + MARGIN, self.height - 1)
 
 
@@ -128,29 +148,33 @@ class WarpStep(Step):
         self._map_of = [middle] * count
         if len(self._warps) == 3 and count >= 3:
             self._map_of[:3] = [0, 1, 2]
-        self._middle = self._warps[middle]
         self._undefined = 0
+
+    def warps(self, rows: Rows) -> Sequence[Warp]:
+        """The maps for some rows."""
+        return self._warps
 
     def reads(self, rows: Rows) -> Rows:
         """Where the maps lead."""
-        parts = [warp.reads(rows) for warp in self._warps]
+        parts = [warp.reads(rows) for warp in self.warps(rows)]
         return Rows(min(p.begin for p in parts), max(p.end for p in parts))
 
     def apply(self, band: Band, rows: Rows) -> Band:
         """All channels, so that they stay one above the other."""
-        maps = [warp.core for warp in self._warps]
+        warps = self.warps(rows)
+        maps, middle = [warp.core for warp in warps], warps[len(warps) // 2].core
         image, undefined = remap(
             band.image, band.rows.begin, self._height, maps, self._map_of, *rows,
             self._filter, self._antialias,
         )  # fmt: skip
         self._undefined += undefined
-        planes = {name: self._nearest(plane, band, rows) for name, plane in band.planes.items()}
+        planes = {name: self._nearest(p, band, rows, middle) for name, p in band.planes.items()}
         return Band(rows, image, planes)
 
-    def _nearest(self, plane: NDArray[Any], band: Band, rows: Rows) -> NDArray[Any]:
+    def _nearest(self, plane: NDArray[Any], band: Band, rows: Rows, core: Any) -> NDArray[Any]:
         words = plane.astype(np.float32) if plane.dtype == np.float16 else plane
         bits = np.ascontiguousarray(words).view(np.uint32)
-        moved = remap_nearest(bits, band.rows.begin, self._height, self._middle.core, *rows)
+        moved = remap_nearest(bits, band.rows.begin, self._height, core, *rows)
         return np.asarray(moved.view(words.dtype).astype(plane.dtype, copy=False))
 
     def remarks(self) -> list[str]:
@@ -192,5 +216,5 @@ def _bad_cells(nodes: FloatArray) -> NDArray[np.bool_]:
 def _stretch(y: FloatArray, step: int) -> FloatArray:
     """How many rows of the source a pixel covers, 1 .. 16; y: rows at points ``step`` px apart."""
     with np.errstate(invalid="ignore"):
-        most = np.hypot(*np.gradient(y)) / step
+        most = np.hypot(*np.gradient(y, axis=(-2, -1))) / step
     return np.asarray(np.clip(np.nan_to_num(most, nan=16.0), 1, 16))
