@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -98,6 +99,16 @@ def test_a_fit_that_is_not_good_enough_is_named_and_replaced() -> None:
         np.testing.assert_array_equal(a, b)
     lenient = set_up(dg.Scene(), camera.with_(fit_tolerance=1e3), RESOLUTION, None)
     assert lenient.facts["lens_model"] == "polynomial"
+
+
+def test_the_region_is_named_by_what_its_edge_still_sees() -> None:
+    """The outermost zone reaches beyond the last film point that light finds."""
+    camera = dg.Camera(
+        lens="petzval-100mm-f2.2", lens_model="polynomial", degree=3, focus_distance=2.0
+    ).with_(sensor_size=(24, 16), fit_tolerance=1e-3)
+    (note,) = [n for n in set_up(dg.Scene(), camera, (240, 160), None).notes if "degree 3" in n]
+    low, high = (int(x) for x in re.search(r"\((\d+) to (\d+) degrees", note).groups())
+    assert 0 < low <= high
 
 
 @pytest.mark.parametrize(

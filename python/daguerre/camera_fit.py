@@ -49,7 +49,7 @@ def judged(
         notes.append(f"{said}, {whole.rms / um:.2g} px")
         return lens, facts
     exact = lens.without_fit()
-    angles = [_field_deg(exact, r) for r in (worst.low, worst.high)]
+    angles = [_field_deg(exact, worst.low, r) for r in (worst.low, worst.high)]
     notes.append(
         f"{said}, and {_length(worst.film.rms)} or {worst.film.rms / um:.2g} px at {worst.low:.3g} "
         f"to {worst.high:.3g} mm from the middle ({angles[0]:.0f} to {angles[1]:.0f} degrees off "
@@ -62,7 +62,12 @@ def _length(um: float) -> str:
     return f"{um:.2g} um" if um < 1000 else f"{um / 1000:.2g} mm"
 
 
-def _field_deg(exact: _core.ExactLens, radius_mm: float) -> float:
-    """From straight ahead to what a film point sees."""
-    x, y, z = exact.chief_direction(radius_mm, 0.0)
-    return math.degrees(math.atan2(math.hypot(x, y), -z))
+def _field_deg(exact: _core.ExactLens, inner_mm: float, radius_mm: float) -> float:
+    """From straight ahead to what a film point sees; if it sees nothing, the last before it."""
+    angle = 0.0
+    for step in range(9):
+        x, y, z = exact.chief_direction(radius_mm - (radius_mm - inner_mm) * step / 8, 0.0)
+        angle = math.degrees(math.atan2(math.hypot(x, y), -z))
+        if angle > 0:
+            break
+    return angle

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 DEFAULT_DEGREE = 7
 #: RMS error on the film that is worth a sentence, um: half a pixel of 960 over 36 mm.
 WORTH_TELLING = 20.0
+#: Parts of the film by radius: as few as keep the error below that.
+SEGMENTS = (1, 2, 4)
 
 
 @dataclass(frozen=True)
@@ -47,18 +49,10 @@ class Export:
 
     def write(self, item: Lens, path: Path, setting: dict[str, Any]) -> None:
         """Fits the lens and writes the file; one line to stderr says how good the fit is."""
-        from daguerre.polynomial import fit
-
-        fitted = fit(
-            item,
-            DEFAULT_DEGREE if self.degree is None else self.degree,
-            film=None if self.sensor is None else sensor_mm("--sensor", self.sensor),
-            f_stop=setting.get("f_stop"),
-            focus=setting.get("focus_m", math.inf),
-            focus_by=setting["by"],
-            zoom=setting.get("zoom_mm"),
-            iris=self._iris(),
-        )
+        for segments in SEGMENTS:
+            fitted = self._fitted(item, setting, segments)
+            if weak_region(fitted) is None:
+                break
         fitted.save(path)
         error = fitted.error
         print(
@@ -68,6 +62,21 @@ class Export:
         )
         if weak := weak_region(fitted):
             print(f"{path}: {weak}", file=sys.stderr)
+
+    def _fitted(self, item: Lens, setting: dict[str, Any], segments: int) -> LensFit:
+        from daguerre.polynomial import fit
+
+        return fit(
+            item,
+            DEFAULT_DEGREE if self.degree is None else self.degree,
+            film=None if self.sensor is None else sensor_mm("--sensor", self.sensor),
+            f_stop=setting.get("f_stop"),
+            focus=setting.get("focus_m", math.inf),
+            focus_by=setting["by"],
+            zoom=setting.get("zoom_mm"),
+            segments=segments,
+            iris=self._iris(),
+        )
 
     def _iris(self) -> Iris:
         from daguerre.camera import Camera
