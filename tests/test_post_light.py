@@ -13,6 +13,7 @@ from daguerre.analysis.bench import set_up
 from daguerre.analysis.chief import chief_rays
 from daguerre.analysis.illumination import relative_illumination
 from daguerre.errors import UsageError
+from daguerre.post.distortion import CHANNEL_NM
 from daguerre.post.effects import EFFECTS
 
 from .test_post import planes, post, read, write
@@ -52,7 +53,7 @@ def test_light_of_a_lens():
     dark = dg.post.vignette(
         grey, model="lens", lens="double-gauss-50mm-f2", sensor=(40, 1.3311148), **setting
     )
-    bench = set_up(lenses.load("double-gauss-50mm-f2"), f_stop=2.0, focus_m=2.0)
+    bench = set_up(lenses.load("double-gauss-50mm-f2"), f_stop=2.0, focus_m=2.0, by="paraxial")
     heights = np.array([0.0, 6.0, 12.0, 18.0])
     wanted = relative_illumination(bench, heights).relative
     at = 300.5 + heights / 40 * 601
@@ -117,11 +118,11 @@ def test_lateral_colour_of_a_lens():
     fringed = dg.post.lateral_colour(
         np.stack([ramp] * 3, axis=2), model="lens", lens="canon-ef-11-24mm-f4", sensor=(36, 24)
     )
-    bench = set_up(lenses.load("canon-ef-11-24mm-f4"))
+    bench = set_up(lenses.load("canon-ef-11-24mm-f4"), by="paraxial")
     height = math.hypot(250.5, 0.5) * 0.06  # of pixel (550, 200)
-    angle = chief_rays(bench, [height], 611.0).angles[0]
+    angle = chief_rays(bench, [height], CHANNEL_NM[0]).angles[0]
     heights = height + np.linspace(-0.2, 0.2, 41)
-    green = chief_rays(bench, heights, 549.0).angles
+    green = chief_rays(bench, heights, CHANNEL_NM[1]).angles
     wanted = np.interp(angle, green, heights) / height * 250.5  # where green shows the same
     assert abs(wanted - 250.5) > 0.05
     assert fringed[200, 550, 0] - 300 == pytest.approx(wanted, abs=2e-3)

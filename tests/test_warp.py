@@ -17,7 +17,7 @@ from daguerre.distortion import (
 from daguerre.distortion.lens import LensDistortion
 from daguerre.errors import UsageError
 from daguerre.post import run, tiles
-from daguerre.post.distortion import point_map
+from daguerre.post.distortion import CHANNEL_NM, point_map
 from daguerre.post.picture import Canvas, Rows
 from daguerre.post.warp import Warp
 
@@ -162,7 +162,7 @@ def test_the_model_s_end_is_exact_and_said(tmp_path, capsys):
 def test_a_lens_bends_each_colour_its_own_way():
     image = np.ones((400, 600, 3), np.float32) * (np.arange(600) % 50 < 25)[None, :, None]
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"))
-    colours = [LensDistortion(bench, 22.0, nm) for nm in (611.0, 549.0, 465.0)]
+    colours = [LensDistortion(bench, 22.0, nm) for nm in CHANNEL_NM]
     focal = colours[0].focal_length_mm / 0.06
     bent = dg.post.distort(image, colours, focal_px=focal)
     for c, model in enumerate(colours):

@@ -20,8 +20,10 @@ from .parameter import Parameter
 from .picture import Canvas, Image
 from .warp import FILTER, FloatArray, PointMap, Warp, WarpStep
 
-#: Wavelengths that stand for red, green and blue: where linear Rec.709's colours have their middle.
-CHANNEL_NM = (611.0, 549.0, 465.0)
+#: Wavelengths that stand for the red, green and blue of linear Rec.709 under D65: their means of
+#: 1 / wavelength^2, which dispersion follows to first order (Cauchy). Colours that are as broad as
+#: these blur as well; a map moves them by their mean.
+CHANNEL_NM = (650.0, 545.0, 443.0)
 
 MODELS: dict[str, type[Distortion]] = {
     "brown-conrady": models.BrownConrady,

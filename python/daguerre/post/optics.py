@@ -24,8 +24,12 @@ LENS = (
     Parameter("lens", "a name of `daguerre lenses`, or a lens file", kind="text"),
     Parameter("focus", "distance in focus, from the entrance pupil", "m", math.inf, low=1e-3),
     Parameter("zoom", "focal length at which a zoom stands", "mm", low=1e-3),
+    Parameter(
+        "focus_by", "where rays near the axis meet, or where the spot is smallest", kind="choice",
+        default="paraxial", choices=("paraxial", "best"),
+    ),
     Parameter("f_stop", "of the lens; wide open if absent", low=1e-2),
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -101,8 +105,9 @@ def bench(values: Values) -> Bench:
 
     item = lenses.load(values["lens"])
     return set_up(
-        item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom")
-    )
+        item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom"),
+        by=values["focus_by"],
+    )  # fmt: skip
 
 
 def _positive(pair: Any) -> TypeGuard[tuple[float, float]]:

@@ -1,0 +1,127 @@
+"""24 MP distortion through the map of a lens, against OpenCV's map and remap with cubics.
+
+    python bench/darkroom.py [--size 6000x4000] [--rounds 5] [--lens NAME] [--json]
+
+Both bend the same float RGB picture on all cores; rounds alternate, and the ratio is that of the
+medians. Ours: the map from chief rays, for one colour and for three (lateral colour), then the
+picture. OpenCV: ``initUndistortRectifyMap`` (5 coefficients) and ``remap`` with INTER_CUBIC.
+Wanted: at most 1.5 times OpenCV's time, the map included. ``peak_mb`` is what ``daguerre post``
+takes for the same as files, above the imported package (Linux only).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from daguerre import lenses
+from daguerre.analysis.bench import set_up
+from daguerre.distortion.lens import LensDistortion
+from daguerre.post import distort
+from daguerre.post.distortion import CHANNEL_NM
+
+CHILD = """
+import json, os, resource, sys
+import daguerre, OpenEXR
+pages = int(open("/proc/self/statm").read().split()[1])
+before = pages * os.sysconf("SC_PAGE_SIZE")
+from daguerre.cli import main
+code = main(sys.argv[1:])
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+print(json.dumps({"code": code or 0, "peak_mb": (peak - before) / 1e6}))
+"""
+
+
+def cpu() -> float:
+    """Seconds of this process."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def timed(job: Callable[[], object]) -> tuple[float, float]:
+    """Wall and CPU seconds."""
+    wall, busy = time.perf_counter(), cpu()
+    job()
+    return time.perf_counter() - wall, cpu() - busy
+
+
+def opencv(image: np.ndarray, focal: float) -> None:
+    """Map and picture."""
+    height, width = image.shape[:2]
+    matrix = np.array([[focal, 0, width / 2 - 0.5], [0, focal, height / 2 - 0.5], [0, 0, 1]])
+    numbers = np.array([-0.15, 0.02, 0.001, -0.002, 0.003])
+    size = (width, height)
+    x, y = cv2.initUndistortRectifyMap(matrix, numbers, np.eye(3), matrix, size, cv2.CV_32FC1)
+    cv2.remap(image, x, y, cv2.INTER_CUBIC)
+
+
+def ours(image: np.ndarray, name: str, wavelengths: tuple[float, ...]) -> None:
+    """Chief rays, maps and picture."""
+    pitch = 36 / image.shape[1]
+    bench = set_up(lenses.load(name))
+    models = [LensDistortion(bench, 22.0, nm) for nm in wavelengths]
+    distort(image, models, focal_px=models[0].focal_length_mm / pitch)
+
+
+def peak_mb(image: np.ndarray, name: str) -> float:
+    """Of the command line, from file to file."""
+    import OpenEXR
+
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder) / "in.exr", Path(folder) / "out.exr"
+        kind = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+        with OpenEXR.File(kind, {"RGB": image}) as file:
+            file.write(str(source))
+        effect = f"distortion:model=lens,lens={name},sensor=36x24"
+        words = ["post", str(source), "-o", str(target), "--effect", effect, "--quiet"]
+        run = subprocess.run(
+            [sys.executable, "-c", CHILD, *words], capture_output=True, text=True, check=True
+        )
+    return float(json.loads(run.stdout)["peak_mb"])
+
+
+def main() -> int:
+    """Prints a line for each number."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--size", default="6000x4000")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--lens", default="canon-ef-11-24mm-f4")
+    parser.add_argument("--json", action="store_true")
+    given = parser.parse_args()
+    width, height = map(int, given.size.split("x"))
+    image = np.random.default_rng(1).random((height, width, 3), dtype=np.float32)
+    jobs: dict[str, Callable[[], object]] = {
+        "opencv": lambda: opencv(image, 0.83 * width),
+        "one_colour": lambda: ours(image, given.lens, CHANNEL_NM[1:2]),
+        "three_colours": lambda: ours(image, given.lens, CHANNEL_NM),
+    }
+    rounds = [{name: timed(job) for name, job in jobs.items()} for _ in range(given.rounds + 1)][1:]
+    wall = {name: statistics.median(r[name][0] for r in rounds) for name in jobs}
+    busy = {name: statistics.median(r[name][1] for r in rounds) for name in jobs}
+    result = {"size": given.size, "lens": given.lens, "threads": cv2.getNumThreads()}
+    result |= {f"{name}_s": round(wall[name], 3) for name in jobs}
+    result |= {f"{name}_cpu_s": round(busy[name], 3) for name in jobs}
+    for name in ("one_colour", "three_colours"):
+        result[f"{name}_ratio"] = round(wall[name] / wall["opencv"], 2)
+        result[f"{name}_cpu_ratio"] = round(busy[name] / busy["opencv"], 2)
+    result["peak_mb"] = round(peak_mb(image, given.lens))
+    if given.json:
+        print(json.dumps(result))
+    else:
+        print("\n".join(f"{key:20} {value}" for key, value in result.items()))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
