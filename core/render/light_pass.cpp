@@ -160,7 +160,8 @@ void LightPass::finish(Workspace& work, const LightArrival& path,
     const int count =
         film_ray.choose(radiance * float(1 / light), path.wavelengths, path.u_pixel, splats);
     for (int k = 0; k < count; ++k)
-        work.log->push_back({splats[k].pixel, splats[k].xyz, camera / light, film_ray.spread()});
+        work.log->push_back({splats[k].pixel, splats[k].xyz, camera / light, film_ray.spread(),
+                             path.sample});
 }
 
 }  // namespace dg

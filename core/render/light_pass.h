@@ -62,6 +62,7 @@ struct LoggedSplat {
     Vec3f xyz;
     double camera_over_light;
     float spread;
+    std::uint32_t path;   // its index
 };
 
 struct LightPass::Workspace {

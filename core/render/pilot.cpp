@@ -11,10 +11,11 @@
 namespace dg {
 namespace {
 
-constexpr int kCoarse = 6;                  // px of the picture along a side of a pilot's pixel
+constexpr int kLeast = 3, kMost = 6;        // px of the picture along a side of a pilot's pixel
+constexpr double kBlocks = 600;             // of a small picture
 constexpr std::uint32_t kSamples = 2;       // of each: the fewest that tell a variance
 constexpr int kPixelsPerPath = 16;
-constexpr std::uint64_t kFewestPaths = 256, kMostPaths = 1 << 18;
+constexpr std::uint64_t kFewestPaths = 2048, kMostPaths = 1 << 18;
 constexpr std::uint64_t kPathsPerTask = 1024;
 constexpr std::uint64_t kOwnRandom = 0x9170;
 
@@ -31,16 +32,21 @@ double price_of(const LensKind& lens) {     // one sample through it, all wavele
     return std::holds_alternative<ExactLens>(lens) ? 0.8 : 0.1;
 }
 
+/// Side of a block, px.
+int block_side(const Sensor& sensor) {
+    return std::clamp(int(std::sqrt(sensor.width * (sensor.height / kBlocks))), kLeast, kMost);
+}
+
 /// The picture in larger pixels.
-RenderSettings coarse(const RenderSettings& picture) {
+RenderSettings coarse(const RenderSettings& picture, int side) {
     RenderSettings s = picture;
-    s.sensor.width = (picture.sensor.width + kCoarse - 1) / kCoarse;
-    s.sensor.height = (picture.sensor.height + kCoarse - 1) / kCoarse;
+    s.sensor.width = (picture.sensor.width + side - 1) / side;
+    s.sensor.height = (picture.sensor.height + side - 1) / side;
     s.sample_begin = 0, s.sample_end = kSamples;
     s.round = {};
     s.seed = hash64(picture.seed, kOwnRandom);
     ShutterSettings shutter = picture.shutter.settings();
-    shutter.line_time_s *= kCoarse;
+    shutter.line_time_s *= side;
     s.shutter = Shutter(shutter, s.sensor.width, s.sensor.height);
     s.light = {1, 0};
     s.technique = Technique::rest;
@@ -53,7 +59,8 @@ class Pilot {
         : scene_(scene),
           camera_(camera),
           settings_(settings),
-          coarse_(coarse(settings)),
+          side_(block_side(settings.sensor)),
+          coarse_(coarse(settings, side_)),
           frame_{settings.sensor.width, settings.sensor.height},
           density_(settings.filter, frame_, {}, &settings.shutter) {
         settings_.seed = hash64(settings.seed, kOwnRandom, 1);
@@ -80,8 +87,8 @@ class Pilot {
         costs_.camera = pixels() * (kSample + lens + rays_per_sample_);
         costs_.sharing = pixels() * kShare;
         costs_.sharing_bounced = pixels() * kShareOfRay * rays_per_sample_;
-        return choose_plan(blocks, pixels() / double(blocks.size()), {straight, paths()},
-                           {bounced, paths()}, costs_);
+        return choose_plan({blocks, coarse_.sensor.width, pixels() / double(blocks.size())},
+                           {straight, paths()}, {bounced, paths()}, costs_);
     }
 
   private:
@@ -126,7 +133,7 @@ class Pilot {
         for (std::uint64_t t = 0; t < tasks; ++t) {
             for (const LoggedSplat& s : found[t])
                 all.push_back({block_of(s.pixel), rgb_from_xyz(s.xyz), float(s.camera_over_light),
-                               s.spread});
+                               s.spread, s.path});
             ray_count += double(rays[t]);
         }
         rays_per_path = ray_count / double(paths());
@@ -134,14 +141,16 @@ class Pilot {
     }
 
     std::uint32_t block_of(Pixel pixel) const {
-        const int x = std::clamp(pixel.x, 0, frame_.width - 1) / kCoarse;
-        const int y = std::clamp(pixel.y, 0, frame_.height - 1) / kCoarse;
+        const int x = std::clamp(pixel.x, 0, frame_.width - 1) / side_;
+        const int y = std::clamp(pixel.y, 0, frame_.height - 1) / side_;
         return std::uint32_t(y) * std::uint32_t(coarse_.sensor.width) + std::uint32_t(x);
     }
 
     const Scene& scene_;
     const Camera& camera_;
-    RenderSettings settings_, coarse_;
+    RenderSettings settings_;
+    int side_;
+    RenderSettings coarse_;
     FilmLayout frame_;
     FilmDensity density_;
     PixelCone cone_;

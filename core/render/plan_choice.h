@@ -28,6 +28,7 @@ struct PilotArrival {
     Vec3f value;           // y: linear Rec.709 that it would add to one pixel, were one path drawn per sample
     float ratio;           // r
     float spread = 1;      // k
+    std::uint32_t path = 0;   // of all, in the order in which they are drawn
 };
 
 /// The arrivals of so many light paths of one kind.
@@ -42,6 +43,13 @@ struct PilotBlock {
     Vec3f mean{0, 0, 0}, variance{0, 0, 0};
 };
 
+/// The picture in blocks, row by row.
+struct PilotPicture {
+    std::span<const PilotBlock> blocks;
+    int columns = 1;
+    double pixels = 1;   // of a block
+};
+
 /// What things cost, in any one unit.
 struct PlanCosts {
     double camera = 1;          // one sample of every pixel
@@ -52,14 +60,15 @@ struct PlanCosts {
 };
 
 /// The numbers of light paths for which cost x error is least, error being the mean over pixels and
-/// channels of variance / (mean^2 + 0.01), as of --noise. `pixels`: of a block. The arrivals are judged in
-/// two halves, and what counts is the lesser gain: one lucky path is no reason. Gains of less than kWorth
-/// are left alone, and paths with bounces must promise three times what the best plan without them gains. No
-/// plan more than doubles the cost of a sample.
-LightPlan choose_plan(std::span<const PilotBlock> blocks, double pixels, const PilotArrivals& straight,
+/// channels of variance / (mean^2 + 0.01), as of --noise; at most four times the cost of a sample without.
+/// Paths straight to the lens first, against what the camera's few samples have seen of
+/// the rest: sparks that these have not met are no reason to leave discs of light to noise. Then those with
+/// bounces. Either must gain more than kWorth by two standard errors, which come of leaving out an eighth of the
+/// paths in turn (jackknife): one lucky path is no reason.
+LightPlan choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
                       const PilotArrivals& bounced, const PlanCosts& costs);
 
-/// Cost x error of the camera alone over that of the best plan must be above this.
+/// Cost x error without over that with a plan must be above this.
 inline constexpr double kWorth = 1.1;
 
 }  // namespace dg

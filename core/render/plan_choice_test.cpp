@@ -13,7 +13,7 @@ using namespace dg;
 namespace {
 
 constexpr double kPixels = 36;   // of a block
-constexpr int kBlocks = 400;
+constexpr int kBlocks = 400, kColumns = 20;
 
 float uniform(std::uint64_t a, std::uint64_t b) { return float(hash_uniform(a, b)); }
 
@@ -26,10 +26,10 @@ struct Disc {
 
     double pixels() const { return lit * kPixels; }
     /// A light path adds to one lit pixel: density share / pixels of being that one's.
-    PilotArrival arrival(std::uint32_t block) const {
+    PilotArrival arrival(std::uint32_t block, std::uint32_t path = 0) const {
         const double light = share / pixels();           // per path, of hitting one certain pixel
         const float y = float(mean / light);
-        return {block, {y, y, y}, float(p / light)};
+        return {block, {y, y, y}, float(p / light), 1, path};
     }
     double variance(double m) const {   // of a sample, summed over the lit pixels
         const double light = share / pixels(), y = mean / light, r = p / light;
@@ -38,7 +38,7 @@ struct Disc {
     std::vector<PilotArrival> arrivals(int paths) const {
         std::vector<PilotArrival> all;
         for (int i = 0; i < paths; ++i)
-            if (uniform(1, i) < share) all.push_back(arrival(std::uint32_t(uniform(2, i) * float(lit))));
+            if (uniform(1, i) < share) all.push_back(arrival(std::uint32_t(uniform(2, i) * float(lit)), std::uint32_t(i)));
         return all;
     }
 };
@@ -47,6 +47,8 @@ std::vector<PilotBlock> even_blocks(float mean, float variance) {
     return std::vector<PilotBlock>(
         kBlocks, {{mean, mean, mean}, {variance, variance, variance}});
 }
+
+PilotPicture picture(const std::vector<PilotBlock>& blocks) { return {blocks, kColumns, kPixels}; }
 
 }  // namespace
 
@@ -78,12 +80,12 @@ TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") 
     const float rest = 1e-3f;
     const std::vector<PilotBlock> blocks = even_blocks(0.1f, rest);
     const std::vector<PilotArrival> all = disc.arrivals(40'000);
-    for (const double cost : {2e-6, 2e-5, 2e-4}) {
-        const LightPlan plan = choose_plan(blocks, kPixels, {all, 40'000}, {}, {.straight = cost, .bounced = cost});
+    for (const double cost : {2e-6, 2e-5, 2e-4}) {   // at most four times a sample's cost
+        const LightPlan plan = choose_plan(picture(blocks), {all, 40'000}, {}, {.straight = cost, .bounced = cost});
         const double dark = kBlocks * kPixels * rest / (0.01 + 0.01);   // a few blocks more, as good as all
         const double lit = std::pow(2.1, 2) + 0.01;
         double best = 1e300, wanted = 0;
-        for (double m = 256; m < 1e8; m *= 2) {
+        for (double m = 256; cost * m < 3; m *= 2) {
             const double total = (dark + disc.variance(m) / lit) * (1 + cost * m);
             if (total < best) best = total, wanted = m;
         }
@@ -93,24 +95,44 @@ TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") 
     }
 }
 
-TEST_CASE("plan choice: no paths where they gain nothing, or by luck alone") {
-    const std::vector<PilotBlock> blocks = even_blocks(1, 0.3f);
-    CHECK(choose_plan(blocks, kPixels, {}, {}, {.straight = 1e-5, .bounced = 1e-5}).off());
+constexpr PlanCosts kCheap{.straight = 1e-5, .bounced = 1e-5};
+
+TEST_CASE("plan choice: no paths where they gain nothing") {
+    CHECK(choose_plan(picture(even_blocks(1, 0.3f)), {}, {}, kCheap).off());
 
     // A broad light that every camera sample meets.
     const Disc broad{kBlocks, 1.0, 1.0, 0.5};
     const std::vector<PilotArrival> many = broad.arrivals(20'000);
-    CHECK(choose_plan(even_blocks(0, 0.1f), kPixels, {many, 20'000}, {}, {.straight = 1e-5, .bounced = 1e-5}).off());
-    CHECK(choose_plan(blocks, kPixels, {}, {many, 20'000}, {.straight = 1e-5, .bounced = 1e-5}).off());
+    CHECK(choose_plan(picture(even_blocks(0, 0.1f)), {many, 20'000}, {}, kCheap).off());
+    CHECK(choose_plan(picture(even_blocks(1, 0.3f)), {}, {many, 20'000}, kCheap).off());
+}
 
-    // One arrival that no camera sample would have found: half of the pilot has never seen it.
-    const std::vector<PilotArrival> lucky{{3, {1e5f, 1e5f, 1e5f}, 1e-4f}};
-    CHECK(choose_plan(blocks, kPixels, {}, {lucky, 20'000}, {.straight = 1e-5, .bounced = 1e-5}).off());
-    // Many of them are a caustic.
+TEST_CASE("plan choice: what the camera finds rarely is noise, however few samples have met it") {
+    // Samples of 2, one in 22, where the mean is 0.09: relative variance 10 per channel, not 2.
+    std::vector<PilotBlock> sparks(kBlocks);
+    for (int b = 0; b < kBlocks; b += 11) sparks[b] = {{1, 1, 1}, {2, 2, 2}};
+    const Disc disc{6, 1.0 / 40, 2.0, 0.4};
+    const std::vector<PilotArrival> all = disc.arrivals(40'000);
+    CHECK(choose_plan(picture(sparks), {all, 40'000}, {}, kCheap).off());   // not of sparks, which remain
+    CHECK(choose_plan(picture(even_blocks(0.1f, 1e-3f)), {all, 40'000}, {}, kCheap).m1 > 0);
+}
+
+TEST_CASE("plan choice: no paths for one that was lucky") {
+    const std::vector<PilotBlock> blocks = even_blocks(1, 0.01f);
+    // Bright for the camera that it meets once in a while: any plan would gain, did others find it too.
+    std::vector<PilotArrival> lucky;
+    for (int k = 0; k < 10; ++k) lucky.push_back({0, {1e5f, 1e5f, 1e5f}, 200, 1, 77});
+    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
+    CHECK(choose_plan(picture(blocks), {lucky, 20'000}, {}, kCheap).off());
+    for (int k = 0; k < 10; ++k) lucky[k].path = k * 2000;
+    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).m2 > 0);
+    // Brighter, and so rare that few pictures have one of them.
+    for (PilotArrival& a : lucky) a.ratio = 1;
+    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
+
     const Disc caustic{3, 1e-3, 1, 0.2};
     const std::vector<PilotArrival> bright = caustic.arrivals(20'000);
-    const LightPlan plan = choose_plan(even_blocks(1, 0.01f), kPixels, {}, {bright, 20'000},
-                                       {.straight = 1e-5, .bounced = 1e-5});
+    const LightPlan plan = choose_plan(picture(blocks), {}, {bright, 20'000}, kCheap);
     CHECK(plan.m1 == 0);
     CHECK(plan.m2 > 0);
 }
