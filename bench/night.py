@@ -61,9 +61,7 @@ def night_table(radius: float) -> tuple[dg.Scene, dg.Camera]:
 
     stage = Stage()
     photographer.add_set(stage)
-    with tempfile.TemporaryDirectory() as folder:
-        stage.glb.write(Path(folder) / "set.glb")
-        scene = dg.load(Path(folder) / "set.glb")
+    scene = loaded(stage.glb)
     for lamp in photographer.lamps():
         place = np.eye(4)
         place[:3, 3] = lamp.at
@@ -124,14 +122,42 @@ def compare(scene: dg.Scene, camera: dg.Camera, options: argparse.Namespace) -> 
     return out
 
 
-def plain_scenes() -> dict[str, Any]:
-    """Scenes that have no small lamps, or have them in focus or far from it; absent: no data."""
-    from lens_scenes import arcade
-
-    made: dict[str, Any] = {}
+def loaded(glb: Any) -> dg.Scene:
+    """A scene of the examples."""
     with tempfile.TemporaryDirectory() as folder:
-        arcade.make().write(Path(folder) / "arcade.glb")
-        made["arcade"] = dg.load(Path(folder) / "arcade.glb")
+        glb.write(Path(folder) / "scene.glb")
+        return dg.load(Path(folder) / "scene.glb")
+
+
+def interior() -> Any:
+    """A room that a panel on its ceiling lights, with spheres of plaster, polish and brass."""
+    from extensions.studio import Studio
+    from kit import shapes
+
+    studio = Studio()
+    wall = studio.matter("wall", (0.7, 0.68, 0.62), 1)
+    studio.put("room", shapes.box((4, 2.6, 6)), wall)
+    studio.softbox((0.5, 2.4, -0.2), (0, 0, -0.9), (1.2, 0.8), 12)
+    colors = ((0.6, 0.6, 0.6), (0.5, 0.1, 0.08), (0.9, 0.7, 0.35))
+    for k, (color, roughness) in enumerate(zip(colors, (1.0, 0.15, 0.25), strict=True)):
+        matter = studio.matter("ball", color, roughness, float(k == 2))
+        studio.put("ball", shapes.ball(0.35, 32, 64), matter, (0.9 * (k - 1), 0.35, -1.2 + 0.5 * k))
+    studio.camera((0.3, 1.2, 2.7), (0, 0.6, -1), 35, 2.8, (0, 0.35, -0.7))
+    return studio.glb
+
+
+def plain_scenes() -> dict[str, tuple[dg.Scene, dg.Camera]]:
+    """Scenes that have no small lamps, or have them in focus or far from it; absent: no data."""
+    from extensions import garden, shelf
+    from lens_scenes import arcade, long_table
+
+    made = {
+        "arcade": loaded(arcade.make()),
+        "long_table": loaded(long_table.make()),
+        "interior": loaded(interior()),
+        "product_shot": loaded(shelf.make()),
+        "garden": loaded(garden.make()),
+    }
     chess, sunset = DATA / "scenes/open_chess_set_512.glb", DATA / "hdri/pmndrs_sunset.hdr"
     if chess.is_file() and sunset.is_file():
         made["chess_in_daylight"] = dg.load(chess)

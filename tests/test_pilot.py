@@ -61,3 +61,23 @@ def test_nothing_where_nothing_shines_that_light_could_start_from() -> None:
 def test_a_plan_that_is_told_is_kept() -> None:
     assert plan(lamps(0.002), light_paths="off") == OFF
     assert plan(lamps(0.002), light_paths=(17, 3)) == (17, 3)
+
+
+def caustic(material: dg.Material) -> dg.Scene:
+    """A small lamp over a ball on a floor."""
+    scene = dg.Scene()
+    points, faces = scenes.quad(1)
+    floor = np.array([[1, 0, 0, 0], [0, 0, 1, -0.2], [0, -1, 0, -1.2], [0, 0, 0, 1.0]])
+    scene.add_instance(
+        scene.add_mesh(points, faces), dg.Material(dg.Diffuse((0.6, 0.6, 0.6))), floor
+    )
+    points, faces, normals = scenes.sphere(48, 0.12)
+    ball = scene.add_mesh(points, faces, normals=normals)
+    scene.add_instance(ball, material, scenes.at(0, -0.07, -1.2))
+    scene.add_light(dg.SphereLight((4000, 4000, 4000), 0.01), scenes.at(0.4, 0.8, -1.4))
+    return scene
+
+
+def test_light_paths_with_bounces_go_where_glass_gathers_light() -> None:
+    assert plan(caustic(dg.Material(dg.Dielectric(1.5))))[1] >= 1000
+    assert plan(caustic(dg.Material(dg.Diffuse((0.6, 0.6, 0.6)))))[1] == 0

@@ -13,6 +13,8 @@ constexpr double kSure = 2;   // standard errors
 // A sample with light paths may cost four times what it costs without: who asks for so many samples has a time
 // in mind. More would seldom gain a third: where light paths do all, cost x error falls as 1 + 1 / (cost - 1).
 constexpr double kMostCost = 4;
+// Of which paths with bounces may have as much as the camera: rare light asks for paths without end.
+constexpr double kMostBounced = 1;
 
 struct Candidate {
     int straight = 0, bounced = 0;
@@ -45,8 +47,7 @@ class Judge {
         Candidate found;
         for (int k2 = 0; k2 < (bounces ? kCandidates : 1); ++k2)
             for (int k1 = 0; k1 < kCandidates; ++k1)
-                if (cost({k1, k2}) <= kMostCost * costs_.camera &&
-                    gain({k1, k2}, found, bounces) > 0)
+                if (allowed({k1, k2}) && gain({k1, k2}, found, bounces) > 0)
                     found = {k1, k2};
         return found;
     }
@@ -58,10 +59,15 @@ class Judge {
     }
     /// A sample of every pixel, with its light paths.
     double cost(Candidate c) const {
-        const double light = costs_.straight * paths_of(c.straight) + costs_.bounced * paths_of(c.bounced);
-        const double sharing = (c.straight + c.bounced > 0 ? costs_.sharing : 0) +
-                               (c.bounced > 0 ? costs_.sharing_bounced : 0);
-        return costs_.camera + light + sharing;
+        const double sharing = c.straight + c.bounced > 0 ? costs_.sharing : 0;
+        return costs_.camera + sharing + costs_.straight * paths_of(c.straight) + bounced_cost(c);
+    }
+    double bounced_cost(Candidate c) const {
+        return c.bounced > 0 ? costs_.sharing_bounced + costs_.bounced * paths_of(c.bounced) : 0;
+    }
+    bool allowed(Candidate c) const {
+        return cost(c) <= kMostCost * costs_.camera &&
+               bounced_cost(c) <= kMostBounced * costs_.camera;
     }
 
     const Curves& straight_;

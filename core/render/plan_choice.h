@@ -60,11 +60,11 @@ struct PlanCosts {
 };
 
 /// The numbers of light paths for which cost x error is least, error being the mean over pixels and
-/// channels of variance / (mean^2 + 0.01), as of --noise; at most four times the cost of a sample without.
-/// Paths straight to the lens first, against what the camera's few samples have seen of
-/// the rest: sparks that these have not met are no reason to leave discs of light to noise. Then those with
-/// bounces. Either must gain more than kWorth by two standard errors, which come of leaving out an eighth of the
-/// paths in turn (jackknife): one lucky path is no reason.
+/// channels of variance / (mean^2 + 0.01), as of --noise; at most four times the cost of a sample without,
+/// of which paths with bounces may be one. Paths straight to the lens first, against what the camera's few
+/// samples have seen of the rest: sparks that these have not met are no reason to leave discs of light to
+/// noise. Then those with bounces. Either must gain more than kWorth by two standard errors, which come of
+/// leaving out an eighth of the paths in turn (jackknife): one lucky path is no reason.
 LightPlan choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
                       const PilotArrivals& bounced, const PlanCosts& costs);
 
