@@ -180,6 +180,7 @@ def batches(
     spp: int,
     first: int,
     options: Any,
+    technique: str = "both",
 ) -> np.ndarray:
     """Independent pictures of a crop, (n, H, W, 3)."""
     every = [
@@ -192,6 +193,7 @@ def batches(
             crop=crop,
             max_depth=8,
             light_paths=paths,
+            technique=technique,
         ).rgb
         for k in range(options.batches)
     ]
@@ -200,7 +202,7 @@ def batches(
 
 def check(options: argparse.Namespace) -> dict[str, Any]:
     """Camera rays alone against both strategies, crop by crop."""
-    from tests.statistical import differences
+    from tests.statistical import differences, seldom_met
 
     scene, camera = night_table(options.radius[0] / 1e3)
     # As many light paths as the frame gets: a crop's own plan is its small share of them.
@@ -211,18 +213,25 @@ def check(options: argparse.Namespace) -> dict[str, Any]:
         max_depth=8,
         light_paths=options.light_paths,
     ).light_paths
+    lamps = [light for light, _ in scene.lights if isinstance(light, dg.SphereLight)]
+    brightest = max(max(lamp.luminance) for lamp in lamps)
     out: dict[str, Any] = {"light_paths": plan}
     for name, (x, y) in CROPS.items():
         x0, y0 = int(x * options.w), int(y * options.h)
         crop = (x0, y0, x0 + CROP_PX, y0 + CROP_PX)
         alone = batches(scene, camera, crop, "off", options.spp // options.batches, 1, options)
         both = batches(scene, camera, crop, plan, options.both_spp, 1001, options)
+        # What light paths bring: all but what is left with next to none of them
+        few = (1e-6 * (plan[0] > 0), 1e-6 * (plan[1] > 0))
+        rest = batches(scene, camera, crop, few, options.both_spp, 2001, options, "light")
+        found = both.mean(axis=0) - rest.mean(axis=0)
+        expected = seldom_met(alone, found, brightest, options.spp)
         out[name] = {
             "crop": crop,
             "camera_mean": alone.mean(axis=(0, 1, 2)).round(5).tolist(),
             "both_mean": both.mean(axis=(0, 1, 2)).round(5).tolist(),
             "camera_error": round(float(alone.mean(axis=(1, 2)).std(axis=0).mean()), 6),
-            "differences": differences(alone, both),
+            "differences": differences(both, expected),
         }
     return out
 

@@ -18,14 +18,13 @@ from numpy.typing import NDArray
 import daguerre as dg
 
 from . import scenes
-from .statistical import Rare, batch_means, differences
+from .statistical import Rare, batch_means, differences, seldom_met
 
 SIZE = (48, 32)
 GAUSS = "double-gauss-50mm-f2"
 CLOSE = 1.2  # m, where lenses are focused
 SMALL = (9.0, 6.0)  # mm: pixels small enough for a lamp out of focus to be a disc of many
 PLAN = (3000.0, 0.0)  # light paths per sample index
-OFTEN = 25  # times that a pixel has met what is bright, to know how much it varies
 
 
 @dataclass(frozen=True)
@@ -97,19 +96,13 @@ def pictures(
 def by_chance(
     case: Case, camera: NDArray[np.float64], light: NDArray[np.float64] | None = None
 ) -> Rare:
-    """Camera pictures whose pixels know how rarely they meet a lamp.
-
-    At the edge of a disc no ray may have met it yet, and there is no spread. A value of mean m that
-    is never above b has a variance of m b at most, which it has where b is met or nothing. m is
-    what light paths bring: with next to none of them the same seeds draw all else. Where a lamp
-    was met often, its spread is known.
-    """
+    """Camera pictures that know what light paths bring: next to none of them, with the same seeds,
+    leave all else."""
     light = pictures(case, "light") if light is None else light
     m1, m2 = case.plan
     rest = pictures(case, "light", (1e-6 * (m1 > 0), 1e-6 * (m2 > 0)))
-    found = np.maximum(light.mean(axis=0) - rest.mean(axis=0), 0)
-    one = case.brightest / (case.spp[0] * len(camera))
-    return Rare(camera, np.where(found < OFTEN * one, found * one, 0))
+    found = light.mean(axis=0) - rest.mean(axis=0)
+    return seldom_met(camera, found, case.brightest, case.spp[0] * len(camera))
 
 
 def check(case: Case) -> None:

@@ -17,6 +17,7 @@ import daguerre as dg
 
 ALPHA = 0.01
 BLOCK = 8
+OFTEN = 25  # times that a pixel has met what is bright, to know how much it varies
 
 
 def batch_means(
@@ -60,6 +61,25 @@ class Rare:
 
 
 Values = NDArray[np.float64] | Reference | Rare
+
+
+def seldom_met(
+    batches: NDArray[np.float64], found: NDArray[np.float64], brightest: float, samples: int
+) -> Rare:
+    """Pictures whose pixels know how rarely they meet a lamp.
+
+    At the edge of a disc no ray may have met it yet, and there is no spread. A value of mean m that
+    is never above b has a variance of m b at most, which it has where b is met or nothing. Where a
+    lamp was met often, its spread is known.
+
+    Args:
+        batches: Independent pictures, (n, H, W, 3).
+        found: What lamps bring, by other means, (H, W, 3).
+        brightest: b.
+        samples: Of each pixel, in all batches.
+    """
+    one = brightest / samples
+    return Rare(batches, np.where(found < OFTEN * one, np.maximum(found, 0) * one, 0))
 
 
 def _moments(values: Values) -> Reference:

@@ -169,7 +169,7 @@ FAST = {
         options=TINY,
     ),
 }
-MANY: dict[str, Any] = {"spp": (1024, 256, 256), "brightest": 80}
+MANY: dict[str, Any] = {"spp": (512, 128, 128), "brightest": 80}
 SLOW = {
     "textured": Case(textured, thin(), **MANY),
     "textured, exact": Case(textured, glass(), **MANY),

@@ -180,7 +180,7 @@ def test_with_bounces_camera_and_both_find_one_picture(camera: dg.Camera) -> Non
 @pytest.mark.parametrize("camera", [thin(), glass()], ids=["thin", "exact"])
 def test_behind_smooth_glass_both_find_what_the_camera_finds(camera: dg.Camera) -> None:
     case = Case(
-        caustic, camera, plan=(0.0, 20000.0), spp=(8192, 256, 256), options={"max_depth": 6}
+        caustic, camera, plan=(0.0, 20000.0), spp=(2048, 256, 256), options={"max_depth": 6}
     )
     camera, both = pictures(case, "camera"), pictures(case, "both")
     assert differences(both, by_chance(case, camera)) == []
