@@ -32,14 +32,15 @@ from daguerre.post import distort
 from daguerre.post.distortion import CHANNEL_NM
 
 CHILD = """
-import json, os, resource, sys
+import json, sys
 import daguerre, OpenEXR
-pages = int(open("/proc/self/statm").read().split()[1])
-before = pages * os.sysconf("SC_PAGE_SIZE")
+def resident(key):  # ru_maxrss would count the process that started this one
+    lines = open("/proc/self/status").read().splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith(key)) * 1024
+before = resident("VmRSS")
 from daguerre.cli import main
 code = main(sys.argv[1:])
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-print(json.dumps({"code": code or 0, "peak_mb": (peak - before) / 1e6}))
+print(json.dumps({"code": code or 0, "peak_mb": (resident("VmHWM") - before) / 1e6}))
 """
 
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "math/error.h"
+#include "math/vec.h"
 #include "post/remap_tile.h"
 #include "post/remap_wide.h"
 
@@ -21,38 +22,63 @@ constexpr int kMaxRegion = 16 * kTileWidth * kTileHeight;   // pixels; beyond it
 struct TileMap {
     float dx[kTileHeight][kTileWidth], dy[kTileHeight][kTileWidth];
     float sx[kTileHeight][kTileWidth], sy[kTileHeight][kTileWidth];
+    bool stretched = false;   // else sx and sy are 1, and not set
 
     void read(const SourceMap& map, int x0, int y0, bool antialias) {
         CellMap cell;
+        stretched = false;
         for (int v = 0; v < kTileHeight; v += kCell)
             for (int u = 0; u < kTileWidth; u += kCell) {
                 const int column = (x0 + u) / kCell, row = (y0 - map.top + v) / kCell;
-                if (row < 0 || column >= map.columns || row >= map.rows) continue;
+                if (row < 0 || y0 + v < map.top || column >= map.columns || row >= map.rows) {
+                    blank(u, v);
+                    continue;
+                }
                 cell.read(map, column, row);
-                put(cell, u, v, antialias);
+                for (int j = 0; j < kCell; ++j) {
+                    std::copy_n(cell.dx[j], kCell, dx[v + j] + u);
+                    std::copy_n(cell.dy[j], kCell, dy[v + j] + u);
+                }
+                stretched = stretched || (antialias && shrinks(cell));
             }
+        if (stretched) read_stretches();
     }
 
   private:
-    void put(const CellMap& cell, int u, int v, bool antialias) {
+    void blank(int u, int v) {
         for (int j = 0; j < kCell; ++j) {
-            std::copy_n(cell.dx[j], kCell, dx[v + j] + u);
-            std::copy_n(cell.dy[j], kCell, dy[v + j] + u);
-            for (int i = 0; i < kCell; ++i) {
-                float x = 1, y = 1;
-                if (antialias) stretches(cell, i, j, x, y);
-                sx[v + j][u + i] = x, sy[v + j][u + i] = y;
-            }
+            std::fill_n(dx[v + j] + u, kCell, NAN);
+            std::fill_n(dy[v + j] + u, kCell, NAN);
         }
     }
 
-    /// By differences within the cell, so that no other cell has a say.
-    static void stretches(const CellMap& c, int i, int j, float& x, float& y) {
+    /// Squares of steps in the source, across and down, at one pixel of a cell whose rows are `stride`
+    /// apart: by differences within the cell, so that no other cell has a say.
+    static Vec2f steps(const float* x, const float* y, int stride, int i, int j) {
         const int i0 = std::min(i, kCell - 2), j0 = std::min(j, kCell - 2);
-        const float xx = 1 + c.dx[j][i0 + 1] - c.dx[j][i0], xy = c.dx[j0 + 1][i] - c.dx[j0][i];
-        const float yx = c.dy[j][i0 + 1] - c.dy[j][i0], yy = 1 + c.dy[j0 + 1][i] - c.dy[j0][i];
-        x = stretch_of(std::sqrt(xx * xx + xy * xy));
-        y = stretch_of(std::sqrt(yx * yx + yy * yy));
+        const int a = j * stride + i0, b = j0 * stride + i;
+        const float xx = 1 + x[a + 1] - x[a], xy = x[b + stride] - x[b];
+        const float yx = y[a + 1] - y[a], yy = 1 + y[b + stride] - y[b];
+        return {xx * xx + xy * xy, yx * yx + yy * yy};
+    }
+
+    static bool shrinks(const CellMap& c) {
+        float most = 0;
+        for (int j = 0; j < kCell; ++j)
+            for (int i = 0; i < kCell; ++i) {
+                const Vec2f s = steps(c.dx[0], c.dy[0], kCell, i, j);
+                most = std::max(most, std::max(s.x, s.y));   // NaN does not count
+            }
+        return stretch_of(std::sqrt(most)) > 1;
+    }
+
+    void read_stretches() {
+        for (int v = 0; v < kTileHeight; ++v)
+            for (int u = 0; u < kTileWidth; ++u) {
+                const int v0 = v / kCell * kCell, u0 = u / kCell * kCell;
+                const Vec2f s = steps(dx[v0] + u0, dy[v0] + u0, kTileWidth, u - u0, v - v0);
+                sx[v][u] = stretch_of(std::sqrt(s.x)), sy[v][u] = stretch_of(std::sqrt(s.y));
+            }
     }
 };
 
@@ -94,27 +120,32 @@ class Tile {
 
   private:
     bool inside(float x, float y) const {   // false for NaN
-        return x >= -0.5f && y >= -0.5f && x <= float(job_.source.width) - 0.5f &&
-               y <= float(job_.source.height) - 0.5f;
+        return (x >= -0.5f) & (y >= -0.5f) & (x <= float(job_.source.width) - 0.5f) &
+               (y <= float(job_.source.height) - 0.5f);
     }
-    bool plain(int u, int v) const { return map_.sx[v][u] == 1 && map_.sy[v][u] == 1; }
+    float stretch_x(int u, int v) const { return map_.stretched ? map_.sx[v][u] : 1; }
+    float stretch_y(int u, int v) const { return map_.stretched ? map_.sy[v][u] : 1; }
 
-    /// The region that plain pixels read; false if it would be absurdly large.
+    /// The region that pixels within the source read; false if it would be absurdly large.
     bool find_region(int m) {
-        int left = 1 << 30, right = -left, up = left, down = -left;
-        for (int y = top_; y < bottom_; ++y)
-            for (int x = x0_; x < x1_; ++x) {
-                const float dx = map_.dx[y - y0_][x - x0_], dy = map_.dy[y - y0_][x - x0_];
-                if (!plain(x - x0_, y - y0_) || !inside(x + dx, y + dy)) continue;
-                const int ix = x + int(std::floor(dx)), iy = y + int(std::floor(dy));
-                left = std::min(left, ix), right = std::max(right, ix);
-                up = std::min(up, iy), down = std::max(down, iy);
+        float left = INFINITY, right = -left, up = left, down = -left;
+        for (int y = top_; y < bottom_; ++y) {
+            const float *dx = map_.dx[y - y0_], *dy = map_.dy[y - y0_];
+            for (int u = 0; u < x1_ - x0_; ++u) {
+                const float x = float(x0_ + u) + dx[u], line = float(y) + dy[u];
+                const bool in = inside(x, line);
+                left = in && x < left ? x : left, right = in && x > right ? x : right;
+                up = in && line < up ? line : up, down = in && line > down ? line : down;
             }
-        region_.x0 = left - 1, region_.y0 = up - 1;
-        region_.width = std::max(right - left + 4, 0), region_.height = std::max(down - up + 4, 0);
-        if (right < left) region_.width = region_.height = 0;
+        }
+        region_ = RemapRegion{0, 0, 0, 0, std::move(region_.values)};
+        if (!(left <= right && up <= down)) return false;   // nothing is there
+        // A pixel more on either side: the sum of a place is rounded.
+        region_.x0 = int(std::floor(left)) - 2, region_.y0 = int(std::floor(up)) - 2;
+        region_.width = int(std::floor(right)) + 4 - region_.x0;
+        region_.height = int(std::floor(down)) + 4 - region_.y0;
         if (std::int64_t(region_.width) * region_.height > kMaxRegion) return false;
-        if (region_.width > 0) fill(m);
+        fill(m);
         return true;
     }
 
@@ -139,26 +170,23 @@ class Tile {
         const RemapSource& s = job_.source;
         const int v = y - y0_, count = x1_ - x0_;
         RemapRow places;
-        bool simple[kTileWidth];
-        for (int u = 0; u < kTileWidth; ++u) {
-            const float dx = map_.dx[v][u], dy = map_.dy[v][u];
-            simple[u] = u < count && together && plain(u, v) && inside(x0_ + u + dx, y + dy);
-            const Split x(simple[u] ? dx : 0), iy(simple[u] ? dy : 0);
-            places.tx[u] = x.rest, places.ty[u] = iy.rest;
-            places.offset[u] = simple[u] ? (y + iy.whole - 1 - region_.y0) * region_.width +
-                                               (x0_ + u + x.whole - 1 - region_.x0)
-                                         : 0;
-        }
+        std::fill_n(places.here, kTileWidth, 0);
+        if (together)
+            remap_places({map_.dx[v], map_.dy[v], map_.stretched ? map_.sx[v] : nullptr, map_.sy[v],
+                          x0_, y, s.width, s.height, &region_},
+                         places);
+        std::fill(places.offset + count, places.offset + kTileWidth, 0);
+        const auto filled = std::count(places.here, places.here + count, 1);
         float* out = job_.out + (std::size_t(y - job_.begin) * s.width + x0_) * s.channels;
-        const bool any = std::any_of(simple, simple + count, [](bool b) { return b; });
         for (int c = 0; c < s.channels; ++c) {
             if (job_.map_of[c] != m) continue;
-            float values[kTileWidth];
-            if (any)
+            float values[kTileWidth] = {};
+            if (filled)
                 remap_row(region_.plane(c), region_.width, places, weights_of(job_.filter),
                           (count + 3) / 4 * 4, values);
-            for (int u = 0; u < count; ++u)
-                out[std::size_t(u) * s.channels + c] = simple[u] ? values[u] : other(u, v, c);
+            for (int u = 0; u < count; ++u) out[std::size_t(u) * s.channels + c] = values[u];
+            for (int u = 0; filled < count && u < count; ++u)
+                if (!places.here[u]) out[std::size_t(u) * s.channels + c] = other(u, v, c);
         }
         if (m == 0) count_undefined(v, count);
     }
@@ -168,8 +196,8 @@ class Tile {
         const float dx = map_.dx[v][u], dy = map_.dy[v][u];
         if (!inside(x0_ + u + dx, y0_ + v + dy)) return 0;
         const Split x(dx), y(dy);
-        return sample_wide(job_.source, c, {x0_ + u + x.whole, x.rest, map_.sx[v][u]},
-                           {y0_ + v + y.whole, y.rest, map_.sy[v][u]}, job_.filter);
+        return sample_wide(job_.source, c, {x0_ + u + x.whole, x.rest, stretch_x(u, v)},
+                           {y0_ + v + y.whole, y.rest, stretch_y(u, v)}, job_.filter);
     }
 
     void count_undefined(int v, int count) {

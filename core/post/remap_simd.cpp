@@ -46,6 +46,35 @@ HWY_INLINE void transpose(V4& a, V4& b, V4& c, V4& e) {
     c = hn::InterleaveLower(d, ac_high, be_high), e = hn::InterleaveUpper(d, ac_high, be_high);
 }
 
+void Places(const RemapPlaces& p, RemapRow& row) {
+    const hn::CappedTag<float, kTileWidth> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const auto half = hn::Set(d, -0.5f), one = hn::Set(d, 1);
+    const auto right = hn::Set(d, float(p.width) - 0.5f), bottom = hn::Set(d, float(p.height) - 0.5f);
+    const auto y = hn::Set(d, float(p.y));
+    const auto stride = hn::Set(di, p.region->width);
+    const auto left = hn::Set(di, p.x - 1 - p.region->x0), up = hn::Set(di, p.y - 1 - p.region->y0);
+    for (int i = 0; i < kTileWidth; i += int(hn::Lanes(d))) {
+        const auto dx = hn::LoadU(d, p.dx + i), dy = hn::LoadU(d, p.dy + i);
+        const auto at_x = hn::Add(hn::Set(d, float(p.x)), hn::Add(hn::Iota(d, float(i)), dx));
+        const auto at_y = hn::Add(y, dy);
+        auto here = hn::And(hn::And(hn::Ge(at_x, half), hn::Le(at_x, right)),
+                            hn::And(hn::Ge(at_y, half), hn::Le(at_y, bottom)));   // false for NaN
+        if (p.sx != nullptr)
+            here = hn::And(here, hn::And(hn::Eq(hn::LoadU(d, p.sx + i), one),
+                                         hn::Eq(hn::LoadU(d, p.sy + i), one)));
+        const auto x0 = hn::Floor(hn::IfThenElseZero(here, dx)), y0 = hn::Floor(hn::IfThenElseZero(here, dy));
+        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(dx, x0)), d, row.tx + i);
+        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(dy, y0)), d, row.ty + i);
+        const auto column = hn::Add(hn::Add(hn::ConvertTo(di, x0), hn::Iota(di, i)), left);
+        const auto line = hn::Add(hn::ConvertTo(di, y0), up);
+        const auto offset = hn::Add(hn::Mul(line, stride), column);
+        const auto flag = hn::RebindMask(di, here);
+        hn::StoreU(hn::IfThenElseZero(flag, offset), di, row.offset + i);
+        hn::StoreU(hn::IfThenElseZero(flag, hn::Set(di, 1)), di, row.here + i);
+    }
+}
+
 void Row(const float* plane, int stride, const RemapRow& row, const RemapWeights& weights, int count,
          float* out) {
     const D4 d;
@@ -74,6 +103,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace dg {
 HWY_EXPORT(Row);
+HWY_EXPORT(Places);
+
+void remap_places(const RemapPlaces& p, RemapRow& row) { HWY_DYNAMIC_DISPATCH(Places)(p, row); }
 
 void remap_row(const float* plane, int stride, const RemapRow& row, const RemapWeights& weights,
                int count, float* out) {

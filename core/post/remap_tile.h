@@ -21,7 +21,18 @@ struct RemapRegion {
 struct RemapRow {
     std::int32_t offset[kTileWidth];
     float tx[kTileWidth], ty[kTileWidth];
+    std::int32_t here[kTileWidth];   // whether the pixel is filled from the region; else offset is 0
 };
+
+/// What places of a row depend on.
+struct RemapPlaces {
+    const float *dx, *dy;       // displacements, kTileWidth each
+    const float *sx, *sy;       // stretches; null: all are 1
+    int x, y, width, height;    // the first pixel, and the source's size
+    const RemapRegion* region;
+};
+/// Which pixels of a row a region fills, and where they lie in it.
+void remap_places(const RemapPlaces& p, RemapRow& row);
 
 /// Weights of four values as cubics in t: coefficient of t^k of weight i is at [k][i].
 struct RemapWeights {
