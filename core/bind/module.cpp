@@ -20,6 +20,8 @@ void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_truth(nb::module_& m);
 void bind_post_warp(nb::module_& m);
+void bind_post_blur(nb::module_& m);
+void bind_post_grain(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
@@ -44,4 +46,6 @@ NB_MODULE(_core, m) {
     bind_render(m);
     bind_truth(m);
     bind_post_warp(m);
+    bind_post_blur(m);
+    bind_post_grain(m);
 }
