@@ -49,6 +49,12 @@ def step_on_array(
         raise UsageError(
             f"{name}: image: wanted numbers of shape (H, W, C), got {array.shape} {array.dtype}"
         )
+    for channel, plane in (planes or {}).items():
+        if plane.shape != array.shape[:2] or plane.dtype.kind not in "fiu":
+            raise UsageError(
+                f"{name}: {channel}: wanted numbers of shape {array.shape[:2]}, "
+                f"got {plane.shape} {plane.dtype}"
+            )
     canvas = Canvas.of(array.shape, tuple(planes or ()), name)
     whole = Rows(0, canvas.height)
     band = Band(whole, np.ascontiguousarray(array, np.float32), planes or {})

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from .depth_of_field import DEPTH_OF_FIELD
 from .distortion import DISTORTION
 from .effect import Effect
+from .fake_flare import FAKE_FLARE
+from .grain import GRAIN
 from .lateral_colour import LATERAL_COLOUR
+from .motion_blur import MOTION_BLUR
 from .saturation import SATURATION
 from .stmap import STMAP
 from .vignetting import VIGNETTING
 
 EFFECTS: dict[str, Effect] = {
-    effect.name: effect for effect in (DISTORTION, STMAP, LATERAL_COLOUR, VIGNETTING, SATURATION)
+    effect.name: effect
+    for effect in (
+        DEPTH_OF_FIELD,
+        MOTION_BLUR,
+        DISTORTION,
+        STMAP,
+        LATERAL_COLOUR,
+        VIGNETTING,
+        SATURATION,
+        FAKE_FLARE,
+        GRAIN,
+    )
 }

@@ -1,0 +1,81 @@
+"""The shape of an iris for blurs: an outline, or a picture."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import IrisShape
+from daguerre.errors import UsageError
+from daguerre.io.iris import read_grey
+
+from .effect import Values
+from .parameter import Parameter
+
+BLADES = (
+    Parameter("blades", "straight or curved blades of the iris; 0: round", "", 0, "whole", low=0),
+    Parameter("blade_rotation", "0: a corner points to the right", "deg", 0.0),
+    Parameter("blade_curvature", "1: round, 0: straight, -1: bent inward", "", 0.0, low=-1, high=1),
+    Parameter("aperture_image", "grey picture of the opening, in place of blades", kind="text"),
+)
+_ROUND = 256  # corners that stand for a circle: 0.04 px off at a radius of 500 px
+_LARGEST = 512  # px of a picture's side: more than a blur shows
+
+
+def iris_shape(values: Values) -> IrisShape:
+    """The iris of an effect's parameters ``BLADES``.
+
+    Raises:
+        UsageError: Blades that are none, or blades and a picture.
+        InputError: The picture cannot be read.
+    """
+    image = values["aperture_image"]
+    if image is not None:
+        if values["blades"]:
+            raise UsageError("iris: wanted either blades or aperture_image, got both")
+        return IrisShape.image(_smaller(read_grey(Path(image))))
+    return IrisShape.outline(
+        outline(values["blades"], values["blade_rotation"], values["blade_curvature"])
+    )
+
+
+def outline(blades: int, rotation_deg: float, curvature: float) -> NDArray[np.float64]:
+    """Corners of a line around the opening, counterclockwise, y up, shape (N, 2); of any size.
+
+    Blades are straight (curvature 0), arcs of a circle whose radius is 1 / curvature times that of
+    the corners, or as much bent inward.
+    """
+    if blades == 0:
+        angle = np.linspace(0, 2 * math.pi, _ROUND, endpoint=False)
+        return np.stack([np.cos(angle), np.sin(angle)], 1)
+    if not 3 <= blades <= 64:
+        raise UsageError(f"iris: blades: wanted 0 (round) or 3 .. 64, got {blades}")
+    half = math.pi / blades
+    pieces = 1 if curvature == 0 else max(8, _ROUND // blades)
+    along = np.linspace(-1, 1, pieces, endpoint=False)  # the first blade, its middle on +x
+    if curvature == 0:
+        edge = np.stack([np.full(1, math.cos(half)), along * math.sin(half)], 1)
+    else:
+        radius = 1 / abs(curvature)
+        opening = math.asin(min(1.0, math.sin(half) / radius))
+        sagitta = math.copysign(1, curvature) * radius
+        centre = math.cos(half) - sagitta * math.cos(opening)
+        edge = np.stack(
+            [centre + sagitta * np.cos(along * opening), radius * np.sin(along * opening)], 1
+        )
+    turns = math.radians(rotation_deg) + half * (2 * np.arange(blades) + 1)
+    c, s = np.cos(turns)[:, None], np.sin(turns)[:, None]
+    x, y = edge[:, 0], edge[:, 1]
+    return np.ascontiguousarray(np.stack([c * x - s * y, s * x + c * y], 2).reshape(-1, 2))
+
+
+def _smaller(picture: NDArray[np.float32]) -> NDArray[Any]:
+    """Means over blocks of pixels, so that no side is too long; its edge is cut to whole blocks."""
+    block = math.ceil(max(picture.shape) / _LARGEST)
+    height, width = (side // block for side in picture.shape)
+    cut = picture[: height * block, : width * block].reshape(height, block, width, block)
+    return np.ascontiguousarray(np.minimum(cut.mean(axis=(1, 3)), 1), np.float32)
