@@ -33,15 +33,15 @@ struct BoundMap {
 
     BoundMap(Nodes n, Exact e, ExactCells c, int top)
         : nodes(std::move(n)), exact(std::move(e)), cells(std::move(c)) {
-        map = {int(exact.shape(1)), int(exact.shape(0)), top, values_of(nodes), values_of(exact),
-               values_of(cells)};
+        map = {int(exact.shape(1)), int(exact.shape(0)), top,
+               values_of(nodes),    values_of(exact),    values_of(cells)};
         map.check();
     }
 };
 
-auto remap(const Image& image, int first, int height, const std::vector<const BoundMap*>& maps,
-           const std::vector<int>& map_of, int begin, int end, std::string_view filter,
-           bool antialias) {
+auto remap(const Image& image, int first, int height,
+           const std::vector<const BoundMap*>& maps, const std::vector<int>& map_of,
+           int begin, int end, std::string_view filter, bool antialias) {
     std::vector<dg::SourceMap> given;
     for (const BoundMap* m : maps) given.push_back(m->map);
     const dg::RemapSource source{values_of(image), int(image.shape(1)), height,
@@ -49,19 +49,23 @@ auto remap(const Image& image, int first, int height, const std::vector<const Bo
     dg::RemapResult out;
     {
         nb::gil_scoped_release unlocked;
-        const auto kind = filter == "linear" ? dg::RemapFilter::linear : dg::RemapFilter::cubic;
+        const auto kind =
+            filter == "linear" ? dg::RemapFilter::linear : dg::RemapFilter::cubic;
         out = dg::remap(source, given, map_of, begin, end, kind, antialias);
     }
-    auto values = dg::bind::to_numpy(std::move(out.values),
-                                     {std::size_t(end - begin), image.shape(1), image.shape(2)});
+    auto values =
+        dg::bind::to_numpy(std::move(out.values),
+                           {std::size_t(end - begin), image.shape(1), image.shape(2)});
     return nb::make_tuple(std::move(values), out.undefined);
 }
 
-auto remap_nearest(const Plane& plane, int first, int height, const BoundMap& map, int begin, int end) {
+auto remap_nearest(const Plane& plane, int first, int height, const BoundMap& map,
+                   int begin, int end) {
     std::vector<std::uint32_t> out;
     {
         nb::gil_scoped_release unlocked;
-        out = dg::remap_nearest(values_of(plane), int(plane.shape(1)), height, first, map.map, begin, end);
+        out = dg::remap_nearest(values_of(plane), int(plane.shape(1)), height, first,
+                                map.map, begin, end);
     }
     return dg::bind::to_numpy(std::move(out), {std::size_t(end - begin), plane.shape(1)});
 }
@@ -70,24 +74,31 @@ auto remap_nearest(const Plane& plane, int first, int height, const BoundMap& ma
 
 void bind_post_warp(nb::module_& m) {
     nb::class_<BoundMap>(m, "SourceMap")
-        .def(nb::init<Nodes, Exact, ExactCells, int>(), "nodes"_a, "exact"_a, "exact_cells"_a,
-             "top"_a,
-             "How far away the light of each pixel lies, px: at nodes 16 px apart, (rows + 3, columns + "
-             "3, 2), and for cells in which exact (rows, columns) is not -1 at each pixel.")
+        .def(nb::init<Nodes, Exact, ExactCells, int>(), "nodes"_a, "exact"_a,
+             "exact_cells"_a, "top"_a,
+             "How far away the light of each pixel lies, px: at nodes 16 px apart, (rows "
+             "+ 3, columns + "
+             "3, 2), and for cells in which exact (rows, columns) is not -1 at each "
+             "pixel.")
         .def(
             "displacements",
             [](const BoundMap& m, int width, int begin, int end) {
-                if (begin < m.map.top || end > m.map.top + m.map.rows * dg::SourceMap::kCell ||
-                    begin >= end || width < 1 || width > m.map.columns * dg::SourceMap::kCell)
+                if (begin < m.map.top ||
+                    end > m.map.top + m.map.rows * dg::SourceMap::kCell || begin >= end ||
+                    width < 1 || width > m.map.columns * dg::SourceMap::kCell)
                     throw dg::input_error("map", "pixels", "some of the map's", "others");
-                return dg::bind::to_numpy(m.map.displacements(width, begin, end),
-                                          {std::size_t(end - begin), std::size_t(width), 2});
+                return dg::bind::to_numpy(
+                    m.map.displacements(width, begin, end),
+                    {std::size_t(end - begin), std::size_t(width), 2});
             },
-            "width"_a, "begin"_a, "end"_a, "Of all pixels of some rows, (rows, width, 2), px.");
-    m.def("remap", &remap, "image"_a, "first"_a, "height"_a, "maps"_a, "map_of"_a, "begin"_a, "end"_a,
-          "filter"_a, "antialias"_a,
-          "Rows [begin, end) of a picture seen through maps, and how many pixels no map defines. image: "
+            "width"_a, "begin"_a, "end"_a,
+            "Of all pixels of some rows, (rows, width, 2), px.");
+    m.def("remap", &remap, "image"_a, "first"_a, "height"_a, "maps"_a, "map_of"_a,
+          "begin"_a, "end"_a, "filter"_a, "antialias"_a,
+          "Rows [begin, end) of a picture seen through maps, and how many pixels no map "
+          "defines. image: "
           "rows from `first` on of a picture of `height` rows, (rows, W, C).");
-    m.def("remap_nearest", &remap_nearest, "plane"_a, "first"_a, "height"_a, "map"_a, "begin"_a,
-          "end"_a, "The same for one channel of 32-bit words: the nearest pixel's.");
+    m.def("remap_nearest", &remap_nearest, "plane"_a, "first"_a, "height"_a, "map"_a,
+          "begin"_a, "end"_a,
+          "The same for one channel of 32-bit words: the nearest pixel's.");
 }

@@ -16,13 +16,14 @@ namespace dg {
 namespace {
 
 constexpr int kCell = SourceMap::kCell;
-constexpr int kMaxRegion = 16 * kTileWidth * kTileHeight;   // pixels; beyond it a map is torn
+constexpr int kMaxRegion =
+    16 * kTileWidth * kTileHeight;  // pixels; beyond it a map is torn
 
 /// Displacements and stretches of a tile's pixels by one map.
 struct TileMap {
     float dx[kTileHeight][kTileWidth], dy[kTileHeight][kTileWidth];
     float sx[kTileHeight][kTileWidth], sy[kTileHeight][kTileWidth];
-    bool stretched = false;   // else sx and sy are 1, and not set
+    bool stretched = false;  // else sx and sy are 1, and not set
 
     void read(const SourceMap& map, int x0, int y0, bool antialias) {
         CellMap cell;
@@ -30,7 +31,8 @@ struct TileMap {
         for (int v = 0; v < kTileHeight; v += kCell)
             for (int u = 0; u < kTileWidth; u += kCell) {
                 const int column = (x0 + u) / kCell, row = (y0 - map.top + v) / kCell;
-                if (row < 0 || y0 + v < map.top || column >= map.columns || row >= map.rows) {
+                if (row < 0 || y0 + v < map.top || column >= map.columns ||
+                    row >= map.rows) {
                     blank(u, v);
                     continue;
                 }
@@ -52,8 +54,9 @@ struct TileMap {
         }
     }
 
-    /// Squares of steps in the source, across and down, at one pixel of a cell whose rows are `stride`
-    /// apart: by differences within the cell, so that no other cell has a say.
+    /// Squares of steps in the source, across and down, at one pixel of a cell whose rows
+    /// are `stride` apart: by differences within the cell, so that no other cell has a
+    /// say.
     static Vec2f steps(const float* x, const float* y, int stride, int i, int j) {
         const int i0 = std::min(i, kCell - 2), j0 = std::min(j, kCell - 2);
         const int a = j * stride + i0, b = j0 * stride + i;
@@ -67,7 +70,7 @@ struct TileMap {
         for (int j = 0; j < kCell; ++j)
             for (int i = 0; i < kCell; ++i) {
                 const Vec2f s = steps(c.dx[0], c.dy[0], kCell, i, j);
-                most = std::max(most, std::max(s.x, s.y));   // NaN does not count
+                most = std::max(most, std::max(s.x, s.y));  // NaN does not count
             }
         return stretch_of(std::sqrt(most)) > 1;
     }
@@ -76,8 +79,10 @@ struct TileMap {
         for (int v = 0; v < kTileHeight; ++v)
             for (int u = 0; u < kTileWidth; ++u) {
                 const int v0 = v / kCell * kCell, u0 = u / kCell * kCell;
-                const Vec2f s = steps(dx[v0] + u0, dy[v0] + u0, kTileWidth, u - u0, v - v0);
-                sx[v][u] = stretch_of(std::sqrt(s.x)), sy[v][u] = stretch_of(std::sqrt(s.y));
+                const Vec2f s =
+                    steps(dx[v0] + u0, dy[v0] + u0, kTileWidth, u - u0, v - v0);
+                sx[v][u] = stretch_of(std::sqrt(s.x)),
+                sy[v][u] = stretch_of(std::sqrt(s.y));
             }
     }
 };
@@ -119,14 +124,15 @@ class Tile {
     }
 
   private:
-    bool inside(float x, float y) const {   // false for NaN
+    bool inside(float x, float y) const {  // false for NaN
         return (x >= -0.5f) & (y >= -0.5f) & (x <= float(job_.source.width) - 0.5f) &
                (y <= float(job_.source.height) - 0.5f);
     }
     float stretch_x(int u, int v) const { return map_.stretched ? map_.sx[v][u] : 1; }
     float stretch_y(int u, int v) const { return map_.stretched ? map_.sy[v][u] : 1; }
 
-    /// The region that pixels within the source read; false if it would be absurdly large.
+    /// The region that pixels within the source read; false if it would be absurdly
+    /// large.
     bool find_region(int m) {
         float left = INFINITY, right = -left, up = left, down = -left;
         for (int y = top_; y < bottom_; ++y) {
@@ -139,7 +145,7 @@ class Tile {
             }
         }
         region_ = RemapRegion{0, 0, 0, 0, std::move(region_.values)};
-        if (!(left <= right && up <= down)) return false;   // nothing is there
+        if (!(left <= right && up <= down)) return false;  // nothing is there
         // A pixel more on either side: the sum of a place is rounded.
         region_.x0 = int(std::floor(left)) - 2, region_.y0 = int(std::floor(up)) - 2;
         region_.width = int(std::floor(right)) + 4 - region_.x0;
@@ -157,7 +163,8 @@ class Tile {
             const float* line = source_row(s, region_.y0 + j);
             for (int c = 0; c < s.channels; ++c) {
                 if (job_.map_of[c] != m) continue;
-                float* to = region_.values.data() + c * plane + std::size_t(j) * region_.width;
+                float* to =
+                    region_.values.data() + c * plane + std::size_t(j) * region_.width;
                 for (int i = 0; i < region_.width; ++i) {
                     const int x = std::clamp(region_.x0 + i, 0, s.width - 1);
                     to[i] = line[std::size_t(x) * s.channels + c];
@@ -172,21 +179,24 @@ class Tile {
         RemapRow places;
         std::fill_n(places.here, kTileWidth, 0);
         if (together)
-            remap_places({map_.dx[v], map_.dy[v], map_.stretched ? map_.sx[v] : nullptr, map_.sy[v],
-                          x0_, y, s.width, s.height, &region_},
+            remap_places({map_.dx[v], map_.dy[v], map_.stretched ? map_.sx[v] : nullptr,
+                          map_.sy[v], x0_, y, s.width, s.height, &region_},
                          places);
         std::fill(places.offset + count, places.offset + kTileWidth, 0);
         const auto filled = std::count(places.here, places.here + count, 1);
-        float* out = job_.out + (std::size_t(y - job_.begin) * s.width + x0_) * s.channels;
+        float* out =
+            job_.out + (std::size_t(y - job_.begin) * s.width + x0_) * s.channels;
         for (int c = 0; c < s.channels; ++c) {
             if (job_.map_of[c] != m) continue;
             float values[kTileWidth] = {};
             if (filled)
-                remap_row(region_.plane(c), region_.width, places, weights_of(job_.filter),
-                          (count + 3) / 4 * 4, values);
-            for (int u = 0; u < count; ++u) out[std::size_t(u) * s.channels + c] = values[u];
+                remap_row(region_.plane(c), region_.width, places,
+                          weights_of(job_.filter), (count + 3) / 4 * 4, values);
+            for (int u = 0; u < count; ++u)
+                out[std::size_t(u) * s.channels + c] = values[u];
             for (int u = 0; filled < count && u < count; ++u)
-                if (!places.here[u]) out[std::size_t(u) * s.channels + c] = other(u, v, c);
+                if (!places.here[u])
+                    out[std::size_t(u) * s.channels + c] = other(u, v, c);
         }
         if (m == 0) count_undefined(v, count);
     }
@@ -212,13 +222,15 @@ class Tile {
     RemapRegion region_;
 };
 
-void check(const RemapSource& s, std::span<const SourceMap> maps, std::span<const int> map_of,
-           int begin, int end) {
+void check(const RemapSource& s, std::span<const SourceMap> maps,
+           std::span<const int> map_of, int begin, int end) {
     if (int(map_of.size()) != s.channels || maps.empty())
-        throw input_error("remap", "maps", "one for each channel", std::to_string(maps.size()));
+        throw input_error("remap", "maps", "one for each channel",
+                          std::to_string(maps.size()));
     for (int m : map_of)
         if (m < 0 || m >= int(maps.size()))
-            throw input_error("remap", "map of a channel", "one of the maps", std::to_string(m));
+            throw input_error("remap", "map of a channel", "one of the maps",
+                              std::to_string(m));
     for (const SourceMap& m : maps) {
         m.check();
         if (begin < m.top || end > m.top + m.rows * kCell || s.width > m.columns * kCell)
@@ -229,9 +241,12 @@ void check(const RemapSource& s, std::span<const SourceMap> maps, std::span<cons
 }  // namespace
 
 const RemapWeights& weights_of(RemapFilter filter) {
-    static constexpr RemapWeights cubic{
-        {{0, 1, 0, 0}, {-0.5f, 0, 0.5f, 0}, {1, -2.5f, 2, -0.5f}, {-0.5f, 1.5f, -1.5f, 0.5f}}};
-    static constexpr RemapWeights linear{{{0, 1, 0, 0}, {0, -1, 1, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}};
+    static constexpr RemapWeights cubic{{{0, 1, 0, 0},
+                                         {-0.5f, 0, 0.5f, 0},
+                                         {1, -2.5f, 2, -0.5f},
+                                         {-0.5f, 1.5f, -1.5f, 0.5f}}};
+    static constexpr RemapWeights linear{
+        {{0, 1, 0, 0}, {0, -1, 1, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}};
     return filter == RemapFilter::cubic ? cubic : linear;
 }
 
@@ -252,8 +267,8 @@ RemapResult remap(const RemapSource& source, std::span<const SourceMap> maps,
 }
 
 std::vector<std::uint32_t> remap_nearest(std::span<const std::uint32_t> values, int width,
-                                         int height, int first, const SourceMap& map, int begin,
-                                         int end) {
+                                         int height, int first, const SourceMap& map,
+                                         int begin, int end) {
     std::vector<std::uint32_t> out(std::size_t(end - begin) * width);
     const int rows = int(values.size() / width);
     map.check();
@@ -261,15 +276,18 @@ std::vector<std::uint32_t> remap_nearest(std::span<const std::uint32_t> values, 
         CellMap cell;
         for (int column = 0; column * kCell < width; ++column) {
             cell.read(map, column, k - map.top / kCell);
-            for (int y = std::max(k * kCell, begin); y < std::min((k + 1) * kCell, end); ++y)
-                for (int x = column * kCell; x < std::min((column + 1) * kCell, width); ++x) {
+            for (int y = std::max(k * kCell, begin); y < std::min((k + 1) * kCell, end);
+                 ++y)
+                for (int x = column * kCell; x < std::min((column + 1) * kCell, width);
+                     ++x) {
                     const int v = y % kCell, u = x % kCell;
                     const float sx = x + std::floor(cell.dx[v][u] + 0.5f);
                     const float sy = y + std::floor(cell.dy[v][u] + 0.5f);
                     if (!(sx >= 0 && sy >= 0 && sx < width && sy < height)) continue;
                     const int line = int(sy) - first;
                     if (line < 0 || line >= rows)
-                        throw input_error("remap", "rows", "those that the map reads", "fewer");
+                        throw input_error("remap", "rows", "those that the map reads",
+                                          "fewer");
                     out[std::size_t(y - begin) * width + x] =
                         values[std::size_t(line) * width + int(sx)];
                 }

@@ -20,7 +20,8 @@ struct TestMap {
 
     template <typename Formula>
     TestMap(int width, int height, const Formula& d, bool all_exact = false) {
-        const int columns = (width + kCell - 1) / kCell, rows = (height + kCell - 1) / kCell;
+        const int columns = (width + kCell - 1) / kCell,
+                  rows = (height + kCell - 1) / kCell;
         const auto put = [&](std::vector<float>& to, int x, int y) {
             const auto [dx, dy] = d(double(x), double(y));
             to.push_back(float(dx)), to.push_back(float(dy));
@@ -30,7 +31,8 @@ struct TestMap {
         for (int k = 0; k < rows * columns; ++k) {
             exact.push_back(all_exact ? k : -1);
             for (int p = 0; all_exact && p < kCell * kCell; ++p)
-                put(cells, k % columns * kCell + p % kCell, k / columns * kCell + p / kCell);
+                put(cells, k % columns * kCell + p % kCell,
+                    k / columns * kCell + p / kCell);
         }
         map = {columns, rows, 0, nodes, exact, cells};
     }
@@ -48,10 +50,12 @@ struct TestImage {
     }
     RemapSource source(int begin, int end) const {
         const std::size_t row = std::size_t(width) * channels;
-        return {std::span(values).subspan(begin * row, (end - begin) * row), width, height, channels,
-                begin};
+        return {std::span(values).subspan(begin * row, (end - begin) * row), width,
+                height, channels, begin};
     }
-    float at(int x, int y, int c) const { return values[(std::size_t(y) * width + x) * channels + c]; }
+    float at(int x, int y, int c) const {
+        return values[(std::size_t(y) * width + x) * channels + c];
+    }
 };
 
 struct Shift {
@@ -67,32 +71,37 @@ double parabola(double x, double y, int c) {
 }  // namespace
 
 TEST_CASE("a map of whole pixels moves values without touching them") {
-    const TestImage image(100, 70, 3, [](int x, int y, int c) { return std::sin(x * 7.1 + y * 3.3 + c); });
+    const TestImage image(
+        100, 70, 3, [](int x, int y, int c) { return std::sin(x * 7.1 + y * 3.3 + c); });
     const TestMap map(100, 70, [](double, double) { return Shift{3, -2}; });
-    const auto out = remap(image.source(0, 70), {&map.map, 1}, kOneMap, 0, 70, RemapFilter::cubic, true);
+    const auto out = remap(image.source(0, 70), {&map.map, 1}, kOneMap, 0, 70,
+                           RemapFilter::cubic, true);
     CHECK(out.undefined == 0);
     for (int y = 2; y < 70; ++y)
-        for (int x = 0; x < 97; ++x) REQUIRE(out.values[(y * 100 + x) * 3 + 1] == image.at(x + 3, y - 2, 1));
-    CHECK(out.values[(50 * 100 + 98) * 3] == 0);   // outside
+        for (int x = 0; x < 97; ++x)
+            REQUIRE(out.values[(y * 100 + x) * 3 + 1] == image.at(x + 3, y - 2, 1));
+    CHECK(out.values[(50 * 100 + 98) * 3] == 0);  // outside
     CHECK(out.values[(1 * 100 + 50) * 3] == 0);
 }
 
-TEST_CASE("the cubic is exact for parabolas, between all pixels, near and far from nodes") {
+TEST_CASE(
+    "the cubic is exact for parabolas, between all pixels, near and far from nodes") {
     const TestImage image(90, 80, 3, parabola);
     const auto bend = [](double x, double y) {
         return Shift{2.3 + 1e-3 * x * y, -1.7 + 0.02 * x - 1e-5 * y * y * y};
     };
     for (bool exact : {false, true}) {
         const TestMap map(90, 80, bend, exact);
-        const auto out =
-            remap(image.source(0, 80), {&map.map, 1}, kOneMap, 0, 80, RemapFilter::cubic, false);
+        const auto out = remap(image.source(0, 80), {&map.map, 1}, kOneMap, 0, 80,
+                               RemapFilter::cubic, false);
         int counted = 0;
         for (int y = 10; y < 70; ++y)
             for (int x = 10; x < 70; ++x) {
                 const auto [dx, dy] = bend(x, y);
                 if (x + dx < 2 || x + dx > 86 || y + dy < 2 || y + dy > 76) continue;
                 const double wanted = parabola(x + dx, y + dy, 2);
-                REQUIRE(out.values[(y * 90 + x) * 3 + 2] == doctest::Approx(wanted).epsilon(1e-5));
+                REQUIRE(out.values[(y * 90 + x) * 3 + 2] ==
+                        doctest::Approx(wanted).epsilon(1e-5));
                 ++counted;
             }
         CHECK(counted > 2000);
@@ -105,7 +114,8 @@ TEST_CASE("each channel follows its own map") {
     const TestMap b(64, 64, [](double, double) { return Shift{0, 0.25}; });
     const std::vector<SourceMap> maps{a.map, b.map};
     const std::vector<int> map_of{0, 1, 0};
-    const auto out = remap(image.source(0, 64), maps, map_of, 0, 64, RemapFilter::linear, true);
+    const auto out =
+        remap(image.source(0, 64), maps, map_of, 0, 64, RemapFilter::linear, true);
     const float* pixel = out.values.data() + (20 * 64 + 30) * 3;
     CHECK(pixel[0] == doctest::Approx(2030.5));
     CHECK(pixel[1] == doctest::Approx(2055));
@@ -113,28 +123,33 @@ TEST_CASE("each channel follows its own map") {
 }
 
 TEST_CASE("any cut into bands gives the same bits, from no more rows than it says") {
-    const TestImage image(150, 130, 3, [](int x, int y, int c) { return std::sin(x * 7.1 + y * 3.3 + c); });
+    const TestImage image(
+        150, 130, 3, [](int x, int y, int c) { return std::sin(x * 7.1 + y * 3.3 + c); });
     const auto barrel = [](double x, double y) {
         const double r2 = (x - 75) * (x - 75) + (y - 65) * (y - 65);
         return Shift{(x - 75) * r2 * 2e-5, (y - 65) * r2 * 2e-5};
     };
     const TestMap map(150, 130, barrel);
-    const auto all = remap(image.source(0, 130), {&map.map, 1}, kOneMap, 0, 130, RemapFilter::cubic, true);
+    const auto all = remap(image.source(0, 130), {&map.map, 1}, kOneMap, 0, 130,
+                           RemapFilter::cubic, true);
     for (int begin = 0; begin < 130; begin += 13) {
-        const auto part =
-            remap(image.source(0, 130), {&map.map, 1}, kOneMap, begin, begin + 13, RemapFilter::cubic, true);
+        const auto part = remap(image.source(0, 130), {&map.map, 1}, kOneMap, begin,
+                                begin + 13, RemapFilter::cubic, true);
         for (std::size_t i = 0; i < part.values.size(); ++i)
             REQUIRE(part.values[i] == all.values[std::size_t(begin) * 450 + i]);
     }
-    CHECK_THROWS_AS(
-        remap(image.source(60, 70), {&map.map, 1}, kOneMap, 20, 40, RemapFilter::cubic, true), Error);
+    CHECK_THROWS_AS(remap(image.source(60, 70), {&map.map, 1}, kOneMap, 20, 40,
+                          RemapFilter::cubic, true),
+                    Error);
 }
 
 TEST_CASE("lamps get no dark rims, and NaN stays where it is seen") {
-    TestImage image(64, 64, 3, [](int x, int y, int) { return x == 30 && y == 30 ? 1e4 : 0.25; });
+    TestImage image(64, 64, 3,
+                    [](int x, int y, int) { return x == 30 && y == 30 ? 1e4 : 0.25; });
     image.values[(10 * 64 + 10) * 3] = NAN;
     const TestMap map(64, 64, [](double, double) { return Shift{0.5, 0.3}; });
-    const auto out = remap(image.source(0, 64), {&map.map, 1}, kOneMap, 0, 64, RemapFilter::cubic, true);
+    const auto out = remap(image.source(0, 64), {&map.map, 1}, kOneMap, 0, 64,
+                           RemapFilter::cubic, true);
     int lost = 0;
     for (int i = 0; i < 62 * 64 * 3; ++i) {
         if (i / 3 % 64 == 63) continue;
@@ -147,10 +162,14 @@ TEST_CASE("lamps get no dark rims, and NaN stays where it is seen") {
 
 TEST_CASE("where the map shrinks, a chequered source becomes grey") {
     const TestImage image(512, 512, 3, [](int x, int y, int) { return (x + y) % 2; });
-    const auto half = [](double x, double y) { return Shift{2.7 * (x - 60) + 0.3, 2.7 * (y - 60) + 0.1}; };
+    const auto half = [](double x, double y) {
+        return Shift{2.7 * (x - 60) + 0.3, 2.7 * (y - 60) + 0.1};
+    };
     const TestMap map(512, 512, half);
-    const auto out = remap(image.source(0, 512), {&map.map, 1}, kOneMap, 0, 512, RemapFilter::cubic, true);
-    const auto raw = remap(image.source(0, 512), {&map.map, 1}, kOneMap, 0, 512, RemapFilter::cubic, false);
+    const auto out = remap(image.source(0, 512), {&map.map, 1}, kOneMap, 0, 512,
+                           RemapFilter::cubic, true);
+    const auto raw = remap(image.source(0, 512), {&map.map, 1}, kOneMap, 0, 512,
+                           RemapFilter::cubic, false);
     double most = 0, raw_most = 0;
     for (int y = 55; y < 150; ++y)
         for (int x = 55; x < 150; ++x) {
@@ -162,17 +181,20 @@ TEST_CASE("where the map shrinks, a chequered source becomes grey") {
 }
 
 TEST_CASE("a map that is torn still takes every pixel from its place") {
-    const TestImage image(400, 300, 3, [](int x, int y, int c) { return x + 1000.0 * y + 0.1 * c; });
+    const TestImage image(400, 300, 3,
+                          [](int x, int y, int c) { return x + 1000.0 * y + 0.1 * c; });
     const auto torn = [](double x, double y) {
         const bool swap = int(x) % 2 == 0;
         return Shift{(swap ? 399 - x : x) - x, (swap ? 299 - y : y) - y};
     };
     const TestMap map(400, 300, torn, true);
-    const auto out = remap(image.source(0, 300), {&map.map, 1}, kOneMap, 0, 300, RemapFilter::cubic, false);
+    const auto out = remap(image.source(0, 300), {&map.map, 1}, kOneMap, 0, 300,
+                           RemapFilter::cubic, false);
     for (int y = 0; y < 300; y += 7)
         for (int x = 0; x < 400; ++x) {
             const auto [dx, dy] = torn(x, y);
-            REQUIRE(out.values[(y * 400 + x) * 3 + 1] == image.at(int(x + dx), int(y + dy), 1));
+            REQUIRE(out.values[(y * 400 + x) * 3 + 1] ==
+                    image.at(int(x + dx), int(y + dy), 1));
         }
 }
 
@@ -180,7 +202,8 @@ TEST_CASE("where a map is not defined pixels are 0 and counted") {
     const TestImage image(48, 48, 3, [](int, int, int) { return 1; });
     const auto cut = [](double x, double) { return Shift{x < 20 ? 0 : NAN, 0}; };
     const TestMap map(48, 48, cut, true);
-    const auto out = remap(image.source(0, 48), {&map.map, 1}, kOneMap, 0, 48, RemapFilter::cubic, true);
+    const auto out = remap(image.source(0, 48), {&map.map, 1}, kOneMap, 0, 48,
+                           RemapFilter::cubic, true);
     CHECK(out.undefined == 28 * 48);
     CHECK(out.values[19 * 3] == 1);
     CHECK(out.values[20 * 3] == 0);
@@ -200,7 +223,8 @@ TEST_CASE("maps that do not fit are refused") {
     TestMap map(40, 40, [](double, double) { return Shift{0, 0}; });
     const std::vector<int> wrong{0, 1, 0};
     const auto run = [&](std::span<const int> map_of, int end) {
-        return remap(image.source(0, 40), {&map.map, 1}, map_of, 0, end, RemapFilter::cubic, true);
+        return remap(image.source(0, 40), {&map.map, 1}, map_of, 0, end,
+                     RemapFilter::cubic, true);
     };
     CHECK_THROWS_AS(run(wrong, 40), Error);
     CHECK_THROWS_AS(run(kOneMap, 60), Error);

@@ -12,7 +12,8 @@ namespace dg {
 /// Beyond this a pixel of the result takes a part of what it covers.
 inline constexpr float kMaxStretch = 16;
 
-/// A stretch as small as 9/8 costs time and shows nothing; from there to 5/4 it is faded in.
+/// A stretch as small as 9/8 costs time and shows nothing; from there to 5/4 it is faded
+/// in.
 inline float stretch_of(float scale) {
     if (!(scale > 1.125f)) return 1;
     return std::min(scale < 1.25f ? 2 * scale - 1.25f : scale, kMaxStretch);
@@ -27,7 +28,8 @@ struct WidePlace {
 inline const float* source_row(const RemapSource& s, int y) {
     const int row = std::clamp(y, 0, s.height - 1) - s.first;
     if (row < 0 || row >= s.rows())
-        throw input_error("remap", "rows", "those that the map reads", "no row " + std::to_string(y));
+        throw input_error("remap", "rows", "those that the map reads",
+                          "no row " + std::to_string(y));
     return s.values.data() + std::size_t(row) * s.width * s.channels;
 }
 
@@ -45,17 +47,19 @@ struct WideWeights {
 
     WideWeights(const WidePlace& p, RemapFilter filter) {
         const float reach = 2 * p.stretch;
-        const int low = int(std::ceil(p.rest - reach)), high = int(std::floor(p.rest + reach));
+        const int low = int(std::ceil(p.rest - reach)),
+                  high = int(std::floor(p.rest + reach));
         first = p.at + low;
         float sum = 0;
         for (int i = low; i <= high; ++i)
-            sum += weight[count++] = filter_weight(filter, (float(i) - p.rest) / p.stretch);
+            sum += weight[count++] =
+                filter_weight(filter, (float(i) - p.rest) / p.stretch);
         for (int k = 0; k < count; ++k) weight[k] /= sum;
     }
 };
 
-inline float sample_wide(const RemapSource& s, int channel, const WidePlace& x, const WidePlace& y,
-                         RemapFilter filter) {
+inline float sample_wide(const RemapSource& s, int channel, const WidePlace& x,
+                         const WidePlace& y, RemapFilter filter) {
     const WideWeights wx(x, filter), wy(y, filter);
     float sum = 0, low = INFINITY, high = -INFINITY;
     for (int j = 0; j < wy.count; ++j) {
@@ -64,7 +68,8 @@ inline float sample_wide(const RemapSource& s, int channel, const WidePlace& x, 
         float along = 0;
         for (int i = 0; i < wx.count; ++i) {
             const float value =
-                line[std::size_t(std::clamp(wx.first + i, 0, s.width - 1)) * s.channels + channel];
+                line[std::size_t(std::clamp(wx.first + i, 0, s.width - 1)) * s.channels +
+                     channel];
             along += wx.weight[i] * value;
             low = std::min(low, value), high = std::max(high, value);
         }

@@ -13,7 +13,7 @@ constexpr int kCell = SourceMap::kCell;
 
 /// Lagrange's cubic through values at -1, 0, 1, 2: its coefficients at 1, t, t^2, t^3.
 std::array<float, 4> cubic(float a, float b, float c, float d) {
-    a -= b, c -= b, d -= b;   // so that equal values give it exactly
+    a -= b, c -= b, d -= b;  // so that equal values give it exactly
     return {b, c - a / 3 - d / 6, (a + c) / 2, (d - a) / 6 - c / 2};
 }
 
@@ -22,7 +22,8 @@ float value(const std::array<float, 4>& k, float t) {
 }
 
 /// One coordinate of a cell between nodes: along columns first, then along each row.
-void between(const SourceMap& map, int column, int row, int axis, float (&out)[kCell][kCell]) {
+void between(const SourceMap& map, int column, int row, int axis,
+             float (&out)[kCell][kCell]) {
     const std::size_t stride = 2 * std::size_t(map.columns + 3);
     const float* first = map.nodes.data() + row * stride + 2 * std::size_t(column) + axis;
     std::array<std::array<float, 4>, 4> down;
@@ -32,8 +33,8 @@ void between(const SourceMap& map, int column, int row, int axis, float (&out)[k
     }
     for (int v = 0; v < kCell; ++v) {
         const float t = float(v) / kCell;
-        const auto along =
-            cubic(value(down[0], t), value(down[1], t), value(down[2], t), value(down[3], t));
+        const auto along = cubic(value(down[0], t), value(down[1], t), value(down[2], t),
+                                 value(down[3], t));
         for (int u = 0; u < kCell; ++u) out[v][u] = value(along, float(u) / kCell);
     }
 }
@@ -43,10 +44,12 @@ void between(const SourceMap& map, int column, int row, int axis, float (&out)[k
 void SourceMap::check() const {
     const auto want = [](const char* what, std::size_t wanted, std::size_t got) {
         if (wanted != got)
-            throw input_error("map", what, std::to_string(wanted) + " values", std::to_string(got));
+            throw input_error("map", what, std::to_string(wanted) + " values",
+                              std::to_string(got));
     };
     if (columns < 1 || rows < 1 || top < 0 || top % kCell != 0)
-        throw input_error("map", "cells", "some, from a multiple of 16", std::to_string(top));
+        throw input_error("map", "cells", "some, from a multiple of 16",
+                          std::to_string(top));
     want("nodes", std::size_t(rows + 3) * (columns + 3) * 2, nodes.size());
     want("exact", std::size_t(rows) * columns, exact.size());
     const std::size_t cell = 2 * kCell * kCell;

@@ -1,8 +1,10 @@
-// source_map.h -- for each pixel of a picture, how far away its light lies in the source, px.
+// source_map.h -- for each pixel of a picture, how far away its light lies in the source,
+// px.
 //
-// Maps of lenses are smooth: they are given at nodes 16 px apart, and cubics through four nodes follow them
-// between. Cells where that is not good enough carry a value for every pixel. Displacements, and not places,
-// because a float keeps seven digits: of the few hundred px by which a lens moves light, and not of 9000.
+// Maps of lenses are smooth: they are given at nodes 16 px apart, and cubics through four
+// nodes follow them between. Cells where that is not good enough carry a value for every
+// pixel. Displacements, and not places, because a float keeps seven digits: of the few
+// hundred px by which a lens moves light, and not of 9000.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -13,11 +15,13 @@ namespace dg {
 struct SourceMap {
     static constexpr int kCell = 16;
 
-    int columns = 0, rows = 0;   // cells
-    int top = 0;                 // row of the picture at which the first cell begins; a multiple of kCell
-    std::span<const float> nodes;          // (rows + 3) x (columns + 3) x 2, from one cell before the first
-    std::span<const std::int32_t> exact;   // rows x columns: which of exact_cells, or -1
-    std::span<const float> exact_cells;    // n x kCell x kCell x 2
+    int columns = 0, rows = 0;  // cells
+    int top =
+        0;  // row of the picture at which the first cell begins; a multiple of kCell
+    std::span<const float>
+        nodes;  // (rows + 3) x (columns + 3) x 2, from one cell before the first
+    std::span<const std::int32_t> exact;  // rows x columns: which of exact_cells, or -1
+    std::span<const float> exact_cells;   // n x kCell x kCell x 2
 
     /// Throws Error unless the sizes agree.
     void check() const;
