@@ -71,7 +71,7 @@ def ours(image: np.ndarray, name: str, wavelengths: tuple[float, ...]) -> None:
     """Chief rays, maps and picture."""
     pitch = 36 / image.shape[1]
     bench = set_up(lenses.load(name))
-    models = [LensDistortion(bench, 22.0, nm) for nm in wavelengths]
+    models = LensDistortion.of_colours(bench, 22.0, wavelengths)
     distort(image, models, focal_px=models[0].focal_length_mm / pitch)
 
 

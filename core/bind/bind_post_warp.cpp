@@ -53,10 +53,12 @@ auto remap(const Image& image, int first, int height,
             filter == "linear" ? dg::RemapFilter::linear : dg::RemapFilter::cubic;
         out = dg::remap(source, given, map_of, begin, end, kind, antialias);
     }
-    auto values =
-        dg::bind::to_numpy(std::move(out.values),
-                           {std::size_t(end - begin), image.shape(1), image.shape(2)});
-    return nb::make_tuple(std::move(values), out.undefined);
+    float* values = out.values.release();
+    nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<float*>(p); });
+    const std::size_t rows = end - begin;
+    nb::ndarray<nb::numpy, float> made(values, {rows, image.shape(1), image.shape(2)},
+                                       owner);
+    return nb::make_tuple(std::move(made), out.undefined);
 }
 
 auto remap_nearest(const Plane& plane, int first, int height, const BoundMap& map,

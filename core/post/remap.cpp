@@ -255,8 +255,9 @@ RemapResult remap(const RemapSource& source, std::span<const SourceMap> maps,
                   bool antialias) {
     check(source, maps, map_of, begin, end);
     RemapResult result;
-    result.values.resize(std::size_t(end - begin) * source.width * source.channels);
-    Job job{source, maps, map_of, begin, end, filter, antialias, result.values.data()};
+    result.size = std::size_t(end - begin) * source.width * source.channels;
+    result.values = std::make_unique_for_overwrite<float[]>(result.size);
+    Job job{source, maps, map_of, begin, end, filter, antialias, result.values.get()};
     const int columns = (source.width + kTileWidth - 1) / kTileWidth;
     const int first = begin / kTileHeight, last = (end + kTileHeight - 1) / kTileHeight;
     oneapi::tbb::parallel_for(first * columns, last * columns, [&](int k) {

@@ -7,6 +7,7 @@
 // of -700. Where the map shrinks, it is stretched to the size of a pixel in the source.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,9 @@ struct RemapSource {
 };
 
 struct RemapResult {
-    std::vector<float> values;
+    // No vector: it would write zeros first, alone, while other threads wait.
+    std::unique_ptr<float[]> values;
+    std::size_t size = 0;
     std::int64_t undefined = 0;  // pixels where a map is not defined; they are 0
 };
 

@@ -116,7 +116,7 @@ TEST_CASE("each channel follows its own map") {
     const std::vector<int> map_of{0, 1, 0};
     const auto out =
         remap(image.source(0, 64), maps, map_of, 0, 64, RemapFilter::linear, true);
-    const float* pixel = out.values.data() + (20 * 64 + 30) * 3;
+    const float* pixel = out.values.get() + (20 * 64 + 30) * 3;
     CHECK(pixel[0] == doctest::Approx(2030.5));
     CHECK(pixel[1] == doctest::Approx(2055));
     CHECK(pixel[2] == doctest::Approx(2030.5));
@@ -135,7 +135,7 @@ TEST_CASE("any cut into bands gives the same bits, from no more rows than it say
     for (int begin = 0; begin < 130; begin += 13) {
         const auto part = remap(image.source(0, 130), {&map.map, 1}, kOneMap, begin,
                                 begin + 13, RemapFilter::cubic, true);
-        for (std::size_t i = 0; i < part.values.size(); ++i)
+        for (std::size_t i = 0; i < part.size; ++i)
             REQUIRE(part.values[i] == all.values[std::size_t(begin) * 450 + i]);
     }
     CHECK_THROWS_AS(remap(image.source(60, 70), {&map.map, 1}, kOneMap, 20, 40,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,6 +21,7 @@ from .opencv import tangent
 
 HEIGHTS = 48
 DEGREE = 20
+TRIM = 1e-10  # of the angle: terms that are less are left out
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,16 @@ class LensDistortion(Radial):
     bench: Bench
     reach_mm: float
     wavelength_nm: float = DESIGN_WAVELENGTH_NM
+
+    @classmethod
+    def of_colours(
+        cls, bench: Bench, reach_mm: float, wavelengths_nm: Sequence[float]
+    ) -> list[LensDistortion]:
+        """Models of one lens for several wavelengths, which share their scale."""
+        made = [cls(bench, reach_mm, nm) for nm in wavelengths_nm]
+        for model in made[1:]:
+            model.__dict__["focal_length_mm"] = made[0].focal_length_mm
+        return made
 
     def __post_init__(self) -> None:
         if not self.bench.lens.prescription.is_axially_symmetric:
@@ -87,4 +99,4 @@ def _angles(bench: Bench, reach_mm: float, nm: float) -> tuple[Chebyshev, float]
     end = heights[count - 1] if count < len(good) else reach_mm
     x, y = heights[:count] ** 2, angles[:count] / heights[:count]
     fit = Chebyshev.fit(x, y, min(DEGREE, count // 2), domain=[0, end**2])
-    return fit, float(end)
+    return fit.trim(TRIM * y[0]), float(end)

@@ -50,7 +50,7 @@ class Monotone:
         x = np.interp(goal, self._y, self._x)
         for _ in range(NEWTON):
             miss = self._function(x) - goal
-            if np.abs(miss).max(initial=0) < 1e-15:
+            if np.abs(miss).max(initial=0) < 1e-14:
                 break
             with np.errstate(all="ignore"):
                 step = miss / self._slope(x)

@@ -70,10 +70,8 @@ def distort(
 
     def make(canvas: Canvas) -> Step:
         middle = canvas.centre if centre is None else centre
-        warps = [
-            Warp.of(canvas, point_map(m, focal, middle, scale=scale, inverse=inverse))
-            for m in given
-        ]
+        maps = [point_map(m, focal, middle, scale=scale, inverse=inverse) for m in given]
+        warps = Warp.of_each(canvas, maps)
         return WarpStep(canvas, warps, filter=filter, antialias=antialias)
 
     return step_on_array("distort", image, make)
@@ -114,7 +112,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
     maps = [
         point_map(m, focal, centre, scale=values["scale"], inverse=values["inverse"]) for m in given
     ]
-    warps = [Warp.of(canvas, place) for place in maps]
+    warps = Warp.of_each(canvas, maps)
     if values["stmap"] is not None:
         from .stmap import write_stmap
 
@@ -157,7 +155,8 @@ def lens_models(
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
     reach = np.abs(corners + canvas.corner - canvas.centre).max(axis=0)
     item = bench(values)
-    made = [LensDistortion(item, 1.02 * math.hypot(*reach) * pitch_mm, nm) for nm in wavelengths_nm]
+    reach_mm = 1.02 * math.hypot(*reach) * pitch_mm
+    made = LensDistortion.of_colours(item, reach_mm, wavelengths_nm)
     return list(made), made[0].focal_length_mm / pitch_mm
 
 

@@ -8,6 +8,7 @@ does the rest (``core/post/source_map.h``).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -73,6 +74,12 @@ class Warp:
             points = corners[k : k + CHUNK, None, None, :] + inside
             cells[k : k + CHUNK] = _displacements(points, canvas, place)
         return cls(nodes.astype(np.float32), exact, cells, canvas.height)
+
+    @classmethod
+    def of_each(cls, canvas: Canvas, places: Sequence[PointMap]) -> list[Warp]:
+        """Several maps, side by side."""
+        with ThreadPoolExecutor(len(places)) as pool:
+            return list(pool.map(lambda place: cls.of(canvas, place), places))
 
     @classmethod
     def of_pixels(cls, moved: NDArray[np.float32], height: int, top: int) -> Warp:
