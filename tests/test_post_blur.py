@@ -231,14 +231,14 @@ def test_files_in_bands_are_the_arrays_and_missing_channels_are_named(
     depth = np.linspace(2, 9, SHAPE[0] * SHAPE[1], dtype=np.float32).reshape(SHAPE)
     flow = np.ascontiguousarray(moved(9, 5))
     source = write(tmp_path / "in.exr", depth_Z=depth, motion_U=flow[..., 0], motion_V=flow[..., 1])
-    words = "depth_of_field:focal_length=100,f_stop=2,focus=4,sensor=20x12,largest=50"
+    words = "depth-of-field:focal_length=100,f_stop=2,focus=4,sensor=20x12,largest=50"
     target = str(tmp_path / "out.exr")
     assert cli.main(["post", str(source), "-o", target, "--effect", words]) == 0
     with OpenEXR.File(target, separate_channels=True) as file:
         made = np.stack([file.channels()[c].pixels for c in "RGB"], axis=2)
     image = spots()
     assert made == pytest.approx(dg.post.depth_of_field(image, depth, **LENS, **FILM), rel=1e-6)
-    assert cli.main(["post", str(source), "-o", target, "--effect", "motion_blur"]) == 0
+    assert cli.main(["post", str(source), "-o", target, "--effect", "motion-blur"]) == 0
     with OpenEXR.File(target, separate_channels=True) as file:
         made = np.stack([file.channels()[c].pixels for c in "RGB"], axis=2)
     assert made == pytest.approx(dg.post.motion_blur(image, flow, depth), rel=1e-6)
@@ -246,5 +246,5 @@ def test_files_in_bands_are_the_arrays_and_missing_channels_are_named(
     bare = str(write(tmp_path / "bare.exr"))
     assert cli.main(["post", bare, "-o", target, "--effect", words]) == 3
     assert "channel for depth: wanted depth.Z" in capsys.readouterr().err
-    assert cli.main(["post", bare, "-o", target, "--effect", "motion_blur"]) == 3
+    assert cli.main(["post", bare, "-o", target, "--effect", "motion-blur"]) == 3
     assert "channel for motion.u: wanted motion.U" in capsys.readouterr().err

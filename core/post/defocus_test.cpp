@@ -95,6 +95,23 @@ TEST_CASE("what is near and blurred covers what is sharp behind it as its disc d
     }
 }
 
+TEST_CASE("behind a blurred edge the farther surface goes on as in a mirror") {
+    const int width = 120, height = 60;
+    const double r = 10;
+    std::vector<float> values(4 * width * height), radius(width * height);
+    for (int i = 0; i < width * height; ++i) {
+        const int x = i % width;
+        for (int c = 0; c < 4; ++c) values[4 * i + c] = float(std::max(0, x - 60));
+        radius[i] = x < 60 ? float(r) : 0.f;
+    }
+    const auto out = blurred(width, values, radius, blades(128));
+    for (int x = 51; x < 60; ++x) {   // black before it covers a share of the lens
+        const double t = (59.5 - x) / r;
+        const double share = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPiD;
+        CHECK(at(out, width, x, 30) == doctest::Approx((1 - share) * (59 - x)).scale(1).epsilon(0.05));
+    }
+}
+
 TEST_CASE("a mixed pixel on an edge gives each surface its own light") {
     // A sharp lamp before a wall out of focus; the column between them is two fifths lamp, and said to be wall.
     const int width = 90, height = 60;

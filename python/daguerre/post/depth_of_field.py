@@ -63,7 +63,7 @@ def thin_lens(canvas: Canvas, values: Values) -> ThinLens:
     focus = _given(canvas, values, "focus", "focus", "the distance in focus, such as focus=2.5m")
     if focus * 1e3 <= focal:
         raise UsageError(
-            f"depth_of_field: focus: wanted more than the focal length, {focal:g} mm, "
+            f"depth-of-field: focus: wanted more than the focal length, {focal:g} mm, "
             f"got {focus * 1e3:g} mm"
         )
     breathes = values["focus_breathing"] and math.isfinite(focus)
@@ -146,7 +146,7 @@ class _DepthOfField(Step):
 
 
 DEPTH_OF_FIELD = Effect(
-    "depth_of_field",
+    "depth-of-field",
     "blurs what is out of focus, by the depth of each pixel; a pinhole's picture is wanted",
     (
         Parameter("f_stop", "the file's if it says one", low=1e-2, high=1e9),
@@ -183,7 +183,7 @@ def depth_of_field(image: Image, depth: NDArray[Any], **parameters: Any) -> Imag
     Args:
         image: Shape (H, W, C), any channels.
         depth: Shape (H, W), m; 0, infinity and NaN stand for the sky.
-        **parameters: Those of the effect ``depth_of_field``: ``focal_length`` (mm), ``f_stop``,
+        **parameters: Those of the effect ``depth-of-field``: ``focal_length`` (mm), ``f_stop``,
             ``focus`` (m), ``sensor`` (mm, mm), ``blades``, ``blade_rotation`` (deg),
             ``blade_curvature``, ``aperture_image``, ``depth_along`` ("axis" or "ray"),
             ``focus_breathing``, ``largest`` (px).

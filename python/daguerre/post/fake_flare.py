@@ -21,7 +21,7 @@ from daguerre._core import IrisShape, defocus, rounded_blur
 from .array import on_array
 from .effect import Effect, Step, Values
 from .fours import in_fours
-from .iris import BLADES, iris_shape
+from .iris import BLADES, iris_shape, outline
 from .parameter import Parameter
 from .picture import Band, Canvas, Image, Rows, Source, bands
 
@@ -95,8 +95,9 @@ class _FakeFlare(Step):
             out += bounced * tint * spot
         if values["halo"] > 0:
             ring = half * values["halo_radius"]
+            disc = IrisShape.outline(outline(0, 0, 0))  # dust and scratches scatter to all sides
             outer, inner = (rounded_blur(scale * ring) for scale in (1.05, 0.95))
-            whole, hole = (r * r * _spread(light, 1, r, self._iris) for r in (outer, inner))
+            whole, hole = (r * r * _spread(light, 1, r, disc) for r in (outer, inner))
             out += values["halo"] * (whole - hole) / (outer**2 - inner**2)
         return np.maximum(out, 0)  # rounding where the discs of the ring cancel
 
@@ -144,7 +145,7 @@ def _between(small: Image, at: NDArray[Any], axis: int) -> Image:
 
 
 FAKE_FLARE = Effect(
-    "fake_flare",
+    "fake-flare",
     "made-up ghosts and a ring from the highlights of a picture",
     (
         Parameter("threshold", "light from which on a pixel is a highlight", "", 4.0, low=0),
@@ -166,7 +167,7 @@ def fake_flare(image: Image, **parameters: Any) -> Image:
 
     Args:
         image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
-        **parameters: Those of the effect ``fake_flare``: ``threshold``, ``reflectance``,
+        **parameters: Those of the effect ``fake-flare``: ``threshold``, ``reflectance``,
             ``ghosts``, ``halo``, ``halo_radius``, ``blades``, ``blade_rotation`` (deg),
             ``blade_curvature``, ``aperture_image``, ``seed``.
 

@@ -141,7 +141,7 @@ def _arrived(values: Values) -> list[float]:
 
 
 MOTION_BLUR = Effect(
-    "motion_blur",
+    "motion-blur",
     "blurs what moves, by the motion of each pixel; a picture of one instant is wanted",
     (
         Parameter("shutter_angle", "exposure; 360 is a frame", "deg", 180.0, low=0, high=36000),
@@ -178,7 +178,7 @@ def motion_blur(
             not finite stand still.
         depth: Shape (H, W), m, along the axis or the ray; 0, infinity and NaN stand for the sky.
             Without it, what moves faster hides what is slower.
-        **parameters: Those of the effect ``motion_blur``: ``shutter_angle`` (deg of a frame),
+        **parameters: Those of the effect ``motion-blur``: ``shutter_angle`` (deg of a frame),
             ``shutter_offset`` (frames), ``shutter_curve`` ("box" or "trapezoid"), ``efficiency``,
             ``scale``, ``v_up``.
 
@@ -189,7 +189,7 @@ def motion_blur(
     flow = np.asarray(motion)
     names = ("motion.U", "motion.V", "motion_back.U", "motion_back.V")
     if flow.ndim != 3 or flow.shape[2] not in (2, 4):
-        raise InputError(f"motion_blur: motion: wanted shape (H, W, 2 or 4), got {flow.shape}")
+        raise InputError(f"motion-blur: motion: wanted shape (H, W, 2 or 4), got {flow.shape}")
     planes = {name: flow[:, :, k] for k, name in enumerate(names[: flow.shape[2]])}
     if depth is not None:
         planes["depth.Z"] = np.asarray(depth)
