@@ -11,19 +11,16 @@ iris; seconds are CPU seconds of that thread. ``valid_rays_per_second`` is that 
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
-import os
-import platform
 import statistics
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from one_core import command, machine, report
 
 import daguerre as dg
 from daguerre import _core
@@ -95,16 +92,6 @@ def measure(
     }
 
 
-def processor() -> str:
-    """Name of the processor."""
-    info = Path("/proc/cpuinfo")
-    if info.is_file():
-        for line in info.read_text().splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
-
-
 def zoom(seconds: float) -> dict[str, Any]:
     """The zoom at its shortest, wide open and two stops down."""
     shortest = (dg.lenses.load(ZOOM).zoom_range_mm or (None,))[0]
@@ -138,45 +125,38 @@ def run(lens_name: str, f_stops: list[float], seconds: float, with_zoom: bool) -
         "setup_seconds": max(s["setup_seconds"] for s in stops.values()),
         "stops": stops,
         **({"zoom": zoom(seconds)} if with_zoom else {}),
-        "threads": 1,
-        "clock": "CPU seconds of the thread",
-        "simd_target": _core.simd_target(),
-        "machine": processor(),
-        "cores": os.cpu_count(),
-        "version": dg.__version__,
+        **machine(),
     }
 
 
 def main() -> int:
     """Measures and prints."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
+    parser = command(__doc__)
     parser.add_argument("--lens", default="double-gauss-50mm-f2", help="library name or file")
     parser.add_argument("--f-stop", type=float, action="append", help="default: 2, 4 and 8")
     parser.add_argument("--seconds", type=float, default=1.0, help="per f-stop")
     parser.add_argument("--no-zoom", action="store_true", help="the lens alone")
     options = parser.parse_args()
-    try:
-        result = run(options.lens, options.f_stop or F_STOPS, options.seconds, not options.no_zoom)
-    except ValueError as error:
-        print(f"lens_rays: {error}", file=sys.stderr)
-        return 2
-    if options.json:
-        print(json.dumps(result))
-        return 0
-    print(f"{result['lens']}, {result['machine']}, {result['simd_target']}, one core")
-    print_stops(result["stops"])
+    f_stops = options.f_stop or F_STOPS
+    return report(
+        options, lambda: run(options.lens, f_stops, options.seconds, not options.no_zoom), lines
+    )
+
+
+def lines(result: dict[str, Any]) -> Iterator[str]:
+    """For people: the lens, and the zoom if it was measured."""
+    yield result["lens"]
+    yield from stop_lines(result["stops"])
     if "zoom" in result:
         found = result["zoom"]
-        print(f"{found['lens']} at {found['zoom_mm']:g} mm, {found['surfaces']} surfaces")
-        print_stops(found["stops"])
-    return 0
+        yield f"{found['lens']} at {found['zoom_mm']:g} mm, {found['surfaces']} surfaces"
+        yield from stop_lines(found["stops"])
 
 
-def print_stops(stops: dict[str, dict[str, float]]) -> None:
+def stop_lines(stops: dict[str, dict[str, float]]) -> Iterator[str]:
     """A line for each f-stop."""
     for name, stop in stops.items():
-        print(
+        yield (
             f"  {name}: {stop['valid_rays_per_second'] / 1e6:.1f} M valid rays/s, "
             f"{stop['pass_fraction']:.1%} pass, set-up {stop['setup_seconds'] * 1e3:.0f} ms"
         )

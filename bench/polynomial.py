@@ -11,20 +11,17 @@ kernels of this machine's instruction set, ``ns_to_film`` that of the way back.
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
-import os
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from lens_rays import processor
+from one_core import command, machine, report
 
 import daguerre as dg
-from daguerre import _core
 from daguerre.polynomial import LensFit, fit
 
 HERE = Path(__file__).parent / "lenses"
@@ -104,12 +101,7 @@ def run(subjects: list[tuple[str, list[int], int]], terms: int | None, repeats: 
     return {
         "bench": "polynomial",
         "rows": rows,
-        "threads": 1,
-        "clock": "CPU seconds of the thread",
-        "simd_target": _core.simd_target(),
-        "machine": processor(),
-        "cores": os.cpu_count(),
-        "version": dg.__version__,
+        **machine(),
     }
 
 
@@ -120,32 +112,27 @@ def subject(text: str) -> tuple[str, list[int], int]:
     return name, [int(d) for d in (degrees or "7").split(",")], int(segments or 1)
 
 
-def main() -> int:
-    """Measures and prints."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
-    parser.add_argument("--lens", action="append", type=subject, help="NAME[:DEGREES[:SEGMENTS]]")
-    parser.add_argument("--terms", type=int, help="of each vector, chosen by matching pursuit")
-    parser.add_argument("--repeats", type=int, default=40)
-    options = parser.parse_args()
-    try:
-        result = run(options.lens or SUBJECTS, options.terms, options.repeats)
-    except ValueError as error:
-        print(f"polynomial: {error}", file=sys.stderr)
-        return 2
-    if options.json:
-        print(json.dumps(result))
-        return 0
-    print(f"{result['machine']}, {result['simd_target']}, one core")
+def lines(result: dict[str, Any]) -> Iterator[str]:
+    """For people: a line for each fit."""
     for row in result["rows"]:
-        print(
+        yield (
             f"{row['lens'][:32]:32} degree {row['degree']:2} x{row['segments']}: "
             f"{row['direction_rms_rad']:.1e} rad ({row['worst_over_rms']:.1f} x), "
             f"{row['film_rms_um']:.2g} um, T {row['transmittance_rms']:.1e}, "
             f"fit {row['fit_seconds']:.2f} s, "
             f"{row['ns_to_scene']:.1f} ns out, {row['ns_to_film']:.1f} ns back"
         )
-    return 0
+
+
+def main() -> int:
+    """Measures and prints."""
+    parser = command(__doc__)
+    parser.add_argument("--lens", action="append", type=subject, help="NAME[:DEGREES[:SEGMENTS]]")
+    parser.add_argument("--terms", type=int, help="of each vector, chosen by matching pursuit")
+    parser.add_argument("--repeats", type=int, default=40)
+    options = parser.parse_args()
+    subjects = options.lens or SUBJECTS
+    return report(options, lambda: run(subjects, options.terms, options.repeats), lines)
 
 
 if __name__ == "__main__":

@@ -46,7 +46,24 @@ LENS: Data = {
     "configurations": [{"name": "infinity", "gaps": {}}],
 }
 
-ZEMAX = """VERS 190513 80 123457 L123457
+
+def surf(
+    number: int | str, form: str, curvature: str, distance: float | str, semi: float, *lines: str
+) -> str:
+    """A surface of a ZEMAX file; ``lines`` stand between its shape and its rim."""
+    middle = "".join(f"  {line}\n" for line in lines)
+    return (
+        f'SURF {number}\n  TYPE {form}\n  CURV {curvature} 0 0 0 0 ""\n{middle}'
+        f'  DISZ {distance}\n  DIAM {semi:g} 1 0 0 1 ""\n'
+    )
+
+
+GLASS_1 = "GLAS ___BLANK 1 0 1.5168 64.17 0 0 0 0 0 0"
+GLASS_2 = "GLAS ___BLANK 1 0 1.67271 32.25 0 0 0 0 0 0"
+EVEN = ("CONI -0.7", "PARM 1 0", "PARM 2 1.2E-06", "PARM 3 -3E-09", GLASS_1)
+ODD = ("PARM 3 2E-05", "PARM 4 -1E-06", "PARM 5 1E-07", GLASS_1)
+ZEMAX = (
+    """VERS 190513 80 123457 L123457
 MODE SEQ
 NAME by hand
 UNIT MM X W X CM MR CPMM
@@ -56,52 +73,20 @@ SURF 0
   TYPE STANDARD
   CURV 0.0 0 0 0 0 ""
   DISZ INFINITY
-SURF 1
-  TYPE EVENASPH
-  CURV 0.025 0 0 0 0 ""
-  CONI -0.7
-  PARM 1 0
-  PARM 2 1.2E-06
-  PARM 3 -3E-09
-  DISZ 6
-  GLAS ___BLANK 1 0 1.5168 64.17 0 0 0 0 0 0
-  DIAM 11 1 0 0 1 ""
-SURF 2
-  TYPE STANDARD
-  CURV -1.8181818181818181E-02 0 0 0 0 ""
-  DISZ 2
-  GLAS ___BLANK 1 0 1.67271 32.25 0 0 0 0 0 0
-  DIAM 11 1 0 0 1 ""
-SURF 3
-  TYPE STANDARD
-  CURV -3.3333333333333335E-03 0 0 0 0 ""
-  DISZ 3
-  DIAM 10.5 1 0 0 1 ""
-SURF 4
-  STOP
-  TYPE STANDARD
-  CURV 0.0 0 0 0 0 ""
-  DISZ 4
-  DIAM 7 1 0 0 1 ""
-{before}SURF {a}
-  TYPE ODDASPHE
-  CURV -3.3333333333333333E-02 0 0 0 0 ""
-  PARM 3 2E-05
-  PARM 4 -1E-06
-  PARM 5 1E-07
-  DISZ 2.5
-  GLAS ___BLANK 1 0 1.5168 64.17 0 0 0 0 0 0
-  DIAM 8 1 0 0 1 ""
-SURF {b}
-  TYPE STANDARD
-  CURV -3.5714285714285712E-02 0 0 0 0 ""
-  DISZ {last}
-  DIAM 9 1 0 0 1 ""
-{after}SURF {c}
+"""
+    + surf(1, "EVENASPH", "0.025", 6, 11, *EVEN)
+    + surf(2, "STANDARD", "-1.8181818181818181E-02", 2, 11, GLASS_2)
+    + surf(3, "STANDARD", "-3.3333333333333335E-03", 3, 10.5)
+    + surf("4\n  STOP", "STANDARD", "0.0", 4, 7)
+    + "{before}"
+    + surf("{a}", "ODDASPHE", "-3.3333333333333333E-02", 2.5, 8, *ODD)
+    + surf("{b}", "STANDARD", "-3.5714285714285712E-02", "{last}", 9)
+    + """{after}SURF {c}
   TYPE STANDARD
   CURV 0.0 0 0 0 0 ""
   DISZ 0
 """
+)
 
 BREAK = """SURF 5
   TYPE COORDBRK

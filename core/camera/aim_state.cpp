@@ -15,14 +15,6 @@ namespace dg {
 constexpr int kAimVersion = 3;
 
 template <typename A>
-void describe(A& a, const Vec2d& v) {
-    a(v.x, v.y);
-}
-template <typename A>
-void describe(A& a, const Vec3d& v) {
-    a(v.x, v.y, v.z);
-}
-template <typename A>
 void describe(A& a, const ConstantIndex& g) {
     const auto& [n] = g;
     a(n);
@@ -97,25 +89,21 @@ void describe(A& a, const FittedGlass& g) {
     a(degree);
 }
 
-// Both ways: T is const for a writer.
-template <typename A, typename T>
-    requires std::is_same_v<std::remove_const_t<T>, FreeAimTables>
+template <typename A, Either<FreeAimTables> T>
 void describe(A& a, T& t) {
     auto& [degree, coefficients, center_x, center_y, half_x, half_y, normal, region, area, column_x,
            column_low, column_high] = t;
     a(degree, coefficients, center_x, center_y, half_x, half_y, normal, region, area, column_x,
       column_low, column_high);
 }
-template <typename A, typename T>
-    requires std::is_same_v<std::remove_const_t<T>, AimTables>
+template <typename A, Either<AimTables> T>
 void describe(A& a, T& t) {
     auto& [degree, coefficients, film_radius, iris_scale, enlargement, shape_area, all_shape, region,
            area, column_x, column_half, free] = t;
     a(degree, coefficients, film_radius, iris_scale, enlargement, shape_area, all_shape, region, area,
       column_x, column_half, free);
 }
-template <typename A, typename T>
-    requires std::is_same_v<std::remove_const_t<T>, AimState>
+template <typename A, Either<AimState> T>
 void describe(A& a, T& s) {
     auto& [aim, h0, transmittance, fit] = s;
     auto& [slopes, free_slopes, tables, fit_error, iris_error, fallback_segments, covered] =

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "math/hash.h"
+#include "math/vec.h"
 
 namespace dg {
 
@@ -115,5 +116,18 @@ class ByteReader {
         rest.remove_prefix(size);
     }
 };
+
+/// U both ways: for a writer T is const.
+template <typename T, typename U>
+concept Either = std::is_same_v<std::remove_const_t<T>, U>;
+
+template <typename A, Either<Vec2d> T>
+void describe(A& a, T& v) {
+    a(v.x, v.y);
+}
+template <typename A, Either<Vec3d> T>
+void describe(A& a, T& v) {
+    a(v.x, v.y, v.z);
+}
 
 }  // namespace dg

@@ -5,19 +5,9 @@
 
 namespace dg {
 
-// Both ways: T is const for a writer. Members are listed by structured bindings, as in
-// aim_state.cpp: a struct that gains one does not compile here until it is kept.
-template <typename T, typename U>
-concept Either = std::is_same_v<std::remove_const_t<T>, U>;
+// Members are listed by structured bindings, as in aim_state.cpp: a struct that gains one
+// does not compile here until it is kept.
 
-template <typename A, Either<Vec2d> T>
-void describe(A& a, T& v) {
-    a(v.x, v.y);
-}
-template <typename A, Either<Vec3d> T>
-void describe(A& a, T& v) {
-    a(v.x, v.y, v.z);
-}
 template <typename A, Either<FitTerm> T>
 void describe(A& a, T& t) {
     a(t[0], t[1], t[2], t[3], t[4]);

@@ -1,7 +1,6 @@
 #include "optics/trace_simd.h"
 
 #include <doctest/doctest.h>
-#include <hwy/targets.h>
 
 #include <memory>
 #include <random>
@@ -10,24 +9,11 @@
 #include "optics/pupil.h"
 #include "optics/test_lenses.h"
 #include "optics/test_shapes.h"
+#include "optics/test_targets.h"
 
 using namespace dg;
 
 namespace {
-
-/// Runs the body once for every instruction set that was built and that this machine has.
-template <typename Body>
-void for_each_target(Body body) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        INFO("target " << hwy::TargetName(target));
-        CHECK(std::string(simd_target_name()) == hwy::TargetName(target));
-        body();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 std::vector<Iris> irises() {
     return {Iris(), Iris::polygon(5, 20, 0), Iris::polygon(7, 3, 0.7),
@@ -153,14 +139,14 @@ int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
 }  // namespace
 
 TEST_CASE("lanes lose what coatings reflect and glass swallows, as the reference does") {
-    for_each_target([] {
+    test::for_each_target([] {
         test::Random u(12);
         for (const Case& c : lenses_of_dark_glass()) CHECK(compare_lanes(c, Iris(), u) > 3);
     });
 }
 
 TEST_CASE("lanes equal the scalar reference on every target, both directions") {
-    for_each_target([] {
+    test::for_each_target([] {
         test::Random u(11);
         for (const Case& c : patent_lenses())
             for (const Iris& iris : irises()) CHECK(compare_lanes(c, iris, u) > 3);
@@ -169,7 +155,7 @@ TEST_CASE("lanes equal the scalar reference on every target, both directions") {
 
 TEST_CASE(
     "lanes equal the scalar reference for surfaces of every form, moved and turned") {
-    for_each_target([] {
+    test::for_each_target([] {
         test::Random u(12);
         for (const Case& c : singlets_of_every_form()) {
             CAPTURE(c.lens.name);
@@ -189,7 +175,7 @@ TEST_CASE(
         const Aim aim = make_aim(t, request);
         const LensTables tables =
             make_lens_tables(t, request.film_z, true, &iris, request.iris_radius);
-        for_each_target([&] {
+        test::for_each_target([&] {
             std::mt19937 random(3);
             std::uniform_real_distribution<float> u(0, 1);
             Bench b;

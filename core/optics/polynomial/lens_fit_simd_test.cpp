@@ -1,7 +1,6 @@
 #include "optics/polynomial/lens_fit_simd.h"
 
 #include <doctest/doctest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <memory>
@@ -10,23 +9,11 @@
 #include "optics/paraxial.h"
 #include "optics/quasi_random.h"
 #include "optics/test_lenses.h"
+#include "optics/test_targets.h"
 
 using namespace dg;
 
 namespace {
-
-/// Runs the body once for every instruction set that was built and that this machine has.
-template <typename Body>
-void for_each_target(Body body) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        INFO("target " << hwy::TargetName(target));
-        body();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 struct Subject {
     LensFit fit;
@@ -85,7 +72,7 @@ TEST_CASE("a lens fit in lanes is the fit in double, on every target") {
         subject.fill(*in);
         const LensFit& fit = subject.fit;
         INFO(fit.lens);
-        for_each_target([&] {
+        test::for_each_target([&] {
             fit_to_scene(subject.tables, *in, *out, kLensBatch);
             int passed = 0;
             for (int i = 0; i < kLensBatch; ++i) {
@@ -116,7 +103,7 @@ TEST_CASE("lanes from the scene find the film ray of the same fit, on every targ
     for (const Subject& subject : subjects()) {
         subject.fill(*film);
         INFO(subject.fit.lens);
-        for_each_target([&] {
+        test::for_each_target([&] {
             fit_to_scene(subject.tables, *film, *scene, kLensBatch);
             std::vector<float> pass(scene->pass, scene->pass + kLensBatch);
             std::copy(film->nm, film->nm + kLensBatch, back->nm);
