@@ -74,7 +74,7 @@ def measure(
         "degree": degree,
         "segments": segments,
         "terms": terms,
-        "monomials": len(blocks["rays"].get("powers", blocks["rays"].get("x", {}).get("powers"))),
+        "monomials": len((blocks["direction"].get("x") or blocks["direction"])["powers"]),
         "mounts": len(fitted.core.mounts),
         "direction_rms_rad": error.direction_rad[0],
         "direction_worst_rad": error.direction_rad[1],

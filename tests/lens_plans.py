@@ -53,6 +53,7 @@ def made_up(symmetric=True, blades=False, segments=2, aim=True, wide=0.5, rough=
             iris_mm=vector(0.4, 9.0),
             transmittance=_terms(rng, symmetric, degree, zero, 0.002),
             mounts=(Mount(2, vector(3.0, 10.0), 11.5, inner),),
+            bend=vector(0.02, -0.03) if low == 0 else None,
         )
         for low, high in pairwise(edges_u)
     )
@@ -88,18 +89,21 @@ def evaluated(plan, film, slope, nm, f_stop):
     wave = plan.wavelength[0] + plan.wavelength[1] / (nm * 1e-3) ** 2
     segment = next((s for s in plan.segments if f @ f < s.u_high), plan.segments[-1])
     middle, half = (segment.u_low + segment.u_high) / 2, (segment.u_high - segment.u_low) / 2
-    symmetric = f @ q, 2 * q @ q - 1, (f @ f - middle) / half, wave
-    variables = symmetric if plan.symmetric else (*q, *f, wave)
+    outside = (f @ f if plan.symmetric else max(abs(f))) > 1 or math.hypot(*q) > 1
 
-    def scalar(terms):
+    def scalar(terms, q=q):
+        symmetric = f @ q, 2 * q @ q - 1, (f @ f - middle) / half, wave
+        variables = symmetric if plan.symmetric else (*q, *f, wave)
         return sum(c * math.prod(v**k for v, k in zip(variables, e)) for e, c in terms.items())  # noqa: B905
 
-    def vector(v):
-        a, b = scalar(v.first), scalar(v.second)
+    def vector(v, q=q):
+        a, b = scalar(v.first, q), scalar(v.second, q)
         return f * a + q * b if plan.symmetric else np.array([a, b])
 
-    theta = np.hypot(*vector(segment.direction))
-    h = np.array([*vector(segment.direction) / theta, 0.0])
+    bent = q if segment.bend is None else q + vector(segment.bend, q)
+    toward = vector(segment.direction, bent)
+    theta = np.hypot(*toward)
+    h = np.array([*toward / theta, 0.0])
     e = np.array([0.0, 0.0, -1.0])
     direction = math.sin(theta) * h + math.cos(theta) * e
     offset = np.array([*vector(segment.offset_mm), 0.0])
@@ -111,7 +115,7 @@ def evaluated(plan, film, slope, nm, f_stop):
         + k * (k @ offset) * (1 - math.cos(theta))
     )
     iris = vector(segment.iris_mm)
-    stopped = (f @ f if plan.symmetric else max(abs(f))) > 1 or math.hypot(*q) > 1
+    stopped = outside
     rims = [(math.hypot(*vector(m.point)), m) for m in segment.mounts]
     stopped |= any(not m.inner_mm <= r <= m.clear_mm for r, m in rims)
     stopped |= not _in_iris(plan, iris / (plan.iris_radius_mm * min(1, plan.f_stop / f_stop)))

@@ -47,7 +47,11 @@ def check_evaluation(made, outputs, points, slope, nm):
     said = made.evaluate(points, slope, nm)
     inside = np.all(np.abs(said.iris) < 50, axis=1)  # far outside, the polynomials are anything
     got = outputs[inside]
-    np.testing.assert_allclose(got[:, :3], said.origins[inside], atol=1e-7)
+    apart = got[:, :3] - said.origins[inside]
+    across = np.cross(apart, said.directions[inside])
+    np.testing.assert_allclose(across, 0, atol=1e-7)
+    # Rays that graze the sphere at the front meet it at the root of a small difference.
+    np.testing.assert_allclose(apart, 0, atol=1e-4)
     np.testing.assert_allclose(got[:, 3:6], said.directions[inside], atol=1e-9)
     np.testing.assert_allclose(got[:, 6:8], said.iris[inside], atol=1e-8)
     passes = got[:, 9] == 0

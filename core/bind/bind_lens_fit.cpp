@@ -96,7 +96,8 @@ void bind_parts(nb::module_& m) {
         .def(nb::init<>())
         .def_rw("u_low", &FitSegment::u_low)
         .def_rw("u_high", &FitSegment::u_high)
-        .def_rw("rays", &FitSegment::rays)
+        .def_rw("bend", &FitSegment::bend)
+        .def_rw("direction", &FitSegment::direction)
         .def_rw("points", &FitSegment::points)
         .def_rw("light", &FitSegment::light);
     nb::class_<FitPupil> pupil(m, "FitPupil");

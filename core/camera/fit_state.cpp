@@ -24,8 +24,8 @@ void describe(A& a, T& b) {
 }
 template <typename A, Either<FitSegment> T>
 void describe(A& a, T& s) {
-    auto& [u_low, u_high, rays, points, light] = s;
-    a(u_low, u_high, rays, points, light);
+    auto& [u_low, u_high, bend, direction, points, light] = s;
+    a(u_low, u_high, bend, direction, points, light);
 }
 template <typename A, Either<FitPupil> T>
 void describe(A& a, T& p) {

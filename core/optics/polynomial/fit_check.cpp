@@ -52,8 +52,9 @@ void check_lens_fit(const LensFit& fit) {
             throw input_error(
                 "lens fit", "segment", "u that rises",
                 std::to_string(s.u_low) + " to " + std::to_string(s.u_high));
-        check(s.rays, "rays", 2, axial);
-        check(s.points, "points", 1 + int(fit.mounts.size()), axial);
+        if (s.bend.x.count + s.bend.y.count > 0) check(s.bend, "bend", 1, axial);
+        check(s.direction, "direction", 1, axial);
+        check(s.points, "points", 2 + int(fit.mounts.size()), axial);
         check(s.light.x, "light", 1);
     }
     check(fit.inverse.rays, "inverse", 2, axial);

@@ -28,7 +28,7 @@ std::vector<double> FitEquations::solve() const {
     return least_squares(matrix, rows(), columns, rhs, sides);
 }
 
-std::vector<int> FitEquations::choose(int side, int keep) const {
+std::vector<int> FitEquations::choose(int side, int keep, double enough) const {
     std::vector<std::vector<double>> column(columns, std::vector<double>(rows()));
     std::vector<double> rest(rows()), length(columns);
     for (int i = 0; i < rows(); ++i) {
@@ -38,7 +38,8 @@ std::vector<int> FitEquations::choose(int side, int keep) const {
     }
     for (int j = 0; j < columns; ++j) length[j] = product(column[j], column[j]);
     std::vector<int> chosen;
-    while (int(chosen.size()) < std::min(keep, columns)) {
+    while (int(chosen.size()) < std::min(keep, columns) &&
+           product(rest, rest) > enough * enough) {
         int best = -1;
         double most = 0;
         for (int j = 0; j < columns; ++j) {
@@ -62,10 +63,10 @@ std::vector<int> FitEquations::choose(int side, int keep) const {
     return chosen;
 }
 
-std::vector<double> FitEquations::solve_sparse(int keep) const {
+std::vector<double> FitEquations::solve_sparse(int keep, double enough) const {
     std::vector<double> x(std::size_t(columns) * sides);
     for (int side = 0; side < sides; ++side) {
-        const std::vector<int> chosen = choose(side, keep);
+        const std::vector<int> chosen = choose(side, keep, enough);
         FitEquations few{int(chosen.size()), 1};
         for (int i = 0; i < rows(); ++i) {
             for (const int j : chosen)

@@ -13,13 +13,13 @@ struct FitEquations {
     /// [column][side].
     std::vector<double> solve() const;
     /// The same with at most `keep` columns that are not 0, chosen for each side by
-    /// itself.
-    std::vector<double> solve_sparse(int keep) const;
+    /// itself; fewer once the root of what they leave, summed in squares, is `enough`.
+    std::vector<double> solve_sparse(int keep, double enough = 0) const;
     /// Orthogonal matching pursuit: column after column the one that lowers the error
     /// most, once what it has in common with those before is taken out. Source: Chen,
     /// Billings and Luo 1989, Orthogonal Least Squares Methods and Their Application to
     /// Non-linear System Identification, Int. J. Control 50(5).
-    std::vector<int> choose(int side, int keep) const;
+    std::vector<int> choose(int side, int keep, double enough = 0) const;
 };
 
 }  // namespace dg

@@ -73,7 +73,14 @@ void center_pupil(const std::vector<FitSample>& found, const FitSymmetry& symmet
     p.by_film.x *= wider, p.by_slope.x *= wider, p.shift.x *= wider;
 }
 
+constexpr double kWide = 1;  // rad
+
 }  // namespace
+
+bool is_wide(const std::vector<FitSample>& clear) {
+    return std::any_of(clear.begin(), clear.end(),
+                       [](const FitSample& s) { return length(s.direction) > kWide; });
+}
 
 FitRays::FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& fit)
     : tracer_(tracer), request_(request), fit_(fit) {

@@ -18,6 +18,10 @@ struct FitSample {
     bool passes = false;     // then: iris and clear apertures
 };
 
+/// Whether a field is so wide that light may enter along the glass: at its edge the film
+/// feels the offset as much as the direction, and both should err alike.
+bool is_wide(const std::vector<FitSample>& clear);
+
 /// Which rays are drawn.
 struct FitDraw {
     int count = 0;

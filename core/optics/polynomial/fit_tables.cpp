@@ -1,9 +1,7 @@
 // fit_tables.cpp -- a fit in double, laid out for the kernels.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <set>
+#include <vector>
 
 #include "optics/polynomial/lens_fit_simd.h"
 
@@ -11,91 +9,65 @@ namespace dg {
 namespace {
 
 constexpr double kAngleError = 1e-8;
+constexpr int kAxialVariables = 4, kFreeVariables = 5;
 
-int total(const FitTerm& t) {
-    int sum = 0;
-    for (const int p : t) sum += p;
-    return sum;
-}
-
-/// The last variable in a monomial, by which it is made from its parent.
-int last_variable(const FitTerm& t) {
-    int last = 0;
-    for (int v = 0; v < 5; ++v)
-        if (t[v] > 0) last = v;
-    return last;
-}
-FitTerm parent_of(FitTerm t) {
-    if (total(t) > 0) --t[last_variable(t)];
-    return t;
-}
-
-/// The monomials of all blocks, and those that they are made from.
-class Programmer {
+/// Lays out terms whose powers of the variables before `variable` are the same.
+class Nest {
   public:
-    void want(const FitFunctions& f) {
-        for (const FitTerm& t : f.terms) add(t);
-    }
-    /// Degree after degree, by variable, in the order of the parents: so those that share
-    /// a variable follow one another as their parents do, and a complete basis has one
-    /// run for each degree and variable.
-    FitProgram program() {
-        add({});
-        std::map<std::array<int, 3>, FitTerm>
-            order;  // degree, variable, place of the parent
-        FitProgram p;
-        p.size = 0;
-        for (int degree = 0; p.size < int(terms_.size()); ++degree) {
-            order.clear();
-            for (const FitTerm& t : terms_)
-                if (total(t) == degree)
-                    order[{degree, last_variable(t), place_[parent_of(t)]}] = t;
-            for (const auto& [key, t] : order) {
-                if (degree > 0) extend(p, key[2], key[1]);
-                place_[t] = p.size++;
-            }
+    Nest(FitHorner& to, const FitFunctions& from, int first, int variables)
+        : to_(to), from_(from), first_(first), variables_(variables) {}
+
+    void add(const std::vector<int>& terms, int variable) {
+        int most = 0;
+        bool even = false, odd = false;
+        for (const int t : terms) {
+            const int power = from_.terms[t][variable];
+            most = std::max(most, power), (power % 2 ? odd : even) = true;
         }
-        return p;
+        const bool squares = variables_ == kFreeVariables && most > 0 && even != odd;
+        const int step = squares ? 2 : 1;
+        to_.nodes.push_back((most / step + 1) +
+                            (squares ? (odd ? kFitOdd : kFitEven) : 0));
+        for (int power = most; power >= 0; power -= step) {
+            std::vector<int> part;
+            for (const int t : terms)
+                if (from_.terms[t][variable] == power) part.push_back(t);
+            if (variable + 1 < variables_)
+                add(part, variable + 1);
+            else
+                for (int k = 0; k < to_.count; ++k)
+                    to_.coefficients.push_back(
+                        part.empty() ? 0.0f : coefficient(part.front(), k));
+        }
     }
-    FitFunctionTables tables(const FitFunctions& f) const {
-        FitFunctionTables t;
-        t.count = f.count;
-        for (const FitTerm& term : f.terms) t.at.push_back(place_.at(term));
-        t.coefficients.assign(f.coefficients.begin(), f.coefficients.end());
-        return t;
+    float coefficient(int term, int k) const {
+        return float(from_.coefficients[std::size_t(term) * from_.count + first_ + k]);
     }
-    FitBlockTables tables(const FitBlock& b) const { return {tables(b.x), tables(b.y)}; }
 
   private:
-    void add(FitTerm t) {
-        while (terms_.insert(t).second) t = parent_of(t);
-    }
-    static void extend(FitProgram& p, int parent, int variable) {
-        if (!p.runs.empty()) {
-            FitRun& last = p.runs.back();
-            if (last.variable == variable && last.parent + last.count == parent) {
-                ++last.count;
-                return;
-            }
-        }
-        p.runs.push_back({p.size, parent, 1, variable});
-    }
-    std::set<FitTerm> terms_;
-    std::map<FitTerm, int> place_;
+    FitHorner& to_;
+    const FitFunctions& from_;
+    int first_, variables_;
 };
 
-/// A function by the powers of one variable, highest first, that variable taken out.
-std::vector<FitFunctions> by_power(const FitFunctions& f, int variable) {
-    int most = 0;
-    for (const FitTerm& t : f.terms) most = std::max(most, t[variable]);
-    std::vector<FitFunctions> parts(most + 1, FitFunctions{1, {}, {}});
-    for (std::size_t i = 0; i < f.terms.size(); ++i) {
-        FitTerm rest = f.terms[i];
-        FitFunctions& part = parts[most - rest[variable]];
-        rest[variable] = 0;
-        part.terms.push_back(rest), part.coefficients.push_back(f.coefficients[i]);
-    }
-    return parts;
+/// `count` functions from `first` on, without the terms that they do not use.
+FitHorner horner_tables(const FitFunctions& f, int first, int count, bool axial) {
+    FitHorner h{count, {}, {}};
+    std::vector<int> used;
+    for (int t = 0; t < int(f.terms.size()); ++t)
+        for (int k = 0; k < count; ++k)
+            if (f.coefficients[std::size_t(t) * f.count + first + k] != 0) {
+                used.push_back(t);
+                break;
+            }
+    Nest(h, f, first, axial ? kAxialVariables : kFreeVariables).add(used, 0);
+    return h;
+}
+
+/// The i-th vector of a block.
+FitVectorTables vector_tables(const FitBlock& b, int i, bool axial) {
+    if (axial) return {horner_tables(b.x, 2 * i, 2, true), {}};
+    return {horner_tables(b.x, i, 1, false), horner_tables(b.y, i, 1, false)};
 }
 
 FitPupilTables pupil_tables(const FitPupil& p) {
@@ -108,17 +80,15 @@ FitSegmentTables segment_tables(const FitSegment& s, bool axial) {
     t.u_low = float(s.u_low), t.u_high = float(s.u_high);
     t.u_scale = float(2 / (s.u_high - s.u_low));
     t.u_offset = float(-(s.u_low + s.u_high) / (s.u_high - s.u_low));
-    Programmer p;
-    const std::vector<FitFunctions> light = by_power(s.light.x, axial ? 3 : 4);
-    for (const FitBlock* b : {&s.rays, &s.points}) p.want(b->x), p.want(b->y);
-    for (const FitFunctions& f : light) p.want(f);
-    t.program = p.program();
-    t.rays = p.tables(s.rays), t.points = p.tables(s.points);
-    for (const FitFunctions& f : light) t.light.powers.push_back(p.tables(f));
-    int last = 0;
-    for (const FitFunctionTables* f : {&t.rays.x, &t.rays.y})
-        for (const int at : f->at) last = std::max(last, at);
-    for (const FitRun& run : t.program.runs) t.ray_runs += run.first <= last;
+    t.bends = s.bend.x.count > 0;
+    if (t.bends) t.bend = vector_tables(s.bend, 0, axial);
+    t.direction = vector_tables(s.direction, 0, axial);
+    t.offset = vector_tables(s.points, 0, axial);
+    t.iris = vector_tables(s.points, 1, axial);
+    const int points = s.points.x.count / (axial ? 2 : 1);
+    for (int i = 2; i < points; ++i)
+        t.mounts.push_back(vector_tables(s.points, i, axial));
+    t.light = horner_tables(s.light.x, 0, 1, axial);
     return t;
 }
 
@@ -150,10 +120,8 @@ FitTables make_fit_tables(const LensFit& fit, const IrisTables& iris) {
         t.segments.push_back(segment_tables(s, t.axial));
     t.inverse_direction = float(1 / fit.inverse.direction);
     t.inverse_pupil = pupil_tables(fit.inverse.pupil);
-    Programmer p;
-    p.want(fit.inverse.rays.x), p.want(fit.inverse.rays.y);
-    t.inverse_program = p.program();
-    t.inverse = p.tables(fit.inverse.rays);
+    t.inverse_film = vector_tables(fit.inverse.rays, 0, t.axial);
+    t.inverse_pupil_point = vector_tables(fit.inverse.rays, 1, t.axial);
     return t;
 }
 

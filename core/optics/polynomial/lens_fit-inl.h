@@ -60,94 +60,102 @@ HWY_INLINE void store(Pair v, float* p) {
     hn::Store(v.a, d, p), hn::Store(v.b, d, p + hn::Lanes(d));
 }
 
-/// Fills `values`, two vectors for each monomial, by the first runs of a program.
-HWY_INLINE void run_program(const FitProgram& program, int runs, const Pair (&at)[5],
-                            float* values) {
-    const std::size_t step = 2 * hn::Lanes(D());
-    store(both(1), values);
-    for (int i = 0; i < runs; ++i) {
-        const FitRun& run = program.runs[i];
-        const Pair x = at[run.variable];
-        const float* from = values + run.parent * step;
-        float* to = values + run.first * step;
-        for (int k = 0; k < run.count; ++k, from += step, to += step)
-            store(mul(load(from), x), to);
-    }
-}
+/// Where polynomials are read: two vectors, the variables of the basis, and without axial
+/// symmetry their squares.
+struct LanePlace {
+    PairVec f, q;
+    Pair x[5], square[5];
+};
 
-/// kCount neighbouring functions, in kChains sums each, so that enough of them are under
-/// way; small terms come first, so that rounding acts on the last few.
-template <int kCount, int kChains>
-HWY_INLINE void sum_terms(const FitFunctionTables& t, int first, const float* values,
-                          Pair* out) {
-    const D d;
-    const std::size_t step = 2 * hn::Lanes(d);
-    Pair sum[kChains][kCount];
-    for (int c = 0; c < kChains; ++c)
-        for (int k = 0; k < kCount; ++k) sum[c][k] = both(0);
-    const float* coefficient = t.coefficients.data() + first;
-    const auto take = [&](int i, Pair(&to)[kCount]) HWY_ATTR {
-        const Pair m = load(values + t.at[i] * step);
-        for (int k = 0; k < kCount; ++k) {
-            const V ck = constant(coefficient[i * t.count + k]);
-            to[k] = {hn::MulAdd(ck, m.a, to[k].a), hn::MulAdd(ck, m.b, to[k].b)};
+inline constexpr int kLastAxial = 3, kLastFree = 4;  // variable
+
+/// A node of a scheme and all below it, `kCount` functions side by side.
+template <int kVariable, int kLast, int kCount>
+HWY_INLINE void horner(const int*& node, const float*& c, const LanePlace& at,
+                       Pair (&out)[kCount]) {
+    constexpr bool kParities = kLast == kLastFree;  // axial schemes have none
+    const int code = *node++;
+    const Pair x = kParities && code >= kFitEven ? at.square[kVariable] : at.x[kVariable];
+    int more = kParities ? code & (kFitEven - 1) : code;
+    if constexpr (kVariable == kLast) {
+        for (int k = 0; k < kCount; ++k) out[k] = both(*c++);
+        while (--more > 0)
+            for (int k = 0; k < kCount; ++k) out[k] = mul_add(out[k], x, both(*c++));
+    } else {
+        horner<kVariable + 1, kLast>(node, c, at, out);
+        while (--more > 0) {
+            Pair below[kCount];
+            horner<kVariable + 1, kLast>(node, c, at, below);
+            for (int k = 0; k < kCount; ++k) out[k] = mul_add(out[k], x, below[k]);
         }
-    };
-    int i = int(t.at.size()) - 1;
-    for (; i >= kChains - 1; i -= kChains)
-        for (int c = 0; c < kChains; ++c) take(i - c, sum[c]);
-    for (; i >= 0; --i) take(i, sum[0]);
-    for (int k = 0; k < kCount; ++k) {
-        out[k] = sum[0][k];
-        for (int c = 1; c < kChains; ++c) out[k] = add(out[k], sum[c][k]);
     }
+    if (kParities && code >= kFitOdd)
+        for (int k = 0; k < kCount; ++k) out[k] = mul(out[k], at.x[kVariable]);
 }
 
-HWY_INLINE void functions(const FitFunctionTables& t, const float* values, Pair* out) {
-    int k = 0;
-    for (; k + 4 <= t.count; k += 4) sum_terms<4, 1>(t, k, values, out + k);
-    if (t.count - k >= 2) sum_terms<2, 2>(t, k, values, out + k), k += 2;
-    if (t.count - k == 1) sum_terms<1, 4>(t, k, values, out + k);
+template <int kLast, int kCount>
+HWY_INLINE void functions(const FitHorner& h, const LanePlace& at, Pair (&out)[kCount]) {
+    const int* node = h.nodes.data();
+    const float* c = h.coefficients.data();
+    horner<0, kLast>(node, c, at, out);
 }
 
-HWY_INLINE Pair light(const FitLightTables& t, Pair l, const float* values) {
-    Pair value = both(0);
-    for (const FitFunctionTables& power : t.powers) {
-        Pair row;
-        sum_terms<1, 2>(power, 0, values, &row);
-        value = mul_add(value, l, row);
-    }
-    return value;
+// Not inlined, and from memory to memory: of all that is under way around a call nothing
+// has to be saved.
+
+HWY_NOINLINE void number(const FitHorner& h, bool axial, const LanePlace& at, Pair& out) {
+    Pair one[1];
+    if (axial)
+        functions<kLastAxial, 1>(h, at, one);
+    else
+        functions<kLastFree, 1>(h, at, one);
+    out = one[0];
 }
 
-inline constexpr int kMostFunctions = 40;
-
-/// The vectors of a block: f A + q B, or x and y apart.
-HWY_INLINE void vectors(const FitBlockTables& block, bool axial, const float* values,
-                        const PairVec& f, const PairVec& q, PairVec* out) {
-    Pair x[kMostFunctions];
-    functions(block.x, values, x);
-    if (axial) {
-        for (int i = 0; 2 * i < block.x.count; ++i) {
-            out[i].x = mul_add(f.x, x[2 * i], mul(q.x, x[2 * i + 1]));
-            out[i].y = mul_add(f.y, x[2 * i], mul(q.y, x[2 * i + 1]));
-        }
+/// f A + q B, or x and y apart.
+HWY_NOINLINE void vector(const FitVectorTables& v, bool axial, const LanePlace& at,
+                         PairVec& out) {
+    if (!axial) {
+        number(v.x, false, at, out.x), number(v.y, false, at, out.y);
         return;
     }
-    Pair y[kMostFunctions];
-    functions(block.y, values, y);
-    for (int i = 0; i < block.x.count; ++i) out[i] = {x[i], y[i]};
+    Pair ab[2];
+    functions<kLastAxial, 2>(v.x, at, ab);
+    out.x = mul_add(at.f.x, ab[0], mul(at.q.x, ab[1]));
+    out.y = mul_add(at.f.y, ab[0], mul(at.q.y, ab[1]));
 }
 
-HWY_INLINE void axial_variables(const PairVec& f, const PairVec& q, Pair u, Pair l,
-                                Pair (&at)[5]) {
-    const Pair w = dot(q, q);
-    at[0] = dot(f, q), at[1] = sub(add(w, w), both(1)), at[2] = u, at[3] = l,
-    at[4] = both(1);
+inline constexpr int kMostMounts = 16;  // check_lens_fit()
+
+HWY_INLINE Pair number(const FitHorner& h, bool axial, const LanePlace& at) {
+    Pair one[1];
+    if (axial)
+        functions<kLastAxial, 1>(h, at, one);
+    else
+        functions<kLastFree, 1>(h, at, one);
+    return one[0];
 }
-HWY_INLINE void free_variables(const PairVec& f, const PairVec& q, Pair l,
-                               Pair (&at)[5]) {
-    at[0] = q.x, at[1] = q.y, at[2] = f.x, at[3] = f.y, at[4] = l;
+
+/// f A + q B, or x and y apart.
+HWY_INLINE PairVec vector(const FitVectorTables& v, bool axial, const LanePlace& at,
+                          const PairVec& f, const PairVec& q) {
+    if (!axial) return {number(v.x, false, at), number(v.y, false, at)};
+    Pair ab[2];
+    functions<kLastAxial, 2>(v.x, at, ab);
+    return {mul_add(f.x, ab[0], mul(q.x, ab[1])), mul_add(f.y, ab[0], mul(q.y, ab[1]))};
+}
+
+/// Sets all of a place; u as the basis has it.
+HWY_INLINE void set_place(bool axial, const PairVec& f, const PairVec& q, Pair u, Pair l,
+                          LanePlace& at) {
+    at.f = f, at.q = q;
+    if (axial) {
+        const Pair w = dot(q, q);
+        at.x[0] = dot(f, q), at.x[1] = sub(add(w, w), both(1)), at.x[2] = u, at.x[3] = l;
+        return;
+    }
+    at.x[0] = q.x, at.x[1] = q.y, at.x[2] = f.x, at.x[3] = f.y, at.x[4] = l;
+    for (int k = 0; k < 5; ++k) at.square[k] = mul(at.x[k], at.x[k]);
 }
 
 HWY_INLINE PairVec pupil_point(const FitPupilTables& p, const PairVec& f,
@@ -228,7 +236,7 @@ HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairV
 /// What a fit says of a film ray in units of film and pupil.
 struct FitLanes {
     PairVec direction, offset, iris;
-    PairVec mounts[kMostFunctions / 2];
+    PairVec mounts[kMostMounts];
     Pair light;
 };
 
@@ -247,31 +255,30 @@ HWY_INLINE void choose(const PairMask& m, const PairVec& from, PairVec& to) {
 /// Of the rays of one segment, whatever segment they belong to.
 HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s,
                                  const PairVec& f, const PairVec& q, Pair u, Pair l,
-                                 bool all, float* values, FitLanes& out) {
-    Pair at[5];
-    if (fit.axial)
-        axial_variables(f, q, mul_add(u, both(s.u_scale), both(s.u_offset)), l, at);
-    else
-        free_variables(f, q, l, at);
-    run_program(s.program, all ? int(s.program.runs.size()) : s.ray_runs, at, values);
-    PairVec rays[2];
-    vectors(s.rays, fit.axial, values, f, q, rays);
-    out.direction = rays[0], out.offset = rays[1];
-    if (!all) return;
-    PairVec points[kMostFunctions / 2];
-    vectors(s.points, fit.axial, values, f, q, points);
-    out.iris = points[0];
-    for (std::size_t i = 0; i < fit.outer2.size(); ++i) out.mounts[i] = points[i + 1];
-    out.light = light(s.light, l, values);
+                                 bool all, FitLanes& out) {
+    LanePlace at, bent;
+    const Pair range = mul_add(u, both(s.u_scale), both(s.u_offset));
+    set_place(fit.axial, f, q, range, l, at);
+    PairVec bend{both(0), both(0)};
+    if (s.bends) vector(s.bend, fit.axial, at, bend);
+    vector(s.offset, fit.axial, at, out.offset);
+    if (all) {
+        vector(s.iris, fit.axial, at, out.iris);
+        for (std::size_t i = 0; i < s.mounts.size(); ++i)
+            vector(s.mounts[i], fit.axial, at, out.mounts[i]);
+        number(s.light, fit.axial, at, out.light);
+    }
+    set_place(fit.axial, f, {add(q.x, bend.x), add(q.y, bend.y)}, range, l, bent);
+    vector(s.direction, fit.axial, bent, out.direction);
 }
 
 /// The segment of each ray; or that of all, if it is known. `all`: iris, mounts and light
 /// too.
 HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known,
                              const PairVec& f, const PairVec& q, Pair l, bool all,
-                             float* values, FitLanes& out) {
+                             FitLanes& out) {
     const Pair u = dot(f, f);
-    evaluate_segment(fit, known ? *known : fit.segments[0], f, q, u, l, all, values, out);
+    evaluate_segment(fit, known ? *known : fit.segments[0], f, q, u, l, all, out);
     if (known) return;
     const D d;
     for (std::size_t k = 1; k < fit.segments.size(); ++k) {
@@ -280,7 +287,7 @@ HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known
         const PairMask mine{hn::Ge(u.a, low), hn::Ge(u.b, low)};
         if (hn::AllFalse(d, hn::Or(mine.a, mine.b))) continue;
         FitLanes here;
-        evaluate_segment(fit, s, f, q, u, l, all, values, here);
+        evaluate_segment(fit, s, f, q, u, l, all, here);
         choose(mine, here.direction, out.direction),
             choose(mine, here.offset, out.offset);
         if (!all) continue;

@@ -20,18 +20,6 @@ struct AngleRatios {
     }
 };
 
-/// The vectors of a block: f A + q B, or x and y apart.
-int vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f, Vec2d q,
-            Vec2d* out) {
-    std::vector<double> x(block.x.count), y(block.y.count);
-    block.x.evaluate(at, x.data());
-    if (!axial) block.y.evaluate(at, y.data());
-    const int count = axial ? block.x.count / 2 : block.x.count;
-    for (int i = 0; i < count; ++i)
-        out[i] = axial ? f * x[2 * i] + q * x[2 * i + 1] : Vec2d{x[i], y[i]};
-    return count;
-}
-
 /// Solves a x = b by elimination with pivots. False if it is singular.
 bool solve4(std::array<std::array<double, 5>, 4>& a, std::array<double, 4>& x) {
     for (int k = 0; k < 4; ++k) {
@@ -81,6 +69,16 @@ bool newton_step(const LensFit& fit, const Four& target, double l, Four& z) {
 
 }  // namespace
 
+void block_vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f,
+                   Vec2d q, Vec2d* out) {
+    std::vector<double> x(block.x.count), y(block.y.count);
+    block.x.evaluate(at, x.data());
+    if (!axial) block.y.evaluate(at, y.data());
+    const int count = axial ? block.x.count / 2 : block.x.count;
+    for (int i = 0; i < count; ++i)
+        out[i] = axial ? f * x[2 * i] + q * x[2 * i + 1] : Vec2d{x[i], y[i]};
+}
+
 FitDirection describe_ray(const LensRay& scene, double pupil_z) {
     const Vec3d d = scene.direction;
     const double sine = std::hypot(d.x, d.y), theta = std::atan2(sine, -d.z);
@@ -96,6 +94,13 @@ Vec2d LensFit::unit_film(Vec2d p) const {
     return {(p.x - film_center.x) / film_half.x, (p.y - film_center.y) / film_half.y};
 }
 
+Vec2d LensFit::bent(const FitSegment& g, Vec2d f, Vec2d q, double l) const {
+    if (g.bend.x.count == 0) return q;
+    Vec2d bend;
+    block_vectors(g.bend, variables(f, q, l, g), symmetry.axial, f, q, &bend);
+    return q + bend;
+}
+
 FitVariables LensFit::variables(Vec2d f, Vec2d q, double l, const FitSegment& g) const {
     if (!symmetry.axial) return {q.x, q.y, f.x, f.y, l};
     const double u = (2 * dot(f, f) - g.u_low - g.u_high) / (g.u_high - g.u_low);
@@ -109,24 +114,32 @@ const FitSegment& LensFit::segment_at(Vec2d f) const {
     return segments.back();
 }
 
+Vec2d LensFit::direction(const FitSegment& g, Vec2d f, Vec2d q, double l) const {
+    const Vec2d b = bent(g, f, q, l);
+    Vec2d v;
+    block_vectors(g.direction, variables(f, b, l, g), symmetry.axial, f, b, &v);
+    return v;
+}
+
 FitDirection LensFit::scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q,
                                     double l) const {
-    Vec2d out[2];
-    vectors(segment.rays, variables(f, q, l, segment), symmetry.axial, f, q, out);
-    return {out[0], out[1]};
+    std::vector<Vec2d> points(2 + mounts.size());
+    block_vectors(segment.points, variables(f, q, l, segment), symmetry.axial, f, q,
+                  points.data());
+    return {direction(segment, f, q, l), points[0]};
 }
 
 FitValue LensFit::evaluate(const FitRay& ray) const {
     const Vec2d f = unit_film(ray.film), q = pupil.q(f, ray.slope);
     const FitSegment& segment = segment_at(f);
-    const FitVariables at = variables(f, q, scale(ray.wavelength_nm), segment);
-    std::vector<Vec2d> out(std::max<std::size_t>(2, 1 + mounts.size()));
+    const double l = scale(ray.wavelength_nm);
+    const FitVariables at = variables(f, q, l, segment);
+    std::vector<Vec2d> points(2 + mounts.size());
+    block_vectors(segment.points, at, symmetry.axial, f, q, points.data());
     FitValue value;
-    vectors(segment.rays, at, symmetry.axial, f, q, out.data());
-    value.direction = out[0], value.offset = out[1];
-    vectors(segment.points, at, symmetry.axial, f, q, out.data());
-    value.iris = out[0];
-    value.mounts.assign(out.begin() + 1, out.begin() + 1 + mounts.size());
+    value.direction = direction(segment, f, q, l);
+    value.offset = points[0], value.iris = points[1];
+    value.mounts.assign(points.begin() + 2, points.end());
     segment.light.x.evaluate(at, &value.transmittance);
     value.within =
         dot(q, q) <= 1 &&
@@ -166,7 +179,7 @@ std::optional<FitRay> LensFit::to_film(const LensRay& scene, double nm) const {
     const FitVariables at = symmetry.axial ? FitVariables{dot(g, h), 2 * dot(h, h) - 1,
                                                           2 * dot(g, g) - 1, l, 0}
                                            : FitVariables{h.x, h.y, g.x, g.y, l};
-    vectors(inverse.rays, at, symmetry.axial, g, h, start);
+    block_vectors(inverse.rays, at, symmetry.axial, g, h, start);
     Four z{start[0].x, start[0].y, start[1].x, start[1].y};
     const Four target{d.direction.x, d.direction.y, d.offset.x, d.offset.y};
     for (int i = 0; i < kNewtonSteps; ++i) {

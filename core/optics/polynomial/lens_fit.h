@@ -5,8 +5,8 @@
 // Lenses, CGF 33(2), with the complete symmetric basis (fit_basis.h). Lens frame, mm; the
 // film ray is the film point f and the slope m = (dx/dz, dy/dz). The slope enters through
 // q = by_film f + by_slope m + shift, a linear change of the film ray under which the
-// clear pupil fills the unit disc. A lens is never fitted from a film point and an iris
-// point: those polynomials only aim (pupil.h).
+// clear pupil fills the unit disc, and then a bend of low degree. A lens is never fitted
+// from a film point and an iris point: those polynomials only aim (pupil.h).
 //
 // The scene ray: its direction as v = theta (dx, dy) / sin(theta), theta the angle to the
 // axis, which has no limit at 90 degrees; and its offset e from the middle of the
@@ -39,10 +39,12 @@ struct FitBlock {
 /// The fit over a range of film radii: segments own [u_low, u_high) of u = |f|^2.
 struct FitSegment {
     double u_low = 0, u_high = 1;
-    FitBlock rays;    // direction (rad), offset (mm)
-    FitBlock points;  // iris point, then where each mount is met, in the mount's own
-                      // frame (mm)
-    FitBlock light;   // transmittance
+    FitBlock bend;       // one vector, added to q before the direction reads it
+                         // (fit_bend.h); may be empty
+    FitBlock direction;  // one vector (rad)
+    FitBlock points;     // offset, iris point, then where each mount is met, in the
+                         // mount's own frame (mm)
+    FitBlock light;      // transmittance
 };
 
 /// q = by_film f + by_slope m + shift, f in units of the film.
@@ -103,9 +105,12 @@ struct LensFit {
     FitError error;
 
     Vec2d unit_film(Vec2d film_mm) const;
+    /// q with a segment's bend.
+    Vec2d bent(const FitSegment& segment, Vec2d f, Vec2d q, double l) const;
     FitVariables variables(Vec2d f, Vec2d q, double l, const FitSegment& segment) const;
     /// Which segment owns a film point (unit coordinates); the last one beyond the film.
     const FitSegment& segment_at(Vec2d f) const;
+    Vec2d direction(const FitSegment& segment, Vec2d f, Vec2d q, double l) const;
     FitDirection scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q,
                                double l) const;
     FitValue evaluate(const FitRay& ray) const;
@@ -117,6 +122,10 @@ struct LensFit {
     /// evaluate()'s derivatives. Nothing if the search leaves the fit's domain.
     std::optional<FitRay> to_film(const LensRay& scene, double wavelength_nm) const;
 };
+
+/// The vectors of a block: f A + q B, or x and y apart.
+void block_vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f,
+                   Vec2d q, Vec2d* out);
 
 FitDirection describe_ray(const LensRay& scene, double pupil_z);
 

@@ -14,12 +14,18 @@ inline constexpr double kErrorWidened = 1.3;
 std::vector<FitMount> limiting_mounts(const Tracer& tracer,
                                       const std::vector<FitSample>& samples);
 
-/// Least squares over the samples of one segment: `clear` for rays and light, `wide`
-/// (with the mounts met) for iris and mounts. terms 0: the complete basis; else so many
-/// for each vector.
+/// How far a fit goes.
+struct FitEffort {
+    int terms = 0;       // for each vector; 0: the complete basis where it is worth it
+    double focus = 1e9;  // mm, the distance at which points should be sharp
+};
+
+/// Least squares over the samples of one segment, of which `domain` gives range and bend:
+/// `clear` for direction, offset and light (a third, and of the rest what it misses
+/// most), `wide` (with the mounts met) for iris and mounts.
 FitSegment fit_segment(const LensFit& fit, const std::vector<FitSample>& clear,
-                       const std::vector<FitSample>& wide, double u_low, double u_high,
-                       int terms = 0);
+                       const std::vector<FitSample>& wide, const FitSegment& domain,
+                       const FitEffort& effort = {});
 /// Root of the mean squared error in direction over samples.
 double direction_residual(const LensFit& fit, const FitSegment& segment,
                           const std::vector<FitSample>& samples);

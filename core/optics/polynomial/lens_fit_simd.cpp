@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "hwy/aligned_allocator.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep; before all that is compiled again
 
 #include "hwy/contrib/math/math-inl.h"
@@ -62,14 +61,14 @@ HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q,
 }
 
 void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const FilmRays& in,
-                SceneRays& out, int count, float* values) {
+                SceneRays& out, int count) {
     const int step = 2 * int(hn::Lanes(D()));
     for (int i = 0; i < count; i += step) {
         const PairVec f = unit_film(fit, load(in.x + i, in.y + i));
         const PairVec q = pupil_point(fit.pupil, f, load(in.mx + i, in.my + i));
         FitLanes v;
         evaluate_fit(fit, &segment, f, q, wavelength_variable(fit.scale, load(in.nm + i)),
-                     true, values, v);
+                     true, v);
         const PairRay r = scene_ray(fit, v.direction, v.offset);
         store(r.x, out.x + i), store(r.y, out.y + i), store(r.z, out.z + i);
         store(r.dx, out.dx + i), store(r.dy, out.dy + i), store(r.dz, out.dz + i);
@@ -101,17 +100,14 @@ HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, 
 
 /// The fitted inverse: f and q of v and e.
 HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
-                      float* values, PairVec (&fq)[2]) {
+                      PairVec (&fq)[2]) {
     const Pair unit = both(fit.inverse_direction);
     const PairVec g{mul(v.x, unit), mul(v.y, unit)},
         h = pupil_point(fit.inverse_pupil, g, e);
-    Pair at[5];
-    if (fit.axial)
-        axial_variables(g, h, sub(mul(both(2), dot(g, g)), both(1)), l, at);
-    else
-        free_variables(g, h, l, at);
-    run_program(fit.inverse_program, int(fit.inverse_program.runs.size()), at, values);
-    vectors(fit.inverse, fit.axial, values, g, h, fq);
+    LanePlace at;
+    set_place(fit.axial, g, h, sub(mul(both(2), dot(g, g)), both(1)), l, at);
+    vector(fit.inverse_film, fit.axial, at, fq[0]);
+    vector(fit.inverse_pupil_point, fit.axial, at, fq[1]);
 }
 
 HWY_INLINE PairVec sum(const PairVec& p, const PairVec& q) {
@@ -125,18 +121,18 @@ HWY_INLINE PairVec difference(const PairVec& p, const PairVec& q) {
 /// is F(z) = target whatever G's error, which is what is left of the distance in each
 /// round.
 HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
-                       float* values, PairVec (&z)[2], FitLanes& there) {
+                       PairVec (&z)[2], FitLanes& there) {
     const FitSegmentTables* known = fit.segments.size() == 1 ? &fit.segments[0] : nullptr;
     PairVec start[2];
-    guess(fit, v, e, l, values, start);
+    guess(fit, v, e, l, start);
     z[0] = start[0], z[1] = start[1];
     for (int round = 0; round < kInverseRounds; ++round) {
         PairVec back[2];
-        evaluate_fit(fit, known, z[0], z[1], l, false, values, there);
-        guess(fit, there.direction, there.offset, l, values, back);
+        evaluate_fit(fit, known, z[0], z[1], l, false, there);
+        guess(fit, there.direction, there.offset, l, back);
         for (int k = 0; k < 2; ++k) z[k] = sum(z[k], difference(start[k], back[k]));
     }
-    evaluate_fit(fit, known, z[0], z[1], l, true, values, there);
+    evaluate_fit(fit, known, z[0], z[1], l, true, there);
 }
 
 /// Whether the search arrived: direction (rad) and offset (mm) are those asked for.
@@ -151,8 +147,7 @@ HWY_INLINE Pair arrived(const PairVec& v, const PairVec& e, const FitLanes& ther
     return {close(a.a, b.a, pass.a), close(a.b, b.b, pass.b)};
 }
 
-void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count,
-               float* values) {
+void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count) {
     const int step = 2 * int(hn::Lanes(D()));
     for (int i = 0; i < count; i += step) {
         const Pair x = load(in.x + i), y = load(in.y + i), z = load(in.z + i),
@@ -161,8 +156,7 @@ void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count,
         describe_lanes(fit, x.a, y.a, z.a, dx.a, dy.a, dz.a, v.x.a, v.y.a, e.x.a, e.y.a);
         describe_lanes(fit, x.b, y.b, z.b, dx.b, dy.b, dz.b, v.x.b, v.y.b, e.x.b, e.y.b);
         FitLanes there;
-        invert(fit, v, e, wavelength_variable(fit.scale, load(out.nm + i)), values, fq,
-               there);
+        invert(fit, v, e, wavelength_variable(fit.scale, load(out.nm + i)), fq, there);
         const PairVec m = pupil_slope(fit.pupil, fq[0], fq[1]);
         store(mul_add(fq[0].x, both(fit.half_x), both(fit.center_x)), out.x + i);
         store(mul_add(fq[0].y, both(fit.half_y), both(fit.center_y)), out.y + i);
@@ -170,10 +164,6 @@ void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count,
         store(arrived(v, e, there, passed(fit, fq[0], fq[1], there)), in.pass + i);
         store(there.iris.x, in.iris_x + i), store(there.iris.y, in.iris_y + i);
     }
-}
-
-std::size_t FitLaneCount() {
-    return hn::Lanes(D());
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
@@ -187,15 +177,6 @@ namespace {
 
 HWY_EXPORT(FitToScene);
 HWY_EXPORT(FitToFilm);
-HWY_EXPORT(FitLaneCount);
-
-/// Where a kernel keeps the values of its monomials.
-hwy::AlignedFreeUniquePtr<float[]> room_for_monomials(const FitTables& fit) {
-    int most = fit.inverse_program.size;
-    for (const FitSegmentTables& s : fit.segments) most = std::max(most, s.program.size);
-    return hwy::AllocateAligned<float>(2 * HWY_DYNAMIC_DISPATCH(FitLaneCount)() *
-                                       std::size_t(most));
-}
 
 /// Rays picked from a batch. The rest of the arrays repeats the last one, so that kernels
 /// see no ray of chance.
@@ -237,23 +218,20 @@ std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& i
 }  // namespace
 
 void fit_to_scene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count) {
-    const auto values = room_for_monomials(fit);
     const auto kernel = HWY_DYNAMIC_DISPATCH(FitToScene);
-    if (fit.segments.size() == 1)
-        return kernel(fit, fit.segments[0], in, out, count, values.get());
+    if (fit.segments.size() == 1) return kernel(fit, fit.segments[0], in, out, count);
     FilmRays film;
     SceneRays scene;
     const auto owned = by_segment(fit, in, count);
     for (std::size_t k = 0; k < owned.size(); ++k) {
         if (owned[k].empty()) continue;
         const int rays = pick(in, owned[k], film);
-        kernel(fit, fit.segments[k], film, scene, rays, values.get());
+        kernel(fit, fit.segments[k], film, scene, rays);
         put_back(scene, owned[k], out);
     }
 }
 void fit_to_film(const FitTables& fit, SceneRays& in, FilmRays& out, int count) {
-    const auto values = room_for_monomials(fit);
-    HWY_DYNAMIC_DISPATCH(FitToFilm)(fit, in, out, count, values.get());
+    HWY_DYNAMIC_DISPATCH(FitToFilm)(fit, in, out, count);
 }
 
 }  // namespace dg

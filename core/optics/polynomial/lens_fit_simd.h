@@ -9,38 +9,31 @@
 
 namespace dg {
 
-/// Monomials [first, first + count) are those from `parent` on times a variable.
-struct FitRun {
-    int first = 0, parent = 0, count = 0, variable = 0;
-};
-/// Monomials one after the other, the first of which is 1.
-struct FitProgram {
-    int size = 1;
-    std::vector<FitRun> runs;
-};
+/// Added to a node's number: its powers are all even, or all odd.
+inline constexpr int kFitEven = 1 << 8, kFitOdd = 1 << 9;
 
-/// Functions of lens_fit.h over the monomials of a program.
-struct FitFunctionTables {
-    int count = 0;
-    std::vector<int> at;              // each term's place in the program
-    std::vector<float> coefficients;  // [term][function]
+/// One or two functions over the same terms as a nested Horner scheme, variable within
+/// variable, the highest powers first: for each node the number of powers of its
+/// variable, then those powers' nodes, coefficients where the last variable is. Powers
+/// that are missed have coefficients of 0, unless all those of the other parity are
+/// (kFitEven, kFitOdd).
+struct FitHorner {
+    int count = 1;
+    std::vector<int> nodes;
+    std::vector<float> coefficients;  // the functions' by turns
 };
-struct FitBlockTables {
-    FitFunctionTables x, y;
-};
-/// One function as a polynomial in l, whose coefficients are functions over monomials
-/// without l; highest power first, as Horner's rule wants them.
-struct FitLightTables {
-    std::vector<FitFunctionTables> powers;
+/// A vector: A and B in one scheme, or x and y in one each.
+struct FitVectorTables {
+    FitHorner x, y;
 };
 
 struct FitSegmentTables {
     float u_low = 0, u_high = 1;
     float u_scale = 2, u_offset = -1;  // U = u_scale u + u_offset
-    int ray_runs = 0;                  // of the program: what the scene ray alone needs
-    FitProgram program;
-    FitBlockTables rays, points;
-    FitLightTables light;
+    bool bends = false;
+    FitVectorTables bend, direction, offset, iris;
+    std::vector<FitVectorTables> mounts;
+    FitHorner light;
 };
 
 struct FitPupilTables {
@@ -63,8 +56,7 @@ struct FitTables {
     std::vector<FitSegmentTables> segments;
     float inverse_direction = 1;  // 1 / rad
     FitPupilTables inverse_pupil;
-    FitProgram inverse_program;
-    FitBlockTables inverse;
+    FitVectorTables inverse_film, inverse_pupil_point;
 };
 
 FitTables make_fit_tables(const LensFit& fit, const IrisTables& iris);

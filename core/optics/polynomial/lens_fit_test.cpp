@@ -7,6 +7,7 @@
 
 #include "math/error.h"
 #include "optics/paraxial.h"
+#include "optics/polynomial/fit_bend.h"
 #include "optics/polynomial/fit_equations.h"
 #include "optics/polynomial/lens_fit_make.h"
 #include "optics/quasi_random.h"
@@ -135,7 +136,7 @@ TEST_CASE("a lens that is a polynomial is found exactly") {
     const Prescription lens = test::tessar();
     const LensFit truth = make_lens_fit(Tracer(lens), request(lens, 15, 5));
     std::vector<FitSample> samples;
-    for (int n = 0; n < 500; ++n) {
+    for (int n = 0; n < 1200; ++n) {
         const FitRay ray = any_ray(truth, n);
         const FitValue v = truth.evaluate(ray);
         FitSample s;
@@ -148,14 +149,15 @@ TEST_CASE("a lens that is a polynomial is found exactly") {
         samples.push_back(s);
     }
     LensFit found = truth;
-    found.segments = {fit_segment(truth, samples, samples, 0, 1)};
-    for (int n = 500; n < 600; ++n) {
+    found.segments = {fit_segment(truth, samples, samples, truth.segments[0])};
+    for (int n = 1200; n < 1300; ++n) {
         const FitRay ray = any_ray(truth, n);
         const FitValue a = truth.evaluate(ray), b = found.evaluate(ray);
         CHECK(length(a.direction - b.direction) < 1e-11);
         CHECK(length(a.offset - b.offset) < 1e-10);
-        CHECK(length(a.iris - b.iris) < 1e-10);
-        CHECK(std::abs(a.transmittance - b.transmittance) < 1e-10);
+        // Few terms are enough for these.
+        CHECK(length(a.iris - b.iris) < 2e-3 * truth.iris_radius);
+        CHECK(std::abs(a.transmittance - b.transmittance) < 3e-3);
     }
 }
 
@@ -190,14 +192,9 @@ TEST_CASE("more terms chosen, smaller error, down to that of the complete basis"
     for (const int terms : {10, 20, 40, 70}) {
         r.terms = terms;
         const LensFit fit = make_lens_fit(Tracer(lens), r);
-        for (int f = 0; f < 2; ++f) {
-            int used = 0;
-            for (std::size_t i = 0; i < fit.segments[0].rays.x.terms.size(); ++i)
-                for (int side = 0; side < 2; ++side)
-                    used +=
-                        fit.segments[0].rays.x.coefficients[4 * i + 2 * f + side] != 0;
-            CHECK(used <= terms);
-        }
+        const auto& all = fit.segments[0].direction.x.coefficients;
+        CHECK(std::count_if(all.begin(), all.end(), [](double c) { return c != 0; }) <=
+              terms);
         CHECK(fit.error.all.direction.rms < before);
         before = fit.error.all.direction.rms;
     }
@@ -288,18 +285,48 @@ TEST_CASE("lenses without symmetry and tilted films are fitted in all coordinate
 TEST_CASE("scene rays from elsewhere in a fit's basis") {
     const Prescription lens = test::tessar();
     const LensFit seven = make_lens_fit(Tracer(lens), request(lens, 15, 7));
-    const LensFit three = make_lens_fit(Tracer(lens), request(lens, 15, 3));
+    LensFit other = seven;  // in the same coordinates
+    for (double& c : other.segments[0].direction.x.coefficients)
+        c *= 1 + 0.1 * std::sin(1e5 * c);
     std::vector<FitRay> rays;
     std::vector<FitDirection> scene;
-    for (int n = 0; n < 400; ++n) {
+    for (int n = 0; n < 500; ++n) {
         rays.push_back(any_ray(seven, n));
-        const FitValue v = three.evaluate(rays.back());
+        const FitValue v = other.evaluate(rays.back());
         scene.push_back({v.direction, v.offset});
     }
     const LensFit same = refit_rays(seven, rays, scene);
-    for (int n = 400; n < 450; ++n) {
+    for (int n = 500; n < 550; ++n) {
         const FitRay ray = any_ray(seven, n);
-        CHECK(length(same.evaluate(ray).direction - three.evaluate(ray).direction) <
+        CHECK(length(same.evaluate(ray).direction - other.evaluate(ray).direction) <
               1e-10);
     }
+}
+
+TEST_CASE("a bend lowers the error of the same basis") {
+    const Prescription lens = test::check_lens(true, 0.5);
+    const Tracer tracer(lens);
+    const LensFit fit = make_lens_fit(tracer, request(lens, 15, 7, 2.8));
+    std::vector<FitSample> samples;
+    for (int n = 0; n < 1600; ++n) {
+        const FitRay ray = any_ray(fit, n);
+        const auto exact =
+            tracer.to_scene(fit.film_ray(ray), tracer.at(ray.wavelength_nm), {});
+        if (!exact) continue;
+        FitSample s;
+        s.f = fit.unit_film(ray.film), s.q = fit.pupil.q(s.f, ray.slope);
+        s.l = fit.scale(ray.wavelength_nm);
+        const FitDirection d = describe_ray(exact->ray, fit.entrance_pupil_z);
+        s.direction = d.direction, s.offset = d.offset, s.iris = exact->iris;
+        s.transmittance = exact->transmittance, s.met.resize(lens.surfaces.size());
+        samples.push_back(s);
+    }
+    FitSegment straight{0, 1, {}, {}, {}, {}}, bent = straight;
+    bent.bend = find_bend(fit, straight, samples);
+    CHECK(bent.bend.x.terms.size() == 9);
+    const auto left = [&](const FitSegment& domain) {
+        return direction_residual(fit, fit_segment(fit, samples, samples, domain),
+                                  samples);
+    };
+    CHECK(left(bent) < 0.4 * left(straight));
 }

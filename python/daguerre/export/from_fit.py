@@ -70,14 +70,15 @@ def _segment(data: dict[str, Any], mounts: list[dict[str, Any]], symmetric: bool
     return Segment(
         u_low=data["u"][0],
         u_high=data["u"][1],
-        direction=vector("rays", "direction"),
-        offset_mm=vector("rays", "offset"),
+        direction=vector("direction", "direction"),
+        offset_mm=vector("points", "offset"),
         iris_mm=vector("points", "iris"),
         transmittance=_terms(data["light"], "transmittance", 4 if symmetric else 5),
         mounts=tuple(
             Mount(m["surface"], vector("points", f"mount{i}"), m["radius"], m["inner"])
             for i, m in enumerate(mounts)
         ),
+        bend=None if data["bend"] is None else vector("bend", "bend"),
     )
 
 

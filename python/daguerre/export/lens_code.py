@@ -63,12 +63,18 @@ def segment_function(plan: LensPlan, segment: Segment, name: str) -> Function:
     names = ("tx", "ty", "ox", "oy", "ix", "iy", "pass", "cut")
     outputs = tuple(f"out_{name}" for name in names)
     f = Function(name, ("fx", "fy", "qx", "qy", "l"), outputs)
-    pair = ((Name("fx"), Name("fy")), (Name("qx"), Name("qy")))
-    at = coordinates(f, plan.symmetric, *pair, Name("l"), (segment.u_low, segment.u_high))
+    film, q = (Name("fx"), Name("fy")), (Name("qx"), Name("qy"))
+    u_range = segment.u_low, segment.u_high
+    at = coordinates(f, plan.symmetric, film, q, Name("l"), u_range)
+    bent = at
+    if segment.bend is not None:
+        bx, by = vector(f, segment.bend, at)
+        q_bent = f.temporary(q[0] + bx), f.temporary(q[1] + by)
+        bent = coordinates(f, plan.symmetric, film, q_bent, Name("l"), u_range)
     values = [
-        component
-        for v in (segment.direction, segment.offset_mm, segment.iris_mm)
-        for component in vector(f, v, at)
+        *vector(f, segment.direction, bent),
+        *vector(f, segment.offset_mm, at),
+        *vector(f, segment.iris_mm, at),
     ]
     transmittance = horner(f, segment.transmittance, at.variables)
     cut: Expression = Number(0.0)

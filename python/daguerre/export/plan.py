@@ -37,6 +37,7 @@ class Segment:
     """A lens's polynomials for film points with u_low <= |f|^2 < u_high.
 
     Attributes:
+        bend: Added to q before the direction reads it; None: nothing.
         direction: theta (dx, dy) / sin(theta), rad, of the ray toward the scene.
         offset_mm: From the middle of the entrance pupil to the ray, across it.
         iris_mm: Where the ray crosses the iris.
@@ -51,6 +52,7 @@ class Segment:
     iris_mm: Vector
     transmittance: Terms
     mounts: tuple[Mount, ...]
+    bend: Vector | None = None
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ q = by_film f + by_slope m + shift, component by component; l = offset + scale /
 Axial lenses: variables (s, W, U, l), s = f.q, W = 2 |q|^2 - 1, U = (2 |f|^2 - low - high) /
 (high - low) with the segment's [low, high]; a vector is f A + q B. Others: (q.x, q.y, f.x, f.y, l),
 and vectors have an x and a y of their own. A function is the sum over rows of
-``coefficients[row][function]`` x the product of the variables to ``powers[row]``.
+``coefficients[row][function]`` x the product of the variables to ``powers[row]``. If a segment has
+a ``bend``, its ``direction`` reads q + bend in the place of q.
 
 The scene ray: direction v = theta (dx, dy) / sin(theta), theta from -z; offset e from
 (0, 0, entrance_pupil_z): the ray passes there through e - v (e.v) (1 - cos(theta)) / theta^2 in x
@@ -46,7 +47,7 @@ def error_zone(zone: _core.FitErrorZone) -> dict[str, Any]:
 def to_dict(fit: _core.LensFit) -> dict[str, Any]:
     """The whole fit, JSON-able."""
     axial, mirror_x, mirror_y = fit.symmetry
-    points = ["iris", *(f"mount{i}" for i in range(len(fit.mounts)))]
+    points = ["offset", "iris", *(f"mount{i}" for i in range(len(fit.mounts)))]
     offset, scale = fit.wavelength_scale
     center, x, y = fit.film_plane
     return {
@@ -70,7 +71,8 @@ def to_dict(fit: _core.LensFit) -> dict[str, Any]:
         "segments": [
             {
                 "u": [s.u_low, s.u_high],
-                "rays": _vectors(s.rays, ["direction", "offset"], axial),
+                "bend": _vectors(s.bend, ["bend"], axial) if len(s.bend.x.powers) else None,
+                "direction": _vectors(s.direction, ["direction"], axial),
                 "points": _vectors(s.points, points, axial),
                 "light": _functions(s.light.x, ["transmittance"]),
             }
@@ -180,7 +182,10 @@ def _read_mount(data: dict[str, Any]) -> _core.FitMount:
 def _read_segment(data: dict[str, Any]) -> _core.FitSegment:
     segment = _core.FitSegment()
     segment.u_low, segment.u_high = data["u"]
-    segment.rays, segment.points = _read_block(data["rays"]), _read_block(data["points"])
+    if data["bend"] is not None:
+        segment.bend = _read_block(data["bend"])
+    segment.direction = _read_block(data["direction"])
+    segment.points = _read_block(data["points"])
     segment.light = _read_block(data["light"])
     return segment
 
