@@ -11,8 +11,8 @@ namespace dg {
 // decided whether an aim depends on it. They stand outside of the anonymous namespace to be found by the
 // archives.
 
-/// To be raised whenever the same lens would be aimed differently.
-constexpr int kAimVersion = 3;
+/// To be raised whenever the same lens would be aimed or fitted differently.
+constexpr int kAimVersion = 4;
 
 template <typename A>
 void describe(A& a, const ConstantIndex& g) {
