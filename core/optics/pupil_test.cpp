@@ -13,7 +13,8 @@ Aim aim_at(const Prescription& lens, double f_stop, double focus_m, bool boxes =
     const Tracer t(lens);
     const FirstOrder f = first_order(lens);
     return make_aim(t, {film_position(lens, f, focus_m), 22, Iris(),
-                        iris_radius(lens, f, f_stop), boxes});
+                        iris_radius(lens, f, f_stop),
+                        boxes ? PupilDraw::slope_boxes : PupilDraw::aimed});
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ TEST_CASE("a film far wider than the image circle is lit in its middle only") {
     const Tracer t(lens);
     const FirstOrder f = first_order(lens);
     const AimRequest request{film_position(lens, f, 3), 3000, Iris(),
-                             iris_radius(lens, f, 4), false};
+                             iris_radius(lens, f, 4)};
     const Aim wide = make_aim(t, request), usual = aim_at(lens, 4, 3);
     CHECK(wide.tables.film_radius > 22);
     CHECK(wide.tables.film_radius < 1000);
