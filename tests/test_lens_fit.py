@@ -49,8 +49,8 @@ def test_agrees_with_the_exact_trace_within_its_error(fitted: polynomial.LensFit
     assert np.sqrt(np.mean(angle**2)) < 1.5 * fitted.error.direction_rad[0]
     assert angle.max() < 2 * fitted.error.direction_rad[1]
     offset = np.linalg.norm(np.cross(points - rays.origins, exits), axis=1)[through]
-    # focused at infinity: as far from the ray as the direction's error is after two metres
-    assert np.sqrt(np.mean(offset**2)) < 1.2 * 2000 * fitted.error.direction_rad[0]
+    # focused at infinity: as far from the ray as the direction's error is after three metres
+    assert np.sqrt(np.mean(offset**2)) < 1.2 * 3000 * fitted.error.direction_rad[0]
     assert offset.max() < 4e-3
     assert np.abs(rays.iris - iris)[through].max() < 2 * fitted.error.iris_mm[1]
     assert np.abs(rays.transmittance - light)[through].max() < 2 * fitted.error.transmittance[1]

@@ -30,7 +30,7 @@ constexpr double kWorthIt = 1.0 / 3;
 // The offset, in the lowest degree in which it shifts points by no more than the
 // direction does at the distance of focus or, if that is farther, of kFar, and by no more
 // than kOffset (mm);
-constexpr double kFar = 2000, kOffset = 1e-3;
+constexpr double kFar = 3000, kOffset = 1.5e-3;
 // iris and mounts, which decide who passes: two degrees less than the direction at most,
 // with the fewest terms that place edges so well in parts of their radius;
 constexpr double kEdge = 5e-4;
@@ -126,12 +126,12 @@ DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& bas
     return {VectorFit{place, all, to_direction}.of(basis), basis, left, all};
 }
 
-/// As good as it must be; in wide fields in the direction's own basis, so that both err
-/// alike.
+/// As good as it must be; in wide fields and without axial symmetry, where the film feels
+/// it, in the direction's own basis, so that both err alike.
 FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
                     const DirectionFit& direction, const FitEffort& effort) {
     const auto to_offset = [](const FitSample& s) { return s.offset; };
-    if (is_wide(base))
+    if (is_wide(base) || !place.fit.symmetry.axial)
         return VectorFit{place, direction.samples, to_offset}.of(direction.basis);
     const double enough =
         std::min(std::min(kFar, effort.focus) * direction.error, kOffset);
