@@ -58,7 +58,8 @@ void describe(A& a, const AsphereTerm& t) {
 template <typename A>
 void describe(A& a, const Surface& s) {
     const auto& [curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x,
-                 asphere, inner, after, decenter, tilt, coating, ripple] = s;
+                 asphere, inner, after, decenter, tilt, coating, ripple, reflectance] = s;
+    (void)reflectance;   // no camera ray is reflected
     a(curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x, asphere, inner,
       after, decenter, tilt, coating, ripple.rms_nm, ripple.period_um, ripple.seed);
 }

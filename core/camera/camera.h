@@ -43,6 +43,7 @@ struct Camera {
     LensKind lens;              // as it is at mid-interval: what H0 is measured with
     LensMotion lens_motion = {};
     Keyed<LensSetting> setting = {};  // empty: it stays
+    SensorStack sensor_stack = {};    // what of the body reflects: for ghosts alone
 };
 
 /// Fills rays[i] (camera frame) for samples[i], with the lens as it is at their times; weight 0: stopped by

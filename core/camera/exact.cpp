@@ -59,6 +59,7 @@ Vec2d straight_ahead(const Tracer& tracer, const Affine3d& turn, double pupil_z,
 
 struct ExactLens::State {
     ExactLensSettings settings;
+    Prescription lens;   // as it was given
     Tracer tracer;
     FirstOrder order;
     double iris_radius, film_z;
@@ -72,7 +73,7 @@ struct ExactLens::State {
     AimState found;
 
     State(const Prescription& lens, const ExactLensSettings& s)
-        : settings(s), tracer(polished(without_stop_aperture(lens))), order(dg::first_order(lens)) {
+        : settings(s), lens(lens), tracer(polished(without_stop_aperture(lens))), order(dg::first_order(lens)) {
         validate(lens);
         if (!(s.half_diagonal_mm > 0 && s.half_diagonal_mm < 1e4))
             throw input_error(lens.name, "half diagonal of the film", "0 to 1e4 mm",
@@ -197,17 +198,13 @@ ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     return lens;
 }
 
-namespace {
-
 /// Arrays of one batch: structure of arrays for the lanes.
-struct Buffers {
+struct ExactLens::Buffers {
     LensSamples samples;
     SceneRays scene;
     FilmRays film;
     alignas(64) float weight[kLensBatch];
 };
-
-}  // namespace
 
 float ExactLens::leaf_transmission(float opening, float x_mm, float y_mm) const {
     if (opening >= 1) return 1;
@@ -288,37 +285,44 @@ void ExactLens::generate(std::span<const CameraSample> samples,
     }
 }
 
+int ExactLens::fill(Buffers& b, std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+                    std::size_t begin, int count) const {
+    const float origin = float(state_->order.entrance_pupil_z - advance_);
+    const bool tilted = state_->tilted;
+    const double pupil = state_->order.entrance_pupil_z;
+    const Affine3d back = inverse(state_->turn);
+    const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
+    for (int i = 0; i < padded; ++i) {
+        const std::size_t from = begin + std::min(i, count - 1);
+        const Ray& ray = rays[from].ray;
+        b.scene.x[i] = 1e3f * ray.origin.x, b.scene.y[i] = 1e3f * ray.origin.y;
+        b.scene.z[i] = 1e3f * ray.origin.z + origin;
+        b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
+        b.scene.dz[i] = ray.direction.z;
+        if (tilted) {
+            const Vec3d o = to_double(ray.origin) / kMetre;
+            const Vec3d p = back.vector(o - Vec3d{0, 0, advance_});
+            const Vec3d d = back.vector(to_double(ray.direction));
+            b.scene.x[i] = float(p.x), b.scene.y[i] = float(p.y);
+            b.scene.z[i] = float(p.z + pupil);
+            b.scene.dx[i] = float(d.x), b.scene.dy[i] = float(d.y), b.scene.dz[i] = float(d.z);
+        }
+        b.film.nm[i] = wavelength_nm[from];
+    }
+    return padded;
+}
+
 void ExactLens::reproject(std::span<const CameraRay> rays,
                           std::span<const float> wavelength_nm,
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
     thread_local Buffers b;
-    const float inv_h0 = float(1 / unit_), origin = float(state_->order.entrance_pupil_z - advance_);
+    const float inv_h0 = float(1 / unit_);
     const Vec2f shift = film_shift_;
-    const bool tilted = state_->tilted;
-    const double pupil = state_->order.entrance_pupil_z;
-    const Affine3d back = inverse(state_->turn);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
-        const int padded = std::min(kLensBatch, (count + 31) / 32 * 32);
-        for (int i = 0; i < padded; ++i) {
-            const std::size_t from = begin + std::min(i, count - 1);
-            const Ray& ray = rays[from].ray;
-            b.scene.x[i] = 1e3f * ray.origin.x, b.scene.y[i] = 1e3f * ray.origin.y;
-            b.scene.z[i] = 1e3f * ray.origin.z + origin;
-            b.scene.dx[i] = ray.direction.x, b.scene.dy[i] = ray.direction.y;
-            b.scene.dz[i] = ray.direction.z;
-            if (tilted) {
-                const Vec3d o = to_double(ray.origin) / kMetre;
-                const Vec3d p = back.vector(o - Vec3d{0, 0, advance_});
-                const Vec3d d = back.vector(to_double(ray.direction));
-                b.scene.x[i] = float(p.x), b.scene.y[i] = float(p.y);
-                b.scene.z[i] = float(p.z + pupil);
-                b.scene.dx[i] = float(d.x), b.scene.dy[i] = float(d.y), b.scene.dz[i] = float(d.z);
-            }
-            b.film.nm[i] = wavelength_nm[from];
-        }
+        const int padded = fill(b, rays, wavelength_nm, begin, count);
         if (fitted_)
             fit_to_film(state_->fit_tables, b.scene, b.film, padded);
         else
@@ -343,6 +347,59 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             o.etendue = b.weight[i] / kPerMm2;
         }
     }
+}
+
+GhostLens ExactLens::ghosts(const SensorStack& stack) const {
+    const State& s = *state_;
+    return {s.lens, s.film_plane(), s.settings.iris, s.iris_radius, stack, s.settings.half_diagonal_mm};
+}
+
+void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+                          const GhostLens& ghosts, const std::vector<GhostStep>& steps,
+                          std::span<Reprojection> out) const {
+    DG_CHECK(rays.size(), ==, wavelength_nm.size());
+    DG_CHECK(rays.size(), ==, out.size());
+    thread_local Buffers b;
+    const float inv_h0 = float(1 / unit_);
+    for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
+        const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
+        const int padded = fill(b, rays, wavelength_nm, begin, count);
+        bool leaf = false;
+        for (int i = 0; i < padded; ++i) {
+            b.weight[i] = rays[begin + std::min(i, count - 1)].iris_opening;
+            leaf |= b.weight[i] < 1;
+        }
+        trace_ghost(ghosts, steps, b.scene, b.film, leaf ? b.weight : nullptr, padded);
+        for (int i = 0; i < count; ++i) {
+            Reprojection& o = out[begin + i];
+            o = {{film_shift_.x - b.film.x[i], film_shift_.y - b.film.y[i]}};
+            if (!(b.scene.pass[i] > 0)) continue;
+            o.transmittance = b.scene.pass[i] * dirt_transmission({b.scene.x[i], b.scene.y[i]},
+                                                                  {b.scene.iris_x[i], b.scene.iris_y[i]});
+            o.response = o.transmittance * inv_h0 * kPerMm2;
+        }
+    }
+}
+
+ExactLens::Ball ExactLens::front_ball() const {
+    const Prescription& lens = state_->lens;
+    double r = clear_radius(lens.surfaces.front());
+    if (!std::isfinite(r)) {   // nobody knows: wider than all that is known of the lens
+        r = 0.5 * state_->order.entrance_pupil_diameter;
+        for (const Surface& s : lens.surfaces)
+            if (std::isfinite(clear_radius(s))) r = std::max(r, clear_radius(s));
+        r *= 2;
+    }
+    double low = 0, high = 0;   // of the sag: all heights, since aspheres need not end highest
+    const SurfaceForm& front = state_->tracer.form(0);
+    for (int i = 0; i <= 64; ++i)
+        for (const Vec2d way : {Vec2d{1, 0}, Vec2d{0, 1}, Vec2d{-1, 0}, Vec2d{0, -1}}) {
+            const auto s = sag(front, way.x * r * i / 64, way.y * r * i / 64);
+            if (s.defined) low = std::min(low, s.z), high = std::max(high, s.z);
+        }
+    const Vec3d middle = front.place.out_of(Vec3d{0, 0, 0.5 * (low + high)});
+    const Vec3d at = state_->turn.vector(middle - Vec3d{0, 0, state_->order.entrance_pupil_z});
+    return {kMetre * (at + Vec3d{0, 0, advance_}), kMetre * 1.001 * std::hypot(r, 0.5 * (high - low))};
 }
 
 std::optional<Vec3d> ExactLens::start(Vec3d point, Vec3d direction) const {

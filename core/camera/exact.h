@@ -12,6 +12,7 @@
 #include "camera/lens_mask.h"
 #include "optics/paraxial.h"
 #include "optics/polynomial/lens_fit.h"
+#include "optics/ghost_lens.h"
 #include "optics/pupil.h"
 
 namespace dg {
@@ -67,6 +68,21 @@ class ExactLens {
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    std::span<Reprojection> out) const;
 
+    /// The lens with its ghosts, before such a sensor. Error for a stack that cannot be.
+    GhostLens ghosts(const SensorStack& stack) const;
+    /// Follows scene rays by way of a ghost of ghosts(): what comes to the film, and where. Leaf shutters
+    /// stand at every crossing of the iris, dust on the iris at the last. No camera ray is drawn like that:
+    /// aim weight and etendue are 0.
+    void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+                   const GhostLens& ghosts, const std::vector<GhostStep>& steps,
+                   std::span<Reprojection> out) const;
+    /// A ball (camera frame, m) that holds the clear front of the first surface.
+    struct Ball {
+        Vec3d center;
+        double radius;
+    };
+    Ball front_ball() const;
+
     /// Where a scene ray (camera frame, m; the line in both directions) starts: on the first surface.
     std::optional<Vec3d> start(Vec3d point, Vec3d direction) const;
     /// z of the middle of the entrance pupil, m: 0 but for states of a body.
@@ -104,6 +120,11 @@ class ExactLens {
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
     /// Of both masks, for a ray of the front point and iris point (lens frame, mm).
     float dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const;
+    struct Buffers;
+    /// Rays [begin, begin + count) of the camera's frame into lanes, of which some more than count are filled;
+    /// how many.
+    int fill(Buffers& b, std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+             std::size_t begin, int count) const;
     std::shared_ptr<const State> state_;
     std::shared_ptr<const LensDirt> dirt_;   // null: clean
     bool fitted_;

@@ -105,22 +105,23 @@ double bare_transmittance(double n1, double cos1, double n2, double cos2) {
 }  // namespace
 
 SurfaceCoating coat(Coating coating, double n1, double n2) {
-    if (n1 == n2 || coating == Coating::perfect) return {false, {}};
+    if (n1 == n2 || coating == Coating::perfect) return {.reflects = false, .films = {}};
     const double glass = std::max(n1, n2);
     const bool coated = std::min(n1, n2) < kDensestFluid && glass > kDensestFluid;
     if (!coated || coating == Coating::uncoated) return {};
     switch (coating) {
         case Coating::v_coat:
-            return {true, v_coat(glass)};
+            return {.films = v_coat(glass)};
         case Coating::broadband:
-            return {true, broadband(glass)};
+            return {.films = broadband(glass)};
         default:
-            return {true, quarter_wave()};
+            return {.films = quarter_wave()};
     }
 }
 
 double surface_transmittance(const SurfaceCoating& coating, double n1, double cos1,
                              double n2, double cos2, double wavelength_nm) {
+    if (coating.mirror > 0) return 1 - coating.mirror;
     if (!coating.reflects) return 1;
     if (coating.films.empty()) return bare_transmittance(n1, cos1, n2, cos2);
     if (n1 < n2)

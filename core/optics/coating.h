@@ -22,6 +22,7 @@ struct CoatingLayer {
 struct SurfaceCoating {
     bool reflects = true;     // false: no surface at all, or a perfect one
     std::vector<CoatingLayer> films;  // from the rarer medium to the glass; none: bare
+    double mirror = 0;  // reflectance of a mirror in part: neither glass nor films count
 };
 
 /// What a maker would put between two media, given their indices at 550 nm. Surfaces

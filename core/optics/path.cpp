@@ -1,6 +1,7 @@
 #include "optics/path.h"
 
 #include <algorithm>
+#include <array>
 
 namespace dg {
 namespace {
@@ -22,12 +23,18 @@ LensPath straight_path(int surfaces, bool toward_film) {
 }
 
 LensPath ghost_path(int surfaces, int near, int far, bool toward_film) {
+    return ghost_path(surfaces, std::array{far, near}, toward_film);
+}
+
+LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film) {
     LensPath path;
-    for (int i = 0; i < far; ++i) path.push_back({i});
-    path.push_back({far, 1, true});
-    for (int i = far - 1; i > near; --i) path.push_back({i, -1});
-    path.push_back({near, -1, true});
-    for (int i = near + 1; i < surfaces; ++i) path.push_back({i});
+    int at = 0, sign = 1;
+    for (const int mirror : mirrors) {
+        for (; at != mirror; at += sign) path.push_back({at, sign});
+        path.push_back({mirror, sign, true});
+        sign = -sign, at = mirror + sign;
+    }
+    for (; at < surfaces; ++at) path.push_back({at});
     return toward_film ? path : turned(std::move(path));
 }
 

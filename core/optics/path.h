@@ -1,6 +1,7 @@
 // path.h -- the surfaces that light meets, in order: straight through the lens, or by way
 // of two reflections, a ghost.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "optics/intersect.h"
@@ -27,6 +28,11 @@ LensPath straight_path(int surfaces, bool toward_film);
 /// Light from the scene is reflected at `far`, then back at `near` (near < far), and
 /// leaves as it came: to the film, or on the same way from the film to the scene.
 LensPath ghost_path(int surfaces, int near, int far, bool toward_film);
+
+/// The same by any even number of mirrors, in the order in which light from the scene meets them: the first
+/// lies farther along than the second, that nearer than the third, and so on. The first may lie behind all
+/// surfaces that light leaves by: a sensor.
+LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film);
 
 /// Mirrored in the surface's frame.
 template <typename T>

@@ -16,6 +16,7 @@ std::string surface_name(const Prescription& lens, int surface) {
 
 SurfaceCoating coating_at(const Prescription& lens, int i) {
     const Surface& s = lens.surfaces[i];
+    if (s.reflectance > 0) return {.films = {}, .mirror = s.reflectance};
     const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
     return coat(s.coating.empty() ? lens.coating : coating_from_name(s.coating),
                 refractive_index(before, kFilmWavelength),

@@ -47,6 +47,7 @@ struct Surface {
     Vec3d decenter{}, tilt{};
     std::string coating{};  // empty: the lens's
     Ripple ripple{};
+    double reflectance = 0;  // of a mirror in part, at all angles, that records the rest: a sensor
 };
 
 /// Light passes the smaller of both sides, mm.

@@ -96,11 +96,10 @@ HWY_INLINE void finish_transmittance(const LensTables& lens, LaneRays& r) {
     r.transmittance = hn::Mul(r.transmittance, hn::Exp(D(), hn::Neg(r.depth)));
 }
 
-/// What is left of Tracer::cross after the meeting: stops, and Snell's law.
+/// What stops the ray where it meets a surface, and what is swallowed on the way there.
 template <int kSign>
-HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
-                             LaneRays& r) {
-    const V one = constant(1), x = hit.point.x, y = hit.point.y;
+HWY_INLINE M stop_at_surface(const LensTables& lens, int i, const LaneHit& hit, LaneRays& r) {
+    const V x = hit.point.x, y = hit.point.y;
     swallow(lens, kSign > 0 ? i : i + 1, hit.point, r);
     r.x = x, r.y = y, r.z = hit.point.z;
     const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
@@ -114,6 +113,15 @@ HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
             r.transmittance = hn::Mul(r.transmittance, open);
         }
     }
+    return ok;
+}
+
+/// What is left of Tracer::cross after the meeting: stops, and Snell's law.
+template <int kSign>
+HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
+                             LaneRays& r) {
+    const V one = constant(1), x = hit.point.x, y = hit.point.y;
+    M ok = stop_at_surface<kSign>(lens, i, hit, r);
     const V n2 = index_of(lens, kSign > 0 ? i + 1 : i, r.l);
     if (lens.refracts[i]) {
         const V mu = hn::Div(r.n, n2);
@@ -183,14 +191,14 @@ HWY_INLINE void lean_lanes(const ShapeTables& s, const LaneVec& d, LaneHit& h) {
     normalize_hit<kSign>(speed, h);
 }
 
-/// Forms other than centred planes and spheres, apart so that those keep their speed.
+/// Where rays meet forms other than centred planes and spheres, in the surface's own frame, in which they are
+/// left.
 template <int kSign>
-HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
+HWY_INLINE void meet_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b, LaneHit (&hit)[2]) {
     const ShapeTables& s = lens.shape[i];
     if (s.placed) enter_frame(s, a), enter_frame(s, b);
     const LaneVec p[2] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}};
     const LaneVec d[2] = {{a.dx, a.dy, a.dz}, {b.dx, b.dy, b.dz}};
-    LaneHit hit[2];
     if (s.quadric) {
         for (int v = 0; v < 2; ++v) hit[v] = meet_quadric<kSign>(s, p[v], d[v]);
     } else {
@@ -199,6 +207,14 @@ HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRa
     }
     if (!s.ripple.empty())
         for (int v = 0; v < 2; ++v) lean_lanes<kSign>(s, d[v], hit[v]);
+}
+
+/// Apart from those, so that they keep their speed.
+template <int kSign>
+HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
+    const ShapeTables& s = lens.shape[i];
+    LaneHit hit[2];
+    meet_other<kSign>(lens, i, a, b, hit);
     pass_surface<kSign>(lens, i, hit[0], a);
     pass_surface<kSign>(lens, i, hit[1], b);
     if (s.placed) leave_frame(s, a), leave_frame(s, b);

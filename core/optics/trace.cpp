@@ -36,6 +36,8 @@ bool within_apertures(const Surface& s, const Vec3d& p, const Clip& clip, bool i
     return (iris_here || r2 <= edge * edge) && r2 >= hole * hole;
 }
 
+constexpr double kOverlap = 0.01;  // mm by which the rims of real prescriptions may run into each other
+
 /// The normal leans with the slope of the grooves.
 void lean(const RippleSlope& ripple, const Vec3d& direction, int sign, LensHit<double>& hit) {
     const double r = std::hypot(hit.point.x, hit.point.y);
@@ -97,8 +99,12 @@ int Tracer::follow(TracedRay& ray, bool toward_film, const LensIndices& n,
 
 int Tracer::follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
                    const Clip& clip) const {
-    for (std::size_t k = 0; k < path.size(); ++k)
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        const LensRay from = ray.ray;
         if (!cross(path[k], n, clip, ray)) return int(k);
+        // A mirror may be so steep that the light never comes to the surface that is next.
+        if (k > 0 && dot(ray.ray.origin - from.origin, from.direction) < -kOverlap) return int(k);
+    }
     return -1;
 }
 

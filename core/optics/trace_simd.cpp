@@ -5,6 +5,7 @@
 #include "optics/trace_simd.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "optics/film_landing-inl.h"
 #include "optics/free_pupil-inl.h"
 #include "optics/pupil-inl.h"
 
@@ -17,25 +18,6 @@ HWY_INLINE void film_to_lens(const FilmTables& f, V x, V y, LaneRays& r) {
     r.x = hn::MulAdd(x, constant(f.x[0]), hn::MulAdd(y, constant(f.y[0]), constant(f.center_x)));
     r.y = hn::MulAdd(x, constant(f.x[1]), hn::MulAdd(y, constant(f.y[1]), constant(f.center_y)));
     r.z = hn::MulAdd(x, constant(f.x[2]), hn::Mul(y, constant(f.y[2])));
-}
-
-HWY_INLINE V dot3(const float (&a)[3], V x, V y, V z) {
-    return hn::MulAdd(constant(a[0]), x,
-                      hn::MulAdd(constant(a[1]), y, hn::Mul(constant(a[2]), z)));
-}
-
-/// Where a ray with slopes (mx, my) meets a tilted film, in the film's coordinates; z of the ray from
-/// the last vertex. `toward`: whether it is on its way there.
-HWY_INLINE void lens_to_film(const LensTables& lens, const LaneRays& r, V mx, V my, V& x, V& y,
-                             M& toward) {
-    const FilmTables& f = lens.film;
-    const V one = constant(1), px = hn::Sub(r.x, constant(f.center_x)),
-            py = hn::Sub(r.y, constant(f.center_y)), pz = hn::Sub(r.z, constant(lens.film_gap));
-    const V along = dot3(f.normal, mx, my, one);
-    const V go = hn::Neg(hn::Div(dot3(f.normal, px, py, pz), along));
-    const V qx = hn::MulAdd(mx, go, px), qy = hn::MulAdd(my, go, py), qz = hn::Add(go, pz);
-    x = dot3(f.x, qx, qy, qz), y = dot3(f.y, qx, qy, qz);
-    toward = hn::Gt(along, hn::Zero(D()));
 }
 
 /// Film rays into lanes: unit directions toward the scene.
@@ -79,40 +61,12 @@ void ToScene(const LensTables& lens, const FilmRays& in, SceneRays& out, int cou
 }
 
 void ToFilm(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
-    const D d;
-    const int lanes = int(hn::Lanes(d));
+    const int lanes = int(hn::Lanes(D()));
     for (int i = 0; i < count; i += 2 * lanes) {
         LaneRays r[2];
-        for (int h = 0; h < 2; ++h) {
-            const int at = i + h * lanes;
-            r[h].x = hn::Load(d, in.x + at), r[h].y = hn::Load(d, in.y + at);
-            r[h].z = hn::Load(d, in.z + at);
-            r[h].dx = hn::Neg(hn::Load(d, in.dx + at));
-            r[h].dy = hn::Neg(hn::Load(d, in.dy + at));
-            r[h].dz = hn::Neg(hn::Load(d, in.dz + at));
-            r[h].iris_x = r[h].iris_y = hn::Zero(d);
-            r[h].alive = hn::Eq(r[h].x, r[h].x);
-            set_wavelength(lens, hn::Load(d, out.nm + at), r[h]);
-        }
+        for (int h = 0; h < 2; ++h) start_in_scene(lens, in, out, i + h * lanes, r[h]);
         lanes_to_film(lens, r[0], r[1]);
-        for (int h = 0; h < 2; ++h) {
-            const int at = i + h * lanes;
-            const V inv = hn::Div(constant(1), r[h].dz);
-            const V mx = hn::Mul(r[h].dx, inv), my = hn::Mul(r[h].dy, inv);
-            const V go = hn::Sub(constant(lens.film_gap), r[h].z);
-            V x = hn::MulAdd(mx, go, r[h].x), y = hn::MulAdd(my, go, r[h].y);
-            M ok = hn::And(r[h].alive, hn::Gt(r[h].dz, hn::Zero(d)));
-            if (!lens.film.across) {
-                M toward;
-                lens_to_film(lens, r[h], mx, my, x, y, toward);
-                ok = hn::And(ok, toward);
-            }
-            hn::Store(x, d, out.x + at), hn::Store(y, d, out.y + at);
-            hn::Store(mx, d, out.mx + at), hn::Store(my, d, out.my + at);
-            hn::Store(hn::IfThenElseZero(ok, r[h].transmittance), d, in.pass + at);
-            hn::Store(r[h].iris_x, d, in.iris_x + at),
-                hn::Store(r[h].iris_y, d, in.iris_y + at);
-        }
+        for (int h = 0; h < 2; ++h) land_on_film(lens, r[h], in, out, i + h * lanes);
     }
 }
 

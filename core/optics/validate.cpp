@@ -105,6 +105,8 @@ void check_surface(const Prescription& lens, int i) {
     at.range("thickness", gap, last ? -1e5 : 0, 1e5, "0 to 1e5 mm",
              gap < 0 ? "lens-overlap" : "lens-surface");
     check_glass(at.s.glass, at.name);
+    at.range("reflectance", at.s.reflectance, 0, 1,
+             "0 to 1: no surface can send back more light than arrives", "lens-coating");
 }
 
 }  // namespace
