@@ -28,8 +28,7 @@ auto triples(const dg::Film& film, std::vector<T> values) {
                               {std::size_t(l.height), std::size_t(l.width), std::size_t(3)});
 }
 
-std::vector<float> mean_rgb(const dg::Film& film) {
-    std::vector<float> values = film.mean_xyz();
+std::vector<float> to_rgb(std::vector<float> values) {
     for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
         const dg::Rgb c = dg::rgb_from_xyz({values[i], values[i + 1], values[i + 2]});
         values[i] = c.x;
@@ -65,16 +64,18 @@ void bind_film(nb::module_& m) {
     nb::class_<Film>(m, "Film")
         .def("__init__",
              [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs,
-                bool splats) {
-                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats});
+                bool splats, bool flare) {
+                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare});
              },
              "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false,
-             "splats"_a = false)
+             "splats"_a = false, "flare"_a = false)
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
-        .def("mean_rgb", [](const Film& f) { return triples(f, mean_rgb(f)); })
+        .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
+        .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
+             "What ghosts brought to it.")
         .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
         .def("relative_variance",
              [](const Film& f, float dark) { return plane(f, f.relative_variance(dark)); }, "dark"_a)

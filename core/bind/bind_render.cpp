@@ -7,6 +7,7 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
+#include "render/flare_guide.h"
 #include "render/light_guide.h"
 #include "render/pilot.h"
 #include "render/render.h"
@@ -58,7 +59,8 @@ auto draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
         });
     }
     return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays,
-                      counters.light_paths, counters.splats_off_film};
+                      counters.light_paths, counters.splats_off_film, counters.flare_paths,
+                      counters.flare_rays, counters.flare_hits};
 }
 
 using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
@@ -130,6 +132,32 @@ void bind_render(nb::module_& m) {
              },
              "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
              "Finds once what light paths are drawn with; to be called again after any change.")
+        .def_prop_rw("flare", [](const RenderSettings& s) { return s.flare.per_sample; },
+                     [](RenderSettings& s, double paths) {
+                         if (!(paths >= 0 && paths <= kMostLightPaths))
+                             throw input_error("render", "flare", "0 .. 1e9 paths per sample index",
+                                               std::to_string(paths));
+                         s.flare.per_sample = paths;
+                     },
+                     "Ghosts: paths per sample index.")
+        .def_prop_rw("flare_order", [](const RenderSettings& s) { return s.flare.order; },
+                     [](RenderSettings& s, int order) {
+                         if (order != 2 && order != 4)
+                             throw input_error("render", "flare order", "2 or 4", std::to_string(order));
+                         s.flare.order = order;
+                     },
+                     "Reflections of ghosts: 2, or 4 as well.")
+        .def("prepare_flare",
+             [](RenderSettings& s, const Scene& scene, const Camera& camera) {
+                 s.flare.guide.reset();
+                 const auto guide = std::make_shared<const FlareGuide>(scene, camera, s);
+                 s.flare.guide = guide;
+                 return !guide->empty();
+             },
+             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             nb::keep_alive<1, 3>(),
+             "Finds once what ghosts are drawn by; to be called again after any change. False: no light "
+             "makes a ghost.")
         .def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
                      [](RenderSettings& s, const std::string& name) {
                          if (name == "both") s.technique = Technique::both;
@@ -164,7 +192,7 @@ void bind_render(nb::module_& m) {
           },
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
           "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, "
-          "stopped rays, rays, light paths, splats off the film).");
+          "stopped rays, rays, light paths, splats off the film, flare paths, flare rays, those on film).");
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {

@@ -13,6 +13,7 @@ void bind_prescription(nb::module_& m);
 void bind_polynomial(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_lens_fit(nb::module_& m);
+void bind_ghosts(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
@@ -39,6 +40,7 @@ NB_MODULE(_core, m) {
     bind_polynomial(m);
     bind_optics(m);
     bind_lens_fit(m);
+    bind_ghosts(m);
     bind_scene(m);
     bind_camera(m);
     bind_shutter(m);

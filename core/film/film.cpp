@@ -46,6 +46,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     pixels_.resize(pixels);
     if (layout.aovs) aovs_.resize(pixels);
     if (layout.splats) splats_.resize(pixels);
+    if (layout.flare) flare_.resize(pixels);
 }
 
 std::int64_t Film::find(int x, int y) const {
@@ -73,12 +74,13 @@ void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
     add_to(pixels_[i], pixels_[i], sample, xyz);
 }
 
-void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz) {
+void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
-    DG_CHECK(splats_.size(), >, std::size_t(i));
+    std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
+    DG_CHECK(sums.size(), >, std::size_t(i));
     const PixelLock lock(pixels_[i].lock);
-    add_to(splats_[i], pixels_[i], sample, xyz);
+    add_to(sums[i], pixels_[i], sample, xyz);
 }
 
 void Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
@@ -133,7 +135,7 @@ void Film::merge(const Film& other) {
                    " px at (" + std::to_string(l.offset_x) + ", " +
                    std::to_string(l.offset_y) + ")" +
                    (l.aovs ? " with aovs" : " without aovs") +
-                   (l.splats ? ", with light paths" : "");
+                   (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "");
         };
         throw input_error("film", "merge", words(layout_), words(other.layout_));
     }
@@ -146,6 +148,7 @@ void Film::merge(const Film& other) {
         a.first_bad = std::min(a.first_bad, b.first_bad);
     }
     for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
+    for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];

@@ -35,10 +35,11 @@ struct FilmLayout {
     int offset_x = 0, offset_y = 0;  // of that region in the full frame
     bool aovs = false;
     bool splats = false;             // light paths may add to any pixel (Film::splat)
+    bool flare = false;              // and so may ghosts
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
-/// 112 bytes per pixel; 192 more with aovs, 96 with splats.
+/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare.
 class Film {
   public:
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels.
@@ -61,7 +62,8 @@ class Film {
     /// What a light path brings, from any thread at any time; the layout has splats. Their sums are divided
     /// by the same count. Their squares tell the variance of independent arrivals (compound Poisson), from
     /// which no mean is to be taken off; so they are sums of their own.
-    void splat(int x, int y, std::uint32_t sample, Vec3f xyz);
+    enum class Layer { splats, flare };
+    void splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats);
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
     /// layouts differ.
@@ -70,6 +72,8 @@ class Film {
     /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height; 0 without
     /// samples.
     std::vector<float> mean_xyz() const;
+    /// The share of it that ghosts brought; Error without a layer of flare.
+    std::vector<float> flare_xyz() const;
     /// Variance of the mean of linear Rec.709 R, G, B (see film_read.cpp); 0 for less
     /// than two samples.
     std::vector<float> variance_rgb() const;
@@ -93,7 +97,7 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs" and "splats" if there are any, so many bytes per pixel.
+    /// "sums", and "aovs", "splats" and "flare" if there are any, so many bytes per pixel.
     static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96;
     std::vector<std::string> state_parts() const;
     std::span<const std::byte> state(const std::string& part) const;
@@ -136,7 +140,7 @@ class Film {
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
-    std::vector<Sums> splats_;
+    std::vector<Sums> splats_, flare_;
 };
 
 }  // namespace dg

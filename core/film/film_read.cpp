@@ -20,6 +20,7 @@ Vec3d Film::sum_xyz(std::size_t i) const {
     for (int k = 0; k < 3; ++k) {
         ValueSum all = pixels_[i].xyz[k];
         if (layout_.splats) all.add(splats_[i].xyz[k]);
+        if (layout_.flare) all.add(flare_[i].xyz[k]);
         sum[k] = all.value();
     }
     return sum;
@@ -36,6 +37,16 @@ std::vector<float> Film::mean_xyz() const {
     return mean;
 }
 
+std::vector<float> Film::flare_xyz() const {
+    if (!layout_.flare) throw Error("film: this film was made without a layer of flare");
+    std::vector<float> mean;
+    mean.reserve(3 * pixels_.size());
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+        for (const ValueSum& sum : flare_[i].xyz)
+            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
+    return mean;
+}
+
 Film::Estimate Film::estimate(std::size_t i) const {
     const Pixel& p = pixels_[i];
     const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
@@ -47,6 +58,7 @@ Film::Estimate Film::estimate(std::size_t i) const {
         const double scatter = p.rgb_squares[k].value() - own * own / n;
         e.variance[k] = n < 2 ? 0 : std::max(0.0, scatter / (n * (n - 1)));
         if (layout_.splats && n > 0) e.variance[k] += splats_[i].rgb_squares[k].value() / (n * n);
+        if (layout_.flare && n > 0) e.variance[k] += flare_[i].rgb_squares[k].value() / (n * n);
     }
     return e;
 }

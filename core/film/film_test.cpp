@@ -254,7 +254,19 @@ TEST_CASE("splats: the same bits in any order, from any thread and any split; no
     CHECK(std::ranges::equal(whole.state("splats"), again.state("splats")));
     CHECK(whole.state("splats").size() == Film::kSplatBytes * kWidth * kHeight);
 
+    // Ghosts are a layer of their own, and part of the picture.
+    const FilmLayout lit{.width = 1, .height = 1, .splats = true, .flare = true};
+    Film film(lit), more(lit);
+    film.count(0, 0), more.count(0, 0);
+    film.add(0, 0, 0, {1, 1, 1}), film.splat(0, 0, 0, {2, 2, 2});
+    more.splat(0, 0, 1, {4, 6, 8}, Film::Layer::flare);
+    film.merge(more);
+    CHECK(film.flare_xyz() == std::vector<float>{2, 3, 4});
+    CHECK(film.mean_xyz() == std::vector<float>{3.5f, 4.5f, 5.5f});
+    CHECK(film.state_parts() == std::vector<std::string>{"sums", "splats", "flare"});
+
     const Film bare(FilmLayout{2, 2, 0, 0, false});
+    CHECK_THROWS_AS(bare.flare_xyz(), Error);
     CHECK(bare.state_parts() == std::vector<std::string>{"sums"});
     CHECK_THROWS_AS(bare.state("splats"), Error);
     CHECK_THROWS_AS(whole.merge(Film(FilmLayout{kWidth, kHeight, 10, 20, false})), Error);

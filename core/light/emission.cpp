@@ -9,25 +9,6 @@ namespace {
 // of where things are on their way.
 constexpr double kLeastShare = 0.02;
 
-/// What a light brings to a viewpoint (lux) if it is in reach, as far as its bounds tell: where it faces is
-/// asked of one that stays, and lies flat.
-double estimate(const LightBounds& b, bool moves, const ViewCone& view) {
-    const Vec3f center = (b.min + b.max) * 0.5f;
-    const float radius = 0.5f * length(b.max - b.min);
-    if (!view.sees(center, radius)) return 0;
-    const Vec3f to = view.from.eye - center;
-    const double reach = radius + view.from.radius;
-    const double d2 = std::max<double>(length_squared(to), reach * reach);
-    if (!(d2 > 0)) return 0;
-    double facing = 1;
-    if (!moves && b.spread == 0) {   // a triangle
-        const double toward = dot(to, b.axis), highest = toward + view.from.radius;
-        if (!b.two_sided && highest <= 0) return 0;
-        facing = std::clamp(std::abs(toward) / std::sqrt(d2), 0.01, 1.0);
-    }
-    return b.intensity * facing / d2;
-}
-
 /// The part of a sphere that points of a ball about the eye may see: normals n with n . axis > from, since
 /// n . (x - centre) > radius for some x of the ball. The density rises from 0 there as the cosine at the
 /// emitter does for those points, so that no sample weighs much more than another.
@@ -57,6 +38,42 @@ struct Side {
 
 }  // namespace
 
+// Where it faces is asked of one that stays, and lies flat.
+double illuminance_estimate(const LightBounds& b, bool moves, const ViewCone& view) {
+    const Vec3f center = (b.min + b.max) * 0.5f;
+    const float radius = 0.5f * length(b.max - b.min);
+    if (!view.sees(center, radius)) return 0;
+    const Vec3f to = view.from.eye - center;
+    const double reach = radius + view.from.radius;
+    const double d2 = std::max<double>(length_squared(to), reach * reach);
+    if (!(d2 > 0)) return 0;
+    double facing = 1;
+    if (!moves && b.spread == 0) {   // a triangle
+        const double toward = dot(to, b.axis), highest = toward + view.from.radius;
+        if (!b.two_sided && highest <= 0) return 0;
+        facing = std::clamp(std::abs(toward) / std::sqrt(d2), 0.01, 1.0);
+    }
+    return b.intensity * facing / d2;
+}
+
+std::optional<EmissionPoint> point_on(const TriangleSampler& triangle, Vec2f u) {
+    if (!(triangle.area > 0)) return std::nullopt;
+    const Vec2f b = warp_triangle(u);
+    return EmissionPoint{.position = triangle.a + triangle.to_b * b.x + triangle.to_c * b.y,
+                         .normal = triangle.normal * (0.5f / triangle.area),
+                         .pdf = 1 / triangle.area,
+                         .barycentric = b};
+}
+
+std::optional<EmissionPoint> point_on(const Sphere& sphere, Vec2f u, const Viewpoint& view) {
+    const Side side(sphere, view);
+    if (side.from >= 1) return std::nullopt;
+    const Vec3f n = side.sample(u);
+    return EmissionPoint{.position = sphere.center + n * sphere.radius,
+                         .normal = n,
+                         .pdf = side.pdf(n) / (sphere.radius * sphere.radius)};
+}
+
 EmissionSampler::EmissionSampler(const LightSet& lights, std::span<const ViewCone> views)
     : lights_(&lights), entry_of_(lights.lights().size(), -1) {
     std::vector<double> weights;
@@ -67,7 +84,7 @@ EmissionSampler::EmissionSampler(const LightSet& lights, std::span<const ViewCon
         const LightBounds bounds = lights.bounds_of(i);
         const bool moves = lights.moves(i);
         double weight = 0;
-        for (const ViewCone& view : views) weight += estimate(bounds, moves, view);
+        for (const ViewCone& view : views) weight += illuminance_estimate(bounds, moves, view);
         if (weight > 0 && std::isfinite(weight)) add(std::int32_t(i), weight / double(views.size()), weights);
     }
     const double sky = sky_weight(views);
@@ -123,24 +140,13 @@ std::optional<EmissionPoint> EmissionSampler::sample_triangle(std::size_t entry,
         const auto now = lights_->triangle_at(chosen_[entry], time);
         if (!now) return std::nullopt;
         triangle = TriangleSampler(*now);
-        if (!(triangle.area > 0)) return std::nullopt;
     }
-    const Vec2f b = warp_triangle(u);
-    return EmissionPoint{.position = triangle.a + triangle.to_b * b.x + triangle.to_c * b.y,
-                         .normal = triangle.normal * (0.5f / triangle.area),
-                         .pdf = 1 / triangle.area,
-                         .barycentric = b};
+    return point_on(triangle, u);
 }
 
 std::optional<EmissionPoint> EmissionSampler::sample_sphere(std::size_t entry, Vec2f u, float time,
                                                             const Viewpoint& view) const {
-    const Sphere sphere = lights_->sphere_light_at(chosen_[entry], time).shape;
-    const Side side(sphere, view);
-    if (side.from >= 1) return std::nullopt;
-    const Vec3f n = side.sample(u);
-    return EmissionPoint{.position = sphere.center + n * sphere.radius,
-                         .normal = n,
-                         .pdf = side.pdf(n) / (sphere.radius * sphere.radius)};
+    return point_on(lights_->sphere_light_at(chosen_[entry], time).shape, u, view);
 }
 
 float EmissionSampler::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float time) const {

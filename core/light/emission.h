@@ -18,11 +18,19 @@ namespace dg {
 struct EmissionPoint {
     static constexpr std::int32_t kSky = LightSet::kEnvironment;
     std::int32_t light = kSky;   // index in LightSet::lights()
-    Vec3f position;              // m; of the sky the unit direction toward it
-    Vec3f normal;                // unit, of the front side; none of the sky
+    Vec3f position{};            // m; of the sky the unit direction toward it
+    Vec3f normal{};              // unit, of the front side; none of the sky
     float pdf = 0;               // with the choice of the emitter: per m2; of the sky per sr
     Vec2f barycentric{};         // of a triangle
 };
+
+/// Evenly on it; nothing where it has no area.
+std::optional<EmissionPoint> point_on(const TriangleSampler& triangle, Vec2f u);
+/// On that side which some point of the viewpoint may see; nothing from inside.
+std::optional<EmissionPoint> point_on(const Sphere& sphere, Vec2f u, const Viewpoint& view);
+
+/// What a light brings to a viewpoint (lux) if the view has it in reach, as far as its bounds tell.
+double illuminance_estimate(const LightBounds& bounds, bool moves, const ViewCone& view);
 
 /// Which emitter: by an estimate of the illuminance that it brings to the lens from within the frame's
 /// reach. Where on it: evenly on triangles, on that side of a sphere which some point of the lens may see,

@@ -46,8 +46,50 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     }
     if (kept.empty()) return;
     cells_ = DiscreteDistribution(std::span<const double>(kept));
-    hot_.resize(std::size_t(p.width) * (p.height + 1));
-    for (const std::uint32_t i : index_) hot_[i] = true;
+    mark_hot();
+}
+
+void HotSky::mark_hot() {
+    const Environment::Picture& p = *environment_.picture_;
+    std::vector<bool> hot(std::size_t(p.width) * (p.height + 1));
+    for (const std::uint32_t i : index_) hot[i] = true;
+    hot_ = std::make_shared<const std::vector<bool>>(std::move(hot));
+}
+
+std::vector<HotSky> HotSky::parts(int most) const {
+    if (cells_.empty()) return {};
+    const Environment::Picture& p = *environment_.picture_;
+    constexpr int kAcross = 16, kDown = 8;
+    std::vector<std::vector<std::uint32_t>> members(kAcross * kDown);
+    std::vector<double> weights(members.size());
+    for (const std::uint32_t i : index_) {
+        const int c = int(i % p.width), r = int(i / p.width);
+        const std::size_t part = std::size_t(std::min(r * kDown / (p.height + 1), kDown - 1)) * kAcross +
+                                 std::min(c * kAcross / p.width, kAcross - 1);
+        members[part].push_back(i), weights[part] += p.weight(c, r);
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < members.size(); ++i)
+        if (!members[i].empty()) order.push_back(i);
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return weights[i]; });
+    std::vector<HotSky> parts;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const bool own = k + 1 < std::size_t(most) || k + 1 == order.size();
+        if (own || k + 1 == std::size_t(most)) {
+            parts.emplace_back(*this);
+            parts.back().index_.clear();
+        }
+        auto& index = parts.back().index_;
+        index.insert(index.end(), members[order[k]].begin(), members[order[k]].end());
+    }
+    for (HotSky& part : parts) {
+        std::ranges::sort(part.index_);
+        std::vector<double> kept;
+        for (const std::uint32_t i : part.index_) kept.push_back(p.weight(i % p.width, i / p.width));
+        part.cells_ = DiscreteDistribution(std::span<const double>(kept));
+        part.mark_hot();
+    }
+    return parts;
 }
 
 Environment::Sample HotSky::sample(Vec2f u, float time) const {
@@ -63,7 +105,7 @@ float HotSky::pdf(Vec3f direction, float time) const {
     if (cells_.empty()) return 0;
     const Environment::Picture& p = *environment_.picture_;
     const auto [c, r, luminance] = p.place(environment_.to_picture(direction, time));
-    return hot_[std::size_t(r) * p.width + c] ? luminance / float(cells_.sum()) : 0;
+    return (*hot_)[std::size_t(r) * p.width + c] ? luminance / float(cells_.sum()) : 0;
 }
 
 }  // namespace dg

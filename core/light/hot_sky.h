@@ -1,5 +1,6 @@
 // hot_sky.h -- the bright spots of an environment's picture that a lens sees: sun, street lamps, windows.
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,13 +23,20 @@ class HotSky {
     /// World directions and densities (per sr) at a time; pdf is 0 outside the spots.
     Environment::Sample sample(Vec2f u, float time) const;
     float pdf(Vec3f direction, float time) const;
+    bool empty() const { return cells_.empty(); }
+
+    /// The spots by the part of the sky where they are, 22.5 degrees across; of all parts but the brightest,
+    /// at most `most`, the rest together. Samples and densities of a part are its own.
+    std::vector<HotSky> parts(int most) const;
 
   private:
+    void mark_hot();
+
     Environment environment_;
     double strength_ = 1;               // of the environment at most
     DiscreteDistribution cells_;
     std::vector<std::uint32_t> index_;  // of the cells, rows of the picture; rising
-    std::vector<bool> hot_;             // by cell
+    std::shared_ptr<const std::vector<bool>> hot_;   // by cell
 };
 
 }  // namespace dg

@@ -37,15 +37,15 @@ RayOnFilm::RayOnFilm(const FilmDensity& density, const Sensor& sensor,
 }
 
 void RayOnFilm::splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
-                      std::uint32_t sample) const {
+                      std::uint32_t sample, Film::Layer layer) const {
     if (film_density_.filter().radius() <= kWideFilter) {
-        splat_all(film, radiance * response(), wavelengths, sample);
+        splat_all(film, radiance * response(), wavelengths, sample, layer);
         return;
     }
     std::array<Splat, kWavelengths> splats;
     const int count = choose(radiance, wavelengths, u, splats);
     for (int k = 0; k < count; ++k)
-        film.splat(splats[k].pixel.x, splats[k].pixel.y, sample, splats[k].xyz);
+        film.splat(splats[k].pixel.x, splats[k].pixel.y, sample, splats[k].xyz, layer);
 }
 
 Spectrum RayOnFilm::response() const {
@@ -72,13 +72,13 @@ float RayOnFilm::spread() const {
 }
 
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                          std::uint32_t sample) const {
-    if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, 0, 1);
+                          std::uint32_t sample, Film::Layer layer) const {
+    if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, layer, 0, 1);
     const Footprint::Box all = box(0, landings_.size());
     if (all.x1 - all.x0 <= kWidestBox && all.y1 - all.y0 <= kWidestBox)
-        return splat_box(film, light, wavelengths, sample, 0, landings_.size());
+        return splat_box(film, light, wavelengths, sample, layer, 0, landings_.size());
     for (std::size_t i = 0; i < landings_.size(); ++i)   // far from each other
-        if (reaches(i)) splat_box(film, light, wavelengths, sample, i, i + 1);
+        if (reaches(i)) splat_box(film, light, wavelengths, sample, layer, i, i + 1);
 }
 
 /// The pixels that some of the landings reach.
@@ -95,7 +95,8 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
 
 /// What landings [first, last) bring, one value for each pixel.
 void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                          std::uint32_t sample, std::size_t first, std::size_t last) const {
+                          std::uint32_t sample, Film::Layer layer, std::size_t first,
+                          std::size_t last) const {
     const Footprint::Box all = box(first, last);
     const int width = all.x1 - all.x0, height = all.y1 - all.y0;
     Spectrum columns[kWidestBox], rows[kWidestBox];
@@ -112,7 +113,7 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
             const Spectrum share = landings_.size() == 1 ? Spectrum(columns[x][0]) : columns[x];
             const Spectrum value = in_row * share * film_density_.count(p);
             if (value.max() == 0 && value.min() == 0) continue;
-            film.splat(p.x, p.y, sample, wavelengths.to_xyz(value));
+            film.splat(p.x, p.y, sample, wavelengths.to_xyz(value), layer);
         }
     }
 }

@@ -28,7 +28,7 @@ class RayOnFilm {
     /// Adds radiance x response to all pixels whose filter it reaches. Of a wide filter to one pixel per
     /// wavelength, chosen by its share with u in [0,1)^2: the same u for all, so that most are one value.
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
-               std::uint32_t sample) const;
+               std::uint32_t sample, Film::Layer layer = Film::Layer::splats) const;
 
     /// What comes of light in one pixel, in XYZ.
     struct Splat {
@@ -44,9 +44,9 @@ class RayOnFilm {
   private:
     Spectrum response() const;
     void splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                   std::uint32_t sample) const;
+                   std::uint32_t sample, Film::Layer layer) const;
     void splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
-                   std::size_t first, std::size_t last) const;
+                   Film::Layer layer, std::size_t first, std::size_t last) const;
     Footprint::Box box(std::size_t first, std::size_t last) const;
     bool reaches(std::size_t landing) const { return at_[landing] && at_[landing]->total() > 0; }
 

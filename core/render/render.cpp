@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "camera/pixel_cone.h"
+#include "math/error.h"
 #include "render/dispersion.h"
+#include "render/flare_pass.h"
 #include "render/light_pass.h"
 #include "render/parallel.h"
 
@@ -19,6 +21,7 @@ namespace {
 
 constexpr int kTileSize = 16;      // px: neighbours share geometry in the caches
 constexpr int kLightBlock = 4096;  // light paths of one task
+constexpr int kFlareBlock = 16384; // flare paths: enough of one ghost to fill the SIMD lanes
 constexpr int kBatchSize = 1024;   // camera samples per call of the lens: fills the SIMD lanes
 
 /// One camera sample on its way from random numbers to the film.
@@ -41,21 +44,23 @@ struct Workspace {
     std::vector<Reprojection> reprojections;
     RenderCounters counters;
     LightPass::Workspace light;
+    FlarePass::Workspace flare;
 };
 
 RenderCounters operator+(const RenderCounters& a, const RenderCounters& b) {
     return {a.camera_rays + b.camera_rays, a.stopped_rays + b.stopped_rays, a.rays + b.rays,
-            a.light_paths + b.light_paths, a.splats_off_film + b.splats_off_film};
+            a.light_paths + b.light_paths, a.splats_off_film + b.splats_off_film,
+            a.flare_paths + b.flare_paths, a.flare_rays + b.flare_rays, a.flare_hits + b.flare_hits};
 }
 
 /// Light paths [first, last) in blocks.
 struct LightTasks {
-    std::uint64_t first, last;
-    explicit LightTasks(std::array<std::uint64_t, 2> range) : first(range[0]), last(range[1]) {}
-    std::int64_t count() const { return std::int64_t((last - first + kLightBlock - 1) / kLightBlock); }
+    std::uint64_t first, last, size;
+    LightTasks(std::array<std::uint64_t, 2> range, int block) : first(range[0]), last(range[1]), size(block) {}
+    std::int64_t count() const { return std::int64_t((last - first + size - 1) / size); }
     std::array<std::uint64_t, 2> operator[](std::int64_t block) const {
-        const std::uint64_t begin = first + std::uint64_t(block) * kLightBlock;
-        return {begin, std::min(begin + kLightBlock, last)};
+        const std::uint64_t begin = first + std::uint64_t(block) * size;
+        return {begin, std::min(begin + size, last)};
     }
 };
 
@@ -91,6 +96,7 @@ class Renderer {
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
         if (weight_.draws_light())
             light_.emplace(scene, camera, film, settings, density_, weight_, cone_);
+        if (settings.flare.per_sample > 0) set_up_flare();
         // Where light paths share in what is found, the hero's own landing is needed too.
         first_traced_ = weight_.off() ? 1 : 0;
         end_traced_ = exact_ ? kWavelengths : weight_.off() ? 0 : 1;
@@ -98,7 +104,12 @@ class Renderer {
 
     /// Indices of the light paths that belong to these samples, `per_sample` to each.
     std::array<std::uint64_t, 2> light_paths(double per_sample) const {
-        if (!light_) return {0, 0};
+        return light_ ? paths(per_sample) : std::array<std::uint64_t, 2>{0, 0};
+    }
+    std::array<std::uint64_t, 2> flare_paths() const {
+        return flare_ ? paths(settings_.flare.per_sample) : std::array<std::uint64_t, 2>{0, 0};
+    }
+    std::array<std::uint64_t, 2> paths(double per_sample) const {
         const SampleRound& round = settings_.round;
         double begin = settings_.sample_begin, end = settings_.sample_end;
         if (!round.count.empty()) {
@@ -112,6 +123,10 @@ class Renderer {
             light_->draw_bounced(work.light, first, last);
         else
             light_->draw(work.light, first, last);
+    }
+
+    void draw_flare(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+        flare_->draw(work.flare, first, last);
     }
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
@@ -133,11 +148,21 @@ class Renderer {
         return even ? std::span<const std::uint32_t>{} : counts;
     }
 
-    /// Light paths per unit of the density's counts, which are those of a whole round.
+    /// Sample indices per unit of the density's counts, which are those of a whole round.
+    double samples_per_count() const {
+        return density_.even() ? 1 : RoundSums(settings_.round).mean_count();
+    }
     LightPlan plan() const {
-        if (density_.even()) return settings_.light;
-        const double samples = RoundSums(settings_.round).mean_count();
-        return {settings_.light.m1 * samples, settings_.light.m2 * samples};
+        return {settings_.light.m1 * samples_per_count(), settings_.light.m2 * samples_per_count()};
+    }
+    void set_up_flare() {
+        if (!std::holds_alternative<ExactLens>(camera_.lens))
+            throw input_error("render", "flare", "a lens that is traced", "an ideal one");
+        flare_guide_ = settings_.flare.guide;
+        if (!flare_guide_) flare_guide_ = std::make_shared<const FlareGuide>(scene_, camera_, settings_);
+        if (!flare_guide_->empty())
+            flare_.emplace(scene_, camera_, film_, settings_, density_,
+                           settings_.flare.per_sample * samples_per_count(), *flare_guide_);
     }
 
     /// Samples [begin, end) that this call draws of a pixel.
@@ -267,6 +292,8 @@ class Renderer {
     LightWeight weight_;
     PixelCone cone_;           // none where the scene has no textures
     std::optional<LightPass> light_;
+    std::shared_ptr<const FlareGuide> flare_guide_;   // null where none is drawn
+    std::optional<FlarePass> flare_;
     int first_traced_, end_traced_;
 };
 
@@ -281,10 +308,11 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     const int rows = (region.height + kTileSize - 1) / kTileSize;
     const Renderer renderer(scene, camera, film, settings);
     oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
-    const LightTasks straight(renderer.light_paths(settings.light.m1)),
-        bounced(renderer.light_paths(settings.light.m2));
+    const LightTasks straight(renderer.light_paths(settings.light.m1), kLightBlock),
+        bounced(renderer.light_paths(settings.light.m2), kLightBlock),
+        flare(renderer.flare_paths(), kFlareBlock);
     const std::int64_t tiles = std::int64_t(columns) * rows;
-    const std::int64_t tasks = tiles + straight.count() + bounced.count();
+    const std::int64_t light = tiles + straight.count() + bounced.count(), tasks = light + flare.count();
     std::atomic<std::int64_t> done{0};
     std::atomic<bool> stop{false};
     const auto draw = [&](std::int64_t task) {
@@ -294,6 +322,9 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
             const int x = x0 + int(task % columns) * kTileSize, y = y0 + int(task / columns) * kTileSize;
             renderer.draw_tile(work, x, y, std::min(x + kTileSize, x0 + region.width),
                                std::min(y + kTileSize, y0 + region.height));
+        } else if (task >= light) {
+            const auto [first, last] = flare[task - light];
+            renderer.draw_flare(work, first, last);
         } else {
             const bool bounces = task >= tiles + straight.count();
             const auto [first, last] =
@@ -304,7 +335,8 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     };
     parallel_tasks(settings.threads, tasks, draw);
     RenderCounters counters;
-    for (Workspace& work : workspaces) counters = counters + work.counters + work.light.counters;
+    for (Workspace& work : workspaces)
+        counters = counters + work.counters + work.light.counters + work.flare.counters;
     return counters;
 }
 

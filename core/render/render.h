@@ -18,6 +18,14 @@
 namespace dg {
 
 struct LightGuide;   // light_guide.h
+class FlareGuide;    // flare_guide.h
+
+/// Ghosts, drawn from the emitters (flare_pass.h); 0 paths per sample index, for the whole frame: none.
+struct FlarePlan {
+    double per_sample = 0;
+    int order = 2;   // reflections: 2, or 4 as well
+    std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
+};
 
 /// What becomes of the other wavelengths of a path once glass has bent the hero's ray.
 enum class Dispersion {
@@ -56,12 +64,15 @@ struct RenderSettings {
     LightPlan light;                            // none: off
     Technique technique = Technique::both;
     std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
+    FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
 };
 
 struct RenderCounters {
     std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
     std::uint64_t light_paths = 0;
     std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
+    std::uint64_t flare_paths = 0;
+    std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

@@ -1,0 +1,103 @@
+#include "render/flare_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace dg {
+namespace {
+
+constexpr int kSequence = -4;   // where pixels have their row, in the sampler's scramble
+constexpr std::size_t kChunk = kLensBatch / kWavelengths;   // paths per call of the lens
+
+}  // namespace
+
+FlarePass::FlarePass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
+                     const FilmDensity& density, double per_sample, const FlareGuide& guide)
+    : scene_(scene),
+      camera_(camera),
+      film_(film),
+      settings_(settings),
+      density_(density),
+      guide_(guide),
+      per_sample_(per_sample),
+      scale_(density.filter().absolute_integral()) {
+    if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
+}
+
+/// All paths first, then one ghost after the other: rays by the same surfaces share the lanes.
+void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+    work.paths.clear(), work.u_pixel.clear(), work.sample.clear();
+    for (std::uint64_t i = first; i < last; ++i) begin(work, i);
+    work.order.resize(work.paths.size());
+    std::iota(work.order.begin(), work.order.end(), 0u);
+    const auto kind = [&](std::uint32_t i) {
+        const FlareArrival& p = work.paths[i];
+        return std::tuple(guide_.state_at(p.lens.ray.time), p.ghost);
+    };
+    std::ranges::stable_sort(work.order, {}, kind);
+    for (std::size_t from = 0; from < work.order.size();) {
+        std::size_t to = from;
+        while (to < work.order.size() && to - from < kChunk && kind(work.order[to]) == kind(work.order[from]))
+            ++to;
+        trace(work, from, to);
+        from = to;
+    }
+    work.counters.flare_paths += last - first;
+    work.counters.flare_rays += (last - first) * kWavelengths;
+}
+
+/// Order of drawing: pair, point of the front, time and wavelengths are stratified together.
+void FlarePass::begin(Workspace& work, std::uint64_t index) const {
+    PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), settings_.seed);
+    const CameraRandom u = sampler.camera();
+    const FlareGuide::Random random{u.film.x, u.film.y, u.lambda, u.lens, sampler.next_2d(),
+                                    settings_.shutter.draw_any(u.time)};
+    auto path = guide_.draw(random);
+    if (!path) return;
+    path->density *= per_sample_ * scale_;
+    work.paths.push_back(*path);
+    work.u_pixel.push_back(sampler.next_2d());
+    work.sample.push_back(std::uint32_t(double(index) / settings_.flare.per_sample));
+}
+
+/// Paths of one ghost to the film, each wavelength by its own way.
+void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) const {
+    work.rays.clear(), work.nm.clear();
+    for (std::size_t i = first; i < last; ++i) {
+        const FlareArrival& path = work.paths[work.order[i]];
+        for (int k = 0; k < kWavelengths; ++k)
+            work.rays.push_back(path.lens), work.nm.push_back(path.wavelengths.nm[k]);
+    }
+    work.landings.assign(work.rays.size(), Reprojection{});
+    const FlareArrival& any = work.paths[work.order[first]];
+    guide_.trace(guide_.state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
+    for (std::size_t i = first; i < last; ++i) {
+        const std::span own(work.landings.data() + (i - first) * kWavelengths, std::size_t(kWavelengths));
+        const float time = work.paths[work.order[i]].lens.ray.time;
+        bool hits = false;
+        for (Reprojection& landing : own) {
+            const bool on_film = guide_.on_frame(landing, time).has_value();
+            landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
+            work.counters.flare_hits += on_film;
+            hits |= on_film;
+        }
+        if (hits) finish(work, work.order[i], own);
+    }
+}
+
+void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Reprojection> landings) const {
+    const FlareArrival& path = work.paths[index];
+    const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
+    if (!film_ray.in_reach()) return;
+    ++work.counters.rays;
+    const Ray shadow = flare_shadow(path.from, to_world(camera_, path.lens.ray));
+    if (!is_traceable(shadow)) return;
+    const Spectrum visible = scene_.visibility_along(shadow, path.wavelengths);
+    if (visible.is_black()) return;
+    film_ray.splat(film_, path.radiance * visible * float(1 / path.density), path.wavelengths,
+                   work.u_pixel[index], work.sample[index], Film::Layer::flare);
+}
+
+}  // namespace dg

@@ -1,0 +1,48 @@
+// flare_pass.h -- ghosts, drawn from the emitters: a point that shines, a ghost, a ray to the front lens, traced
+// exactly by two reflections to a film point for each wavelength. What the lens lets through and nothing is in
+// the way of lands in a pixel.
+//
+// Units and weights are those of light_pass.h; no other technique finds ghosts, so there is nothing to share.
+#pragma once
+#include <vector>
+
+#include "render/flare_guide.h"
+#include "render/ray_on_film.h"
+
+namespace dg {
+
+class FlarePass {
+  public:
+    /// `per_sample`: paths per unit of the density's counts. All outlives this.
+    FlarePass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
+              const FilmDensity& density, double per_sample, const FlareGuide& guide);
+
+    /// Buffers of one thread.
+    struct Workspace {
+        std::vector<FlareArrival> paths;
+        std::vector<Vec2f> u_pixel;
+        std::vector<std::uint32_t> sample, order;
+        std::vector<CameraRay> rays;
+        std::vector<float> nm;
+        std::vector<Reprojection> landings;
+        RenderCounters counters;
+    };
+
+    /// Draws flare paths [first, last).
+    void draw(Workspace& work, std::uint64_t first, std::uint64_t last) const;
+
+  private:
+    void begin(Workspace& work, std::uint64_t index) const;
+    void trace(Workspace& work, std::size_t first, std::size_t last) const;
+    void finish(Workspace& work, std::size_t path, std::span<const Reprojection> landings) const;
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Film& film_;
+    const RenderSettings& settings_;
+    const FilmDensity& density_;
+    const FlareGuide& guide_;
+    double per_sample_, scale_;
+};
+
+}  // namespace dg
