@@ -98,6 +98,9 @@ class Camera:
         iris_mask: The same at the iris, as wide as it opens.
         ripple: Grooves that grinding left in the aspheric surfaces of an exact lens, which show as
             onion rings: RMS height (nm), period (um), and a seed if wanted.
+        cover_glass: Of the body, before its sensor: thickness and gap to the sensor (mm), and its
+            index if wanted [1.5168]. It has ghosts (``flare``); the picture is that without it.
+        sensor_reflectance: How much light the sensor sends back into the lens, 0 .. 1.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Film shift, mm.
         tilt: The lens is turned about its entrance pupil: degrees about the camera's x (up is
@@ -144,6 +147,8 @@ class Camera:
     front_mask: NDArray[np.float32] | None = None
     iris_mask: NDArray[np.float32] | None = None
     ripple: tuple[float, ...] | None = None
+    cover_glass: tuple[float, ...] | None = None
+    sensor_reflectance: float = 0.0
     natural_vignetting: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
     tilt: tuple[float, float] = (0.0, 0.0)

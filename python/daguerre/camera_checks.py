@@ -82,6 +82,12 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
             raise UsageError(
                 f"camera: {name}: wanted lens_model exact, got {model}, which has no elements"
             )
+    for name in ("cover_glass", "sensor_reflectance"):
+        if model not in TRACED and getattr(camera, name):
+            raise UsageError(
+                f"camera: {name}: wanted a lens with surfaces (lens_model exact), got {model}: "
+                "it is for ghosts"
+            )
     if model == "polynomial" and camera.ripple is not None:
         raise UsageError("camera: ripple: wanted lens_model exact, got polynomial, which is smooth")
     _check_fit(camera, model)

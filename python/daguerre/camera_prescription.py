@@ -24,6 +24,7 @@ from .camera_checks import TRACED
 from .camera_parts import dirt_facts, iris_facts, iris_of, mask_of
 from .checks import number, numbers, short, whole
 from .errors import UsageError
+from .flare import stack_facts, stack_of
 from .focusing import Focus, ideal_direction
 from .lenses.checking import frame_notes
 from .lenses.errors import LensError, from_core
@@ -99,6 +100,7 @@ def set_up(
     if model in TRACED:
         exact, fitted = _traced_lens(camera, model, sharp, frame, focus)
         core, h0 = _core.Camera.exact(pose, exact), exact.h0
+        core.sensor_stack = stack_of(camera)
     else:
         core, h0 = _core_camera(camera, model, sharp, pose, film)
     facts = {
@@ -123,6 +125,7 @@ def set_up(
         **fitted,
         **iris_facts(camera),
         **dirt_facts(camera),
+        **stack_facts(camera),
     }
     return RealLens(core, film, facts)
 

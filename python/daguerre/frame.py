@@ -43,6 +43,7 @@ class Frame:
         xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
         alpha: Share of the samples that hit something, shape (H, W); by default 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
+        flare: What ghosts brought to ``rgb``, shape (H, W, 3), if they were drawn.
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
@@ -58,6 +59,7 @@ class Frame:
     aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
     metadata: dict[str, Any] = field(default_factory=dict)
     bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, [])
+    flare: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:
@@ -238,4 +240,5 @@ def frame_of(
         aovs=planes,
         metadata=metadata,
         bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
+        flare=film.flare_rgb() if "flare" in film.state_parts() else None,
     )

@@ -24,7 +24,8 @@ from .build import build, content_hash
 from .camera import Camera
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
-from .errors import MismatchError, UsageError, suggest
+from .errors import InputError, MismatchError, UsageError, suggest
+from .flare import PER_PIXEL, check_flare, check_lens
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
@@ -63,6 +64,8 @@ class Session:
         light_paths: Light that is followed from the emitters to the film, beside the paths from the
             lens (``docs/light-paths.md``): auto, off, or paths per sample index, straight to the
             lens and with bounces, as (M1, M2).
+        flare: Ghosts of an exact lens (``docs/flare.md``): off, auto, or paths per sample index.
+        flare_order: Their reflections: 2, or 4 for those of four as well.
         technique: Who draws what both could find: both, or camera or light alone (to check one
             against the other).
 
@@ -88,6 +91,8 @@ class Session:
         strategy: str = "mis",
         dispersion: str = "reproject",
         light_paths: str | float | tuple[float, float] = "auto",
+        flare: str | float = "off",
+        flare_order: int = 2,
         technique: str = "both",
     ) -> None:
         self.width, self.height = _resolution(resolution)
@@ -97,6 +102,9 @@ class Session:
         threads = whole(threads, "threads", 0, 1024, "0 (all) .. 1024")
         max_depth = whole(max_depth, "max_depth", 1, 4096)
         wanted = check_light_paths(light_paths)
+        flare_paths = check_flare(flare)
+        if flare_order not in (2, 4):
+            raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
         if not isinstance(scene, Scene):
@@ -131,12 +139,15 @@ class Session:
         self.light_paths = self._plan() if wanted is None else wanted
         self._settings.light_paths = self.light_paths
         self._settings.prepare_light(self._core_scene, self._setup.core)
+        self._settings.flare_order = flare_order
+        self.flare = self._prepare_flare(flare_paths)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
         self.light_path_count = self.splats_off_film = 0
+        self.flare_path_count = self.flare_rays = self.flare_hits = 0
         self._identity = {
             "resolution": [self.width, self.height],
             "crop": list(self.crop),
@@ -150,6 +161,8 @@ class Session:
             "light_paths": list(self.light_paths),
             "technique": technique,
         }
+        if self.flare > 0:
+            self._identity |= {"flare": self.flare, "flare_order": flare_order}
 
     def _plan(self) -> Plan:
         """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
@@ -158,9 +171,25 @@ class Session:
         share = (x1 - x0) * (y1 - y0) / (self.width * self.height)
         return m1 * share, m2 * share
 
+    def _prepare_flare(self, paths: float | None) -> float:
+        """Paths per sample index; 0: off, or no light makes a ghost. Of a crop as of its frame."""
+        if paths == 0:
+            return 0.0
+        check_lens(self._setup.facts["lens_model"])
+        try:
+            shines = self._settings.prepare_flare(self._core_scene, self._setup.core)
+        except ValueError as error:
+            raise InputError(f"flare: {error}") from None
+        if not shines:
+            self.notes.append("flare: no light of this scene makes a ghost in this lens")
+            return 0.0
+        self._settings.flare = PER_PIXEL * self.width * self.height if paths is None else paths
+        return float(self._settings.flare)
+
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
-        return _core.Film(x1 - x0, y1 - y0, x0, y0, self.aovs, self.light_paths != OFF)
+        layers = (self.aovs, self.light_paths != OFF, self.flare > 0)
+        return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers)
 
     def _whole_film(self) -> _core.Film:
         if self._torn:
@@ -215,7 +244,7 @@ class Session:
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
-        complete, camera_rays, stopped, rays, light_paths, off_film = draw(
+        complete, camera_rays, stopped, rays, light_paths, off_film, *flare = draw(
             self._core_scene, self._setup.core, film, self._settings, *which, progress
         )
         if not complete:
@@ -226,6 +255,9 @@ class Session:
         self.rays += rays
         self.light_path_count += light_paths
         self.splats_off_film += off_film
+        self.flare_path_count += flare[0]
+        self.flare_rays += flare[1]
+        self.flare_hits += flare[2]
         self.samples += camera_rays
         return True
 
@@ -345,6 +377,7 @@ class Session:
             "crop": self.crop,
             "filter": self._identity["filter"],
             "light_paths": show_plan(self.light_paths),
+            "flare": f"{self.flare:.17g}" if self.flare else None,
             "scene_hash": self.key["scene"],
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],

@@ -166,6 +166,24 @@ class CameraFlags:
             panel=_CAMERA,
         ),
     ] = None
+    cover_glass: Annotated[
+        Text,
+        option(
+            "--cover-glass",
+            metavar="MM,GAP[,INDEX]",
+            help="Glass before the sensor and the air behind it, mm: it has ghosts.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    sensor_reflectance: Annotated[
+        float | None,
+        option(
+            "--sensor-reflectance",
+            metavar="R",
+            help="What the sensor sends back into the lens, 0 to 1 [0].",
+            panel=_CAMERA,
+        ),
+    ] = None
     sensor: Annotated[
         Text,
         option(
@@ -236,6 +254,7 @@ class CameraFlags:
             "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
             "ripple": ("ripple", "--ripple", lambda f, t: q.numbers(f, t, 2, "2,100")),
+            "cover_glass": ("cover_glass", "--cover-glass", _cover_glass),
             "tilt": ("tilt", "--tilt", lambda f, t: q.numbers(f, t, 2, "0,6")),
         }
         plain = {
@@ -252,6 +271,7 @@ class CameraFlags:
             "fit": "sensor_fit",
             "iso": "iso",
             "ev": "exposure_compensation",
+            "sensor_reflectance": "sensor_reflectance",
             "natural_vignetting": "natural_vignetting",
         }
         out: dict[str, Any] = {}
@@ -271,6 +291,10 @@ class CameraFlags:
 
                 out[name] = read_grey(path)
         return _refuse_rivals(out)
+
+
+def _cover_glass(flag: str, text: str) -> tuple[float, ...]:
+    return q.numbers(flag, text, 3 if text.count(",") > 1 else 2, "2,1")
 
 
 def _refuse_rivals(changes: dict[str, Any]) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +14,7 @@ from daguerre.errors import InputError, UsageError
 from .console import note
 from .flags import option
 from .lens_export import Export
+from .lens_flare import Flare
 from .quantities import SENSORS, angle_deg, distance_m, f_number, length_mm
 
 if TYPE_CHECKING:
@@ -95,6 +96,38 @@ def lens(
         bool,
         option("--through-focus", help="The PSF on nine films around the focus.", panel=BENCH),
     ] = False,
+    flare: Annotated[
+        str | None,
+        option(
+            "--flare",
+            metavar="ANGLE",
+            help="Ghosts of light from this angle (deg), brightest first; --drawing draws one, "
+            "--plot all on the film.",
+            panel=BENCH,
+        ),
+    ] = None,
+    ghost: Annotated[
+        str | None,
+        option(
+            "--ghost",
+            metavar="I,J",
+            help="Surfaces of the one that is drawn [the brightest].",
+            panel=BENCH,
+        ),
+    ] = None,
+    cover_glass: Annotated[
+        str | None,
+        option(
+            "--cover-glass",
+            metavar="MM,GAP[,INDEX]",
+            help="Glass before the sensor, for --flare.",
+            panel=BENCH,
+        ),
+    ] = None,
+    sensor_reflectance: Annotated[
+        float | None,
+        option("--sensor-reflectance", metavar="R", help="0 to 1, for --flare [0].", panel=BENCH),
+    ] = None,
     zoom: Annotated[
         str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.", panel=BENCH)
     ] = None,
@@ -125,7 +158,8 @@ def lens(
     for flag, path in (("--plot", plot), ("--drawing", drawing)):
         _check_file(flag, path)
     polynomials = Export(degree, sensor, blades, blade_rotation, blade_curvature)
-    polynomials.check(export)
+    (polynomials if flare is None else replace(polynomials, sensor=None)).check(export)
+    ghosts = Flare(flare, ghost, cover_glass, sensor_reflectance, sensor)
     if focus_by not in FOCUS_BY:
         raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
     if through_focus and psf is None:
@@ -142,6 +176,8 @@ def lens(
     def bench() -> Bench:
         return set_up(item, by="best" if focus_by == "best" else "paraxial", **setting)
 
+    if ghosts.wanted:
+        return ghosts.show(bench(), plot=plot, drawing=drawing, json=json)
     if drawing is not None:
         _write_drawing(bench(), drawing)
     if point is not None:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
+from daguerre.flare import check_flare
 from daguerre.light_paths import check_light_paths
 
 from . import console
@@ -113,6 +114,24 @@ def render(
             panel=_SAMPLING,
         ),
     ] = "auto",
+    flare: Annotated[
+        str,
+        option(
+            "--flare",
+            metavar="auto|off|N",
+            help="Ghosts of an exact lens; N paths per sample index [off].",
+            panel=_SAMPLING,
+        ),
+    ] = "off",
+    flare_order: Annotated[
+        int,
+        option(
+            "--flare-order",
+            metavar="2|4",
+            help="Reflections of ghosts: 4 draws those of four, too [2].",
+            panel=_SAMPLING,
+        ),
+    ] = 2,
     resume: Annotated[
         bool, option("--resume", help="Go on from OUT.checkpoint.exr.", panel=_SAMPLING)
     ] = False,
@@ -151,6 +170,9 @@ def render(
     check_names(plan.outputs, numbers)
     _check_numbers(seed, threads, max_depth)
     wanted_light = check_light_paths(light_paths, "--light-paths")
+    wanted_flare = check_flare(flare, "--flare")
+    if flare_order not in (2, 4):
+        raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
     changes = camera_flags.changes() | shutter_flags.changes()
     plans: list[tuple[int | None, Plan]] = [(None, plan)]
     if numbers is not None:
@@ -172,6 +194,9 @@ def render(
     }
     if wanted_light is not None:
         settings["light_paths"] = wanted_light
+    if wanted_flare != 0:
+        settings["flare"] = "auto" if wanted_flare is None else wanted_flare
+        settings["flare_order"] = flare_order
     shoot = Shoot(scene, scene_path, camera_flags.camera, changes, settings, tone, stats)
     if dry_run:
         return shoot.describe(*plans[0])

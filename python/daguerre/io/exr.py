@@ -41,7 +41,9 @@ OWN_NUMBERS = (
     "samples", "samples_min", "samples_max", "noise", "seed", "h0", "time", "bad_samples",
     "motion_missing",
 )  # fmt: skip
-OWN_STRINGS = ("version", "scene_hash", "filter", "denoised", "gt_time", "light_paths")
+OWN_STRINGS = (
+    "version", "scene_hash", "filter", "denoised", "gt_time", "light_paths", "flare",
+)  # fmt: skip
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 
@@ -80,13 +82,15 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
-    """The channels of a frame: R G B A, its AOVs, variance.R/G/B and samples.Y.
+    """The channels of a frame: R G B A, its AOVs, flare.R/G/B, variance.R/G/B and samples.Y.
 
     An array of three planes stands for three channels, as OpenEXR has it: no copies are made.
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
     planes |= frame.aovs
+    if frame.flare is not None:
+        planes["flare"] = frame.flare
     if frame.variance is not None:
         planes["variance"] = frame.variance
     if frame.samples is not None:

@@ -83,7 +83,8 @@ def film_of(one: Pass) -> Any:
         raise InputError(f"{one.path}: damaged pass file: it has no sums")
     height, width = next(iter(one.state.values())).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
-    parts = {"aovs": _has_aovs(one.state), "splats": "splats" in one.state}
+    parts = {"aovs": _has_aovs(one.state)}
+    parts |= {part: part in one.state for part in ("splats", "flare")}
     film = Film(width, height, int(x0), int(y0), **parts)
     set_film_state(film, one.state, str(one.path))
     return film

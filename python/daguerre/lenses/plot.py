@@ -37,7 +37,11 @@ def picture(bench: Bench, suffix: str) -> bytes:
     """The meridional section of a lens with rays, as the bytes of a file."""
     from daguerre.analysis.illumination import within_light
 
-    drawing = section(bench.lens, bench.film_z, within_light(bench).field_mm)
+    return drawn(section(bench.lens, bench.film_z, within_light(bench).field_mm), suffix)
+
+
+def drawn(drawing: Drawing, suffix: str) -> bytes:
+    """A drawing as the bytes of a file of that ending."""
     if suffix == ".svg":
         return to_svg(drawing).encode()
     return _by_matplotlib(drawing, suffix[1:])

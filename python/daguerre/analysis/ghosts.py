@@ -1,0 +1,173 @@
+"""Ghosts of a lens on the bench: which pairs of surfaces light the film, how brightly, and where.
+
+Light comes from infinity, from below the axis; its picture is above. All lengths in mm.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.errors import InputError
+from daguerre.lenses.drawing import Drawing, Line, section
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+
+from .bench import Bench
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Wavelengths (nm) of the report and their shares of the light as the eye has it: CIE 1924 V times
+#: D65, every 40 nm.
+NM = (450.0, 490.0, 530.0, 570.0, 610.0, 650.0)
+_EYE = (4.4, 22.5, 92.5, 92.0, 45.0, 8.5)
+WEIGHTS = tuple(w / sum(_EYE) for w in _EYE)
+RAYS = 4096
+_DRAWN = 9  # rays of a drawing
+
+
+@dataclass(frozen=True)
+class Ghost:
+    """One way of light by two mirrors.
+
+    Attributes:
+        surfaces: Indices of the surfaces that reflect, in the order in which light meets them;
+            those of the body follow those of the lens.
+        light: What lands on the film, over what the picture of the same source straight ahead has.
+        everywhere: The same on the whole plane of the film.
+        center: Of the light on the film, x and y, mm.
+        radius: Of the light on the film about its centre, RMS, mm.
+        points: Where rays land, x, y (mm) and their share, shape (N, 3).
+    """
+
+    surfaces: tuple[int, ...]
+    light: float
+    everywhere: float
+    center: tuple[float, float]
+    radius: float
+    points: NDArray[np.float32]
+
+
+class Ghosts:
+    """The ghosts of a lens for light of one direction, brightest first.
+
+    Args:
+        bench: The lens.
+        angle_deg: Of the source, from the axis.
+        film: Width and height of what counts as film, mm; None: 3 : 2 within the image circle.
+        stack: What of the body reflects; None: nothing.
+        rays: Over the front of the lens, for each ghost.
+
+    Raises:
+        InputError: No light passes the lens, or a body that cannot be.
+    """
+
+    def __init__(
+        self,
+        bench: Bench,
+        angle_deg: float,
+        *,
+        film: tuple[float, float] | None = None,
+        stack: _core.SensorStack | None = None,
+        rays: int = RAYS,
+    ) -> None:
+        self.bench, self.angle_deg = bench, angle_deg
+        half = bench.field_mm / math.hypot(3, 2)
+        self.film = film or (6 * half, 4 * half)
+        self.stack = stack or _core.SensorStack()
+        half_film = (self.film[0] / 2, self.film[1] / 2)
+        try:
+            self.core = _core.GhostLens(
+                bench.lens.prescription,
+                bench.film_z,
+                _core.Iris(),
+                bench.iris_radius,
+                self.stack,
+                math.hypot(*half_film),
+            )
+            found = self.core.spots(
+                math.radians(angle_deg), half_film, list(NM), list(WEIGHTS), rays, True
+            )
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        self.all = [
+            Ghost(tuple(surfaces), light, everywhere, center, radius, points)
+            for surfaces, light, everywhere, center, radius, points in found
+        ]
+
+    def find(self, surfaces: Sequence[int]) -> Ghost:
+        """The ghost of two surfaces, named in either order.
+
+        Raises:
+            InputError: No such ghost.
+        """
+        for ghost in self.all:
+            if sorted(ghost.surfaces) == sorted(surfaces):
+                return ghost
+        reflecting = ", ".join(str(i) for i in self.core.reflecting)
+        raise InputError(
+            f"{self.bench.lens.name}: ghost: wanted two different surfaces of {reflecting}, "
+            f"got {','.join(str(i) for i in surfaces)}"
+        )
+
+    def facts(self) -> list[dict[str, Any]]:
+        """All of them as plain values."""
+        return [
+            {
+                "surfaces": list(g.surfaces),
+                "light": g.light,
+                "light_everywhere": g.everywhere,
+                "center_mm": list(g.center),
+                "radius_mm": g.radius,
+            }
+            for g in self.all
+        ]
+
+    def drawing(self, ghost: Ghost) -> Drawing:
+        """The section of the lens with rays of one ghost."""
+        bench = self.bench
+        plain = section(bench.lens, bench.film_z, bench.field_mm)
+        shapes = [s for s in plain.shapes if not (isinstance(s, Line) and s.width == 0.7)]
+        colour = "#c0392b"
+        for points in self._paths(ghost):
+            shapes.append(Line([(float(p[2]), float(p[1])) for p in points], colour, 0.7))
+        far, near = ghost.surfaces[0], ghost.surfaces[1]
+        title = f"{bench.lens.name}: ghost of surfaces {far} and {near}, {self.angle_deg:g} deg"
+        return Drawing(title, plain.left, plain.right, plain.top, shapes)
+
+    def _paths(self, ghost: Ghost) -> list[NDArray[np.float64]]:
+        """Rays of the section that come through, from the left edge of the drawing to the film."""
+        angle = math.radians(self.angle_deg)
+        direction = [0.0, math.sin(angle), math.cos(angle)]
+        front = self.bench.lens.surfaces[0].semi_diameter or 0.5 * self.bench.pupil_diameter
+        found = []
+        for y in np.linspace(-front, front, 401):
+            origin = [0.0, float(y), 0.0]
+            path = np.asarray(
+                self.core.path(list(ghost.surfaces), origin, direction, DESIGN_WAVELENGTH_NM)
+            )
+            if len(path):
+                start = path[0] - 0.25 * self.bench.film_z * np.asarray(direction)
+                found.append(np.vstack([start, path]))
+        step = max(1, len(found) // _DRAWN)
+        return found[step // 2 :: step][:_DRAWN]
+
+    def picture(self, pixels: int = 600) -> NDArray[np.float64]:
+        """All ghosts on the film, upright, shape (H, W): light per mm2, of that of the picture."""
+        width, height = self.film
+        columns, rows = pixels, max(1, round(pixels * height / width))
+        image = np.zeros((rows, columns))
+        for ghost in self.all:
+            if ghost.light <= 0:
+                continue
+            x, y, share = ghost.points.T.astype(np.float64)
+            # The film's picture is upside down.
+            i = np.clip(((0.5 - x / width) * columns).astype(int), 0, columns - 1)
+            j = np.clip(((0.5 + y / height) * rows).astype(int), 0, rows - 1)
+            np.add.at(image, (j, i), ghost.light * share)
+        return image * (columns * rows / (width * height))

@@ -1,0 +1,96 @@
+"""Ghosts in a picture: how much light is followed by way of two reflections, and by which camera.
+
+See ``docs/flare.md``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import daguerre._core as _core
+
+from .camera import Camera
+from .camera_checks import TRACED
+from .checks import number, numbers, short
+from .errors import UsageError
+from .light_paths import MOST
+
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = 0.5
+WANTED = f"auto, off, or a number of paths per sample index, 0 .. {MOST:g}"
+
+
+def check_flare(value: object, where: str = "flare") -> float | None:
+    """Paths per sample index; 0: no flare; None: as many as suit the frame.
+
+    Args:
+        value: ``"auto"``, ``"off"``, or a number, which may be text.
+        where: For messages.
+
+    Raises:
+        UsageError: None of these, or a number out of range.
+    """
+    if value == "auto":
+        return None
+    if value == "off":
+        return 0.0
+    try:
+        if isinstance(value, bool | bytes):
+            raise TypeError
+        paths = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}") from None
+    if not (math.isfinite(paths) and 0 <= paths <= MOST):
+        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
+    return paths
+
+
+def check_lens(model: str, where: str = "flare") -> None:
+    """Only surfaces make ghosts.
+
+    Raises:
+        UsageError: The lens has none.
+    """
+    if model not in TRACED:
+        raise UsageError(
+            f"{where}: wanted a lens with surfaces, which reflect light (lens_model "
+            f"{' or '.join(TRACED)}), got {model}"
+        )
+
+
+def stack_of(camera: Camera) -> _core.SensorStack:
+    """What the body adds to the surfaces of the lens.
+
+    Raises:
+        UsageError: Glass or a sensor that cannot be.
+    """
+    where = "camera: sensor_reflectance"
+    reflectance = number(camera.sensor_reflectance, where)
+    if not 0 <= reflectance <= 1:
+        raise UsageError(
+            f"{where}: wanted 0 .. 1 (no surface can send back more light than arrives), "
+            f"got {reflectance:g}"
+        )
+    given: Any = camera.cover_glass
+    if given is None:
+        return _core.SensorStack(reflectance=reflectance)
+    where = "camera: cover_glass"
+    wanted = "(thickness, gap) or (thickness, gap, index), mm"
+    if not isinstance(given, tuple | list) or len(given) not in (2, 3):
+        raise UsageError(f"{where}: wanted {wanted}, got {short(given)}")
+    thickness, gap, index = numbers((*given, 1.5168)[:3], where, 3, wanted)
+    number(thickness, where, 0, 100, above=0)
+    number(gap, where, 0, 100, above=0)
+    number(index, where, 1, 4)
+    return _core.SensorStack(thickness, index, gap, reflectance)
+
+
+def stack_facts(camera: Camera) -> dict[str, Any]:
+    """Of the body, for metadata and hashes; nothing if it declares nothing."""
+    facts: dict[str, Any] = {}
+    if camera.cover_glass is not None:
+        facts["cover_glass"] = list(camera.cover_glass)
+    if camera.sensor_reflectance:
+        facts["sensor_reflectance"] = camera.sensor_reflectance
+    return facts
