@@ -64,11 +64,12 @@ void bind_film(nb::module_& m) {
     nb::class_<Film>(m, "Film")
         .def("__init__",
              [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs,
-                bool splats, bool flare) {
-                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare});
+                bool splats, bool flare, int bands) {
+                 new (f) Film(
+                     FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare, bands});
              },
              "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false,
-             "splats"_a = false, "flare"_a = false)
+             "splats"_a = false, "flare"_a = false, "bands"_a = 0)
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
@@ -76,6 +77,13 @@ void bind_film(nb::module_& m) {
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
         .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
              "What ghosts brought to it.")
+        .def("mean_bands",
+             [](const Film& f) {
+                 const std::size_t height = f.layout().height, width = f.layout().width,
+                                   bands = f.layout().bands;
+                 return dg::bind::to_numpy(f.mean_bands(), {height, width, bands});
+             },
+             "Mean radiance of each band, (H, W, bands).")
         .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
         .def("relative_variance",
              [](const Film& f, float dark) { return plane(f, f.relative_variance(dark)); }, "dark"_a)

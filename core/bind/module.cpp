@@ -17,6 +17,7 @@ void bind_ghosts(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
+void bind_spectrum(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_truth(nb::module_& m);
@@ -44,6 +45,7 @@ NB_MODULE(_core, m) {
     bind_scene(m);
     bind_camera(m);
     bind_shutter(m);
+    bind_spectrum(m);
     bind_film(m);
     bind_render(m);
     bind_truth(m);

@@ -47,6 +47,10 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.aovs) aovs_.resize(pixels);
     if (layout.splats) splats_.resize(pixels);
     if (layout.flare) flare_.resize(pixels);
+    if (layout.bands < 0 || layout.bands > kMostBands)
+        throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
+                          std::to_string(layout.bands));
+    bands_.resize(std::size_t(pixels) * layout.bands);
 }
 
 std::int64_t Film::find(int x, int y) const {
@@ -74,19 +78,54 @@ void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
     add_to(pixels_[i], pixels_[i], sample, xyz);
 }
 
+Film::Sums& Film::sums_of(Layer layer, std::size_t i) {
+    std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
+    DG_CHECK(sums.size(), >, i);
+    return sums[i];
+}
+
 void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
-    std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
-    DG_CHECK(sums.size(), >, std::size_t(i));
     const PixelLock lock(pixels_[i].lock);
-    add_to(sums[i], pixels_[i], sample, xyz);
+    add_to(sums_of(layer, i), pixels_[i], sample, xyz);
 }
 
-void Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
+void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
+               Spectrum radiance) {
+    if (bands_.empty()) return add(x, y, sample, wavelengths.to_xyz(radiance));
+    add_shared(x, y, sample, wavelengths, radiance);   // splats share the sums of bands
+}
+
+void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
+                      Spectrum radiance) {
+    const std::int64_t i = find(x, y);
+    if (i >= 0) add_light(pixels_[i], i, sample, wavelengths, radiance);
+}
+
+void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
+                 Spectrum radiance, Layer layer) {
+    const std::int64_t i = find(x, y);
+    if (i >= 0) add_light(sums_of(layer, i), i, sample, wavelengths, radiance);
+}
+
+void Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
+                     const Wavelengths& wavelengths, Spectrum radiance) {
+    const PixelLock lock(pixels_[i].lock);
+    if (!add_to(sums, pixels_[i], sample, wavelengths.to_xyz(radiance)) || bands_.empty()) return;
+    const float per_nm = float(layout_.bands) / (kMaxWavelength - kMinWavelength);
+    const Spectrum light = radiance * wavelengths.measure() * per_nm;
+    for (int k = 0; k < kWavelengths; ++k) {
+        const int band = int((wavelengths.nm[k] - kMinWavelength) * per_nm);
+        if (fits_film(light[k]))
+            bands_[i * layout_.bands + std::min(band, layout_.bands - 1)].add(light[k]);
+    }
+}
+
+bool Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) {
         mark_bad(pixel, sample);
-        return;
+        return false;
     }
     const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
     sums.xyz[0].add(xyz.x);
@@ -95,6 +134,7 @@ void Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) con
     sums.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
     sums.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
     sums.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
+    return true;
 }
 
 void Film::count(int x, int y) {
@@ -135,7 +175,8 @@ void Film::merge(const Film& other) {
                    " px at (" + std::to_string(l.offset_x) + ", " +
                    std::to_string(l.offset_y) + ")" +
                    (l.aovs ? " with aovs" : " without aovs") +
-                   (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "");
+                   (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "") +
+                   (l.bands ? ", " + std::to_string(l.bands) + " bands" : "");
         };
         throw input_error("film", "merge", words(layout_), words(other.layout_));
     }
@@ -149,6 +190,7 @@ void Film::merge(const Film& other) {
     }
     for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
     for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
+    for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];

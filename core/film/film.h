@@ -11,6 +11,7 @@
 
 #include "film/fixed_sum.h"
 #include "math/vec.h"
+#include "spectrum/wavelengths.h"
 
 namespace dg {
 
@@ -36,13 +37,14 @@ struct FilmLayout {
     bool aovs = false;
     bool splats = false;             // light paths may add to any pixel (Film::splat)
     bool flare = false;              // and so may ghosts
+    int bands = 0;                   // of equal width over all wavelengths, kept beside XYZ
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
-/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare.
+/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band.
 class Film {
   public:
-    /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels.
+    /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, and bands is 0 .. kMostBands.
     explicit Film(FilmLayout layout);
     const FilmLayout& layout() const { return layout_; }
 
@@ -64,6 +66,13 @@ class Film {
     /// which no mean is to be taken off; so they are sums of their own.
     enum class Layer { splats, flare };
     void splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats);
+    /// What the wavelengths of a sample bring, to XYZ and to their bands: what the three above do with a
+    /// colour.
+    void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance);
+    void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
+                    Spectrum radiance);
+    void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
+               Spectrum radiance, Layer layer = Layer::splats);
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
     /// layouts differ.
@@ -74,6 +83,9 @@ class Film {
     std::vector<float> mean_xyz() const;
     /// The share of it that ghosts brought; Error without a layer of flare.
     std::vector<float> flare_xyz() const;
+    /// Mean radiance of each band, all that was added, size bands*width*height; D65 of luminance 1 has
+    /// some 1 in each. Throws Error for a film without bands.
+    std::vector<float> mean_bands() const;
     /// Variance of the mean of linear Rec.709 R, G, B (see film_read.cpp); 0 for less
     /// than two samples.
     std::vector<float> variance_rgb() const;
@@ -97,8 +109,9 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs", "splats" and "flare" if there are any, so many bytes per pixel.
-    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96;
+    /// "sums", and "aovs", "splats", "flare" and "bands" if there are any, so many bytes per pixel.
+    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96, kBandBytes = 16;
+    static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
     std::span<const std::byte> state(const std::string& part) const;
     /// Throws Error for another number of bytes.
@@ -124,8 +137,13 @@ class Film {
 
     /// Index of a full-frame pixel, or -1 outside the region.
     std::int64_t find(int x, int y) const;
-    /// To the pixel's own sums, or to those of its splats.
-    void add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// Those of a pixel's splats; the layout has that layer.
+    Sums& sums_of(Layer layer, std::size_t i);
+    /// To the pixel's own sums, or to those of its splats; false if the sample was bad.
+    bool add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// To XYZ and bands, under the pixel's lock: with bands, splats and samples share their sums.
+    void add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
+                   Spectrum radiance);
     /// Of all that was added to the pixel of this index.
     Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
@@ -141,6 +159,7 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
+    std::vector<ValueSum> bands_;   // those of a pixel side by side
 };
 
 }  // namespace dg

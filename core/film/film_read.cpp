@@ -47,6 +47,17 @@ std::vector<float> Film::flare_xyz() const {
     return mean;
 }
 
+std::vector<float> Film::mean_bands() const {
+    if (bands_.empty()) throw Error("film: this film was made without bands");
+    std::vector<float> mean;
+    mean.reserve(bands_.size());
+    for (std::size_t i = 0; i < bands_.size(); ++i) {
+        const std::uint32_t n = pixels_[i / layout_.bands].count;
+        mean.push_back(n ? float(bands_[i].value() / n) : 0.f);
+    }
+    return mean;
+}
+
 Film::Estimate Film::estimate(std::size_t i) const {
     const Pixel& p = pixels_[i];
     const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);

@@ -15,16 +15,18 @@ std::vector<std::string> Film::state_parts() const {
     if (layout_.aovs) parts.push_back("aovs");
     if (layout_.splats) parts.push_back("splats");
     if (layout_.flare) parts.push_back("flare");
+    if (layout_.bands) parts.push_back("bands");
     return parts;
 }
 
 std::span<const std::byte> Film::state(const std::string& part) const {
     static_assert(sizeof(Pixel) == kSumBytes && sizeof(AovPixel) == kAovBytes &&
-                  sizeof(Sums) == kSplatBytes);
+                  sizeof(Sums) == kSplatBytes && sizeof(ValueSum) == kBandBytes);
     if (part == "sums") return std::as_bytes(std::span(pixels_));
     if (part == "aovs" && layout_.aovs) return std::as_bytes(std::span(aovs_));
     if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
     if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
+    if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
     std::string known;
     for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
     throw input_error("film state", "part", known, "'" + part + "'");

@@ -364,3 +364,49 @@ TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and a
     CHECK(film.sample_counts()[0] == 0xfffffffeu);
     CHECK(std::isfinite(film.mean_xyz()[0]));
 }
+
+TEST_CASE("bands hold the mean radiance of their wavelengths, whoever brings it") {
+    constexpr int kBands = 16, kSamples = 1 << 16;
+    FilmLayout layout{.width = 2, .height = 1, .splats = true, .flare = true, .bands = kBands};
+    Film film(layout), half(layout);
+    for (int i = 0; i < kSamples; ++i) {
+        Wavelengths w = Wavelengths::sample((i + 0.5f) / kSamples);
+        if (i % 2) w.end_secondary();
+        Film& to = i % 4 == 1 ? half : film;
+        to.add(0, 0, i, w, 3.f);
+        to.splat(0, 0, i, w, 1.f);
+        to.splat(0, 0, i, w, 2.f, Film::Layer::flare);
+        to.add_shared(1, 0, i, w, w.d65);
+        for (int x = 0; x < 2; ++x) to.count(x, 0);
+    }
+    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), std::numeric_limits<float>::quiet_NaN());
+    film.merge(half);
+    CHECK(film.bad_sample_count() == 1);
+    const std::vector<float> mean = film.mean_bands();
+    REQUIRE(mean.size() == 2 * kBands);
+    const double scale = double(Wavelengths::sample(0.5f).d65[0]) / d65(Wavelengths::sample(0.5f).nm[0]);
+    for (int b = 0; b < kBands; ++b) {
+        CHECK(mean[b] == doctest::Approx(6).epsilon(0.01));
+        double wanted = 0;
+        for (int k = 0; k < 100; ++k) wanted += scale * d65(380 + 25 * (b + (k + 0.5) / 100)) / 100;
+        CHECK(mean[kBands + b] == doctest::Approx(wanted).epsilon(0.01));
+    }
+    Film again(layout);
+    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part));
+    CHECK(again.mean_bands() == mean);
+    layout.bands = 8;
+    CHECK_THROWS_AS(film.merge(Film(layout)), Error);
+    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .bands = 65}), Error);
+}
+
+TEST_CASE("bands of a film are the same bits in any order") {
+    const FilmLayout layout{.width = 1, .height = 1, .bands = 5};
+    Film forward(layout), backward(layout);
+    const auto draw = [](Film& film, int i) {
+        film.add(0, 0, i, Wavelengths::sample(float(hash_uniform(3, i))),
+                 std::exp(20 * float(hash_uniform(4, i))));
+    };
+    for (int i = 0; i < 500; ++i) draw(forward, i), draw(backward, 499 - i);
+    forward.count(0, 0), backward.count(0, 0);
+    CHECK(forward.mean_bands() == backward.mean_bands());
+}

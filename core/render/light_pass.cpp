@@ -158,10 +158,10 @@ void LightPass::finish(Workspace& work, const LightArrival& path,
     }
     std::array<RayOnFilm::Splat, kWavelengths> splats;
     const int count =
-        film_ray.choose(radiance * float(1 / light), path.wavelengths, path.u_pixel, splats);
+        film_ray.choose(radiance * float(1 / light), path.u_pixel, splats);
     for (int k = 0; k < count; ++k)
-        work.log->push_back({splats[k].pixel, splats[k].xyz, camera / light, film_ray.spread(),
-                             path.sample});
+        work.log->push_back({splats[k].pixel, path.wavelengths.to_xyz(splats[k].light),
+                             camera / light, film_ray.spread(), path.sample});
 }
 
 }  // namespace dg

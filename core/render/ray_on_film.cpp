@@ -43,9 +43,9 @@ void RayOnFilm::splat(Film& film, Spectrum radiance, const Wavelengths& waveleng
         return;
     }
     std::array<Splat, kWavelengths> splats;
-    const int count = choose(radiance, wavelengths, u, splats);
+    const int count = choose(radiance, u, splats);
     for (int k = 0; k < count; ++k)
-        film.splat(splats[k].pixel.x, splats[k].pixel.y, sample, splats[k].xyz, layer);
+        film.splat(splats[k].pixel.x, splats[k].pixel.y, sample, wavelengths, splats[k].light, layer);
 }
 
 Spectrum RayOnFilm::response() const {
@@ -113,12 +113,12 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
             const Spectrum share = landings_.size() == 1 ? Spectrum(columns[x][0]) : columns[x];
             const Spectrum value = in_row * share * film_density_.count(p);
             if (value.max() == 0 && value.min() == 0) continue;
-            film.splat(p.x, p.y, sample, wavelengths.to_xyz(value), layer);
+            film.splat(p.x, p.y, sample, wavelengths, value, layer);
         }
     }
 }
 
-int RayOnFilm::choose(Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
+int RayOnFilm::choose(Spectrum radiance, Vec2f u,
                       std::array<Splat, kWavelengths>& splats) const {
     const Spectrum light = radiance * response();
     std::array<Landing, kWavelengths> found;
@@ -133,7 +133,7 @@ int RayOnFilm::choose(Spectrum radiance, const Wavelengths& wavelengths, Vec2f u
         found[k].weight.set(i, at_[from]->sign(pixel) * at_[from]->total());
     }
     for (int k = 0; k < count; ++k)
-        splats[k] = {found[k].pixel, wavelengths.to_xyz(light * found[k].weight)};
+        splats[k] = {found[k].pixel, light * found[k].weight};
     return count;
 }
 

@@ -30,14 +30,13 @@ class RayOnFilm {
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                std::uint32_t sample, Film::Layer layer = Film::Layer::splats) const;
 
-    /// What comes of light in one pixel, in XYZ.
+    /// What comes of light in one pixel.
     struct Splat {
         Pixel pixel{};
-        Vec3f xyz{0, 0, 0};
+        Spectrum light{0.f};
     };
     /// What splat() adds where it chooses, whatever the filter, as camera samples do; how many there are.
-    int choose(Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
-               std::array<Splat, kWavelengths>& splats) const;
+    int choose(Spectrum radiance, Vec2f u, std::array<Splat, kWavelengths>& splats) const;
     /// The sum of squares of what splat() adds, over that of what is chosen.
     float spread() const;
 

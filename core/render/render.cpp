@@ -249,8 +249,7 @@ class Renderer {
             splat(sample, camera_ray, landings.subspan(1 - first_traced_), light);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index,
-                      sample.wavelengths.to_xyz(light.sum() *
-                                                (camera_ray.weight * sample.weight)));
+                      sample.wavelengths, light.sum() * (camera_ray.weight * sample.weight));
         }
     }
 
@@ -268,7 +267,7 @@ class Renderer {
         Spectrum own = light.hero * (camera_ray.weight * sample.weight);
         for (const Landing& l : landings) {   // the hero's own pixel comes first
             film_.add_shared(l.pixel.x, l.pixel.y, sample.index,
-                             sample.wavelengths.to_xyz(own + light.shared * l.weight));
+                             sample.wavelengths, own + light.shared * l.weight);
             own = 0.f;
         }
     }

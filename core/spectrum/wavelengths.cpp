@@ -169,6 +169,11 @@ void Wavelengths::end_secondary() {
     cie_z *= hero_alone();
 }
 
+Spectrum Wavelengths::measure() const {
+    const Spectrum share = secondary_ended ? hero_alone() : Spectrum(1.f);
+    return Spectrum::from(share.v / (pdf.v * float(kWavelengths)));
+}
+
 Vec3f Wavelengths::to_xyz(Spectrum radiance) const {
     const auto sum = [](Spectrum s) { return (s[0] + s[1]) + (s[2] + s[3]); };
     return {sum(cie_x * radiance), sum(cie_y * radiance), sum(cie_z * radiance)};

@@ -29,6 +29,9 @@ struct Wavelengths {
     /// the others 0. Idempotent.
     void end_secondary();
 
+    /// Weights (nm) of an estimate of the integral over wavelengths; 0 for those that have ended.
+    Spectrum measure() const;
+
     /// One sample's estimate of CIE XYZ (2 degree), white = D65 with Y = 1.
     Vec3f to_xyz(Spectrum radiance) const;
 };
