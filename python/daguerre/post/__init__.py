@@ -6,11 +6,14 @@ with the same parameters. None changes its argument.
 
 from __future__ import annotations
 
+from .convolution import convolve
 from .depth_of_field import depth_of_field
 from .distortion import distort, undistort
 from .fake_flare import fake_flare
+from .glow import bloom, diffract, glare, halo, spread_by, star
 from .grain import grain
 from .lateral_colour import lateral_colour, remove_lateral_colour
+from .lens_psf import through_lens
 from .motion_blur import motion_blur
 from .saturation import unvignette_saturation, vignette_saturation
 from .stmap import apply_stmap, stmap
@@ -18,14 +21,22 @@ from .vignetting import unvignette, vignette
 
 __all__ = [
     "apply_stmap",
+    "bloom",
+    "convolve",
     "depth_of_field",
+    "diffract",
     "distort",
     "fake_flare",
+    "glare",
     "grain",
+    "halo",
     "lateral_colour",
     "motion_blur",
     "remove_lateral_colour",
+    "spread_by",
+    "star",
     "stmap",
+    "through_lens",
     "undistort",
     "unvignette",
     "unvignette_saturation",

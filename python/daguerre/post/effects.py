@@ -6,8 +6,10 @@ from .depth_of_field import DEPTH_OF_FIELD
 from .distortion import DISTORTION
 from .effect import Effect
 from .fake_flare import FAKE_FLARE
+from .glow import BLOOM, DIFFRACTION, GLARE, HALO, PSF, STAR
 from .grain import GRAIN
 from .lateral_colour import LATERAL_COLOUR
+from .lens_psf import LENS_PSF
 from .motion_blur import MOTION_BLUR
 from .saturation import SATURATION
 from .stmap import STMAP
@@ -16,14 +18,9 @@ from .vignetting import VIGNETTING
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (
-        DEPTH_OF_FIELD,
-        MOTION_BLUR,
-        DISTORTION,
-        STMAP,
-        LATERAL_COLOUR,
-        VIGNETTING,
-        SATURATION,
-        FAKE_FLARE,
+        *(DEPTH_OF_FIELD, MOTION_BLUR),
+        *(DISTORTION, STMAP, LATERAL_COLOUR, VIGNETTING, SATURATION),
+        *(BLOOM, HALO, STAR, DIFFRACTION, GLARE, PSF, LENS_PSF, FAKE_FLARE),
         GRAIN,
     )
 }

@@ -1,0 +1,130 @@
+"""The opening of an iris as a picture: blades, arcs, a picture of it, and dust that lies on it.
+
+One unit is the radius of the circle of equal area, as in ``core/optics/stop.h``; x to the right and
+y up, seen along the view.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+if TYPE_CHECKING:
+    from daguerre.camera import Camera
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Iris:
+    """A shape, and what dirt lets through.
+
+    Attributes:
+        blades: How many; 0: round.
+        rotation: Of the blades, degrees.
+        curvature: Of their edges: 1 is round, 0 straight.
+        picture: Transmittance, row 0 on top, shape (H, W); of an iris that is a picture.
+        mask: Transmittance of dust, scratches, an eyelash, shape (H, W), or None: clean.
+        mask_half: Half of the width that the mask covers; None: all of the opening.
+    """
+
+    blades: int = 0
+    rotation: float = 0.0
+    curvature: float = 0.0
+    picture: Floats | None = None
+    mask: Floats | None = None
+    mask_half: float | None = None
+
+    @cached_property
+    def shape(self) -> _core.Iris:
+        """The core's iris."""
+        if self.picture is not None:
+            return _core.Iris.image(np.ascontiguousarray(self.picture))
+        if self.blades:
+            return _core.Iris.polygon(self.blades, self.rotation, self.curvature)
+        return _core.Iris()
+
+    @property
+    def outer_radius(self) -> float:
+        """Nothing is open beyond."""
+        return float(self.shape.outer_radius)
+
+    def amplitude(self, x: Floats, y: Floats, pitch: float) -> Floats:
+        """What is left of a wave's amplitude on cells of a raster: 1 where it is open.
+
+        Edges count by their share of a cell, greys by the root of the light that they let through.
+
+        Args:
+            x: Middles of the cells, to the right.
+            y: The same upward; the two broadcast.
+            pitch: Sides of the cells: edges are as soft as that.
+        """
+        if self.picture is not None:
+            pixel = float(np.sqrt(np.pi / self.picture.sum(dtype=np.float64)))
+            open_share = np.sqrt(_sampled(self.picture, x / pixel, y / pixel))
+        else:
+            open_share = np.clip(_inside(self.shape, x, y) / np.float32(pitch) + 0.5, 0, 1)
+        if self.mask is None:
+            return np.asarray(open_share, np.float32)
+        half = self.mask_half or self.outer_radius
+        rows, columns = (np.float32(0.5 * n / half) for n in self.mask.shape)
+        within = np.maximum(np.abs(x), np.abs(y)) < np.float32(half)
+        dirt = np.sqrt(_sampled(self.mask, x * columns, y * rows))
+        return np.asarray(open_share * np.where(within, dirt, 1), np.float32)
+
+
+def iris_of(camera: Camera, mask_half: float | None = None) -> Iris:
+    """The iris of a camera: its blades or picture, and the mask on it."""
+    from daguerre.camera_parts import mask_of
+
+    picture = camera.aperture_image
+    return Iris(
+        camera.blades,
+        camera.blade_rotation,
+        camera.blade_curvature,
+        None if picture is None else np.asarray(picture, np.float32),
+        mask_of(camera, "iris_mask"),
+        mask_half,
+    )
+
+
+def _inside(shape: _core.Iris, x: Floats, y: Floats) -> Floats:
+    """Distance from the edge, positive where it is open."""
+    if not shape.edges:
+        return np.asarray(1 - np.hypot(x, y), np.float32)
+    depth: Floats | None = None
+    for ex, ey in shape.edges:
+        sides = []
+        if shape.bend <= 0:
+            sides.append(shape.apothem - (x * np.float32(ex) + y * np.float32(ey)))
+        if shape.bend:
+            cx, cy = np.float32(shape.arc_center * ex), np.float32(shape.arc_center * ey)
+            sides.append(shape.bend * (shape.arc_radius - np.hypot(x - cx, y - cy)))
+        for side in sides:
+            depth = side if depth is None else np.minimum(depth, side, out=depth)
+    return np.asarray(depth, np.float32)
+
+
+def _sampled(picture: Floats, x: Floats, y: Floats) -> Floats:
+    """Bilinear, at pixels about the middle (x right, y up); 0 outside."""
+    height, width = picture.shape
+    column = np.broadcast_to(
+        x + np.float32(0.5 * width + 0.5), np.broadcast_shapes(x.shape, y.shape)
+    )
+    row = np.broadcast_to(np.float32(0.5 * height + 0.5) - y, column.shape)
+    padded = np.pad(picture, 1)
+    column, row = np.clip(column, 0, width + 0.999), np.clip(row, 0, height + 0.999)
+    i, j = row.astype(np.int32), column.astype(np.int32)
+    v, u = row - i, column - j
+    top = padded[i, j] * (1 - u) + padded[i, j + 1] * u
+    below = padded[i + 1, j] * (1 - u) + padded[i + 1, j + 1] * u
+    return np.asarray(top * (1 - v) + below * v, np.float32)
+
+
+__all__ = ["Iris", "iris_of"]

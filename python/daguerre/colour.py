@@ -1,0 +1,85 @@
+"""Spectra and colours: what wavelengths and bands of a film look like, and what RGB may have been.
+
+An RGB emitter is a mixture of three spectra, the same as everywhere in Daguerre: D65 times the
+basis of Mallett and Yuksel 2019 (``core/spectrum``).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+
+FloatArray = NDArray[np.float64]
+FIRST_NM, LAST_NM = 380.0, 780.0
+#: wavelengths of fine sums: two per interval of the tables would do
+FINE = 1600
+
+
+def rgb_from_xyz() -> FloatArray:
+    """Linear Rec.709 of CIE XYZ, shape (3, 3); D65 is (1, 1, 1)."""
+    return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3)]).T
+
+
+def _tables(nm: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """At wavelengths: XYZ (L, 3) of unit radiance per nm, and radiances (L, 3) of RGB emitters."""
+    rows = np.asarray(_core.colour_tables(np.asarray(nm, np.float64).tolist()))
+    fine = np.asarray(_core.colour_tables(_fine(1)[0].tolist()))
+    step = (LAST_NM - FIRST_NM) / FINE
+    luma = fine[:, 1].sum() * step
+    white = (fine[:, 1] * fine[:, 3]).sum() * step / luma
+    return rows[:, :3] / luma, rows[:, 3:4] / white * rows[:, 4:]
+
+
+def _fine(bands: int) -> FloatArray:
+    """Wavelengths of fine sums by band, nm, shape (bands, n)."""
+    each = -(-FINE // bands)
+    at = (np.arange(bands * each) + 0.5) / (bands * each)
+    return (FIRST_NM + (LAST_NM - FIRST_NM) * at).reshape(bands, each)
+
+
+@cache
+def rgb_mixes(count: int) -> tuple[FloatArray, FloatArray]:
+    """How RGB emitters look wavelength by wavelength.
+
+    Args:
+        count: Wavelengths, in equal steps from 400 to 700 nm.
+
+    Returns:
+        Wavelengths (L,), nm; and the RGB that each brings of emitters of red, green and blue,
+        shape (L, 3, 3), from last axis to middle one. Their sum is the unit matrix: what no
+        wavelength changes keeps its colour.
+    """
+    nm = 400 + 300 * (np.arange(count) + 0.5) / count
+    seen, emitted = _tables(nm)
+    mixes = np.einsum("jk,lk,li->lji", rgb_from_xyz(), seen, emitted)
+    return nm, mixes @ np.linalg.inv(mixes.sum(axis=0))
+
+
+@cache
+def band_colours(bands: int) -> FloatArray:
+    """XYZ of unit mean radiance in each band of a film, shape (bands, 3).
+
+    As of D65 within each band, then changed as little as makes the three spectra of RGB emitters
+    exact, white among them: bands that no kernel touches give the picture that XYZ sums give, up
+    to spectra that are no such mixture.
+    """
+    nm = _fine(bands)
+    seen, emitted = (table.reshape(*nm.shape, 3) for table in _tables(nm.ravel()))
+    white = emitted.sum(axis=2)
+    width = (LAST_NM - FIRST_NM) / bands
+    colours = width * np.einsum("bnk,bn->bk", seen, white) / white.sum(axis=1)[:, None]
+    means = emitted.mean(axis=1)  # of the three spectra, by band
+    exact = np.einsum("bnk,bni->ik", seen, emitted) * (width / nm.shape[1])
+    freedom = colours.sum(axis=1)[:, None]  # where the eye sees most
+    change = np.linalg.lstsq(means.T @ (freedom * means), exact - means.T @ colours, rcond=None)[0]
+    return np.asarray(colours + freedom * (means @ change))
+
+
+def band_wavelengths(bands: int, each: int) -> FloatArray:
+    """Wavelengths that stand for bands, nm, shape (bands, each)."""
+    at = (np.arange(bands * each) + 0.5) / (bands * each)
+    return (FIRST_NM + (LAST_NM - FIRST_NM) * at).reshape(bands, each)

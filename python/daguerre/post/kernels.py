@@ -1,0 +1,74 @@
+"""Kernels of light that is spread over a picture, each with the sum 1 over its window.
+
+Rows from the top, odd numbers of pixels, the source in the middle one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+FINE = 5  # points across a pixel near the source
+
+
+def delta(size: int) -> Floats:
+    """All light stays."""
+    out = np.zeros((size, size), np.float32)
+    out[size // 2, size // 2] = 1
+    return out
+
+
+def radial(size: int, profile: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Floats:
+    """A kernel that is round: light per area over the distance in px, averaged over each pixel."""
+    at = np.arange(size) - size // 2.0
+    kernel = profile(np.hypot(at[:, None], at))
+    near = min(size // 2, 8)  # where a pixel is not small against the distance
+    inner = slice(size // 2 - near, size // 2 + near + 1)
+    fine = (np.arange(FINE * (2 * near + 1)) + 0.5) / FINE - near - 0.5
+    values = profile(np.hypot(fine[:, None], fine))
+    kernel[inner, inner] = values.reshape(2 * near + 1, FINE, 2 * near + 1, FINE).mean(axis=(1, 3))
+    return np.asarray(kernel / kernel.sum(), np.float32)
+
+
+def bloom(radius_px: float, size: int) -> Floats:
+    """Light scattered about a source, half of it within the radius.
+
+    (1 + (r / a)^2)^(-3/2) / (2 pi a^2), a = radius / sqrt(3): the share within R is
+    1 - 1 / sqrt(1 + (R / a)^2). Its tail falls as 1 / r^3, like that of the eye's glare (Spencer,
+    Shirley, Zimmerman and Greenberg 1995, Physically-based glare effects for digital images).
+    """
+    a = radius_px / math.sqrt(3)
+    return radial(size, lambda r: (1 + (r / a) ** 2) ** -1.5)
+
+
+def halation(thickness_px: float, index: float, size: int) -> Floats:
+    """The halo of film: light that the emulsion scatters, reflected at the back of the base.
+
+    A Lambertian point over a base of thickness t lights the emulsion again at r = 2 t tan(theta)
+    with R(theta) cos^4(theta) / (4 pi t^2), R by Fresnel's equations: all of it beyond the critical
+    angle, which is the ring of radius 2 t / sqrt(n^2 - 1).
+    """
+
+    def profile(r: NDArray[np.float64]) -> NDArray[np.float64]:
+        cosine = 1 / np.sqrt(1 + (r / (2 * thickness_px)) ** 2)
+        beyond = np.maximum(0, 1 - index**2 * (1 - cosine**2))
+        out = np.sqrt(beyond)  # cosine in air; 0 where nothing leaves
+        s = (index * cosine - out) / (index * cosine + out)
+        p = (index * out - cosine) / (index * out + cosine)
+        reflected = np.where(beyond > 0, 0.5 * (s * s + p * p), 1)
+        return np.asarray(reflected * cosine**4)
+
+    return radial(size, profile)
+
+
+def scatter(shoulder_px: float, slope: float, size: int) -> Floats:
+    """Veiling glare: (1 + (r / shoulder)^2)^(-slope / 2).
+
+    The form of Harvey and Shack for scatter of polished and dusty surfaces (Harvey 1976, Light-
+    scattering characteristics of optical surfaces): flat within the shoulder, then a power law.
+    """
+    return radial(size, lambda r: (1 + (r / shoulder_px) ** 2) ** (-0.5 * slope))
