@@ -20,12 +20,14 @@ if TYPE_CHECKING:
     from . import distortion, lenses, polynomial, post
     from .frame import Frame
     from .session import Session, iter_render, render
+    from .waves import Diffraction
 
 __all__ = [
     "Camera",
     "Conductor",
     "DaguerreError",
     "Dielectric",
+    "Diffraction",
     "Diffuse",
     "DirectionalLight",
     "Frame",
@@ -57,7 +59,13 @@ __all__ = [
 ]
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
-_LAZY = {"Frame": "frame", "Session": "session", "iter_render": "session", "render": "session"}
+_LAZY = {
+    "Diffraction": "waves",
+    "Frame": "frame",
+    "Session": "session",
+    "iter_render": "session",
+    "render": "session",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -223,17 +223,33 @@ def frame_of(
     metadata: dict[str, Any],
     *,
     aovs: bool,
+    waves: bool = True,
 ) -> Frame:
-    """The picture of a film: means, variance and counts as plain arrays."""
+    """The picture of a film: means, variance and counts as plain arrays.
+
+    Args:
+        film: The core's.
+        metadata: Facts of the frame.
+        aovs: Whether the film has auxiliary channels.
+        waves: Whether its light is diffracted, if the film has bands; variance is always that
+            before.
+    """
     planes: dict[str, NDArray[Any]] = {}
     alpha = np.ones(film.shape, np.float32)
     if aovs:
         planes = {name: film.aov(name) for name in AOV_NAMES}
         planes["object_id"] = film.object_ids()
         alpha = film.aov("alpha")
+    if waves and "bands" in film.state_parts():
+        from .waves import developed, rgb_of
+
+        xyz = developed(film, metadata.get("pupils"))
+        rgb = rgb_of(xyz)
+    else:
+        xyz, rgb = film.mean_xyz(), film.mean_rgb()
     return Frame(
-        rgb=film.mean_rgb(),
-        xyz=film.mean_xyz(),
+        rgb=rgb,
+        xyz=xyz,
         alpha=alpha,
         variance=film.variance_rgb(),
         samples=film.sample_counts(),

@@ -31,6 +31,8 @@ from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
 from .scene import Scene
 from .truth import GroundTruth, check_gt_time, focused
+from .waves import Diffraction, check_diffraction
+from .waves import plan as plan_waves
 
 Progress = Callable[[float], bool]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
@@ -66,6 +68,8 @@ class Session:
             lens and with bounces, as (M1, M2).
         flare: Ghosts of an exact lens (``docs/flare.md``): off, auto, or paths per sample index.
         flare_order: Their reflections: 2, or 4 for those of four as well.
+        diffraction: Light is a wave at the iris (``docs/diffraction.md``): True, or a
+            ``Diffraction`` with the number of bands and zones.
         technique: Who draws what both could find: both, or camera or light alone (to check one
             against the other).
 
@@ -94,6 +98,7 @@ class Session:
         flare: str | float = "off",
         flare_order: int = 2,
         technique: str = "both",
+        diffraction: bool | Diffraction = False,
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -105,6 +110,7 @@ class Session:
         flare_paths = check_flare(flare)
         if flare_order not in (2, 4):
             raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
+        self.diffraction = check_diffraction(diffraction)
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
         if not isinstance(scene, Scene):
@@ -118,6 +124,7 @@ class Session:
         self.warnings: list[str] = []  # what moves in a way that cannot be shown to its end
         self._core_scene = build(scene, self.interval, self.warnings)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
+        self._pupils = self._plan_waves()
         self.setup_seconds = time.perf_counter() - started
         self.notes = list(self._setup.notes)
         self._settings = _core.RenderSettings()
@@ -163,6 +170,8 @@ class Session:
         }
         if self.flare > 0:
             self._identity |= {"flare": self.flare, "flare_order": flare_order}
+        if self._pupils is not None:
+            self._identity["pupils"] = _hash_json(self._pupils)
 
     def _plan(self) -> Plan:
         """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
@@ -186,10 +195,18 @@ class Session:
         self._settings.flare = PER_PIXEL * self.width * self.height if paths is None else paths
         return float(self._settings.flare)
 
+    def _plan_waves(self) -> dict[str, Any] | None:
+        """The pupils of mid-shutter, if light is diffracted."""
+        if self.diffraction is None:
+            return None
+        camera = self.camera.at(0.5 * (self.interval[0] + self.interval[1]))
+        return plan_waves(self.diffraction, camera, self._setup, (self.width, self.height))
+
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
         layers = (self.aovs, self.light_paths != OFF, self.flare > 0)
-        return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers)
+        bands = self.diffraction.bands if self.diffraction is not None else 0
+        return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, bands=bands)
 
     def _whole_film(self) -> _core.Film:
         if self._torn:
@@ -261,9 +278,14 @@ class Session:
         self.samples += camera_rays
         return True
 
-    def frame(self, *, truth: bool = True) -> Frame:
-        """The picture of the samples drawn so far, by default with ground truth if asked for."""
-        frame = frame_of(self._whole_film(), self.metadata, aovs=self.aovs)
+    def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
+        """The picture of the samples drawn so far, with all that was asked for.
+
+        Args:
+            truth: With ground truth, or without.
+            waves: With diffraction, or without (which is quicker).
+        """
+        frame = frame_of(self._whole_film(), self.metadata, aovs=self.aovs, waves=waves)
         return self.with_truth(frame) if truth else frame
 
     def with_truth(self, frame: Frame) -> Frame:
@@ -378,6 +400,8 @@ class Session:
             "filter": self._identity["filter"],
             "light_paths": show_plan(self.light_paths),
             "flare": f"{self.flare:.17g}" if self.flare else None,
+            "diffraction": self.diffraction.words if self.diffraction else None,
+            "pupils": self._pupils,
             "scene_hash": self.key["scene"],
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],

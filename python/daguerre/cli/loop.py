@@ -134,7 +134,7 @@ class Loop:
 
     def save(self) -> bool:
         """Writes the checkpoint; False, with a warning, if that fails: the render goes on."""
-        frame = replace(self.session.frame(truth=False), aovs={})
+        frame = replace(self.session.frame(truth=False, waves=False), aovs={})
         try:
             pass_files.write_pass(self.checkpoint, frame, pass_files.pass_of(self.session))
         except DaguerreError as error:

@@ -132,6 +132,27 @@ def render(
             panel=_SAMPLING,
         ),
     ] = 2,
+    diffraction: Annotated[
+        bool,
+        option(
+            "--diffraction",
+            help="Light is a wave at the iris: stars, discs, softness at narrow stops.",
+            panel=_SAMPLING,
+        ),
+    ] = False,
+    diffraction_bands: Annotated[
+        int,
+        option("--diffraction-bands", metavar="N", help="Of wavelengths [16].", panel=_SAMPLING),
+    ] = 16,
+    diffraction_zones: Annotated[
+        int,
+        option(
+            "--diffraction-zones",
+            metavar="N",
+            help="N x N points of the frame see the iris through their own pupil [1].",
+            panel=_SAMPLING,
+        ),
+    ] = 1,
     resume: Annotated[
         bool, option("--resume", help="Go on from OUT.checkpoint.exr.", panel=_SAMPLING)
     ] = False,
@@ -197,6 +218,12 @@ def render(
     if wanted_flare != 0:
         settings["flare"] = "auto" if wanted_flare is None else wanted_flare
         settings["flare_order"] = flare_order
+    if diffraction:
+        from daguerre.waves import Diffraction
+
+        settings["diffraction"] = Diffraction(diffraction_bands, diffraction_zones)
+    elif (diffraction_bands, diffraction_zones) != (16, 1):
+        raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
     shoot = Shoot(scene, scene_path, camera_flags.camera, changes, settings, tone, stats)
     if dry_run:
         return shoot.describe(*plans[0])

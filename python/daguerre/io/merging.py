@@ -10,9 +10,12 @@ from typing import Any
 
 from daguerre.errors import InputError, MismatchError
 from daguerre.frame import Frame, frame_of, set_film_state
+from daguerre.waves import MOST_BANDS
 
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
+
+BAND_WORDS = 4  # of 32 bits: a sum
 
 
 def merge(
@@ -83,8 +86,10 @@ def film_of(one: Pass) -> Any:
         raise InputError(f"{one.path}: damaged pass file: it has no sums")
     height, width = next(iter(one.state.values())).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
-    parts = {"aovs": _has_aovs(one.state)}
-    parts |= {part: part in one.state for part in ("splats", "flare")}
+    parts: dict[str, Any] = {part: part in one.state for part in ("splats", "flare")}
+    parts["aovs"] = _has_aovs(one.state)
+    if "bands" in one.state:
+        parts["bands"] = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
     film = Film(width, height, int(x0), int(y0), **parts)
     set_film_state(film, one.state, str(one.path))
     return film

@@ -57,6 +57,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     **dict.fromkeys((*exr.VECTORS, *exr.RATIONALS), _is_pair),
     **dict.fromkeys(exr.MATRICES, _is_matrix),
     "camera": lambda value: isinstance(value, dict),
+    "pupils": lambda value: isinstance(value, dict),
     "resolution": _is_size,
     "crop": _is_crop,
     "aovs": _are_names,

@@ -6,8 +6,9 @@ per pixel, in a picture of four channels that is seven times as wide. Its header
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
 which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
 channels in the same way, and parts ``splats`` and ``flare`` what light paths
-(``daguerre.light_paths``) and ghosts (``daguerre.flare``) brought, if any were drawn. The sums are
-integers, so adding them in any order gives the same bits.
+(``daguerre.light_paths``) and ghosts (``daguerre.flare``) brought, if any were drawn; a part
+``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among the facts
+(``daguerre.waves``). The sums are integers, so adding them in any order gives the same bits.
 The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
 ``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
 of a picture has it whole among the channels of its first part.
@@ -42,12 +43,12 @@ if TYPE_CHECKING:
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
 ROUND = "round"
-STATE_PARTS = (SUMS, "aovs", "splats", "flare", ROUND)
+STATE_PARTS = (SUMS, "aovs", "splats", "flare", "bands", ROUND)
 ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
-    "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare",
+    "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare, diffraction",
     "build": "the build of daguerre",
 }
 #: Of the settings, what a header tells as it is.

@@ -1,0 +1,174 @@
+"""Diffraction in a render: bands of wavelengths in the film, each spread by a kernel of its own.
+
+The picture is the sum of the bands times their colours, after each was convolved with the point
+spread of a perfect wave through the pupil; aberrations are in the picture already, traced. To a
+good approximation the transfer function of a lens is the product of both (Goodman, Introduction to
+Fourier Optics, 3rd ed., section 6.4), and it is exact where either is small.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import whole
+from .colour import band_colours, band_wavelengths
+from .errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from .analysis.diffraction import Pupil
+    from .camera import Camera
+    from .camera_setup import CameraSetup
+    from .lenses.focus import By
+
+MOST_BANDS, MOST_ZONES = 64, 9
+LEAST_WAVELENGTHS = 24  # of all bands together
+ONE_ZONE, MANY_ZONES = 2049, 1025  # px across kernels at most
+DARK = 2e-4  # of the brightest band's colour: others are left as they are
+
+
+@dataclass(frozen=True)
+class Diffraction:
+    """What is asked for.
+
+    Attributes:
+        bands: Of wavelengths, 380 to 780 nm.
+        zones: Points along each side of the frame that have kernels of their own.
+    """
+
+    bands: int = 16
+    zones: int = 1
+
+    def __post_init__(self) -> None:
+        whole(self.bands, "diffraction: bands", 3, MOST_BANDS, f"3 .. {MOST_BANDS}")
+        whole(self.zones, "diffraction: zones", 1, MOST_ZONES, f"1 .. {MOST_ZONES}")
+
+    @property
+    def words(self) -> str:
+        """For metadata."""
+        return f"{self.bands} bands, {self.zones} x {self.zones} zones"
+
+
+def check_diffraction(value: object) -> Diffraction | None:
+    """What ``diffraction`` of a session may be: False, True, or a ``Diffraction``."""
+    if value is None or value is False:
+        return None
+    if value is True:
+        return Diffraction()
+    if isinstance(value, Diffraction):
+        return value
+    raise UsageError(f"diffraction: wanted True, False or a Diffraction, got {value!r:.80}")
+
+
+def plan(
+    wanted: Diffraction, camera: Camera, setup: CameraSetup, resolution: tuple[int, int]
+) -> dict[str, Any]:
+    """Everything that the picture's kernels are made of, as JSON.
+
+    Raises:
+        UsageError: A pinhole, whose opening has no size.
+    """
+    from .pupil_files import to_json
+
+    return {
+        "bands": wanted.bands,
+        "pitch_mm": setup.frame_size[0] / resolution[0],
+        **to_json(_pupils(wanted, camera, setup)),
+    }
+
+
+def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[list[Pupil]]:
+    from .analysis import set_up
+    from .analysis.diffraction import PlainPupil
+    from .analysis.iris import iris_of
+    from .analysis.lens_pupil import zone_pupils
+    from .camera_checks import TRACED, lens_and_model
+
+    facts = setup.facts
+    if facts.get("f_stop") is None:
+        raise UsageError("diffraction: wanted a lens with an iris, got a pinhole")
+    lens, _ = lens_and_model(camera)
+    if lens is None or facts["lens_model"] not in TRACED or any(camera.tilt):
+        efl = facts.get("effective_focal_length_mm", facts["focal_length_mm"])
+        seen = facts["f_stop"] * setup.pinhole_focal_length / efl
+        return [[PlainPupil(seen, iris_of(camera))]]  # the same everywhere
+    bench = set_up(
+        lens,
+        f_stop=facts["f_stop"],
+        focus_m=facts["focus_distance_m"],
+        zoom_mm=facts.get("zoom_mm") if camera.zoom is not None else None,
+        by=cast("By", camera.focus_by),
+    )
+    iris = iris_of(camera, bench.order.stop_semi_diameter / bench.iris_radius)
+    x, y = facts["shift_mm"]
+    return zone_pupils(bench, setup.frame_size, wanted.zones, iris, center_mm=(x, y))
+
+
+def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float32]:
+    """XYZ of a film with bands, diffracted, shape (H, W, 3).
+
+    Args:
+        film: The core's.
+        planned: From ``plan``.
+        threads: 0: all.
+
+    Raises:
+        InputError: A plan out of a damaged file.
+    """
+    from .post.convolution import spread
+    from .pupil_files import from_json
+
+    bands = film.mean_bands()
+    try:
+        pupils, pitch = from_json(planned), float(planned["pitch_mm"])
+        if not 1e-5 < pitch < 10 or planned["bands"] != bands.shape[2]:
+            raise ValueError("pitch or bands")
+    except (ValueError, TypeError, KeyError) as error:
+        raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
+    colours = band_colours(bands.shape[2])
+    light = colours.sum(axis=1)
+    each = -(-LEAST_WAVELENGTHS // bands.shape[2])
+    nm = band_wavelengths(bands.shape[2], each)
+    size = _size(pupils, pitch, bands.shape[:2])
+    xyz = np.zeros((*bands.shape[:2], 3), np.float32)
+    for b in range(bands.shape[2]):
+        plane = bands[:, :, b : b + 1]
+        if light[b] > DARK * light.max():
+            kernels = _kernels(pupils, nm[b], pitch, size, threads)
+            plane = spread(plane, kernels[..., None, None], threads=threads)
+        for k in range(3):
+            xyz[:, :, k] += np.float32(colours[b, k]) * plane[:, :, 0]
+    return xyz
+
+
+def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Linear Rec.709 of XYZ, shape (H, W, 3)."""
+    from .colour import rgb_from_xyz
+
+    return np.asarray(xyz @ rgb_from_xyz().T.astype(np.float32))
+
+
+def _size(pupils: list[list[Pupil]], pitch: float, frame: tuple[int, ...]) -> int:
+    from .analysis.diffraction import window_of
+
+    most = ONE_ZONE if len(pupils) == 1 else MANY_ZONES
+    most = min(most, 2 * max(frame[0], frame[1]) - 1)
+    return max(window_of(p, pitch, most) for row in pupils for p in row)
+
+
+def _kernels(
+    pupils: list[list[Pupil]], nm: NDArray[np.float64], pitch: float, size: int, threads: int
+) -> NDArray[np.float32]:
+    """Of one band, shape (Z, Z, size, size); each keeps all light."""
+    from .analysis.diffraction import far_fields
+
+    out = np.zeros((len(pupils), len(pupils), size, size), np.float32)
+    for y, row in enumerate(pupils):
+        for x, pupil in enumerate(row):
+            for kernel in far_fields(pupil, nm.tolist(), pitch, size, threads=threads):
+                out[y, x] += kernel / np.float32(len(nm))
+            out[y, x] /= np.float32(out[y, x].sum(dtype=np.float64))
+    return out

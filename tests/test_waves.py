@@ -1,0 +1,165 @@
+"""Diffraction in a render: bands of the film, colours, energy, passes, stars in the picture."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from daguerre import pupil_files, waves
+from daguerre.errors import InputError, UsageError
+from daguerre.io.merging import merge
+from daguerre.io.passes import pass_of, read_pass, write_pass
+from daguerre.session import Session
+from daguerre.waves import Diffraction
+
+SIZE = (96, 64)
+
+
+def lamps(colours: Any = ((900.0, 700.0, 400.0),)) -> dg.Scene:
+    """Small lamps at 4 m, one beside the other, before a dim coloured sky."""
+    scene = dg.Scene()
+    for k, colour in enumerate(colours):
+        place = np.eye(4)
+        place[:3, 3] = (0.4 * (k - 0.5 * (len(colours) - 1)), 0, -4)
+        scene.add_light(dg.SphereLight(colour, 0.01), place)
+    scene.set_environment(np.full((2, 4, 3), (0.02, 0.05, 0.1), np.float32))
+    return scene
+
+
+def camera(**more: Any) -> dg.Camera:
+    options: dict[str, Any] = {
+        "focal_length": 50,
+        "f_stop": 16.0,
+        "focus_distance": 4.0,
+        "sensor_size": (1.92, 1.28),
+        "blades": 6,
+    }
+    return dg.Camera(**options | more)
+
+
+def session(scene: dg.Scene, cam: dg.Camera, diffraction: Any = True, **more: Any) -> Session:
+    return Session(scene, cam, resolution=SIZE, max_depth=2, diffraction=diffraction, **more)
+
+
+def test_bands_without_kernels_have_the_colour_of_xyz(monkeypatch: pytest.MonkeyPatch) -> None:
+    """White is exact; lamps of any RGB, too, but for the noise of their samples within bands."""
+    scene = lamps(((9.0, 9, 9), (9, 2, 1), (1, 3, 9)))
+    one = session(scene, camera(f_stop=4.0, sensor_size=(24, 16)), Diffraction(16))
+    one.draw(0, 64)
+    monkeypatch.setattr(waves, "DARK", np.inf)  # no band is spread
+    plain, banded = one.frame(waves=False), one.frame()
+    assert plain.xyz is not None
+    assert banded.xyz is not None
+    bright = plain.rgb.max(axis=2) > 0.01
+    scale = plain.rgb[bright].max(axis=1, keepdims=True)
+    assert np.abs((banded.rgb - plain.rgb)[bright] / scale).mean() < 0.02
+    whole = banded.rgb.sum(axis=(0, 1)) / plain.rgb.sum(axis=(0, 1))
+    np.testing.assert_allclose(whole, 1, atol=0.003)
+
+
+def test_diffraction_keeps_the_light_and_makes_the_star_of_the_iris() -> None:
+    one = session(lamps(), camera(), light_paths="off")
+    one.draw(0, 64)
+    sharp, wave = one.frame(waves=False), one.frame()
+    inner = np.s_[16:-16, 24:-24]
+    assert wave.rgb[inner].sum() < sharp.rgb[inner].sum()
+    dim = sharp.rgb.sum(axis=(0, 1)), wave.rgb.sum(axis=(0, 1))
+    assert (np.abs(dim[1] / dim[0] - 1) < 0.02).all()
+    assert wave.rgb.max() < 0.7 * sharp.rgb.max()
+    y, x = np.unravel_index(sharp.rgb.sum(axis=2).argmax(), SIZE[::-1])
+    light = (wave.rgb - sharp.rgb).sum(axis=2)
+    rows, columns = np.mgrid[: SIZE[1], : SIZE[0]]
+    angle = np.degrees(np.arctan2(y - rows, columns - x)) % 60
+    ring = np.abs(np.hypot(rows - y, columns - x) - 17) < 9
+    along, across = (light[ring & (np.abs(angle - a) < 8)].mean() for a in (30, 52))
+    assert along > 1.3 * across  # spikes stand across edges, at 30 degrees and so on
+
+
+@pytest.mark.parametrize("light_paths", ["off", (4.0, 0.0)])
+def test_passes_with_bands_add_up_to_the_bits_of_one(tmp_path: Path, light_paths: Any) -> None:
+    def draw(begin: int, end: int) -> Session:
+        one = session(lamps(), camera(), Diffraction(8), light_paths=light_paths)
+        one.draw(begin, end)
+        return one
+
+    whole = draw(0, 6)
+    for k, (a, b) in enumerate(((4, 6), (0, 4))):
+        part = draw(a, b)
+        write_pass(tmp_path / f"{k}.exr", part.frame(), pass_of(part))
+    frame, total = merge([tmp_path / "0.exr", tmp_path / "1.exr"])
+    for name, words in whole.state().items():
+        assert np.array_equal(words, total.state[name])
+    assert np.array_equal(frame.rgb, whole.frame().rgb)
+    assert frame.metadata["diffraction"] == "8 bands, 1 x 1 zones"
+    other = draw(6, 7)
+    other.set_state(read_pass(tmp_path / "0.exr").state, [(4, 6)])
+    assert other.ranges == [(4, 6)]
+    plain = session(lamps(), camera(), False, light_paths=light_paths)
+    plain.draw(0, 4)
+    write_pass(tmp_path / "2.exr", plain.frame(), pass_of(plain))
+    with pytest.raises(dg.MismatchError, match="diffraction"):
+        merge([tmp_path / "0.exr", tmp_path / "2.exr"])
+
+
+def test_splats_of_light_paths_land_in_bands() -> None:
+    frames = []
+    for light_paths in ("off", (3000.0, 0.0)):
+        one = session(
+            lamps(), camera(), Diffraction(6), light_paths=light_paths,
+            technique="both" if light_paths == "off" else "light",
+        )  # fmt: skip
+        one.draw(0, 128)
+        frames.append(one.frame().rgb.sum(axis=(0, 1)))
+    np.testing.assert_allclose(frames[1], frames[0], rtol=0.05)
+
+
+def test_zones_of_a_lens_see_their_own_pupils() -> None:
+    cam = dg.Camera(lens="double-gauss-50mm-f2", f_stop=2.0, focus_distance=4.0, blades=5)
+    one = Session(
+        lamps(), cam, resolution=(48, 32), max_depth=1, diffraction=Diffraction(4, 3),
+        light_paths="off",
+    )  # fmt: skip
+    planned = one.metadata["pupils"]
+    again = pupil_files.from_json(json.loads(json.dumps(planned)))
+    assert [len(row) for row in again] == [3, 3, 3]
+    spans = [[p.high[1] - p.low[1] for p in row] for row in again]
+    assert spans[0][0] < 0.9 * spans[1][1]  # corners are cut
+    kernels = waves._kernels(again, np.array([500.0, 520.0]), 0.002, 41, 0)
+    np.testing.assert_allclose(kernels.sum(axis=(2, 3)), 1, rtol=1e-5)
+    widths = (kernels > 0.1 * kernels.max(axis=(2, 3), keepdims=True)).sum(axis=(2, 3))
+    assert widths[0, 0] > widths[1, 1]  # narrow pupils spread more
+    assert one.metadata["diffraction"] == "4 bands, 3 x 3 zones"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"pitch_mm": 0},
+        {"bands": 5},
+        {"iris": {"blades": 1000, "rotation": 0, "curvature": 0, "mask_half": None}},
+        {"pupils": [[{"f_number": float("nan")}]]},
+        {"pupils": [[{}]]},
+        {"pupils": []},
+        {"pupils": 7},
+    ],
+)
+def test_damaged_pupils_of_a_pass_are_refused(change: dict[str, Any]) -> None:
+    one = session(lamps(), camera(), Diffraction(4), light_paths="off")
+    one.draw(0, 1)
+    planned = json.loads(json.dumps(one.metadata["pupils"])) | change
+    with pytest.raises(InputError, match="damaged facts of pupils"):
+        waves.developed(one._film, planned)
+
+
+def test_what_cannot_be_diffracted_is_said() -> None:
+    with pytest.raises(UsageError, match="wanted a lens with an iris, got a pinhole"):
+        session(lamps(), dg.Camera(lens="pinhole"))
+    with pytest.raises(UsageError, match=r"bands: wanted .*3 \.\. 64"):
+        Diffraction(2)
+    with pytest.raises(UsageError, match="diffraction: wanted True, False"):
+        session(lamps(), camera(), "yes")
