@@ -96,7 +96,7 @@ class FakeSession:
     def with_truth(self, frame: Frame) -> Frame:
         return frame
 
-    def frame(self, *, truth: bool = True) -> Frame:
+    def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
         count = max(1, sum(b - a for a, b in self.ranges))
         grey = (self.sums / count / 65521).astype(np.float32)
         aovs = {}

@@ -226,7 +226,7 @@ def test_large_aberrations_are_geometric() -> None:
     for axis, v in enumerate((x, y)):
         width = np.sqrt((spread * (v - middle[axis]) ** 2).sum() / spread.sum())
         wanted = np.sqrt(rays.weights @ (rays.points - rays.centroid)[:, axis] ** 2)
-        assert width == pytest.approx(wanted, rel=0.06)
+        assert wanted < width < 1.09 * wanted  # the edge's waves are a little wider
 
 
 def test_mounts_cut_the_pupils_of_corners() -> None:
