@@ -110,7 +110,7 @@ def lens_pupil(
     low, high = cosines[lit].min(axis=0) - margin, cosines[lit].max(axis=0) + margin
     scaled = _scaled(cosines, low, high)
     near = np.isfinite(scaled).all(axis=1) & (np.abs(scaled) < 1.2).all(axis=1)
-    near &= np.isfinite(free.iris).all(axis=1)
+    near &= np.isfinite(free.iris).all(axis=1) & _about(at, lit)
     ends = (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
     return LensPupil(
         *ends,
@@ -119,6 +119,13 @@ def lens_pupil(
         _mounts(light, _fitted(scaled[near], at[near], IRIS_DEGREE)),
         {nm: path for nm in wavelengths_nm if (path := _path(light, nm, low, high)) is not None},
     )
+
+
+def _about(at: FloatArray, lit: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rays next to the light: others, far out, may leave in the same directions."""
+    low, high = at[lit].min(axis=0), at[lit].max(axis=0)
+    reach = 0.6 * (high - low)
+    return np.asarray((np.abs(at - 0.5 * (low + high)) <= reach).all(axis=1))
 
 
 def zone_pupils(
