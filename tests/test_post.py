@@ -243,6 +243,7 @@ def test_units_of_parameters():
         (["vignetting:model=lens,sensor=36x24"], 2, "lens: wanted a name"),
         (["vignetting:model=lens,lens=nothing,sensor=36x24"], 3, "no lens of the library"),
         (["film"], 2, "gain: wanted a number of stops of at least -10, got nothing"),
+        (["diffraction"], 2, "f_number: wanted a number of at least 0.3, got nothing"),
         (["deep"], 3, "channel for motion.u: wanted motion.U or"),
     ],
 )

@@ -28,7 +28,7 @@ LARGEST = 2049  # px across, of kernels that could be larger
 COARSE = 768  # px, of the smaller side of a picture on which veils are spread
 
 IRIS = (
-    Parameter("f_number", "as the film sees it: focal length / opening", low=0.3),
+    Parameter("f_number", "as the film sees it: focal length / opening", default=REQUIRED, low=0.3),
     Parameter("blades", "of the iris; 0: round", default=0, kind="whole", low=0, high=64),
     Parameter("rotation", "of the blades", "deg", 0.0),
     Parameter("curvature", "of the blades; 1: round, 0: straight", default=0.0, low=-1, high=1),
