@@ -255,7 +255,7 @@ def test_effects_of_waves_keep_light_and_colour() -> None:
     assert out[80, 100:120].sum() > 0
 
 
-@pytest.mark.parametrize("rays", [False, True])
+@pytest.mark.parametrize("rays", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_picture_through_a_lens_has_its_spot(rays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a point in the corner of a small film: middle and width are those of the bench."""
     from daguerre.post import lens_psf

@@ -22,6 +22,12 @@ from . import test_flare
 SIZE = (96, 64)
 
 
+@pytest.fixture(autouse=True)
+def few_wavelengths(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels of one wavelength per band: a third of the time."""
+    monkeypatch.setattr(waves, "LEAST_WAVELENGTHS", 8)
+
+
 def lamps(colours: Any = ((900.0, 700.0, 400.0),)) -> dg.Scene:
     """Small lamps at 4 m, one beside the other, before a dim coloured sky."""
     scene = dg.Scene()
