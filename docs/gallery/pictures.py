@@ -260,7 +260,7 @@ MOTION = [
 LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
 DISCS = "--max-depth 1 --spp 128 --denoise"
 FINE_DISCS = "--max-depth 1 --spp 512"  # the denoiser would draw cracks into them
-FROM_LAMPS = "--res 375x250 --max-depth 1 --spp 16 --light-paths 40000"
+FROM_LAMPS = "--res 375x250 --max-depth 1 --spp 48"
 PANEL = "--res 375x250 --spp 32 --denoise"
 TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8 --focus-at 187,137"
 ZOOM = "--camera zoom --lens nikon-af-s-70-200mm-f2.8 --f-stop 4"
@@ -372,6 +372,7 @@ GLASS = [
 ]
 
 PHOTOGRAPHER = f"{GAUSS} --f-stop 2 --res 600x338"
+CAUSTICS = f"{GAUSS} --f-stop 4 --res 480x320"
 LIGHT = [
     Picture(
         "night_lamps",
@@ -382,5 +383,17 @@ LIGHT = [
             f"{PHOTOGRAPHER} --spp 48 --light-paths off",
             f"{PHOTOGRAPHER} --spp 40 --light-paths 65536",
         ),
+    ),
+    Picture(
+        "caustics",
+        "What a ball of glass, a glass of wine and a ring of brass throw on the table, in equal "
+        "CPU time: paths from the lens only, left, and light paths with bounces beside them, "
+        "right.",
+        "out/lens_scenes/caustics.glb",
+        (
+            f"{CAUSTICS} --spp 120 --light-paths off",
+            f"{CAUSTICS} --spp 64 --light-paths 0,100000",
+        ),
+        columns=2,
     ),
 ]

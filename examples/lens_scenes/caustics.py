@@ -2,7 +2,7 @@
 
 The lamp is a ball of 6 mm radius; what glass and brass do with its light on the table are caustics,
 which a path from the lens meets by chance alone: it would have to hit the lamp through the glass.
-Light paths (``--light-paths``) start at the lamp. Metres, y up; the lamp has 190 lm, and a grey
+Light paths (``--light-paths``) start at the lamp. Metres, y up; the lamp has 44 lm, and a grey
 card beyond the frame throws a little of it back.
 """
 
@@ -17,7 +17,7 @@ from night.stage import WARM, Stage
 
 EYE, SUBJECT = (0.06, 0.30, 0.62), (0.0, 0.028, 0.0)
 WINE = (0.055, 0.0001, -0.015)
-LAMP, LAMP_RADIUS, INTENSITY = (-0.42, 0.36, -0.34), 0.006, 15.0  # m, m, cd
+LAMP, LAMP_RADIUS, INTENSITY = (-0.42, 0.36, -0.34), 0.006, 3.5  # m, m, cd
 
 
 def make() -> Glb:
