@@ -21,7 +21,7 @@ FINE = 1600
 
 def rgb_from_xyz() -> FloatArray:
     """Linear Rec.709 of CIE XYZ, shape (3, 3); D65 is (1, 1, 1)."""
-    return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3)]).T
+    return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3).tolist()]).T
 
 
 def _tables(nm: ArrayLike) -> tuple[FloatArray, FloatArray]:

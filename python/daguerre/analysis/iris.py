@@ -107,7 +107,7 @@ def _inside(shape: _core.Iris, x: Floats, y: Floats) -> Floats:
             cx, cy = np.float32(shape.arc_center * ex), np.float32(shape.arc_center * ey)
             sides.append(shape.bend * (shape.arc_radius - np.hypot(x - cx, y - cy)))
         for side in sides:
-            depth = side if depth is None else np.minimum(depth, side, out=depth)
+            depth = np.asarray(side if depth is None else np.minimum(depth, side), np.float32)
     return np.asarray(depth, np.float32)
 
 
