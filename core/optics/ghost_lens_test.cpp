@@ -1,7 +1,6 @@
 #include "optics/ghost_lens.h"
 
 #include <doctest/doctest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <memory>
@@ -11,22 +10,11 @@
 #include "optics/paraxial.h"
 #include "optics/test_lenses.h"
 #include "optics/test_shapes.h"
+#include "optics/test_targets.h"
 
 using namespace dg;
 
 namespace {
-
-template <typename Body>
-void for_each_target(Body body) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        INFO("target " << hwy::TargetName(target));
-        body();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 GhostLens ghosts_of(const Prescription& lens, const SensorStack& stack = {}, const Iris& iris = {},
                     double open = 1) {
@@ -187,7 +175,7 @@ TEST_CASE("lanes trace ghosts as the reference does, on every target") {
     lenses[1].coating = Coating::broadband, lenses[2].coating = Coating::v_coat;
     lenses[3].coating = Coating::uncoated;
     const auto batch = std::make_unique<Batch>();
-    for_each_target([&] {
+    test::for_each_target([&] {
         std::mt19937 rng(7);
         int passed = 0, differ = 0, rays = 0;
         for (const Prescription& lens : lenses) {

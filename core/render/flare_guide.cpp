@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "math/hash.h"
+#include "render/light_arrival.h"
 #include "render/parallel.h"
 
 namespace dg {
@@ -41,15 +42,8 @@ float luminance_of(const FlareArrival& path) {
 
 Ray flare_shadow(const FlarePoint& from, const Ray& from_lens) {
     if (from.at_infinity) return from_lens;
-    const Vec3f a = from.point.position, b = from_lens.origin;
-    const float largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x),
-                                    std::abs(b.y), std::abs(b.z)});
     const float cosine = from.delta ? 1 : std::abs(dot(from.point.normal, from_lens.direction));
-    return {.origin = a,
-            .direction = -from_lens.direction,
-            .time = from_lens.time,
-            .t_min = 0x1p-19f * largest / cosine,
-            .t_max = length(b - a)};
+    return shadow_ray(from.point.position, cosine, from_lens);
 }
 
 /// Rays of one pair, over a rectangle of the front.

@@ -1,5 +1,7 @@
 // light_arrival.h -- light on its way to the lens, along one ray for all of its wavelengths.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -9,6 +11,19 @@
 #include "spectrum/wavelengths.h"
 
 namespace dg {
+
+/// From a point (m, world), past the surface that it lies on and that the ray leaves under this cosine, to where
+/// the ray from the lens starts.
+inline Ray shadow_ray(Vec3f at, float cosine, const Ray& from_lens) {
+    const Vec3f b = from_lens.origin;
+    const float largest = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z), std::abs(b.x),
+                                    std::abs(b.y), std::abs(b.z)});
+    return {.origin = at,
+            .direction = -from_lens.direction,
+            .time = from_lens.time,
+            .t_min = 0x1p-19f * largest / cosine,
+            .t_max = length(b - at)};
+}
 
 struct LightArrival {
     CameraRay lens;            // camera frame

@@ -1,6 +1,5 @@
 #include "render/light_pass.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "math/hash.h"
@@ -10,20 +9,6 @@ namespace {
 
 constexpr int kBatchSize = 256;   // light paths per call of the lens: their wavelengths fill the SIMD lanes
 constexpr int kSequence = -1;     // where pixels have their row, in the sampler's scramble
-
-/// A ray from the emitter's point, past its own surface, to where rays of the lens start.
-Ray shadow_ray(const EmissionPoint& point, const Ray& from_lens) {
-    if (point.light == EmissionPoint::kSky) return from_lens;
-    const Vec3f a = point.position, b = from_lens.origin;
-    const float largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x),
-                                    std::abs(b.y), std::abs(b.z)});
-    const float cosine = std::abs(dot(point.normal, from_lens.direction));
-    return {.origin = a,
-            .direction = -from_lens.direction,
-            .time = from_lens.time,
-            .t_min = 0x1p-19f * largest / cosine,
-            .t_max = length(b - a)};
-}
 
 }  // namespace
 
@@ -102,7 +87,7 @@ std::optional<LightArrival> LightPass::begin(std::uint64_t index) const {
         if (!(max_component(luminance) > 0)) return std::nullopt;
         path.radiance = path.wavelengths.emission(luminance);
     }
-    path.shadow = shadow_ray(*point, world);
+    path.shadow = sky ? world : shadow_ray(point->position, cosine, world);
     path.u_pixel = sampler.next_2d();
     path.sample = std::uint32_t(double(index) / settings_.light.m1);
     return path;

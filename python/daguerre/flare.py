@@ -5,7 +5,6 @@ See ``docs/flare.md``.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import daguerre._core as _core
@@ -14,7 +13,7 @@ from .camera import Camera
 from .camera_checks import TRACED
 from .checks import number, numbers, short
 from .errors import UsageError
-from .light_paths import MOST
+from .light_paths import MOST, path_counts
 
 #: Paths per sample index that ``auto`` takes, for each pixel of the frame.
 PER_PIXEL = 0.5
@@ -35,15 +34,10 @@ def check_flare(value: object, where: str = "flare") -> float | None:
         return None
     if value == "off":
         return 0.0
-    try:
-        if isinstance(value, bool | bytes):
-            raise TypeError
-        paths = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}") from None
-    if not (math.isfinite(paths) and 0 <= paths <= MOST):
+    paths = path_counts([value], 1)
+    if paths is None:
         raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
-    return paths
+    return paths[0]
 
 
 def check_lens(model: str, where: str = "flare") -> None:

@@ -35,15 +35,22 @@ def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
     if value == "off":
         return OFF
     parts: Sequence[Any] = value.split(",") if isinstance(value, str) else _pair(value)
-    try:
-        if any(isinstance(part, bool | bytes) for part in parts):
-            raise TypeError
-        numbers = [float(part) for part in parts]
-    except (TypeError, ValueError):
-        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}") from None
-    if len(numbers) not in (1, 2) or not all(math.isfinite(m) and 0 <= m <= MOST for m in numbers):
+    numbers = path_counts(parts, 2)
+    if numbers is None:
         raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
     return numbers[0], numbers[1] if len(numbers) == 2 else 0.0
+
+
+def path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
+    """One to ``most`` numbers of paths per sample index, which may be text; None: they are not."""
+    try:
+        if any(isinstance(part, bool | bytes) for part in parts):
+            return None
+        numbers = [float(part) for part in parts]
+    except (TypeError, ValueError):
+        return None
+    fit = 1 <= len(numbers) <= most and all(math.isfinite(m) and 0 <= m <= MOST for m in numbers)
+    return numbers if fit else None
 
 
 def _pair(value: Any) -> Sequence[Any]:

@@ -10,7 +10,7 @@ from .array import on_array
 from .effect import Effect, Step, Values
 from .parameter import Parameter
 from .picture import Band, Canvas, Image, Rows
-from .vignetting import DARK, Falloff, radial_polynomial
+from .vignetting import Falloff, radial_polynomial, reciprocal
 
 #: Luminance of linear Rec.709, ITU-R BT.709-6.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
@@ -29,9 +29,8 @@ class _Saturation(Step):
             return band
         share = self._falloff(rows)
         if self._inverse:
-            pale = share < DARK
-            self._pale += int(pale.sum())
-            share = np.where(pale, 0, 1 / np.where(pale, 1, share)).astype(np.float32)
+            share, pale = reciprocal(share)
+            self._pale += pale
         image = band.image.copy()
         grey = (image[:, :, :3] @ LUMINANCE)[:, :, None]
         image[:, :, :3] = grey + (image[:, :, :3] - grey) * share[:, :, None]

@@ -22,6 +22,13 @@ HEIGHTS = 33  # at which the light of a lens is measured
 DARK = 1e-4  # of the light on the axis: less cannot be undone
 
 
+def reciprocal(share: NDArray[np.float32]) -> tuple[NDArray[np.float32], int]:
+    """One over what is left; 0 where that is too little to undo, and the number of such pixels."""
+    lost = share < DARK
+    over = np.where(lost, 0, 1 / np.where(lost, 1, share)).astype(np.float32)
+    return over, int(lost.sum())
+
+
 class _Vignetting(Step):
     """Colours times what is left of the light; alpha stays."""
 
@@ -33,9 +40,8 @@ class _Vignetting(Step):
     def apply(self, band: Band, rows: Rows) -> Band:
         factor = self._falloff(rows)
         if self._inverse:
-            dark = factor < DARK
-            self._dark += int(dark.sum())
-            factor = np.where(dark, 0, 1 / np.where(dark, 1, factor)).astype(np.float32)
+            factor, dark = reciprocal(factor)
+            self._dark += dark
         image = band.image.copy()
         image[:, :, : self._colours] *= factor[:, :, None]
         return band.with_image(image)
