@@ -34,7 +34,7 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
     std::iota(work.order.begin(), work.order.end(), 0u);
     const auto kind = [&](std::uint32_t i) {
         const FlareArrival& p = work.paths[i];
-        return std::tuple(guide_.state_at(p.lens.ray.time), p.ghost);
+        return std::tuple(guide_.aim().state_at(p.lens.ray.time), p.ghost);
     };
     std::ranges::stable_sort(work.order, {}, kind);
     for (std::size_t from = 0; from < work.order.size();) {
@@ -52,9 +52,8 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
 void FlarePass::begin(Workspace& work, std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), settings_.seed);
     const CameraRandom u = sampler.camera();
-    const FlareGuide::Random random{u.film.x, u.film.y, u.lambda, u.lens, sampler.next_2d(),
-                                    settings_.shutter.draw_any(u.time)};
-    auto path = guide_.draw(random);
+    const FlareAim::Random random{u.film.y, u.lambda, sampler.next_2d(), settings_.shutter.draw_any(u.time)};
+    auto path = guide_.draw(u.film.x, u.lens, random);
     if (!path) return;
     path->density *= per_sample_ * scale_;
     work.paths.push_back(*path);
@@ -72,13 +71,13 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
     }
     work.landings.assign(work.rays.size(), Reprojection{});
     const FlareArrival& any = work.paths[work.order[first]];
-    guide_.trace(guide_.state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
+    guide_.aim().trace(guide_.aim().state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
     for (std::size_t i = first; i < last; ++i) {
         const std::span own(work.landings.data() + (i - first) * kWavelengths, std::size_t(kWavelengths));
         const float time = work.paths[work.order[i]].lens.ray.time;
         bool hits = false;
         for (Reprojection& landing : own) {
-            const bool on_film = guide_.on_frame(landing, time).has_value();
+            const bool on_film = guide_.aim().on_frame(landing, time).has_value();
             landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
             work.counters.flare_hits += on_film;
             hits |= on_film;

@@ -1,0 +1,163 @@
+#include "render/flare_aim.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/light_arrival.h"
+
+namespace dg {
+namespace {
+
+constexpr std::size_t kMostFour = 1024;   // ghosts by four reflections
+
+/// Axes across a direction that turn with it from straight ahead (-z) without a jump but straight behind.
+struct Across {
+    Vec3d x, y;
+    explicit Across(Vec3d e) {
+        const double k = 1 / std::max(1 - e.z, 1e-9);
+        x = {1 - k * e.x * e.x, -k * e.x * e.y, e.x};
+        y = {-k * e.x * e.y, 1 - k * e.y * e.y, e.y};
+    }
+};
+
+}  // namespace
+
+Ray flare_shadow(const FlarePoint& from, const Ray& from_lens) {
+    if (from.at_infinity) return from_lens;
+    const float cosine = from.delta ? 1 : std::abs(dot(from.point.normal, from_lens.direction));
+    return shadow_ray(from.point.position, cosine, from_lens);
+}
+
+FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings)
+    : scene_(scene),
+      camera_(camera),
+      sensor_(settings.sensor),
+      shutter_(settings.shutter),
+      reach_(settings.filter.radius()),
+      times_(camera.lens_motion.times) {
+    if (times_.empty()) add_state(camera, std::get<ExactLens>(camera.lens));
+    for (const LensKind& lens : camera.lens_motion.lenses) add_state(camera, std::get<ExactLens>(lens));
+    mirrors_ = states_.front().ghosts.two_bounces();
+    if (settings.flare.order >= 4) {
+        const auto more = states_.front().ghosts.four_bounces(kMostFour);
+        mirrors_.insert(mirrors_.end(), more.begin(), more.end());
+    }
+    for (State& state : states_)
+        for (const Mirrors& mirrors : mirrors_) state.steps.push_back(state.ghosts.steps(mirrors));
+    const ExactLens::Ball first = states_.front().lens.front_ball();
+    center_ = first.center;
+    for (const State& state : states_) {
+        const ExactLens::Ball ball = state.lens.front_ball();
+        radius_ = std::max(radius_, ball.radius + length(ball.center - center_));
+    }
+    sources_ = FlareSources(scene.lights(), views());
+}
+
+void FlareAim::add_state(const Camera& camera, const ExactLens& lens) {
+    states_.push_back({lens, lens.ghosts(camera.sensor_stack), {}});
+}
+
+/// All around, at some moments.
+std::vector<ViewCone> FlareAim::views() const {
+    std::vector<ViewCone> views;
+    const bool still = !camera_.world_from_camera.moves();
+    for (int i = 0; i < (still ? 1 : 5); ++i) {
+        const float time = still ? 0.5f : 0.25f * float(i);
+        const Vec3d eye = camera_.world_from_camera.at(time).origin;
+        views.push_back({{to_float(eye), float(length(center_) + radius_)}, time});
+    }
+    return views;
+}
+
+std::size_t FlareAim::state_at(float time) const {
+    if (times_.empty()) return 0;
+    const KeyPlace p = place_among(times_, time);
+    return p.share < 0.5 ? p.left : p.right;
+}
+
+void FlareAim::trace(std::size_t state, int ghost, std::span<const CameraRay> rays,
+                       std::span<const float> nm, std::span<Reprojection> out) const {
+    const State& s = states_[state];
+    s.lens.reproject(rays, nm, s.ghosts, s.steps[ghost], out);
+    if (camera_.setting.values.empty()) return;
+    for (std::size_t i = 0; i < out.size(); ++i)   // the film lay elsewhere then
+        out[i].film_mm = out[i].film_mm - setting_at(camera_, rays[i].ray.time).film_shift_mm;
+}
+
+std::optional<Vec2f> FlareAim::on_frame(const Reprojection& landing, float time) const {
+    if (!(landing.transmittance > 0)) return std::nullopt;
+    const Vec2f px = sensor_.px_from_mm(landing.film_mm);
+    if (!(px.x > -reach_ && px.x < float(sensor_.width) + reach_ && px.y > -reach_ &&
+          px.y < float(sensor_.height) + reach_))
+        return std::nullopt;
+    if (!shutter_.rolls()) return px;
+    const int line = int(std::floor(shutter_.scans_columns() ? px.x : px.y));
+    const int lines = shutter_.scans_columns() ? sensor_.width : sensor_.height;
+    for (int i = -1; i <= 1; ++i)   // the filter reaches some lines
+        if (shutter_.opening(std::clamp(line + i, 0, lines - 1), time) > 0) return px;
+    return std::nullopt;
+}
+
+double FlareAim::reflectance(int ghost) const {
+    double r = 1;
+    for (const int i : mirrors_[ghost]) r *= states_.front().ghosts.reflectance(i);
+    return r;
+}
+
+std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, double pdf,
+                                          const Random& u) const {
+    const float time = u.moment.time;
+    const Affine3d pose = camera_.world_from_camera.at(time);
+    const Viewpoint view{to_float(pose.origin), float(length(center_) + radius_)};
+    const auto from = sources_.sample(source, u.select, u.point, time, view);
+    if (!from) return std::nullopt;
+    const Affine3d to_camera = inverse(pose);
+    const Vec3d position = to_double(from->point.position);
+    const Vec3d p = from->at_infinity ? to_camera.vector(position) : to_camera.point(position);
+    const Vec3d toward = from->at_infinity ? p : p - center_;
+    const double distance = from->at_infinity ? 1 : length(toward);
+    if (!(distance > radius_ * (from->at_infinity ? 0 : 1))) return std::nullopt;   // within the glass
+    const Vec3d e = toward / distance;
+    const Across across(e);
+    const Vec3d q = center_ + radius_ * (double(at.x) * across.x + double(at.y) * across.y);
+    const Vec3d way = from->at_infinity ? e : p - q;
+    const double d2 = from->at_infinity ? 1 : length_squared(way);
+    const Vec3d direction = way / std::sqrt(d2);
+    const auto start = states_[state_at(time)].lens.start(q, direction);
+    if (!start) return std::nullopt;
+    FlareArrival path;
+    path.lens.ray = {.origin = to_float(*start), .direction = to_float(direction), .time = time};
+    path.lens.iris_opening = u.moment.iris_opening * setting_at(camera_, time).iris_opening;
+    const Vec3f world = to_float(pose.vector(direction));
+    const bool area = !from->at_infinity && !from->delta;
+    const double cosine = area ? std::abs(dot(from->point.normal, world)) : 1;
+    // Per m2 of the square, then per sr at the point (or per m2 across the ray), then per m2 sr.
+    path.density = double(from->point.pdf) * pdf / (radius_ * radius_) * d2 / dot(direction, e) / cosine;
+    if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
+    const Rgb value = from->delta
+                          ? sources_.delta_value(*from, to_float(pose.point(*start)), time)
+                          : scene_.emission(from->point, -world, time);
+    if (!(max_component(value) > 0)) return std::nullopt;
+    path.ghost = ghost, path.at = at, path.from = *from;
+    path.wavelengths = Wavelengths::sample(u.lambda);
+    path.radiance = path.wavelengths.emission(value);
+    return path;
+}
+
+double FlareAim::visible_share(int source) const {
+    int seen = 0, all = 0;
+    for (int i = 0; i < 64; ++i) {
+        PathSampler sampler(source, -5, std::uint32_t(i), 0);
+        const CameraRandom c = sampler.camera();
+        const Vec2f at{2 * c.lens.x - 1, 2 * c.lens.y - 1};
+        const Random u{c.film.x, c.lambda, sampler.next_2d(), shutter_.draw_any(c.time)};
+        const auto path = aim(source, 0, at, 0.25, u);
+        if (!path) continue;
+        ++all;
+        const Ray ray = flare_shadow(path->from, to_world(camera_, path->lens.ray));
+        seen += is_traceable(ray) && !scene_.visibility_along(ray, path->wavelengths).is_black();
+    }
+    return all ? std::max(0.02, double(seen) / all) : 0.02;
+}
+
+}  // namespace dg

@@ -1,0 +1,84 @@
+// flare_aim.h -- a flare path without what it is drawn by: from a point of an emitter to a place on the front of
+// the lens, and from there by one ghost to the film. All of it is exact.
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "camera/camera.h"
+#include "light/flare_sources.h"
+#include "render/render.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+
+/// A path from an emitter into the lens.
+struct FlareArrival {
+    CameraRay lens;           // camera frame; on the first surface
+    int ghost = 0;
+    Wavelengths wavelengths;
+    Spectrum radiance{0.f};   // or what stands for it of lights without size
+    double density = 0;       // of such paths, per m2 sr
+    Vec2f at{};               // where it was aimed at, [-1, 1)^2
+    FlarePoint from{};
+};
+
+/// From where it comes to where rays of the lens start; world.
+Ray flare_shadow(const FlarePoint& from, const Ray& from_lens);
+
+class FlareAim {
+  public:
+    /// An exact lens; it and the scene outlive this. Of the settings: sensor, shutter, reach of the filter.
+    FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings);
+
+    int ghosts() const { return int(mirrors_.size()); }
+    const FlareSources& sources() const { return sources_; }
+    const Shutter& shutter() const { return shutter_; }
+    /// Of a ghost's mirrors together, straight on.
+    double reflectance(int ghost) const;
+    /// Of some rays from a source to the front; never 0, as few are looked at.
+    double visible_share(int source) const;
+
+    /// From random numbers by purpose.
+    struct Random {
+        float select, lambda;
+        Vec2f point;
+        Moment moment;
+    };
+    /// Toward a place of the square that holds the front as it is seen from the point, [-1, 1)^2; `pdf`: of
+    /// source, ghost and place, per unit of the square. Nothing if the path cannot bring light.
+    std::optional<FlareArrival> aim(int source, int ghost, Vec2f at, double pdf, const Random& u) const;
+
+    /// Which of the lens's states is in place at a time.
+    std::size_t state_at(float time) const;
+    /// All by one ghost through one state.
+    void trace(std::size_t state, int ghost, std::span<const CameraRay> rays, std::span<const float> nm,
+               std::span<Reprojection> out) const;
+
+    /// Where on the frame a landing is, px; nothing outside of the filter's reach.
+    std::optional<Vec2f> on_frame(const Reprojection& landing, float time) const;
+
+  private:
+    struct State {
+        ExactLens lens;
+        GhostLens ghosts;
+        std::vector<std::vector<GhostStep>> steps;
+    };
+
+    void add_state(const Camera& camera, const ExactLens& lens);
+    std::vector<ViewCone> views() const;
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Sensor sensor_;
+    Shutter shutter_;
+    float reach_;                  // px
+    std::vector<float> times_;     // of the states; empty: one
+    std::vector<State> states_;
+    std::vector<Mirrors> mirrors_;
+    Vec3d center_{};               // camera frame, m: of the front
+    double radius_ = 0;
+    FlareSources sources_;
+};
+
+}  // namespace dg
