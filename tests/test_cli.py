@@ -497,6 +497,15 @@ def test_help_does_not_load_what_it_does_not_need() -> None:
     assert run.stderr.strip() == "[]"
 
 
+def test_the_package_runs_as_the_command() -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "daguerre", "rendr"], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 2
+    assert "render" in run.stderr
+    assert "Traceback" not in run.stderr
+
+
 def test_denoising_without_the_extra_says_how_to_get_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
