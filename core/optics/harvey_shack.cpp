@@ -1,6 +1,7 @@
 #include "optics/harvey_shack.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -9,7 +10,7 @@
 namespace dg {
 namespace {
 
-constexpr int kRays = 48;   // from the middle of a lobe to the edge of the disc, over half the way around
+constexpr int kRays = 32;   // from the middle of a lobe to the edge of the disc, over half the way around
 constexpr double kInverseSquare = 1e-6;   // slopes this close to -2 integrate to a logarithm
 
 double square(double x) {
@@ -45,11 +46,14 @@ double HarveyShack::radius(double u, double most) const {
 
 /// The mean over all ways out of the middle; the integrand is smooth and goes around, so few ways are enough.
 double HarveyShack::over_directions(double offset, double n) const {
+    static const std::array<Vec2d, kRays> kWays = [] {
+        std::array<Vec2d, kRays> ways;
+        for (int k = 0; k < kRays; ++k)
+            ways[k] = {std::cos(kPiD * (k + 0.5) / kRays), std::sin(kPiD * (k + 0.5) / kRays)};
+        return ways;
+    }();
     double sum = 0;
-    for (int k = 0; k < kRays; ++k) {
-        const double phi = kPiD * (k + 0.5) / kRays;
-        sum += within(to_edge({offset, 0}, {std::cos(phi), std::sin(phi)}, n));
-    }
+    for (const Vec2d way : kWays) sum += within(to_edge({offset, 0}, way, n));
     return sum / kRays;
 }
 
