@@ -173,6 +173,48 @@ def test_four_reflections_add_a_little() -> None:
         session(flare_order=3)
 
 
+def mirrored() -> dg.Scene:
+    """A lamp behind the camera's right shoulder, in a mirror before it."""
+    scene = dg.Scene()
+    points, faces = scenes.quad(0.2)
+    chrome = dg.Material(dg.Conductor((1, 1, 1), alpha=0))
+    scene.add_instance(scene.add_mesh(points, faces), chrome, scenes.at(0.05, 0, -1))
+    scene.add_light(dg.SphereLight((1e6, 1e6, 1e6), 0.02), scenes.at(0.3, 0.2, 0.5))
+    return scene
+
+
+def test_a_lamp_in_a_mirror_has_ghosts() -> None:
+    bright = []
+    for highlights in ("on", "off"):
+        drawn = session(mirrored(), flare_highlights=highlights)
+        drawn.draw(0, 1)
+        flare = drawn.frame().flare
+        bright.append(0.0 if flare is None else float(flare.sum()))
+        assert drawn.flare_spots == (highlights == "on")
+        assert (drawn.survey_rays > 0) == (highlights == "on")
+    assert bright[0] > 100 * bright[1]
+
+
+def test_highlights_are_the_same_with_any_threads_and_another_picture_without(
+    tmp_path: Path,
+) -> None:
+    whole = session(mirrored(), threads=1)
+    whole.draw(0, 2)
+    parts = [session(mirrored(), threads=3), session(mirrored(), threads=2)]
+    parts.append(session(mirrored(), flare_highlights=False))
+    passes = []
+    for i, part in enumerate(parts):
+        part.draw(min(i, 1), min(i, 1) + 1)
+        write_pass(tmp_path / f"{i}.exr", part.frame(), pass_of(part))
+        passes.append(read_pass(tmp_path / f"{i}.exr"))
+    frame, _ = merge(passes[:2])
+    np.testing.assert_array_equal(frame.flare, whole.frame().flare)
+    with pytest.raises(MismatchError, match="flare"):
+        merge([passes[0], passes[2]])
+    with pytest.raises(UsageError, match="flare_highlights: wanted on or off, got 'maybe'"):
+        session(flare_highlights="maybe")
+
+
 @pytest.mark.parametrize("value", ["on", -1, "1,2", True, float("nan"), 1e10])
 def test_bad_numbers_are_refused(value: Any) -> None:
     with pytest.raises(UsageError, match="flare: wanted auto, off, or a number"):

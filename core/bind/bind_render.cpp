@@ -147,6 +147,16 @@ void bind_render(nb::module_& m) {
                          s.flare.order = order;
                      },
                      "Reflections of ghosts: 2, or 4 as well.")
+        .def_prop_rw("flare_highlights", [](const RenderSettings& s) { return s.flare.highlights; },
+                     [](RenderSettings& s, bool on) { s.flare.highlights = on; },
+                     "Ghosts of what other things send to the lens.")
+        .def_prop_ro("flare_survey",
+                     [](const RenderSettings& s) {
+                         using Facts = std::tuple<int, std::uint64_t>;
+                         if (!s.flare.guide) return Facts{0, 0};
+                         return Facts{s.flare.guide->aim().spots(), s.flare.guide->aim().survey_rays()};
+                     },
+                     "Bright spots found among that, and the rays that it took.")
         .def("prepare_flare",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.flare.guide.reset();

@@ -30,6 +30,12 @@ FlareSources::FlareSources(const LightSet& lights, std::span<const ViewCone> vie
     add_sky(views);
 }
 
+void FlareSources::add(Highlights highlights) {
+    highlights_ = std::move(highlights);
+    for (int i = 0; i < highlights_.count(); ++i)
+        sources_.push_back({.strength = highlights_.illuminance(i), .highlight = i});
+}
+
 void FlareSources::add_lights(std::span<const ViewCone> views) {
     const std::size_t count = lights_->lights().size();
     std::vector<double> strength(count);
@@ -70,26 +76,32 @@ void FlareSources::add_sky(std::span<const ViewCone> views) {
     hot_parts_ = hot_.parts(kMostHot);
     for (std::size_t i = 0; i < hot_parts_.size(); ++i)
         sources_.push_back({.strength = hot_parts_[i].illuminance(), .hot = int(i)});
-    for (int r = 0; r < kDown; ++r)
-        for (int c = 0; c < kAcross; ++c) {
-            const auto height = [](int row) { return -std::cos(kPi * float(row) / kDown); };
-            const Tile tile{{height(r), height(r + 1)},
-                            {2 * kPi * float(c) / kAcross, 2 * kPi * float(c + 1) / kAcross}};
-            double sum = 0;
-            for (int i = 0; i < 16; ++i) {
-                const Vec2f u{(float(i % 4) + 0.5f) / 4, (float(i / 4) + 0.5f) / 4};
-                if (const auto p = sample_tile(tile, u, views.front().time))
-                    sum += luminance(sky.luminance(p->point.position, views.front().time));
-            }
-            // What is dark where it was looked at may shine elsewhere.
-            const double mean = std::max(sum / 16, 1e-3 * sky.mean_luminance());
-            if (mean > 0) sources_.push_back({.strength = mean * tile.solid_angle(), .tile = tile});
+    for (const DirectionTile& tile : direction_tiles(kAcross, kDown)) {
+        double sum = 0;
+        for (int i = 0; i < 16; ++i) {
+            const Vec2f u{(float(i % 4) + 0.5f) / 4, (float(i / 4) + 0.5f) / 4};
+            if (const auto p = sample_tile(tile, u, views.front().time))
+                sum += luminance(sky.luminance(p->point.position, views.front().time));
         }
+        // What is dark where it was looked at may shine elsewhere.
+        const double mean = std::max(sum / 16, 1e-3 * sky.mean_luminance());
+        if (mean > 0) sources_.push_back({.strength = mean * tile.solid_angle(), .tile = tile});
+    }
+}
+
+bool FlareSources::has_size(int source) const {
+    const Source& s = sources_[source];
+    if (s.hot >= 0) return true;
+    return !s.lights.empty() && std::ranges::all_of(s.lights, [&](std::int32_t i) {
+        const Light& light = lights_->lights()[i];
+        return std::holds_alternative<TriangleLight>(light) || std::holds_alternative<SphereLight>(light);
+    });
 }
 
 std::optional<FlarePoint> FlareSources::sample(int which, float u_select, Vec2f u, float time,
                                                const Viewpoint& view) const {
     const Source& source = sources_[which];
+    if (source.highlight >= 0) return highlights_.sample(source.highlight, u);
     if (source.tile) return sample_tile(*source.tile, u, time);
     if (source.hot >= 0) {
         const Environment::Sample s = hot_parts_[source.hot].sample(u, time);
@@ -130,10 +142,8 @@ std::optional<FlarePoint> FlareSources::sample_light(std::int32_t light, Vec2f u
 }
 
 /// Directions evenly, but for those of bright spots, which have sources of their own.
-std::optional<FlarePoint> FlareSources::sample_tile(const Tile& tile, Vec2f u, float time) const {
-    const float y = tile.z[0] + (tile.z[1] - tile.z[0]) * u.x, phi = tile.phi[0] + (tile.phi[1] - tile.phi[0]) * u.y;
-    const float r = std::sqrt(std::max(0.f, 1 - y * y));
-    const Vec3f d{r * std::cos(phi), y, r * std::sin(phi)};
+std::optional<FlarePoint> FlareSources::sample_tile(const DirectionTile& tile, Vec2f u, float time) const {
+    const Vec3f d = tile.at(u);
     if (!hot_.empty() && hot_.pdf(d, time) > 0) return std::nullopt;
     return FlarePoint{{.position = d, .pdf = 1 / tile.solid_angle()}, true};
 }

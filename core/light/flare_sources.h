@@ -1,31 +1,37 @@
 // flare_sources.h -- where ghosts get their light: all emitters that there are, in sources that a lens sees in
-// about one direction each. What no picture shows, point, spot and directional lights, has ghosts, too.
+// about one direction each. What no picture shows, point, spot and directional lights, has ghosts, too; and so
+// has what other things reflect, where a survey found it.
 #pragma once
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "light/direction_tile.h"
 #include "light/emission.h"
+#include "light/flare_point.h"
+#include "light/highlights.h"
 
 namespace dg {
-
-/// A point that shines, or a direction from which light comes.
-struct FlarePoint {
-    EmissionPoint point;     // pdf: as of EmissionPoint; of a delta light the choice alone
-    bool at_infinity = false;
-    bool delta = false;      // a light without size
-};
 
 class FlareSources {
   public:
     FlareSources() = default;
     /// `views`: the whole world as seen from the lens, at some moments. `lights` outlives this.
     FlareSources(const LightSet& lights, std::span<const ViewCone> views);
+    /// Once.
+    void add(Highlights highlights);
 
     int count() const { return int(sources_.size()); }
     /// What it brings to the lens, as far as can be known without asking what is in its way, lux.
     double strength(int source) const { return sources_[source].strength; }
+    /// Mirrors may show it: lamps and bright spots of the sky.
+    bool has_size(int source) const;
+    /// Light of other things, which takes a path to know.
+    bool reflected(int source) const { return sources_[source].highlight >= 0; }
+    /// Whether this source draws the ray to the world that it was sampled for; else another one does.
+    bool owns(int source, const Ray& ray) const {
+        return !reflected(source) || highlights_.owns(sources_[source].highlight, ray);
+    }
     /// `u_select`: which of its lights.
     std::optional<FlarePoint> sample(int source, float u_select, Vec2f u, float time,
                                      const Viewpoint& view) const;
@@ -33,28 +39,25 @@ class FlareSources {
     Rgb delta_value(const FlarePoint& from, Vec3f to, float time) const;
 
   private:
-    /// A tile of the even part of the sky: cos(theta) and azimuth.
-    struct Tile {
-        std::array<float, 2> z, phi;
-        float solid_angle() const { return (z[1] - z[0]) * (phi[1] - phi[0]); }
-    };
     struct Source {
         double strength = 0;
         std::vector<std::int32_t> lights{};   // or
         DiscreteDistribution choice{};
         int hot = -1;                         // part of the bright sky, or
-        std::optional<Tile> tile{};
+        std::optional<DirectionTile> tile{};  // of the even part of it, or
+        int highlight = -1;
     };
     void add_lights(std::span<const ViewCone> views);
     void add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength);
     void add_sky(std::span<const ViewCone> views);
     std::optional<FlarePoint> sample_light(std::int32_t light, Vec2f u, float time, const Viewpoint& view) const;
-    std::optional<FlarePoint> sample_tile(const Tile& tile, Vec2f u, float time) const;
+    std::optional<FlarePoint> sample_tile(const DirectionTile& tile, Vec2f u, float time) const;
 
     const LightSet* lights_ = nullptr;
     std::vector<Source> sources_;
     HotSky hot_;
     std::vector<HotSky> hot_parts_;
+    Highlights highlights_;
 };
 
 }  // namespace dg

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/highlight_survey.h"
 #include "render/light_arrival.h"
 
 namespace dg {
 namespace {
 
 constexpr std::size_t kMostFour = 1024;   // ghosts by four reflections
+constexpr double kFurthestBack = 0.45;    // cosine: no lens sees what lies further behind it
 
 /// Axes across a direction that turn with it from straight ahead (-z) without a jump but straight behind.
 struct Across {
@@ -51,6 +53,7 @@ FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSetting
         radius_ = std::max(radius_, ball.radius + length(ball.center - center_));
     }
     sources_ = FlareSources(scene.lights(), views());
+    if (settings.flare.highlights && !mirrors_.empty()) look_for_highlights(settings);
 }
 
 void FlareAim::add_state(const Camera& camera, const ExactLens& lens) {
@@ -67,6 +70,20 @@ std::vector<ViewCone> FlareAim::views() const {
         views.push_back({{to_float(eye), float(length(center_) + radius_)}, time});
     }
     return views;
+}
+
+void FlareAim::look_for_highlights(const RenderSettings& settings) {
+    const auto ray = [&](const FlarePoint& to, Vec2f at, float time) -> std::optional<Ray> {
+        const auto way = this->way(to, at, time);
+        if (!way || way->direction.z > kFurthestBack) return std::nullopt;
+        return way->ray();
+    };
+    const Vec3f middle = to_float(camera_.world_from_camera.at(0.5f).point(center_));
+    Survey survey = survey_highlights(
+        scene_, sources_, {middle, float(radius_), ray, shutter_, settings.path, settings.threads});
+    spots_ = survey.highlights.spots();
+    survey_rays_ = survey.rays;
+    sources_.add(std::move(survey.highlights));
 }
 
 std::size_t FlareAim::state_at(float time) const {
@@ -104,39 +121,43 @@ double FlareAim::reflectance(int ghost) const {
     return r;
 }
 
-std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, double pdf,
-                                          const Random& u) const {
-    const float time = u.moment.time;
-    const Affine3d pose = camera_.world_from_camera.at(time);
-    const Viewpoint view{to_float(pose.origin), float(length(center_) + radius_)};
-    const auto from = sources_.sample(source, u.select, u.point, time, view);
-    if (!from) return std::nullopt;
-    const Affine3d to_camera = inverse(pose);
-    const Vec3d position = to_double(from->point.position);
-    const Vec3d p = from->at_infinity ? to_camera.vector(position) : to_camera.point(position);
-    const Vec3d toward = from->at_infinity ? p : p - center_;
-    const double distance = from->at_infinity ? 1 : length(toward);
-    if (!(distance > radius_ * (from->at_infinity ? 0 : 1))) return std::nullopt;   // within the glass
+std::optional<FlareAim::Way> FlareAim::way(const FlarePoint& from, Vec2f at, float time) const {
+    const Affine3d pose = camera_.world_from_camera.at(time), to_camera = inverse(pose);
+    const Vec3d position = to_double(from.point.position);
+    const Vec3d p = from.at_infinity ? to_camera.vector(position) : to_camera.point(position);
+    const Vec3d toward = from.at_infinity ? p : p - center_;
+    const double distance = from.at_infinity ? 1 : length(toward);
+    if (!(distance > radius_ * (from.at_infinity ? 0 : 1))) return std::nullopt;   // within the glass
     const Vec3d e = toward / distance;
     const Across across(e);
     const Vec3d q = center_ + radius_ * (double(at.x) * across.x + double(at.y) * across.y);
-    const Vec3d way = from->at_infinity ? e : p - q;
-    const double d2 = from->at_infinity ? 1 : length_squared(way);
+    const Vec3d way = from.at_infinity ? e : p - q;
+    const double d2 = from.at_infinity ? 1 : length_squared(way);
     const Vec3d direction = way / std::sqrt(d2);
     const auto start = states_[state_at(time)].lens.start(q, direction);
     if (!start) return std::nullopt;
-    FlareArrival path;
-    path.lens.ray = {.origin = to_float(*start), .direction = to_float(direction), .time = time};
-    path.lens.iris_opening = u.moment.iris_opening * setting_at(camera_, time).iris_opening;
+    const bool area = !from.at_infinity && !from.delta;
     const Vec3f world = to_float(pose.vector(direction));
-    const bool area = !from->at_infinity && !from->delta;
-    const double cosine = area ? std::abs(dot(from->point.normal, world)) : 1;
+    const double cosine = area ? std::abs(dot(from.point.normal, world)) : 1;
+    return Way{pose, *start, direction, world, time, d2 / dot(direction, e) / cosine};
+}
+
+std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, double pdf,
+                                          const Random& u) const {
+    const float time = u.moment.time;
+    const Viewpoint view{to_float(camera_.world_from_camera.at(time).origin),
+                         float(length(center_) + radius_)};
+    const auto from = sources_.sample(source, u.select, u.point, time, view);
+    if (!from) return std::nullopt;
+    const auto way = this->way(*from, at, time);
+    if (!way || !sources_.owns(source, way->ray())) return std::nullopt;
+    FlareArrival path;
+    path.lens.ray = {.origin = to_float(way->start), .direction = to_float(way->direction), .time = time};
+    path.lens.iris_opening = u.moment.iris_opening * setting_at(camera_, time).iris_opening;
     // Per m2 of the square, then per sr at the point (or per m2 across the ray), then per m2 sr.
-    path.density = double(from->point.pdf) * pdf / (radius_ * radius_) * d2 / dot(direction, e) / cosine;
+    path.density = double(from->point.pdf) * pdf / (radius_ * radius_) * way->spread;
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
-    const Rgb value = from->delta
-                          ? sources_.delta_value(*from, to_float(pose.point(*start)), time)
-                          : scene_.emission(from->point, -world, time);
+    const Rgb value = value_of(*from, *way);
     if (!(max_component(value) > 0)) return std::nullopt;
     path.ghost = ghost, path.at = at, path.from = *from;
     path.wavelengths = Wavelengths::sample(u.lambda);
@@ -144,7 +165,14 @@ std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, doubl
     return path;
 }
 
+Rgb FlareAim::value_of(const FlarePoint& from, const Way& way) const {
+    if (from.reflected) return Rgb{1, 1, 1} * *from.reflected;
+    if (from.delta) return sources_.delta_value(from, to_float(way.pose.point(way.start)), way.time);
+    return scene_.emission(from.point, -way.world, way.time);
+}
+
 double FlareAim::visible_share(int source) const {
+    if (sources_.reflected(source)) return 1;   // as it was seen
     int seen = 0, all = 0;
     for (int i = 0; i < 64; ++i) {
         PathSampler sampler(source, -5, std::uint32_t(i), 0);

@@ -33,6 +33,9 @@ class FlareAim {
 
     int ghosts() const { return int(mirrors_.size()); }
     const FlareSources& sources() const { return sources_; }
+    /// Bright spots among what other things send to the lens, and how many rays it took to find them.
+    int spots() const { return spots_; }
+    std::uint64_t survey_rays() const { return survey_rays_; }
     const Shutter& shutter() const { return shutter_; }
     /// Of a ghost's mirrors together, straight on.
     double reflectance(int ghost) const;
@@ -65,8 +68,23 @@ class FlareAim {
         std::vector<std::vector<GhostStep>> steps;
     };
 
+    /// From a place of the front toward where light comes from.
+    struct Way {
+        Affine3d pose;
+        Vec3d start, direction;   // camera frame, m
+        Vec3f world;              // direction
+        float time;
+        double spread;            // times densities of the point and of m2 of the square: per m2 sr of rays
+        Ray ray() const {
+            return {.origin = to_float(pose.point(start)), .direction = world, .time = time};
+        }
+    };
+
     void add_state(const Camera& camera, const ExactLens& lens);
     std::vector<ViewCone> views() const;
+    void look_for_highlights(const RenderSettings& settings);
+    std::optional<Way> way(const FlarePoint& from, Vec2f at, float time) const;
+    Rgb value_of(const FlarePoint& from, const Way& way) const;
 
     const Scene& scene_;
     const Camera& camera_;
@@ -78,6 +96,8 @@ class FlareAim {
     std::vector<Mirrors> mirrors_;
     Vec3d center_{};               // camera frame, m: of the front
     double radius_ = 0;
+    int spots_ = 0;
+    std::uint64_t survey_rays_ = 0;
     FlareSources sources_;
 };
 

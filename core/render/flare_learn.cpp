@@ -20,6 +20,7 @@ constexpr int kCoarse = 16, kFine = 32;   // cells across
 constexpr double kStrong = 0.003;     // of the light: such a pair gets fine cells
 constexpr int kPerCell = 4;           // rays
 constexpr int kLook = 256;            // rays of a look where cells should lie
+constexpr double kReflected = 0.3;    // root of what a shadow ray costs, over what a path through the scene does
 
 float luminance_of(const FlareArrival& path) {
     return path.wavelengths.to_xyz(path.radiance).y;
@@ -177,6 +178,8 @@ void Learner::refine(const std::vector<Found>& found) {
         known_.cells_of_pair[order[k]] = int(k);
         weights[order[k]] = fine[k].weight();
     }
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        if (aim_.sources().reflected(int(i) / ghosts())) weights[i] *= kReflected;
     pool(weights);
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     const std::vector<double> even = blind();

@@ -28,7 +28,7 @@ FlarePass::FlarePass(const Scene& scene, const Camera& camera, Film& film, const
 
 /// All paths first, then one ghost after the other: rays by the same surfaces share the lanes.
 void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
-    work.paths.clear(), work.u_pixel.clear(), work.sample.clear();
+    work.paths.clear(), work.u_pixel.clear(), work.sample.clear(), work.samplers.clear();
     for (std::uint64_t i = first; i < last; ++i) begin(work, i);
     work.order.resize(work.paths.size());
     std::iota(work.order.begin(), work.order.end(), 0u);
@@ -58,6 +58,7 @@ void FlarePass::begin(Workspace& work, std::uint64_t index) const {
     path->density *= per_sample_ * scale_;
     work.paths.push_back(*path);
     work.u_pixel.push_back(sampler.next_2d());
+    work.samplers.push_back(sampler);
     work.sample.push_back(std::uint32_t(double(index) / settings_.flare.per_sample));
 }
 
@@ -90,13 +91,27 @@ void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Repro
     const FlareArrival& path = work.paths[index];
     const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
     if (!film_ray.in_reach()) return;
+    const Spectrum light = this->light(work, index);
+    if (light.is_black()) return;
+    film_ray.splat(film_, light * float(1 / path.density), path.wavelengths, work.u_pixel[index],
+                   work.sample[index], Film::Layer::flare);
+}
+
+/// What comes from the world along the way of a path, as wavelengths may reach the film each in its place.
+Spectrum FlarePass::light(Workspace& work, std::size_t index) const {
+    const FlareArrival& path = work.paths[index];
+    const Ray ray = to_world(camera_, path.lens.ray);
+    if (path.from.reflected) {
+        PathSettings settings = settings_.path;
+        settings.straight = settings.caustics = false;
+        Wavelengths wavelengths = path.wavelengths;
+        return radiance(scene_, ray, wavelengths, work.samplers[index], settings, nullptr, &work.counters.rays)
+            .sum();
+    }
     ++work.counters.rays;
-    const Ray shadow = flare_shadow(path.from, to_world(camera_, path.lens.ray));
-    if (!is_traceable(shadow)) return;
-    const Spectrum visible = scene_.visibility_along(shadow, path.wavelengths);
-    if (visible.is_black()) return;
-    film_ray.splat(film_, path.radiance * visible * float(1 / path.density), path.wavelengths,
-                   work.u_pixel[index], work.sample[index], Film::Layer::flare);
+    const Ray shadow = flare_shadow(path.from, ray);
+    if (!is_traceable(shadow)) return 0.f;
+    return path.radiance * scene_.visibility_along(shadow, path.wavelengths);
 }
 
 }  // namespace dg

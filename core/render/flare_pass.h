@@ -2,6 +2,8 @@
 // exactly by two reflections to a film point for each wavelength. What the lens lets through and nothing is in
 // the way of lands in a pixel.
 //
+// Light that other things send to the lens comes along paths of path.h, which begin where the lens's ray leaves.
+//
 // Units and weights are those of light_pass.h; no other technique finds ghosts, so there is nothing to share.
 #pragma once
 #include <vector>
@@ -21,6 +23,7 @@ class FlarePass {
     struct Workspace {
         std::vector<FlareArrival> paths;
         std::vector<Vec2f> u_pixel;
+        std::vector<PathSampler> samplers;   // for what follows in the world
         std::vector<std::uint32_t> sample, order;
         std::vector<CameraRay> rays;
         std::vector<float> nm;
@@ -35,6 +38,7 @@ class FlarePass {
     void begin(Workspace& work, std::uint64_t index) const;
     void trace(Workspace& work, std::size_t first, std::size_t last) const;
     void finish(Workspace& work, std::size_t path, std::span<const Reprojection> landings) const;
+    Spectrum light(Workspace& work, std::size_t path) const;
 
     const Scene& scene_;
     const Camera& camera_;

@@ -226,15 +226,19 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         if (!is_traceable(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
             return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
         ++rays;
+        const bool caustic = walk.from_delta && !walk.in_view;
+        const bool counts = (settings.straight || vertex > 0) && (settings.caustics || !caustic);
         auto found = scene.intersect(walk.ray);
         if (!found) {
-            *gathered += walk.throughput *
-                         environment_emission(scene, walk, wavelengths, settings.strategy);
+            if (counts)
+                *gathered += walk.throughput *
+                             environment_emission(scene, walk, wavelengths, settings.strategy);
             break;
         }
         SurfaceHit& hit = found->surface;
         if (walk.medium.present) walk.throughput *= walk.medium.transmittance(hit.t);
         if (found->sphere_light >= 0) {
+            if (!counts) break;
             const auto sphere = std::uint32_t(found->sphere_light);
             const float pdf = walk.from_delta ? 0
                                               : scene.lights().pdf_sphere(
@@ -249,8 +253,9 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
             break;
         }
         const MaterialAt material = scene.material(hit);
-        *gathered += walk.throughput * surface_emission(scene, walk, material, hit, wavelengths,
-                                                        settings.strategy);
+        if (counts)
+            *gathered += walk.throughput * surface_emission(scene, walk, material, hit, wavelengths,
+                                                            settings.strategy);
         const bool last = vertex == settings.max_depth;  // behind it only windows count
         if (last && !scene.has_clear()) break;
 

@@ -11,6 +11,8 @@ struct PathSettings {
     int max_depth = 16;      // surface vertices
     int roulette_depth = 2;  // vertices before Russian roulette of weak paths
     enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
+    bool caustics = true;    // with what mirrors and smooth glass throw on rough surfaces
+    bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
 };
 
 /// Light in two parts that add up: what any wavelength of the path could have found as its hero, and

@@ -24,6 +24,7 @@ class FlareGuide;    // flare_guide.h
 struct FlarePlan {
     double per_sample = 0;
     int order = 2;   // reflections: 2, or 4 as well
+    bool highlights = true;   // of what other things send to the lens, too
     std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
 };
 

@@ -40,6 +40,19 @@ def check_flare(value: object, where: str = "flare") -> float | None:
     return paths[0]
 
 
+def check_highlights(value: object, where: str = "flare_highlights") -> bool:
+    """Whether light that other things send to the lens has ghosts, too.
+
+    Raises:
+        UsageError: Neither on nor off.
+    """
+    if value in ("on", "off"):
+        return value == "on"
+    if isinstance(value, bool):
+        return value
+    raise UsageError(f"{where}: wanted on or off, got {short(value)}")
+
+
 def check_lens(model: str, where: str = "flare") -> None:
     """Only surfaces make ghosts.
 

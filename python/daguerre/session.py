@@ -25,7 +25,7 @@ from .camera import Camera
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
-from .flare import PER_PIXEL, check_flare, check_lens
+from .flare import PER_PIXEL, check_flare, check_highlights, check_lens
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
@@ -68,6 +68,8 @@ class Session:
             lens and with bounces, as (M1, M2).
         flare: Ghosts of an exact lens (``docs/flare.md``): off, auto, or paths per sample index.
         flare_order: Their reflections: 2, or 4 for those of four as well.
+        flare_highlights: Light that mirrors, glass and walls send to the lens has ghosts, too: on
+            or off.
         diffraction: Light is a wave at the iris (``docs/diffraction.md``): True, or a
             ``Diffraction`` with the number of bands and zones.
         technique: Who draws what both could find: both, or camera or light alone (to check one
@@ -97,6 +99,7 @@ class Session:
         light_paths: str | float | tuple[float, float] = "auto",
         flare: str | float = "off",
         flare_order: int = 2,
+        flare_highlights: bool | str = True,
         technique: str = "both",
         diffraction: bool | Diffraction = False,
     ) -> None:
@@ -110,6 +113,7 @@ class Session:
         flare_paths = check_flare(flare)
         if flare_order not in (2, 4):
             raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
+        flare_highlights = check_highlights(flare_highlights)
         self.diffraction = check_diffraction(diffraction)
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
@@ -147,6 +151,7 @@ class Session:
         self._settings.light_paths = self.light_paths
         self._settings.prepare_light(self._core_scene, self._setup.core)
         self._settings.flare_order = flare_order
+        self._settings.flare_highlights = flare_highlights
         self.flare = self._prepare_flare(flare_paths)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
@@ -154,6 +159,7 @@ class Session:
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
         self.light_path_count = self.splats_off_film = 0
+        self.flare_spots, self.survey_rays = self._settings.flare_survey
         self.flare_path_count = self.flare_rays = self.flare_hits = 0
         self._identity = {
             "resolution": [self.width, self.height],
@@ -170,6 +176,7 @@ class Session:
         }
         if self.flare > 0:
             self._identity |= {"flare": self.flare, "flare_order": flare_order}
+            self._identity |= {"flare_highlights": flare_highlights}
         if self._pupils is not None:
             self._identity["pupils"] = _hash_json(self._pupils)
 

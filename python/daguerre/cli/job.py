@@ -166,6 +166,17 @@ class Job:
             f"{session.splats_off_film} beside the frame"
         }
 
+    def _flare_stats(self) -> dict[str, str]:
+        """Of ghosts: what they were drawn from, and which of their rays came to the frame."""
+        session = self.session
+        if not session.flare_rays:
+            return {}
+        share = session.flare_hits / session.flare_rays
+        return {
+            "flare": f"{session.flare_path_count} paths, {share:.0%} of their rays on the frame",
+            "highlights": f"{session.flare_spots} bright spots, by {session.survey_rays} rays",
+        }
+
     def _print_stats(self, elapsed: float) -> None:
         import resource
 
@@ -182,6 +193,7 @@ class Job:
             "camera samples": f"{drawn} ({quantity(drawn / elapsed)} per s)",
             "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
             **self._light_stats(),
+            **self._flare_stats(),
             "bad samples": str(self.session.bad_samples[0]),
             "peak memory": f"{usage.ru_maxrss / 1024:.0f} MB",
         }

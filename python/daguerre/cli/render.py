@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.flare import check_flare
+from daguerre.flare import check_flare, check_highlights
 from daguerre.light_paths import check_light_paths
 
 from . import console
@@ -132,6 +132,15 @@ def render(
             panel=_SAMPLING,
         ),
     ] = 2,
+    flare_highlights: Annotated[
+        str,
+        option(
+            "--flare-highlights",
+            metavar="on|off",
+            help="Light that mirrors, glass and walls send to the lens has ghosts, too [on].",
+            panel=_SAMPLING,
+        ),
+    ] = "on",
     diffraction: Annotated[
         bool,
         option(
@@ -194,6 +203,7 @@ def render(
     wanted_flare = check_flare(flare, "--flare")
     if flare_order not in (2, 4):
         raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
+    highlights = check_highlights(flare_highlights, "--flare-highlights")
     changes = camera_flags.changes() | shutter_flags.changes()
     plans: list[tuple[int | None, Plan]] = [(None, plan)]
     if numbers is not None:
@@ -218,6 +228,7 @@ def render(
     if wanted_flare != 0:
         settings["flare"] = "auto" if wanted_flare is None else wanted_flare
         settings["flare_order"] = flare_order
+        settings["flare_highlights"] = highlights
     if diffraction:
         from daguerre.waves import Diffraction
 
