@@ -23,6 +23,7 @@ from daguerre import analysis, lenses, pupil_files, waves
 from daguerre.analysis.diffraction import PlainPupil, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import zone_pupils
+from daguerre.colour import band_colours
 from daguerre.post.convolution import convolve
 from daguerre.post.starburst import starburst
 
@@ -40,7 +41,8 @@ class Clock:
         """Since the last one."""
         now = time.perf_counter(), time.process_time()
         wall, cpu = (round(b - a, 2) for a, b in zip(self._last, now, strict=True))
-        self.parts[name] = {"seconds": wall, "cpu_seconds": cpu}
+        peak = round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2)
+        self.parts[name] = {"seconds": wall, "cpu_seconds": cpu, "peak_gib": peak}
         self._last = now
 
 
@@ -76,6 +78,14 @@ class Film:
     def mean_bands(self) -> NDArray[np.float32]:
         """Shape (H, W, bands)."""
         return self._bands
+
+    def mean_xyz(self) -> NDArray[np.float32]:
+        """Shape (H, W, 3)."""
+        colours = band_colours(self._bands.shape[2]).astype(np.float32)
+        out = np.empty((*self._bands.shape[:2], 3), np.float32)
+        for y, row in enumerate(self._bands):
+            out[y] = row @ colours
+        return out
 
 
 def zones(options: argparse.Namespace) -> dict[str, Any]:

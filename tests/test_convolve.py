@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.errors import InputError, UsageError
-from daguerre.post import convolution as engine
+from daguerre.post import overlap
 from daguerre.post.convolution import convolve, spread
 
 RNG = np.random.default_rng(7)
@@ -26,7 +26,7 @@ def by_hand(image: NDArray[np.float64], kernel: NDArray[np.float64]) -> NDArray[
 
 @pytest.mark.parametrize(
     ("size", "kernel"),
-    [((40, 33), (9, 12)), ((300, 310), (65, 31)), ((150, 400), (261, 270)), ((7, 9), (31, 30))],
+    [((40, 33), (9, 12)), ((300, 310), (65, 31)), ((70, 90), (261, 270)), ((7, 9), (31, 30))],
 )
 def test_a_convolution_is_the_sum_by_hand(
     size: tuple[int, int], kernel: tuple[int, int], monkeypatch: pytest.MonkeyPatch
@@ -34,7 +34,7 @@ def test_a_convolution_is_the_sum_by_hand(
     image, k = RNG.random(size), RNG.random(kernel)
     k /= k.sum()
     np.testing.assert_allclose(convolve(image, k), by_hand(image, k), atol=3e-6)
-    monkeypatch.setattr(engine, "SPECTRA_BYTES", 1 << 20)  # tiles
+    monkeypatch.setattr(overlap, "SPECTRA_BYTES", 1 << 20)  # tiles
     np.testing.assert_allclose(convolve(image, k, threads=2), by_hand(image, k), atol=3e-6)
 
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,16 +42,67 @@ def test_the_light_of_a_period_is_that_of_the_pupil(iris: Iris) -> None:
 
     pupil = PlainPupil(8, iris)
     span = pupil.high[0] - pupil.low[0]
-    step, length = diffraction._raster(span, NM, 0.002, 255)
+    step, length = diffraction._raster(span, 300 * 0.002 / (1e-6 * NM), 2.0)
+    length += 1 - length % 2  # odd: every point once
     axis = ((np.arange(math.ceil(span / step) + 3)) * step + pupil.low[0] - step).astype(np.float32)
     waves = pupil.amplitude(axis, axis, NM)
-    half = length // 2
-    light = diffraction._intensity(waves, length, half).astype(np.float64)
-    if length % 2 == 0:  # both ends are the same points
-        light = light[1:, 1:]
-    assert light.sum() / length**2 == pytest.approx((waves.astype(float) ** 2).sum(), rel=1e-6)
+    half = (length - 1) // 2
+    with ThreadPoolExecutor(2) as pool:
+        for real in (True, False):  # perfect waves have half of the plane
+            lines, _ = diffraction._along(waves if real else waves + 0j, length, half)
+            light = diffraction._intensity([lines], length, half, pool).astype(np.float64)
+            right = light[:, diffraction.TAPS :]
+            found = right[:, 0].sum() + 2 * right[:, 1:].sum() if real else light.sum()
+            assert found == pytest.approx((waves.astype(float) ** 2).sum(), rel=1e-6)
     # And a window that holds almost all of it has almost all.
     assert far_field(pupil, NM, 0.002, 511).sum() == pytest.approx(1, abs=0.03)
+
+
+@dataclass(frozen=True)
+class Slanted(PlainPupil):
+    """A wave that converges beside the middle, at ``shift`` (mm, to the right and up)."""
+
+    shift: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def perfect(self) -> bool:
+        return False
+
+    def amplitude(self, x: Any, y: Any, wavelength_nm: float) -> NDArray[Any]:
+        turns = (x[None, :] * self.shift[0] + y[:, None] * self.shift[1]) / (1e-6 * wavelength_nm)
+        return super().amplitude(x, y, wavelength_nm) * np.exp(-2j * np.pi * turns)
+
+
+@pytest.mark.parametrize("shift", [(7, 0), (0, 7), (12, -4), (-9, -15)])
+@pytest.mark.parametrize("nm", [450.0, 650.0])
+def test_a_slanted_wave_lands_where_it_points(shift: tuple[int, int], nm: float) -> None:
+    """Right is right, up is up, and a pixel is a pixel, at every wavelength."""
+    pitch, size = 0.003, 61
+    pupil = Slanted(8, blades(5, 7), (shift[0] * pitch, shift[1] * pitch))
+    found = far_field(pupil, nm, pitch, size)
+    row, column = np.unravel_index(found.argmax(), found.shape)
+    assert (column - size // 2, size // 2 - row) == shift
+    # All of the picture is moved: an odd number of blades has another picture upside down.
+    still = far_field(PlainPupil(8, blades(5, 7)), nm, pitch, size)
+    moved = np.roll(still, (-shift[1], shift[0]), (0, 1))
+    np.testing.assert_allclose(found[20:41, 20:41], moved[20:41, 20:41], atol=2e-3 * still.max())
+
+
+def test_an_iris_open_to_one_side_has_fringes_across_its_slits() -> None:
+    """Two holes side by side, right of the middle: Young's fringes, lambda / distance apart."""
+    holes = np.zeros((64, 64), np.float32)
+    holes[30:34, 36:40] = holes[30:34, 56:60] = 1
+    pitch, size, f_number = 0.001, 161, 16.0
+    pupil = PlainPupil(f_number, Iris(mask=holes, mask_half=1.0))
+    found = far_field(pupil, NM, pitch, size)
+    apart = 20 / 32 / (2 * f_number)  # of the holes, in direction cosines
+    x = (np.arange(size) - size // 2) * pitch
+    row = found[size // 2]
+    envelope = np.sinc(x * (4 / 32 / (2 * f_number)) / (1e-6 * NM)) ** 2
+    wanted = envelope * np.cos(np.pi * x * apart / (1e-6 * NM)) ** 2
+    assert np.corrcoef(row, wanted)[0, 1] > 0.99
+    column = found[:, size // 2]
+    assert column.min() > 0.2 * column.max() * envelope.min()  # and none across them
 
 
 @pytest.mark.parametrize("f_number", [4.0, 16.0])

@@ -24,6 +24,7 @@ void bind_truth(nb::module_& m);
 void bind_post_warp(nb::module_& m);
 void bind_post_blur(nb::module_& m);
 void bind_post_grain(nb::module_& m);
+void bind_post_waves(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
@@ -52,4 +53,5 @@ NB_MODULE(_core, m) {
     bind_post_warp(m);
     bind_post_blur(m);
     bind_post_grain(m);
+    bind_post_waves(m);
 }

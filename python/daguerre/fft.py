@@ -1,11 +1,13 @@
 """Fourier transforms of large pictures in float32, on several threads.
 
-NumPy's own transforms (pocketfft): since NumPy 2 they keep float32 and let other threads run.
-SciPy's are up to 2 times as fast, for a package of 140 MB that nothing else here needs.
+NumPy's own transforms (pocketfft): since NumPy 2 they keep float32 and let other threads run. All
+are orthonormal, 1 / sqrt(n) each way: where the factor is 1, NumPy takes it for a double, and so
+computes in double, which takes three times as long (seen in 2.4).
 """
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +20,20 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float32]
 Complex = NDArray[np.complex64]
+LINES = 64  # of a spectrum that are multiplied at a time: they stay in the cache
 _fft: Any = np.fft  # its types know of no float32
+
+
+def fft(values: NDArray[Any], count: int, axis: int, out: Complex | None = None) -> Complex:
+    """Orthonormal transform along an axis, padded with zeros to a length."""
+    made: Complex = _fft.fft(values, count, axis=axis, norm="ortho", out=out)
+    return made
+
+
+def rfft(values: Real, count: int, out: Complex | None = None) -> Complex:
+    """The same of real rows: the first half of the spectrum."""
+    made: Complex = _fft.rfft(values, count, axis=1, norm="ortho", out=out)
+    return made
 
 
 def thread_count(threads: int) -> int:
@@ -61,32 +76,88 @@ class Fft2:
         self.shape, self.threads = shape, threads
         self.spectrum_shape = (shape[0], shape[1] // 2 + 1)
 
-    def forward(self, values: Real) -> Complex:
+    def forward(self, values: Real, out: Complex | None = None) -> Complex:
         """Spectrum of values (h, w) with h, w at most ``shape``, padded with zeros."""
-        rows, columns = self.shape
-        out = np.zeros(self.spectrum_shape, np.complex64)
+        columns = self.shape[1]
+        made = np.empty(self.spectrum_shape, np.complex64) if out is None else out
+        made[len(values) :] = 0
 
         def along_rows(part: slice) -> None:
-            _fft.rfft(values[part], columns, axis=1, out=out[: len(values)][part])
-
-        def along_columns(part: slice) -> None:
-            _fft.fft(out[:, part], rows, axis=0, out=out[:, part])
+            rfft(values[part], columns, made[: len(values)][part])
 
         in_parallel(self.threads, len(values), along_rows)
-        in_parallel(self.threads, self.spectrum_shape[1], along_columns)
-        return out
+        self._along_columns(made)
+        return made
 
-    def inverse(self, spectrum: Complex, size: tuple[int, int]) -> Real:
-        """The first rows and columns (h, w) of what has this spectrum, which is overwritten."""
+    def _along_columns(self, made: Complex) -> None:
+        def along(part: slice) -> None:
+            fft(made[:, part], self.shape[0], 0, made[:, part])
+
+        in_parallel(self.threads, self.spectrum_shape[1], along)
+
+    def of_kernel(self, kernel: Real) -> Complex | Real:
+        """What spectra are multiplied by to be spread by a kernel about (h // 2, w // 2).
+
+        It is real if the kernel is symmetric: (-x, -y) has the light of (x, y).
+        """
         rows, columns = self.shape
-        out = np.empty((size[0], columns), np.float32)
+        spectrum = np.zeros(self.spectrum_shape, np.complex64)
+        scaled = kernel * np.float32(math.sqrt(rows * columns))
+        for at, piece in around(-(kernel.shape[0] // 2), kernel.shape[0], rows):
+            lines = scaled[at : at + piece.stop - piece.start]
+            rfft(wrapped(lines, columns), columns, spectrum[piece])
+        self._along_columns(spectrum)
+        even = kernel.shape[0] % 2 == kernel.shape[1] % 2 == 1
+        if even and np.allclose(kernel, kernel[::-1, ::-1], rtol=1e-5, atol=0):
+            return np.ascontiguousarray(spectrum.real)
+        return spectrum
+
+    def add_product(self, total: Complex, spectrum: Complex, kernel: Complex | Real) -> None:
+        """Adds a product to ``total``."""
+
+        def lines(part: slice) -> None:
+            for first in range(part.start, part.stop, LINES):
+                some = slice(first, min(first + LINES, part.stop))
+                total[some] += spectrum[some] * kernel[some]
+
+        in_parallel(self.threads, self.shape[0], lines)
+
+    def inverse(self, spectrum: Complex, rows: slice) -> Real:
+        """Rows of what has this spectrum, counted around; the spectrum is overwritten."""
+        count = rows.stop - rows.start
+        out = np.empty((count, self.shape[1]), np.float32)
 
         def along_columns(part: slice) -> None:
-            _fft.ifft(spectrum[:, part], rows, axis=0, out=spectrum[:, part])
-
-        def along_rows(part: slice) -> None:
-            _fft.irfft(spectrum[: size[0]][part], columns, axis=1, out=out[part])
+            some = spectrum[:, part]
+            _fft.ifft(some, self.shape[0], axis=0, norm="ortho", out=some)
 
         in_parallel(self.threads, self.spectrum_shape[1], along_columns)
-        in_parallel(self.threads, size[0], along_rows)
-        return out[:, : size[1]]
+        for at, piece in around(rows.start, count, self.shape[0]):
+            self._inverse_rows(spectrum[piece], out[at : at + piece.stop - piece.start])
+        return out
+
+    def _inverse_rows(self, spectrum: Complex, out: Real) -> None:
+        def along_rows(part: slice) -> None:
+            _fft.irfft(spectrum[part], self.shape[1], axis=1, norm="ortho", out=out[part])
+
+        in_parallel(self.threads, len(out), along_rows)
+
+
+def around(start: int, count: int, period: int) -> list[tuple[int, slice]]:
+    """A stretch of a circle: where its pieces begin in it, and where they lie on the circle."""
+    pieces, at = [], 0
+    while at < count:
+        first = (start + at) % period
+        length = min(count - at, period - first)
+        pieces.append((at, slice(first, first + length)))
+        at += length
+    return pieces
+
+
+def wrapped(lines: Real, period: int) -> Real:
+    """Lines whose ends meet, the middles of these at 0."""
+    count = lines.shape[1]
+    out = np.zeros((len(lines), period), np.float32)
+    for at, piece in around(-(count // 2), count, period):
+        out[:, piece] = lines[:, at : at + piece.stop - piece.start]
+    return out

@@ -1,7 +1,9 @@
 """Diffraction in a render: bands of wavelengths in the film, each spread by a kernel of its own.
 
 The picture is the sum of the bands times their colours, after each was convolved with the point
-spread of a perfect wave through the pupil; aberrations are in the picture already, traced. To a
+spread of a perfect wave through the pupil. Spectra that are steep within a band have another colour
+than it; what the film's XYZ has beside the bands is spread by the mean of their kernels, so that no
+light and no colour is lost. Aberrations are in the picture already, traced. To a
 good approximation the transfer function of a lens is the product of both (Goodman, Introduction to
 Fourier Optics, 3rd ed., section 6.4), and it is exact where either is small.
 """
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 MOST_BANDS, MOST_ZONES = 64, 9
 LEAST_WAVELENGTHS = 24  # of all bands together
 ONE_ZONE, MANY_ZONES = 2049, 1025  # px across kernels at most
-DARK = 2e-4  # of the brightest band's colour: others are left as they are
+DARK = 2e-4  # of the brightest band's colour: others have no kernels of their own
 
 
 @dataclass(frozen=True)
@@ -128,20 +130,35 @@ def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float3
             raise ValueError("pitch or bands")
     except (ValueError, TypeError, KeyError) as error:
         raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
-    colours = band_colours(bands.shape[2])
+    colours = band_colours(bands.shape[2]).astype(np.float32)
     light = colours.sum(axis=1)
-    each = -(-LEAST_WAVELENGTHS // bands.shape[2])
-    nm = band_wavelengths(bands.shape[2], each)
-    size = _size(pupils, pitch, bands.shape[:2])
+    bright = np.flatnonzero(light > DARK * light.max())
+    if not len(bright):
+        return np.asarray(film.mean_xyz())
+    nm = band_wavelengths(bands.shape[2], -(-LEAST_WAVELENGTHS // bands.shape[2]))[bright]
+    kernels = _kernels(pupils, nm, pitch, _size(pupils, pitch, bands.shape[:2]), threads)
     xyz = np.zeros((*bands.shape[:2], 3), np.float32)
-    for b in range(bands.shape[2]):
-        plane = bands[:, :, b : b + 1]
-        if light[b] > DARK * light.max():
-            kernels = _kernels(pupils, nm[b], pitch, size, threads)
-            plane = spread(plane, kernels[..., None, None], threads=threads)
+    for b, half in zip(bright, kernels, strict=True):
+        plane = np.ascontiguousarray(bands[:, :, b, None])
+        plane = spread(plane, _whole(half), threads=threads)
         for k in range(3):
-            xyz[:, :, k] += np.float32(colours[b, k]) * plane[:, :, 0]
+            xyz[:, :, k] += colours[b, k] * plane[:, :, 0]
+    mean = _whole(np.tensordot(light[bright] / light[bright].sum(), kernels, 1))
+    del kernels
+    rest = _beside(bands, colours * (light > DARK * light.max())[:, None], film.mean_xyz())
+    for k in range(3):
+        xyz[:, :, k] += spread(rest[:, :, k, None], mean, threads=threads)[:, :, 0]
     return xyz
+
+
+def _beside(
+    bands: NDArray[np.float32], colours: NDArray[np.float32], xyz: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """What bands do not tell of XYZ; row by row, to save memory."""
+    rest = np.empty_like(xyz)
+    for y, row in enumerate(bands):
+        rest[y] = xyz[y] - row @ colours
+    return rest
 
 
 def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -162,13 +179,26 @@ def _size(pupils: list[list[Pupil]], pitch: float, frame: tuple[int, ...]) -> in
 def _kernels(
     pupils: list[list[Pupil]], nm: NDArray[np.float64], pitch: float, size: int, threads: int
 ) -> NDArray[np.float32]:
-    """Of one band, shape (Z, Z, size, size); each keeps all light."""
+    """Of bands with wavelengths nm (B, n); each keeps all light.
+
+    Returns:
+        Their right halves, shape (B, Z, Z, size, size // 2 + 1): kernels of perfect waves are
+        symmetric about their middle.
+    """
     from .analysis.diffraction import far_fields
 
-    out = np.zeros((len(pupils), len(pupils), size, size), np.float32)
+    each = nm.shape[1]
+    out = np.zeros((len(nm), len(pupils), len(pupils), size, size // 2 + 1), np.float32)
     for y, row in enumerate(pupils):
         for x, pupil in enumerate(row):
-            for kernel in far_fields(pupil, nm.tolist(), pitch, size, threads=threads):
-                out[y, x] += kernel / np.float32(len(nm))
-            out[y, x] /= np.float32(out[y, x].sum(dtype=np.float64))
+            found = far_fields(pupil, nm.ravel().tolist(), pitch, size, threads=threads)
+            for n, kernel in enumerate(found):
+                share = np.float32(1 / (each * kernel.sum(dtype=np.float64)))
+                out[n // each, y, x] += kernel[:, size // 2 :] * share
     return out
+
+
+def _whole(half: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Kernels (Z, Z, h, w, 1, 1) of their right halves."""
+    left = half[:, :, ::-1, :0:-1]
+    return np.concatenate([left, half], axis=3)[..., None, None]

@@ -6,9 +6,10 @@ path (wavefronts.py). The square is integrated over each pixel.
 Sources: Born and Wolf, Principles of Optics, 7th ed., sections 8.3 to 8.5; Goodman, Introduction to
 Fourier Optics, 3rd ed., chapters 4 and 5.
 
-A pupil raster whose step is in proportion to the wavelength puts all wavelengths on one film
-raster. By Parseval's theorem the sum of the squares is the light of the pupil, so a kernel's sum is
-the share of the light that falls into its window, whatever the shape of the iris.
+The pattern is taken over d in wavelengths. Without aberrations it is the same for all of them, so
+one transform serves every colour, and pixels are more or less of it. By Parseval's theorem the sum
+of the squares is the light of the pupil, so a kernel's sum is the share of the light that falls
+into its window, whatever the shape of the iris.
 
 Axes are the picture's: x to the right, y up, both of the iris as seen along the view.
 """
@@ -19,20 +20,24 @@ import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.fft import fast_sizes, thread_count
+from daguerre._core import pixel_integrals
+from daguerre.fft import fast_sizes, fft, rfft, thread_count
 
 from .iris import Floats, Iris
 
 #: the window that the transform takes as periodic, over the kernel: what leaves it comes in again
 PAD = 1.5
-MOST_POINTS = 4608  # across a window
-COLUMNS = 256  # transformed at a time
+SAMPLES = 3.0  # of a pattern across its finest fringe, wavelength / span; 2 are needed
+LINES = 128  # transformed at a time
 PUPIL = 512  # points across a pupil at least
+MOST_FRINGES = 3000.0  # across a pattern: what lies beyond is dark
+TAPS = 6  # samples to either side that a pixel's edge looks at
 REACH = 700.0  # of a kernel, in fringes of 550 nm: wavelength x f-number
 
 
@@ -46,6 +51,10 @@ class Pupil(Protocol):
     @property
     def high(self) -> tuple[float, float]:
         """Largest direction cosines along x and y."""
+
+    @property
+    def perfect(self) -> bool:
+        """Whether the wave is: amplitudes are real, and the same at all wavelengths."""
 
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> NDArray[Any]:
         """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); complex if they bend."""
@@ -74,6 +83,11 @@ class PlainPupil:
         """Smallest direction cosines along x and y."""
         return -self.high[0], -self.high[1]
 
+    @property
+    def perfect(self) -> bool:
+        """An ideal lens has no aberrations."""
+        return True
+
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> Floats:
         """Amplitudes (B, A): no aberration, so they are real."""
         unit = np.float32(2 * self.f_number)
@@ -81,9 +95,77 @@ class PlainPupil:
         return self.iris.amplitude(x[None, :] * unit, y[:, None] * unit, pitch)
 
 
-def far_field(
-    pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int, *, oversample: int | None = None
-) -> Floats:
+@dataclass(frozen=True)
+class Pattern:
+    """Light about a film point, at distances in wavelengths.
+
+    Attributes:
+        light: Samples: columns along x, rows from the top. Of a perfect wave those from x = -TAPS
+            alone, for its light at (-x, -y) is that at (x, y); shape (2 reach + 1, reach + 1 +
+            TAPS).
+        spacing: Between samples, wavelengths.
+        total: Sum of the samples of a whole period, that is all light.
+    """
+
+    light: Floats
+    spacing: float
+    total: float
+
+    @property
+    def halved(self) -> bool:
+        """Whether only the right half is there."""
+        return bool(self.light.shape[0] != self.light.shape[1])
+
+    def on_pixels(self, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
+        """Shares of the light in pixels, rows from the top, shape (size, size), odd."""
+        pixel = pitch_mm / (1e-6 * wavelength_nm * self.spacing)
+        reach = len(self.light) // 2
+        edges = (np.arange(size + 1, dtype=np.float64) - 0.5 * size) * pixel
+        down = _weights(edges + reach, self.total)
+        if not self.halved:
+            return np.asarray(pixel_integrals(self.light, *down, *_weights(edges + reach, 1.0)))
+        # The middle column is the right half of it, and that half turned about the point.
+        right = np.concatenate([[0.0], edges[size // 2 + 1 :]]) + TAPS
+        half = pixel_integrals(self.light, *down, *_weights(right, 1.0))
+        half[:, 0] += half[::-1, 0]
+        return np.concatenate([half[::-1, :0:-1], half], axis=1)
+
+
+def pattern_of(
+    pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int, *, threads: int = 1
+) -> Pattern | None:
+    """The pattern of a pupil, wide enough for a window at this wavelength and at longer ones.
+
+    Args:
+        pupil: Of one film point.
+        wavelength_nm: nm. Of a perfect wave it matters to the width alone.
+        pitch_mm: Of the pixels that will be asked for, mm.
+        size: Pixels across.
+        threads: To work on; they change no bit.
+
+    Returns:
+        None if the pupil is dark.
+    """
+    spans = [b - a for a, b in zip(pupil.low, pupil.high, strict=True)]
+    pixel = pitch_mm / (1e-6 * wavelength_nm)
+    window = min(size * pixel, MOST_FRINGES / max(spans))
+    step, length = _raster(max(spans), window, pixel)
+    axes = []
+    for low, high in zip(pupil.low, pupil.high, strict=True):
+        count = math.ceil((high - low) / step) + 3
+        middle = 0.5 * (low + high)
+        axes.append(((np.arange(count) - 0.5 * (count - 1)) * step + middle).astype(np.float32))
+    spacing = 1 / (length * step)
+    reach = min(math.ceil(0.5 * window / spacing) + TAPS + 1, (length - 1) // 2)
+    blocks = [axes[1][k : k + LINES] for k in range(0, len(axes[1]), LINES)]
+    with ThreadPoolExecutor(threads) as pool:
+        made = pool.map(lambda y: pupil.amplitude(axes[0], y, wavelength_nm), blocks)
+        lines, light = zip(*pool.map(lambda w: _along(w, length, reach), made), strict=True)
+        total = math.fsum(light)
+        return Pattern(_intensity(lines, length, reach, pool), spacing, total) if total else None
+
+
+def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
     """The point spread of one wavelength on pixels.
 
     Args:
@@ -91,91 +173,11 @@ def far_field(
         wavelength_nm: nm.
         pitch_mm: Of the pixels, mm.
         size: Pixels across, odd: the point is in the middle one.
-        oversample: Points across a pixel, even; None: enough for the finest fringes.
 
     Returns:
         Share of the light in each pixel, rows from the top, shape (size, size).
     """
-    if size % 2 == 0:
-        raise ValueError(f"size: wanted an odd number, got {size}")
-    if size == 1:
-        return np.ones((1, 1), np.float32)
-    spans = [b - a for a, b in zip(pupil.low, pupil.high, strict=True)]
-    points = oversample or oversampling(max(spans), wavelength_nm, pitch_mm, size)
-    reach = points * size // 2
-    step, length = _raster(max(spans), wavelength_nm, pitch_mm / points, 2 * reach + 1)
-    axes = []
-    for low, high in zip(pupil.low, pupil.high, strict=True):
-        count = math.ceil((high - low) / step) + 3
-        middle = 0.5 * (low + high)
-        axes.append(((np.arange(count) - 0.5 * (count - 1)) * step + middle).astype(np.float32))
-    waves = pupil.amplitude(axes[0], axes[1], wavelength_nm)
-    total = float((np.abs(waves).astype(np.float64) ** 2).sum()) * float(length) ** 2
-    if total == 0:
-        return np.zeros((size, size), np.float32)
-    fine = _intensity(waves, length, reach)
-    fine *= np.float32(1 / total)
-    return _binned(_binned(fine, points).T, points).T
-
-
-def window_of(pupil: Pupil, pitch_mm: float, most: int) -> int:
-    """Pixels across a kernel beyond which some 1e-4 of the light falls, odd; at most so many."""
-    span = max(b - a for a, b in zip(pupil.low, pupil.high, strict=True))
-    reach = int(REACH * 0.55e-3 / (span * pitch_mm))
-    return min(2 * reach + 1, (most - 1) | 1)
-
-
-def oversampling(span: float, wavelength_nm: float, pitch_mm: float, size: int) -> int:
-    """Points across a pixel, even: two for each of the finest fringes, lambda / span apart."""
-    wanted = 2 * math.ceil(1e6 * pitch_mm * span / wavelength_nm)
-    return max(2, min(wanted, MOST_POINTS // size // 2 * 2))
-
-
-def _raster(span: float, nm: float, spacing_mm: float, window: int) -> tuple[float, int]:
-    """Step of the direction cosines, and length of the transform, for points so far apart."""
-    # All of the pupil must fit, or waves of its edges would fall on others; and have some shape.
-    across = 1e6 * span * spacing_mm / nm
-    least = max(PAD * window, 1.02 * across + 4, PUPIL / across)
-    length = next(n for n in fast_sizes(1 << 17) if n >= least)
-    return 1e-6 * nm / (length * spacing_mm), length
-
-
-def _intensity(waves: NDArray[Any], length: int, reach: int) -> Floats:
-    """|Fourier sum|^2 at points -reach .. reach of x (columns) and of y (rows, from the top)."""
-    bent = np.iscomplexobj(waves)
-    if bent:
-        # exp(+i k a d): the transform's sign is the other one, so points count backward.
-        along = np.fft.fft(waves, length, axis=1)
-        along = np.concatenate([along[:, reach::-1], along[:, : -reach - 1 : -1]], axis=1)
-    else:
-        along = np.fft.rfft(waves, length, axis=1)[:, : reach + 1]
-    out = np.empty((2 * reach + 1, along.shape[1]), np.float32)
-    for first in range(0, along.shape[1], COLUMNS):
-        part = slice(first, first + COLUMNS)
-        both = np.fft.fft(along[:, part], length, axis=0)
-        light = both.real**2 + both.imag**2
-        # y up is row 0: of exp(+i), so y = +reach stands at the transform's -reach.
-        out[:reach, part] = light[-reach:] if reach else 0
-        out[reach:, part] = light[: reach + 1]
-    if bent:
-        return out
-    # A real pupil has a symmetric spread: (x, y) as (-x, -y).
-    mirrored = out[::-1, :0:-1]
-    return np.concatenate([mirrored, out], axis=1)[::-1]
-
-
-def _binned(fine: Floats, points: int) -> Floats:
-    """Integrals over rows of pixels; points lie on their edges.
-
-    Weights alternate as in Simpson's rule, but with 4 / pi in the place of 4 / 3: exact for waves
-    of four points, and closer where there are two. The sum over all pixels is that of all
-    points: the spectrum of the light ends at lambda / span, so every second point has half of it.
-    """
-    edges = fine[::points]
-    odd, even = (fine[k:-1:2].reshape(-1, points // 2, fine.shape[1]).sum(axis=1) for k in (1, 0))
-    rest = 2 - 4 / math.pi
-    rows = 4 / math.pi * odd + rest * even + 0.5 * rest * (edges[1:] - edges[:-1])
-    return np.asarray(rows, np.float32)
+    return next(far_fields(pupil, [wavelength_nm], pitch_mm, size, threads=1))
 
 
 def far_fields(
@@ -187,8 +189,110 @@ def far_fields(
     threads: int = 0,
 ) -> Iterator[Floats]:
     """``far_field`` of one wavelength after the other, as many at a time as there are threads."""
+    if size % 2 == 0:
+        raise ValueError(f"size: wanted an odd number, got {size}")
+    if size == 1:
+        yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)
+        return
+    raster = pitch_mm, size
+
     count = thread_count(threads)
+    shared = None
+    if pupil.perfect:
+        shared = pattern_of(pupil, min(wavelengths_nm), *raster, threads=count)
+
+    def one(nm: float) -> Floats:
+        pattern = shared if pupil.perfect else pattern_of(pupil, nm, *raster)
+        dark = np.zeros((size, size), np.float32)
+        return dark if pattern is None else pattern.on_pixels(nm, *raster)
+
     with ThreadPoolExecutor(count) as pool:
         for first in range(0, len(wavelengths_nm), count):
-            group = wavelengths_nm[first : first + count]
-            yield from pool.map(lambda nm: far_field(pupil, nm, pitch_mm, size), group)
+            yield from pool.map(one, wavelengths_nm[first : first + count])
+
+
+def window_of(pupil: Pupil, pitch_mm: float, most: int) -> int:
+    """Pixels across a kernel beyond which some 1e-4 of the light falls, odd; at most so many."""
+    span = max(b - a for a, b in zip(pupil.low, pupil.high, strict=True))
+    reach = int(REACH * 0.55e-3 / (span * pitch_mm))
+    return min(2 * reach + 1, (most - 1) | 1)
+
+
+def _raster(span: float, window: float, pixel: float) -> tuple[float, int]:
+    """Step of the direction cosines, and length of the transform; window and pixel in wavelengths.
+
+    Samples are no coarser than pixels: between samples a pattern is known less well.
+    """
+    across = max(PAD * window * span, PUPIL)  # samples of the pupil
+    least = across * max(SAMPLES, 1 / (span * pixel)) + 8
+    length = next(n for n in fast_sizes(1 << 17) if n >= least)
+    return span / across, length
+
+
+def _along(waves: NDArray[Any], length: int, reach: int) -> tuple[NDArray[Any], float]:
+    """Transforms of rows, orthonormal, and their light; of real waves columns 0 .. reach alone."""
+    light = float((np.abs(waves).astype(np.float64) ** 2).sum())
+    if not np.iscomplexobj(waves):
+        return rfft(waves, length)[:, : reach + 1].copy(), light
+    # exp(+i k a d): the transform's sign is the other one, so points count backward.
+    along = fft(waves, length, 1)
+    return np.concatenate([along[:, reach::-1], along[:, : -reach - 1 : -1]], axis=1), light
+
+
+def _intensity(
+    lines: Sequence[NDArray[Any]], length: int, reach: int, pool: ThreadPoolExecutor
+) -> Floats:
+    """|Fourier sum|^2 at samples -reach .. reach of x (columns) and of y (rows, from the top).
+
+    Of real waves, whose rows have no more than ``reach + 1`` columns, as ``Pattern`` has them.
+    """
+    halved = lines[0].shape[1] == reach + 1
+    out = np.empty((2 * reach + 1, lines[0].shape[1] + TAPS * halved), np.float32)
+    made = out[:, TAPS * halved :]
+
+    def columns(first: int) -> None:
+        part = slice(first, first + LINES)
+        both = fft(np.concatenate([block[:, part] for block in lines]), length, 0)
+        light = both.real**2 + both.imag**2
+        if halved:  # counted along exp(-i): (-x, y), which is (x, -y)
+            light[1:] = light[:0:-1].copy()
+        # y up is row 0: of exp(+i), so y = +reach stands at the transform's -reach.
+        made[:reach, part] = light[-reach:]
+        made[reach:, part] = light[: reach + 1]
+
+    list(pool.map(columns, range(0, made.shape[1], LINES)))
+    if halved:
+        out[:, :TAPS] = made[::-1, TAPS:0:-1]
+    return out
+
+
+def _weights(edges: NDArray[np.float64], total: float) -> tuple[NDArray[np.int32], Floats]:
+    """Weights of samples in the integrals between edges (counted in samples), over a total.
+
+    Between samples a pattern is what a windowed sinc makes of them; at three samples per fringe it
+    misses some 1e-3 of the finest fringes. All pixels together have each sample once, whatever
+    their edges: no light is lost or made.
+    """
+    low, high = edges[:-1], edges[1:]
+    first = np.floor(low).astype(np.int32) - TAPS + 1
+    taps = int(np.ceil((high - low).max())) + 2 * TAPS
+    at = first[:, None] + np.arange(taps)
+    weights = (_risen(high[:, None] - at) - _risen(low[:, None] - at)) / total
+    return first, np.ascontiguousarray(weights, np.float32)
+
+
+def _risen(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integral of the interpolating kernel up to x, in samples: 0 at -TAPS, 1 at TAPS."""
+    at, table = _kernel_table()
+    return np.interp(x, at, table)
+
+
+@cache
+def _kernel_table() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    fine = 512
+    at = (np.arange(2 * TAPS * fine + 1)) / fine - TAPS
+    middle = 0.5 * (at[1:] + at[:-1])
+    # Kaiser's window, 65 dB: his formulas for a passband of 1/3 and a stopband from 2/3 on.
+    window = np.i0(6.2 * np.sqrt(np.maximum(0, 1 - (middle / TAPS) ** 2))) / np.i0(6.2)
+    risen = np.concatenate([[0], np.cumsum(np.sinc(middle) * window)])
+    return at, risen / risen[-1]

@@ -51,6 +51,11 @@ class LensPupil:
     mounts: Floats
     paths: dict[float, FloatArray] = field(default_factory=dict)
 
+    @property
+    def perfect(self) -> bool:
+        """Whether the wave is: none was asked for."""
+        return not self.paths
+
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> NDArray[Any]:
         """Amplitudes on a raster of cosines x (A,) and y (B,)."""
         u, v = (_scaled(a, *ends) for a, *ends in zip((x, y), self.low, self.high, strict=True))

@@ -2,30 +2,130 @@
 
 Light is spread from each pixel (not gathered): a kernel whose sum is 1 keeps all of it, but for
 what leaves the frame, which is lost as in a camera. By FFT over tiles that overlap when they are
-added (overlap-add: Stockham 1966, High-speed convolution and correlation).
-
-A float FFT errs by some 1e-7 of the brightest lamp all over its tile. So a large kernel goes in two
-parts: its middle with small tiles, where an error stays next to the lamp, and the faint rest with
-large ones.
+added, or over bands of rows that overlap when they are read (overlap-add, overlap-save: Stockham
+1966, High-speed convolution and correlation).
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from daguerre.errors import UsageError
-from daguerre.fft import Complex, Fft2, Real, fast_sizes, thread_count
+from daguerre.fft import Real, thread_count
 
-#: bytes that the spectra of kernels and of one tile may take together
-SPECTRA_BYTES = 640 << 20
-MIDDLE = 65  # px across, of the part of a large kernel that goes by itself
-SMALL = 1 << 17  # points of a transform that is left to one thread
+from .overlap import Part, parts_of
+from .picture import Rows
+
+
+class Spread(Protocol):
+    """What spreads the light of a picture, some rows at a time.
+
+    Attributes:
+        reach: Rows above and below that it reads.
+        block: Rows that it makes at a time.
+    """
+
+    reach: int
+    block: int
+
+    def rows(self, light: Real, first: int, wanted: Rows) -> Real:
+        """Rows ``wanted`` from light (h, W, I) that begins at the row ``first``."""
+
+
+class Spreader:
+    """Kernels made ready for a picture.
+
+    Args:
+        kernels: Shape (Y, X, h, w, J, I): of points on a regular grid from edge to edge of the
+            frame (its middle, of one), from channel i to j; between them they are blended linearly.
+        picture: Rows and columns.
+        threads: 0: all cores.
+        banded: To make rows ``block`` at a time; else the whole picture at once.
+    """
+
+    def __init__(
+        self, kernels: Real, picture: tuple[int, int], *, threads: int = 0, banded: bool = True
+    ) -> None:
+        self.reach = kernels.shape[2] // 2
+        self._parts: list[Part] = parts_of(kernels, picture, thread_count(threads), banded=banded)
+        self.block = self._parts[-1].block if banded else picture[0]
+        self._height, self._outs = picture[0], kernels.shape[4]
+
+    def rows(self, light: Real, first: int, wanted: Rows) -> Real:
+        """Spreads light.
+
+        Args:
+            light: Shape (h, W, I); all rows that reach ``wanted``, as far as the picture has them.
+            first: The row of the picture at which they begin.
+            wanted: Rows to make.
+
+        Returns:
+            Shape (rows, W, J), float32; where a channel was not finite its value stays (J = I).
+        """
+        whole = bool(np.isfinite(light).all())
+        known = light if whole else np.where(np.isfinite(light), light, np.float32(0))
+        out = np.zeros((wanted.end - wanted.begin, light.shape[1], self._outs), np.float32)
+        for begin in range(wanted.begin, wanted.end, self.block):
+            rows = Rows(begin, min(begin + self.block, wanted.end))
+            some = out[rows.begin - wanted.begin : rows.end - wanted.begin]
+            for part in self._parts:
+                part.add(some, rows, known, first)
+        if not whole and light.shape[2] == self._outs:
+            here = light[wanted.begin - first : wanted.end - first]
+            np.copyto(out, here, where=~np.isfinite(here))
+        return out
+
+
+class EachSpreader:
+    """Channels one after the other, each with a kernel of its own.
+
+    Args:
+        kernel: Shape (h, w, C), or (h, w, 1) for all channels.
+        picture: Rows and columns.
+        threads: 0: all cores.
+        banded: As of ``Spreader``.
+    """
+
+    def __init__(
+        self, kernel: Real, picture: tuple[int, int], *, threads: int = 0, banded: bool = True
+    ) -> None:
+        how = {"threads": threads, "banded": banded}
+        self._each = [
+            Spreader(kernel[None, None, :, :, c, None, None], picture, **how)  # type: ignore[arg-type]
+            for c in range(kernel.shape[2])
+        ]
+        self.reach, self.block = self._each[0].reach, self._each[0].block
+
+    def rows(self, light: Real, first: int, wanted: Rows) -> Real:
+        """As of ``Spreader``."""
+        out = np.empty((wanted.end - wanted.begin, *light.shape[1:]), np.float32)
+        for c in range(light.shape[2]):
+            one = self._each[c % len(self._each)]
+            out[:, :, c] = one.rows(light[:, :, c, None], first, wanted)[:, :, 0]
+        return out
+
+
+def spreader_of(
+    kernel: ArrayLike, picture: tuple[int, ...], *, threads: int = 0, banded: bool = True
+) -> Spread:
+    """What spreads pictures of shape (H, W, C) by a kernel, as ``convolve`` takes it."""
+    count = picture[2]
+    k = np.asarray(kernel, np.float32)
+    if k.ndim == 2:
+        k = k[:, :, None]
+    known = k.ndim in (3, 4) and k.shape[2] in (1, count) and (k.ndim < 4 or k.shape[3] == count)
+    if not known or 0 in k.shape:
+        raise UsageError(
+            f"convolve: kernel: wanted (h, w), (h, w, {count}) or (h, w, {count}, {count}), "
+            f"got {np.shape(kernel)}"
+        )
+    size = picture[0], picture[1]
+    if k.ndim == 4:
+        return Spreader(k[None, None], size, threads=threads, banded=banded)
+    return EachSpreader(k, size, threads=threads, banded=banded)
 
 
 def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
@@ -42,24 +142,9 @@ def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
     """
     picture = np.asarray(image, np.float32)
     planes = picture[:, :, None] if picture.ndim == 2 else picture
-    count = planes.shape[2]
-    k = np.asarray(kernel, np.float32)
-    if k.ndim == 2:
-        k = k[:, :, None]
-    known = k.ndim in (3, 4) and k.shape[2] in (1, count) and (k.ndim < 4 or k.shape[3] == count)
-    if not known:
-        raise UsageError(
-            f"convolve: kernel: wanted (h, w), (h, w, {count}) or (h, w, {count}, {count}), "
-            f"got {np.shape(kernel)}"
-        )
-    out = np.empty(planes.shape, np.float32)
-    if k.ndim == 4:
-        out[:] = spread(planes, k[None, None], threads=threads)
-    else:
-        for c in range(count):
-            one = k[None, None, :, :, c % k.shape[2], None, None]
-            out[:, :, c] = spread(planes[:, :, c, None], one, threads=threads)[:, :, 0]
-    return out.reshape(picture.shape)
+    whole = Rows(0, len(planes))
+    done = spreader_of(kernel, planes.shape, threads=threads, banded=False)
+    return done.rows(planes, 0, whole).reshape(picture.shape)
 
 
 def spread(planes: Real, kernels: Real, *, threads: int = 0) -> Real:
@@ -67,154 +152,12 @@ def spread(planes: Real, kernels: Real, *, threads: int = 0) -> Real:
 
     Args:
         planes: Shape (H, W, I).
-        kernels: Shape (Y, X, h, w, J, I): of points on a regular grid from edge to edge of the
-            frame (its middle, of one), from channel i to j; between them they are blended linearly.
+        kernels: Shape (Y, X, h, w, J, I), as of ``Spreader``.
         threads: 0: all cores.
 
     Returns:
         Shape (H, W, J), float32; where a channel was not finite its value stays (J = I).
     """
-    finite = np.isfinite(planes)
-    whole = bool(finite.all())
-    light = planes if whole else np.where(finite, planes, np.float32(0))
-    out = np.zeros((*planes.shape[:2], kernels.shape[4]), np.float32)
-    for part in _parts(kernels):
-        _add(out, light, part, thread_count(threads))
-    if not whole and out.shape == planes.shape:
-        out[~finite] = planes[~finite]
-    return out
-
-
-def _parts(kernels: Real) -> Iterator[Real]:
-    """The kernels, or their middle and the rest of them."""
-    h, w = kernels.shape[2:4]
-    if min(h, w) < 4 * MIDDLE:
-        yield kernels
-        return
-    y, x = h // 2 - MIDDLE // 2, w // 2 - MIDDLE // 2
-    middle = kernels[:, :, y : y + MIDDLE, x : x + MIDDLE]
-    yield middle
-    rest = kernels.copy()
-    rest[:, :, y : y + MIDDLE, x : x + MIDDLE] = 0
-    yield rest
-
-
-@dataclass(frozen=True)
-class _Tiles:
-    """How a picture is cut: the transform's size, and the tile's that it leaves beside a kernel."""
-
-    shape: tuple[int, int]
-    tile: tuple[int, int]
-
-    def places(self, height: int, width: int) -> Iterator[list[tuple[slice, slice]]]:
-        """Tiles, by rows."""
-        for y in range(0, height, self.tile[0]):
-            rows = slice(y, min(y + self.tile[0], height))
-            yield [
-                (rows, slice(x, min(x + self.tile[1], width)))
-                for x in range(0, width, self.tile[1])
-            ]
-
-
-def _tiles(picture: tuple[int, int], kernel: tuple[int, int], spectra: int) -> _Tiles:
-    """The cheapest transforms whose spectra fit into memory; small kernels get small ones."""
-    most = SPECTRA_BYTES // (4 * spectra)
-    if max(kernel) <= MIDDLE:
-        most = min(most, (4 * MIDDLE) ** 2)
-    sizes = []
-    for extent, reach in zip(picture, kernel, strict=True):
-        lengths = [n for n in fast_sizes(4 * (extent + reach)) if n >= reach]
-        enough = next(n for n in lengths if n >= extent + reach - 1)
-        sizes.append([n for n in lengths if n <= enough and n % 2 == 0] or [enough])
-    best, cost = (sizes[0][0], sizes[1][0]), math.inf
-    for rows in sizes[0]:
-        for columns in sizes[1]:
-            if rows * columns > most:
-                break
-            tiles = math.ceil(picture[0] / (rows - kernel[0] + 1))
-            tiles *= math.ceil(picture[1] / (columns - kernel[1] + 1))
-            work = tiles * rows * columns * math.log2(rows * columns)
-            if work < cost:
-                best, cost = (rows, columns), work
-    return _Tiles(best, (best[0] - kernel[0] + 1, best[1] - kernel[1] + 1))
-
-
-def _add(out: Real, light: Real, kernels: Real, threads: int) -> None:
-    """Adds the light spread by one part of the kernels."""
-    zones = kernels.shape[:2]
-    h, w, outs, ins = kernels.shape[2:]
-    spectra = zones[0] * zones[1] * outs * ins + outs + 3
-    cut = _tiles(light.shape[:2], (h, w), spectra)
-    small = cut.shape[0] * cut.shape[1] <= SMALL
-    fft = Fft2(cut.shape, 1 if small else threads)
-    transforms: dict[tuple[int, int, int, int], Complex] = {}
-    for y, x, j, i in np.ndindex(*zones, outs, ins):
-        kernel = np.ascontiguousarray(kernels[y, x, :, :, j, i])
-        if kernel.any():
-            transforms[y, x, j, i] = fft.forward(kernel)
-    weights = [_hats(n, zone) for n, zone in zip(light.shape[:2], zones, strict=True)]
-
-    def tile(place: tuple[slice, slice]) -> list[Real | None]:
-        return _spread_tile(fft, light[place], place, weights, transforms, (h, w, outs))
-
-    for row in cut.places(*light.shape[:2]):
-        # Tiles are added one after the other in their order: the bits do not depend on threads.
-        if small and len(row) > 1 and threads > 1:
-            with ThreadPoolExecutor(threads) as pool:
-                made = list(pool.map(tile, row))
-        else:
-            made = [tile(place) for place in row] if small else []
-        for k, place in enumerate(row):
-            for j, values in enumerate(made[k] if small else tile(place)):
-                if values is not None:
-                    _put(out[:, :, j], values, place[0].start - h // 2, place[1].start - w // 2)
-
-
-def _spread_tile(
-    fft: Fft2,
-    tile: Real,
-    place: tuple[slice, slice],
-    weights: list[NDArray[np.float32]],
-    transforms: dict[tuple[int, int, int, int], Complex],
-    size: tuple[int, int, int],
-) -> list[Real | None]:
-    """What a tile's light becomes, by channel, with the kernel's reach around it."""
-    h, w, outs = size
-    sums: list[Complex | None] = [None] * outs
-    for y, x, i in sorted({(y, x, i) for y, x, _, i in transforms}):
-        rows, columns = weights[0][y, place[0]], weights[1][x, place[1]]
-        if not (rows.any() and columns.any()):
-            continue
-        share = tile[:, :, i]
-        if len(weights[0]) > 1 or len(weights[1]) > 1:
-            share = share * rows[:, None] * columns
-        if not share.any():
-            continue
-        spectrum = fft.forward(share)
-        for j in range(outs):
-            transform = transforms.get((y, x, j, i))
-            if transform is None:
-                continue
-            product = spectrum * transform
-            total = sums[j]
-            sums[j] = product if total is None else np.add(total, product, out=total)
-    reach = (tile.shape[0] + h - 1, tile.shape[1] + w - 1)
-    return [None if total is None else fft.inverse(total, reach) for total in sums]
-
-
-def _hats(count: int, zones: int) -> NDArray[np.float32]:
-    """Weights of zones over the pixels along an axis, shape (zones, count): they add up to 1."""
-    if zones == 1:
-        return np.ones((1, count), np.float32)
-    at = (np.arange(count) + 0.5) / count * (zones - 1)
-    hats = 1 - np.abs(at - np.arange(zones)[:, None])
-    return np.asarray(np.maximum(hats, 0), np.float32)
-
-
-def _put(plane: Real, values: Real, y: int, x: int) -> None:
-    """Adds values at a place that may reach beyond the frame."""
-    height, width = plane.shape
-    y0, x0 = max(y, 0), max(x, 0)
-    y1, x1 = min(y + values.shape[0], height), min(x + values.shape[1], width)
-    if y1 > y0 and x1 > x0:
-        plane[y0:y1, x0:x1] += values[y0 - y : y1 - y, x0 - x : x1 - x]
+    size = planes.shape[0], planes.shape[1]
+    done = Spreader(kernels, size, threads=threads, banded=False)
+    return done.rows(planes, 0, Rows(0, size[0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,17 +12,17 @@ from daguerre.errors import InputError, UsageError
 
 from . import kernels
 from .array import on_array
-from .convolution import convolve
+from .convolution import spreader_of
 from .effect import Effect, Step, Values
 from .kernels import Floats
 from .optics import SENSOR, film_plane
 from .parameter import REQUIRED, Parameter
-from .picture import Band, Canvas, Image, Rows
+from .picture import Canvas, Image
+from .spreading import Spreading, Veil
 
 if TYPE_CHECKING:
     from daguerre.analysis.iris import Iris
 
-Spread = Callable[[Image], Image]
 LARGEST = 2049  # px across, of kernels that could be larger
 COARSE = 768  # px, of the smaller side of a picture on which veils are spread
 
@@ -36,33 +35,15 @@ IRIS = (
 )
 
 
-class Spreading(Step):
-    """The colours of the whole picture, spread; alpha stays."""
-
-    block = 0  # a kernel reaches everywhere
-
-    def __init__(self, canvas: Canvas, spread: Spread) -> None:
-        self._colours = len(canvas.colours) - canvas.alpha
-        self._spread = spread
-
-    def reads(self, rows: Rows) -> Rows:
-        """The whole picture."""
-        return Rows(0, 1 << 30)
-
-    def apply(self, band: Band, rows: Rows) -> Band:
-        """Spreads the light of all rows."""
-        light = self._spread(band.image[:, :, : self._colours])
-        rest = band.image[:, :, self._colours :]
-        return band.with_image(np.concatenate([light, rest], axis=2) if rest.size else light)
-
-
-def _mixed(share: float, kernel: Floats) -> Spread:
+def _shared(canvas: Canvas, share: float | Floats, kernel: Floats) -> Step:
     """(1 - share) of the light stays, share is spread: their sum is what it was."""
+    shares = np.asarray(share, np.float32)
+    return Spreading(canvas, spreader_of(kernel * shares, _shape(canvas)), 1 - shares)
 
-    def spread(light: Image) -> Image:
-        return np.asarray(light * np.float32(1 - share) + convolve(light, kernel * share))
 
-    return spread
+def _shape(canvas: Canvas) -> tuple[int, int, int]:
+    """Of its colours without alpha."""
+    return canvas.height, canvas.width, len(canvas.colours) - canvas.alpha
 
 
 def _window(canvas: Canvas, wanted_px: float) -> int:
@@ -73,7 +54,7 @@ def _window(canvas: Canvas, wanted_px: float) -> int:
 
 def _bloom(canvas: Canvas, values: Values) -> Step:
     size = _window(canvas, 60 * values["radius"])
-    return Spreading(canvas, _mixed(values["share"], kernels.bloom(values["radius"], size)))
+    return _shared(canvas, values["share"], kernels.bloom(values["radius"], size))
 
 
 def _halo(canvas: Canvas, values: Values) -> Step:
@@ -87,10 +68,7 @@ def _halo(canvas: Canvas, values: Values) -> Step:
     if (shares > 1).any():
         raise UsageError(f"{canvas.where}: halo: share: wanted at most 1 of each colour")
 
-    def spread(light: Image) -> Image:
-        return np.asarray(light * (1 - shares) + convolve(light, kernel[:, :, None] * shares))
-
-    return Spreading(canvas, spread)
+    return _shared(canvas, shares, kernel[:, :, None])
 
 
 def _glare(canvas: Canvas, values: Values) -> Step:
@@ -98,34 +76,7 @@ def _glare(canvas: Canvas, values: Values) -> Step:
     factor = max(1, min(canvas.width, canvas.height) // COARSE)
     size = 2 * math.ceil(max(canvas.width, canvas.height) / factor) + 1
     kernel = kernels.scatter(shoulder / factor, values["slope"], size)
-
-    def spread(light: Image) -> Image:
-        veil = enlarged(convolve(reduced(light, factor), kernel), factor, light.shape)
-        return np.asarray(light + np.float32(values["share"]) * (veil - light))
-
-    return Spreading(canvas, spread)
-
-
-def reduced(light: Image, factor: int) -> Image:
-    """Means over squares of pixels; the picture goes on as darkness beyond its edges."""
-    finite = np.where(np.isfinite(light), light, np.float32(0)) if factor > 1 else light
-    pad = [(0, -n % factor) for n in light.shape[:2]]
-    padded = np.pad(finite, [*pad, (0, 0)])
-    rows, columns = (n // factor for n in padded.shape[:2])
-    means = padded.reshape(rows, factor, columns, factor, -1).mean(axis=(1, 3))
-    return np.asarray(means, np.float32)
-
-
-def enlarged(small: Image, factor: int, shape: tuple[int, ...]) -> Image:
-    """Linear between the middles of squares."""
-    for axis, count in enumerate(shape[:2]):
-        at = (np.arange(count) + 0.5) / factor - 0.5
-        low = np.clip(np.floor(at).astype(int), 0, small.shape[axis] - 1)
-        high = np.minimum(low + 1, small.shape[axis] - 1)
-        t = np.clip(at - low, 0, 1).astype(np.float32)
-        t = t.reshape([-1, 1, 1] if axis == 0 else [1, -1, 1])
-        small = small.take(low, axis) * (1 - t) + small.take(high, axis) * t
-    return np.asarray(small, np.float32)
+    return Veil(canvas, kernel, factor, values["share"])
 
 
 def _waves(canvas: Canvas, values: Values) -> Floats:
@@ -142,8 +93,7 @@ def _waves(canvas: Canvas, values: Values) -> Floats:
 
 
 def _diffraction(canvas: Canvas, values: Values) -> Step:
-    kernel = _waves(canvas, values)
-    return Spreading(canvas, lambda light: convolve(light, kernel))
+    return Spreading(canvas, spreader_of(_waves(canvas, values), _shape(canvas)))
 
 
 def _star(canvas: Canvas, values: Values) -> Step:
@@ -152,7 +102,7 @@ def _star(canvas: Canvas, values: Values) -> Step:
     from .starburst import tail_only
 
     kernel = tail_only(_waves(canvas, values), core)
-    return Spreading(canvas, _mixed(values["share"], kernel))
+    return _shared(canvas, values["share"], kernel)
 
 
 def iris_of(values: Values) -> Iris:
@@ -191,7 +141,7 @@ def _psf(canvas: Canvas, values: Values) -> Step:
     kernel = kernel[:, :, :3] if colours == 3 else kernel[:, :, :3].mean(axis=2, keepdims=True)
     if values["normalise"]:
         kernel = kernel / kernel.sum(axis=(0, 1), dtype=np.float64)
-    return Spreading(canvas, lambda light: convolve(light, np.asarray(kernel, np.float32)))
+    return Spreading(canvas, spreader_of(kernel, _shape(canvas)))
 
 
 SHARE = Parameter("share", "of the light that is spread", default=0.05, low=0, high=1)

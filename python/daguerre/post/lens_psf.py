@@ -11,13 +11,14 @@ import numpy as np
 from daguerre.errors import InputError, UsageError
 
 from .array import on_array
-from .convolution import spread
+from .convolution import Spreader
 from .effect import Effect, Step, Values
-from .glow import IRIS, LARGEST, Spreading, iris_of
+from .glow import IRIS, LARGEST, iris_of
 from .kernels import Floats, delta
 from .optics import LENS, SENSOR, Plane, bench, film_plane
 from .parameter import REQUIRED, Parameter
 from .picture import Canvas, Image
+from .spreading import Spreading
 
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
@@ -46,7 +47,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
         for row in lights
     ]
     grid = np.asarray(kernels, np.float32)
-    return Spreading(canvas, lambda image: spread(image, grid))
+    return Spreading(canvas, Spreader(grid, (canvas.height, canvas.width)))
 
 
 def _points(canvas: Canvas, film: Plane, zones: int) -> list[list[tuple[float, float]]]:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 import numpy as np
 
 from daguerre.analysis.diffraction import Pupil, far_fields
 from daguerre.colour import rgb_mixes
 
 from .kernels import Floats
+
+AT_ONCE = 6  # wavelengths
+STRETCH = 1 << 16  # pixels that are mixed at a time, to save memory
 
 
 def starburst(
@@ -19,15 +24,17 @@ def starburst(
     white light; in the sum over the window each colour stays what it is.
     """
     nm, mixes = rgb_mixes(wavelengths)
-    out = np.zeros((3, 3, size, size), np.float32)
-    for mix, spread in zip(
-        mixes, far_fields(pupil, nm.tolist(), pitch_mm, size, threads=threads), strict=True
-    ):
+    spreads = far_fields(pupil, nm.tolist(), pitch_mm, size, threads=threads)
+    out = np.zeros((9, size * size), np.float32)
+    for first in range(0, wavelengths, AT_ONCE):
+        group = np.stack([s.ravel() for s in islice(spreads, AT_ONCE)])
         # What falls outside of the window is given to all of it: nothing is lost.
-        spread *= np.float32(1 / spread.sum(dtype=np.float64))
-        for j, i in np.ndindex(3, 3):
-            out[j, i] += np.float32(mix[j, i]) * spread
-    return np.moveaxis(out, (0, 1), (2, 3))
+        shares = mixes[first : first + AT_ONCE].reshape(-1, 9)
+        shares = shares / group.sum(axis=1, dtype=np.float64)[:, None]
+        for pixels in range(0, size * size, STRETCH):
+            part = np.s_[:, pixels : pixels + STRETCH]
+            out[part] += shares.T.astype(np.float32) @ group[part]
+    return np.moveaxis(out.reshape(3, 3, size, size), (0, 1), (2, 3))
 
 
 def tail_only(kernel: Floats, core_px: float) -> Floats:

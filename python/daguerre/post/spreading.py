@@ -1,0 +1,93 @@
+"""Light that is spread, in bands of rows: by kernels, or as a veil over all of the picture."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .convolution import Spread, convolve
+from .effect import Step
+from .kernels import Floats
+from .picture import Band, Canvas, Image, Rows, Source, bands
+
+SCAN = 256  # rows
+
+
+class Spreading(Step):
+    """The colours of a picture, spread; alpha stays.
+
+    Args:
+        canvas: The picture.
+        spread: What spreads its colours.
+        stays: Share of the light that stays where it is, beside what is spread; one, or by colour.
+    """
+
+    def __init__(
+        self, canvas: Canvas, spread: Spread, stays: float | NDArray[np.float32] = 0.0
+    ) -> None:
+        self._colours = len(canvas.colours) - canvas.alpha
+        self._spread, self._stays = spread, np.asarray(stays, np.float32)
+        self.block, self.reach = spread.block, spread.reach
+
+    def apply(self, band: Band, rows: Rows) -> Band:
+        """Spreads the light of all rows that reach these."""
+        light, here = band.image[:, :, : self._colours], band.cut(rows)
+        made = self._spread.rows(light, band.rows.begin, rows)
+        if self._stays.any():
+            made += here.image[:, :, : self._colours] * self._stays
+        return here.with_image(np.concatenate([made, here.image[:, :, self._colours :]], axis=2))
+
+
+class Veil(Step):
+    """A share of the light over the whole picture, by a kernel for a smaller picture.
+
+    Args:
+        canvas: The picture.
+        kernel: Of the smaller picture.
+        factor: How many times it is smaller.
+        share: Of the light.
+    """
+
+    def __init__(self, canvas: Canvas, kernel: Floats, factor: int, share: float) -> None:
+        self._colours = len(canvas.colours) - canvas.alpha
+        self._kernel, self._factor, self._share = kernel, factor, np.float32(share)
+
+    def prepare(self, source: Source) -> None:
+        """Makes the veil from a small picture of all rows."""
+        height = max(SCAN // self._factor, 1) * self._factor
+        found = [
+            reduced(band.image[:, :, : self._colours], self._factor)
+            for band in bands(source, height)
+        ]
+        self._veil = convolve(np.concatenate(found), self._kernel)
+
+    def apply(self, band: Band, rows: Rows) -> Band:
+        """Mixes the veil in; a pixel that is no number stays."""
+        light = band.image[:, :, : self._colours]
+        veil = enlarged(self._veil, self._factor, rows, light.shape[1])
+        finite = np.isfinite(light)
+        known = np.where(finite, light, np.float32(0))
+        made = np.where(finite, known + self._share * (veil - known), light)
+        return band.with_image(np.concatenate([made, band.image[:, :, self._colours :]], axis=2))
+
+
+def reduced(light: Image, factor: int) -> Image:
+    """Means over squares of pixels; the picture goes on as darkness beyond its edges."""
+    finite = np.where(np.isfinite(light), light, np.float32(0))
+    pad = [(0, -n % factor) for n in light.shape[:2]]
+    padded = np.pad(finite, [*pad, (0, 0)])
+    rows, columns = (n // factor for n in padded.shape[:2])
+    means = padded.reshape(rows, factor, columns, factor, -1).mean(axis=(1, 3))
+    return np.asarray(means, np.float32)
+
+
+def enlarged(small: Image, factor: int, rows: Rows, width: int) -> Image:
+    """Rows of the large picture, linear between the middles of squares."""
+    for axis, wanted in enumerate((np.arange(*rows), np.arange(width))):
+        at = (wanted + 0.5) / factor - 0.5
+        low = np.clip(np.floor(at).astype(int), 0, small.shape[axis] - 1)
+        high = np.minimum(low + 1, small.shape[axis] - 1)
+        t = np.clip(at - low, 0, 1).astype(np.float32)
+        t = t.reshape([-1, 1, 1] if axis == 0 else [1, -1, 1])
+        small = small.take(low, axis) * (1 - t) + small.take(high, axis) * t
+    return np.asarray(small, np.float32)
