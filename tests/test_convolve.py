@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.errors import InputError, UsageError
-from daguerre.post import overlap
+from daguerre.post import kernels, overlap
 from daguerre.post.convolution import convolve, spread
 
 RNG = np.random.default_rng(7)
@@ -146,6 +148,15 @@ def test_half_of_a_bloom_lies_within_its_radius() -> None:
     r = np.hypot(*np.mgrid[-400:401, -400:401])
     out[400, 400] -= 0.5
     assert out[r < 10].sum() / out.sum() == pytest.approx(0.5, abs=0.02)
+
+
+@pytest.mark.parametrize("make", [kernels.bloom, lambda t, size: kernels.halation(t, 1.48, size)])
+def test_a_glow_ends_in_no_square(make: Callable[[float, int], NDArray[np.float32]]) -> None:
+    """About a lamp of ten thousand the end of the window would be seen."""
+    kernel = make(5.0, 301)
+    assert kernel.sum() == pytest.approx(1, abs=1e-5)
+    assert kernel[150, 300] < 1e-3 * kernel[150, 250]
+    assert kernel[0, 0] == 0
 
 
 def test_halation_has_its_ring_at_the_critical_angle() -> None:

@@ -310,18 +310,15 @@ def test_effects_of_waves_keep_light_and_colour() -> None:
 
 
 @pytest.mark.parametrize("rays", [pytest.param(False, marks=pytest.mark.slow), True])
-def test_a_picture_through_a_lens_has_its_spot(rays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_picture_through_a_lens_has_its_spot(rays: bool) -> None:
     """Of a point in the corner of a small film: middle and width are those of the bench."""
-    from daguerre.post import lens_psf
-
-    if rays:
-        monkeypatch.setattr(lens_psf, "WAVES", 1)
     image = np.zeros((81, 121, 3), np.float32)
     image[10, 20, 1] = 1
     sensor, lens = (6.05, 4.05), "double-gauss-50mm-f2"
     out = dg.post.through_lens(
-        image, lens=lens, f_stop=2.8, defocus=1.0, sensor=sensor, zones=2, wavelengths=5
-    )
+        image, lens=lens, f_stop=2.8, defocus=1.0, sensor=sensor, zones=2, wavelengths=5,
+        waves=not rays,
+    )  # fmt: skip
     np.testing.assert_allclose(out.sum(axis=(0, 1)), (0, 1, 0), atol=0.03)
     bench = analysis.set_up(lenses.load(lens), f_stop=2.8)
     light = analysis.pencil(bench.moved(bench.film_z + 1), (2.0, -1.5))

@@ -59,7 +59,7 @@ def _bloom(canvas: Canvas, values: Values) -> Step:
 
 def _halo(canvas: Canvas, values: Values) -> Step:
     thickness = values["thickness"] / film_plane(canvas, values).pitch_mm
-    size = _window(canvas, 24 * thickness)
+    size = _window(canvas, 60 * thickness)
     kernel = kernels.halation(thickness, values["index"], size)
     colours = len(canvas.colours) - canvas.alpha
     # The emulsion's last layer, next to the base, is the red one.

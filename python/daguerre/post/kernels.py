@@ -22,10 +22,23 @@ def delta(size: int) -> Floats:
     return out
 
 
-def radial(size: int, profile: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Floats:
-    """A kernel that is round: light per area over the distance in px, averaged over each pixel."""
+def radial(
+    size: int,
+    profile: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    *,
+    fading: bool = False,
+) -> Floats:
+    """A kernel that is round: light per area over the distance in px, averaged over each pixel.
+
+    A long tail would end in the square of its window, which shows about a lamp that is bright
+    enough. One that is `fading` goes to nothing over the outer third of the window's half width.
+    """
     at = np.arange(size) - size // 2.0
-    kernel = profile(np.hypot(at[:, None], at))
+    distance = np.hypot(at[:, None], at)
+    kernel = profile(distance)
+    if fading:
+        rim = np.clip(3 * (1 - distance / (0.5 * size)), 0, 1)
+        kernel *= rim * rim * (3 - 2 * rim)
     near = min(size // 2, 8)  # where a pixel is not small against the distance
     inner = slice(size // 2 - near, size // 2 + near + 1)
     fine = (np.arange(FINE * (2 * near + 1)) + 0.5) / FINE - near - 0.5
@@ -42,7 +55,7 @@ def bloom(radius_px: float, size: int) -> Floats:
     Shirley, Zimmerman and Greenberg 1995, Physically-based glare effects for digital images).
     """
     a = radius_px / math.sqrt(3)
-    return radial(size, lambda r: (1 + (r / a) ** 2) ** -1.5)
+    return radial(size, lambda r: (1 + (r / a) ** 2) ** -1.5, fading=True)
 
 
 def halation(thickness_px: float, index: float, size: int) -> Floats:
@@ -62,7 +75,7 @@ def halation(thickness_px: float, index: float, size: int) -> Floats:
         reflected = np.where(beyond > 0, 0.5 * (s * s + p * p), 1)
         return np.asarray(reflected * cosine**4)
 
-    return radial(size, profile)
+    return radial(size, profile, fading=True)
 
 
 def scatter(shoulder_px: float, slope: float, size: int) -> Floats:

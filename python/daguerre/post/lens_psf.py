@@ -42,8 +42,9 @@ def _make(canvas: Canvas, values: Values) -> Step:
     if not found:
         raise InputError(f"{canvas.where}: lens-psf: {lens.lens.name}: no light arrives")
     size = _size(canvas, found, film.pitch_mm)
+    waves, count = values["waves"] and size <= WAVES, values["wavelengths"]
     kernels = [
-        [_kernel(lens, light, iris, film.pitch_mm, size, values["wavelengths"]) for light in row]
+        [_kernel(lens, light, iris, film.pitch_mm, size, count, waves) for light in row]
         for row in lights
     ]
     grid = np.asarray(kernels, np.float32)
@@ -88,7 +89,7 @@ def _size(canvas: Canvas, lights: list[Pencil], pitch: float) -> int:
 
 
 def _kernel(
-    lens: Bench, light: Pencil | None, iris: Iris, pitch: float, size: int, count: int
+    lens: Bench, light: Pencil | None, iris: Iris, pitch: float, size: int, count: int, waves: bool
 ) -> Floats:
     """From channel to channel, shape (size, size, 3, 3); where no light arrives it stays."""
     from daguerre.analysis.lens_pupil import lens_pupil
@@ -99,12 +100,12 @@ def _kernel(
     nm, _ = rgb_mixes(count)
     if light is None:
         return delta(size)[:, :, None, None] * np.eye(3, dtype=np.float32)
-    if size > WAVES:
+    if not waves:
         return _of_rays(light, iris, pitch, size, count)
     place = (float(light.film[0]), float(light.film[1]))
     pupil = lens_pupil(lens, place, iris, nm.tolist())
     if pupil is None:
-        return _kernel(lens, None, iris, pitch, size, count)
+        return _kernel(lens, None, iris, pitch, size, count, waves)
     return starburst(pupil, pitch, size, wavelengths=count)
 
 
@@ -139,6 +140,8 @@ LENS_PSF = Effect(
         Parameter("zones", "points along each side with a spread of their own", default=5,
                   kind="whole", low=1, high=17),
         Parameter("wavelengths", "from 400 to 700 nm", default=9, kind="whole", low=3, high=64),
+        Parameter("waves", "light as waves; 0: rays alone, far quicker where the blur is wide",
+                  kind="flag", default=True),
         *IRIS[1:],
         SENSOR,
     ),
