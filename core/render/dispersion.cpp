@@ -1,5 +1,6 @@
 #include "render/dispersion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -30,10 +31,15 @@ float Footprint::Axis::sum() const {
 
 void Footprint::fill(Axis& axis, const Filter& filter, float at, int first, int count) {
     const float r = filter.radius();
-    axis.first = std::max(int(std::floor(at - r)), first);
+    const int whole = int(std::floor(at - r));
+    axis.first = std::max(whole, first);
     const int end = std::min(int(std::floor(at + r)) + 1, first + count);
     axis.count = std::max(0, end - axis.first);
-    filter.axis(at - axis.first - 0.5f, axis.count, axis.f);
+    if (axis.first == whole || axis.count == 0) return filter.axis(at - axis.first - 0.5f, axis.count, axis.f);
+    // From its own beginning, not the region's: the same bits in a crop.
+    float all[kReach];
+    filter.axis(at - whole - 0.5f, end - whole, all);
+    std::copy_n(all + (axis.first - whole), axis.count, axis.f);
 }
 
 void Footprint::expose(Axis& axis, const Shutter& shutter, float time) {

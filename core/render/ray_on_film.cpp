@@ -26,6 +26,8 @@ RayOnFilm::RayOnFilm(const FilmDensity& density, const Sensor& sensor,
               px.y < float(sensor.height) + reach))
             continue;
         in_frame = true;
+        low_ = {std::min(low_.x, px.x), std::min(low_.y, px.y)};
+        high_ = {std::max(high_.x, px.x), std::max(high_.y, px.y)};
         at_[i].emplace(density, px, time);
         if (!(at_[i]->total() > 0)) continue;
         in_reach_ = true;
@@ -74,8 +76,9 @@ float RayOnFilm::spread() const {
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample, Film::Layer layer) const {
     if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, layer, 0, 1);
-    const Footprint::Box all = box(0, landings_.size());
-    if (all.x1 - all.x0 <= kWidestBox && all.y1 - all.y0 <= kWidestBox)
+    // By where they land in the frame: in whatever region of it, a pixel's sums have the same bits.
+    const float most = kWidestBox - 1 - 2 * film_density_.filter().radius();
+    if (high_.x - low_.x <= most && high_.y - low_.y <= most)
         return splat_box(film, light, wavelengths, sample, layer, 0, landings_.size());
     for (std::size_t i = 0; i < landings_.size(); ++i)   // far from each other
         if (reaches(i)) splat_box(film, light, wavelengths, sample, layer, i, i + 1);

@@ -52,6 +52,7 @@ class RayOnFilm {
     const FilmDensity& film_density_;
     std::span<const Reprojection> landings_;
     std::array<std::optional<Footprint>, kWavelengths> at_;
+    Vec2f low_{1e9f, 1e9f}, high_{-1e9f, -1e9f};   // px: of those that land on the frame
     double density_ = 0, exposure_;
     bool in_reach_ = false, off_frame_ = false;
 };
