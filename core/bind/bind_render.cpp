@@ -157,6 +157,9 @@ void bind_render(nb::module_& m) {
                          return Facts{s.flare.guide->aim().spots(), s.flare.guide->aim().survey_rays()};
                      },
                      "Bright spots found among that, and the rays that it took.")
+        .def_prop_rw("flare_learned", [](const RenderSettings& s) { return s.flare.learned; },
+                     [](RenderSettings& s, bool learned) { s.flare.learned = learned; },
+                     "False: all ghosts and the whole front alike, the plain reference.")
         .def("prepare_flare",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.flare.guide.reset();

@@ -36,6 +36,7 @@ class FlareAim {
     /// Bright spots among what other things send to the lens, and how many rays it took to find them.
     int spots() const { return spots_; }
     std::uint64_t survey_rays() const { return survey_rays_; }
+    const Sensor& sensor() const { return sensor_; }
     const Shutter& shutter() const { return shutter_; }
     /// Of a ghost's mirrors together, straight on.
     double reflectance(int ghost) const;
@@ -44,7 +45,8 @@ class FlareAim {
 
     /// From random numbers by purpose.
     struct Random {
-        float select, lambda;
+        float select;
+        Spectrum lambda, lambda_density;   // as of Wavelengths::at
         Vec2f point;
         Moment moment;
     };

@@ -1,19 +1,48 @@
 #include "render/flare_cells.h"
 
+#include <algorithm>
+
 namespace dg {
 
+FlareCells FlareCells::evenly(const FlareRectangle& front) {
+    FlareCells cells;
+    cells.inner = cells.outer = cells.front = front;
+    cells.blind = 0.05f;
+    return cells;
+}
+
 Vec2f FlareCells::sample(Vec2f u) const {
-    const float half = 0.5f * blind;
-    if (u.x < half) return FlareRectangle{}.at({u.x / half, u.y});
-    if (u.x < blind) return outer.at({(u.x - half) / half, u.y});
-    const Sample2D s = weights.sample({(u.x - blind) / (1 - blind), u.y});
+    if (u.x < blind) {
+        const float v = u.x / blind;
+        if (v < kOuter) return outer.at({v / kOuter, u.y});
+        if (v < kOuter + kFront) return front.at({(v - kOuter) / kFront, u.y});
+        return FlareRectangle{}.at({(v - kOuter - kFront) / (1 - kOuter - kFront), u.y});
+    }
+    const Vec2f rest{(u.x - blind) / (1 - blind), u.y};
+    if (weights.empty()) return inner.at(rest);
+    const Sample2D s = weights.sample(rest);
     return inner.at({s.x, s.y});
 }
 
 double FlareCells::pdf(Vec2f at) const {
+    const auto evenly = [&](const FlareRectangle& where) { return where.holds(at) ? 1.0 / where.area() : 0.0; };
     const Vec2f in = inner.in(at);
-    return 0.5 * blind * (1 / FlareRectangle{}.area() + (outer.holds(at) ? 1 / outer.area() : 0)) +
-           (1 - blind) * double(weights.pdf(in.x, in.y)) / inner.area();
+    const double cells = weights.empty() ? evenly(inner) : double(weights.pdf(in.x, in.y)) / inner.area();
+    const double elsewhere =
+        kOuter * evenly(outer) + kFront * evenly(front) + (1 - kOuter - kFront) * evenly(FlareRectangle{});
+    return blind * elsewhere + (1 - blind) * cells;
+}
+
+FlareCells::Lambda FlareCells::lambda(float u) const {
+    Lambda four;
+    const int hero = std::min(int(u * kWavelengths), kWavelengths - 1);
+    for (int k = 0; k < kWavelengths; ++k) {
+        const float quarter = u + float((hero + k) % kWavelengths - hero) / kWavelengths;
+        const auto drawn = wavelengths.empty() ? ContinuousSample1D{quarter, 1, 0}
+                                               : wavelengths.sample_continuous(quarter);
+        four.u.set(k, drawn.x), four.density.set(k, drawn.pdf);
+    }
+    return four;
 }
 
 }  // namespace dg

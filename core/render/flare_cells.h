@@ -1,7 +1,8 @@
-// flare_cells.h -- through which part of the front lens light of one emitter and ghost comes: what places on the
-// front are drawn by.
+// flare_cells.h -- through which part of the front lens, and at which wavelengths, light of one emitter and ghost
+// comes: what places on the front and wavelengths are drawn by.
 #pragma once
 #include "math/distribution.h"
+#include "spectrum/spectrum.h"
 
 namespace dg {
 
@@ -18,15 +19,29 @@ struct FlareRectangle {
     }
 };
 
-/// Cells of a rectangle of the square. A share of the paths goes to what was first thought to hold the light,
-/// and to all of the square: the larger, the less is known.
+/// Cells of a rectangle of the square. A share of the paths goes elsewhere: half of it to what was first thought
+/// to hold the light, most of the rest to where any light of the source comes in, and some to all of the square.
 struct FlareCells {
-    FlareRectangle inner, outer;
-    Distribution2D weights;
+    FlareRectangle inner, outer, front;
+    Distribution2D weights;             // empty: evenly
+    DiscreteDistribution wavelengths;   // over [0, 1) of Wavelengths::at; empty: evenly
     float blind = 1;
 
+    /// Where nothing is known but where light comes in.
+    static FlareCells evenly(const FlareRectangle& front);
+
     Vec2f sample(Vec2f u) const;
-    double pdf(Vec2f at) const;   // per unit of the square
+    double pdf(Vec2f at) const;         // per unit of the square
+
+    /// Of what is drawn without knowledge of cells.
+    static constexpr float kOuter = 0.5f, kFront = 0.4f;
+
+    /// Four wavelengths, one in each quarter of what is drawn, and in any of them the hero: u of Wavelengths::at,
+    /// and its density.
+    struct Lambda {
+        Spectrum u{0.f}, density{1.f};
+    };
+    Lambda lambda(float u) const;
 };
 
 }  // namespace dg

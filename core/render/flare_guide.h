@@ -16,14 +16,20 @@ class FlareGuide {
   public:
     /// As FlareAim.
     FlareGuide(const Scene& scene, const Camera& camera, const RenderSettings& settings)
-        : aim_(scene, camera, settings), known_(learn_flare(aim_, settings.threads)) {}
+        : aim_(scene, camera, settings),
+          known_(settings.flare.learned ? learn_flare(aim_, settings.threads) : naive_flare(aim_)) {}
 
     /// Nothing shines, or nothing reflects: there is no flare.
     bool empty() const { return known_.pairs.empty(); }
     const FlareAim& aim() const { return aim_; }
 
     /// From random numbers by purpose; nothing if the path cannot bring light.
-    std::optional<FlareArrival> draw(float pair, Vec2f front, const FlareAim::Random& u) const;
+    struct Random {
+        float pair, select, lambda;
+        Vec2f front, point;
+        Moment moment;
+    };
+    std::optional<FlareArrival> draw(const Random& u) const;
 
   private:
     FlareAim aim_;

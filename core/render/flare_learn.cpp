@@ -4,188 +4,201 @@
 #include <cmath>
 #include <numeric>
 
+#include "render/flare_weights.h"
 #include "render/parallel.h"
 
 namespace dg {
 namespace {
 
-constexpr float kBlindPair = 0.02f;   // share of paths whose source and ghost are not learned
+constexpr double kBlindPair = 0.02;   // share of paths whose source and ghost are not learned
 constexpr float kBlindCell = 0.02f;   // and whose place on the front is not, at least
-constexpr double kProbes = 1 << 20;   // rays of the first look, all pairs together
-constexpr int kFewest = 32, kMost = 1024;  // of one pair
+constexpr float kFewHits = 8;         // a pair with as few is drawn blindly
 constexpr double kPooled = 0.1;       // share of a source's paths that goes to ghosts as those of all sources do
-constexpr double kKnown = 0.998;      // of the light: pairs that bring it are looked at again
-constexpr std::size_t kMostPairs = 4096;
-constexpr int kCoarse = 16, kFine = 32;   // cells across
-constexpr double kStrong = 0.003;     // of the light: such a pair gets fine cells
-constexpr int kPerCell = 4;           // rays
-constexpr int kLook = 256;            // rays of a look where cells should lie
+// Rays of looks, all pairs together: where each source lights the frame at all; by which ghosts and through
+// about which part; and all that is drawn by. Of the last two so many for each pixel, within limits.
+constexpr int kScouts = 4096;
+struct Rays {
+    double least, most, per_pixel;
+};
+constexpr Rays kWide{1 << 20, 1 << 21, 2}, kFine{1 << 18, 1 << 20, 1};
+constexpr int kFewest = 32, kMost = 4096;   // of one pair, of the second look
+constexpr int kSearched = 256, kZooms = 5, kZoomRays = 64;   // who misses by so many is searched, ever closer
 constexpr double kReflected = 0.3;    // root of what a shadow ray costs, over what a path through the scene does
-
-float luminance_of(const FlareArrival& path) {
-    return path.wavelengths.to_xyz(path.radiance).y;
-}
-
-/// Rays of one pair, over a rectangle of the front.
-struct Probe {
-    int source, ghost;
-    int count;
-    FlareRectangle where{};
-};
-
-/// What they brought.
-struct Found {
-    double flux = 0;
-    Vec2f low{1e9f, 1e9f}, high{-1e9f, -1e9f};   // of the front
-    int hits = 0, count = 0;
-    double sum[5] = {};            // of film points: x, y, xx, yy, xy
-    std::vector<Vec2f> at{};       // hits on the front, and their light
-    std::vector<float> light{};
-
-    /// That is lit, px: the ellipse of the film points' spread, which for a disc is the disc.
-    double area() const {
-        if (hits < 2) return 1;
-        const double n = hits, mx = sum[0] / n, my = sum[1] / n;
-        const double xx = sum[2] / n - mx * mx, yy = sum[3] / n - my * my, xy = sum[4] / n - mx * my;
-        return std::max(1.0, 4 * kPiD * std::sqrt(std::max(0.0, xx * yy - xy * xy)));
-    }
-    /// How many paths should go there: the error of a pixel, relative to what it shows, is least if paths are
-    /// as dense on the film as the root of its light.
-    double weight() const { return std::sqrt(flux * area()); }
-};
+constexpr int kLook = 256;            // where cells should lie
+constexpr std::size_t kMostPairs = 4096;    // that are looked at for the last time
+constexpr int kLeastAcross = 8, kMostAcross = 64;   // cells
+constexpr int kPerCell = 2, kRounds = 4;   // rays of a cell; of the last look
 
 class Learner {
   public:
-    Learner(const FlareAim& aim, int threads) : aim_(aim), threads_(threads) {}
+    Learner(const FlareAim& aim, int threads)
+        : aim_(aim), threads_(threads), strength_(aim.sources().count()), visible_(strength_.size()),
+          front_(strength_.size()) {}
     FlareKnowledge learn();
 
   private:
+    int sources() const { return aim_.sources().count(); }
     int ghosts() const { return aim_.ghosts(); }
-    Found probe(const Probe& probe) const;
-    void refine(const std::vector<Found>& found);
+    double count(const Rays& rays) const;
+    FlareRectangle scout(int source) const;
+    std::vector<FlareFound> look_wide();
+    FlareTiles tiles_of(const std::vector<FlareFound>& found) const;
+    std::vector<std::size_t> order_of(const std::vector<double>& weights) const;
+    FlareFound search(FlareFound found) const;
+    FlareRectangle narrow(const FlareFound& wide) const;
+    FlareFound look_closely(const FlareFound& wide, const FlareTiles& tiles, int across) const;
+    FlareCells cells_of(const FlareFound& wide, const FlareFound& fine, const FlareWeights& weights) const;
     void pool(std::vector<double>& weights) const;
-    static FlareRectangle narrowed(const FlareRectangle& old, const Found& found);
-    FlareCells cells_of(const Probe& wide, const Found& found, Found& fine) const;
     std::vector<double> blind() const;
+    DiscreteDistribution choice(std::vector<double> weights) const;
 
     const FlareAim& aim_;
     int threads_;
-    FlareKnowledge known_;
+    std::vector<double> strength_, visible_;   // of sources
+    std::vector<FlareRectangle> front_;        // through which they light the frame
 };
 
-Found Learner::probe(const Probe& probe) const {
-    std::vector<FlareArrival> paths;
-    std::vector<CameraRay> rays;
-    std::vector<float> nm;
-    Found found;
-    found.count = probe.count;
-    const double pdf = 1 / probe.where.area();
-    const auto follow = [&] {
-        std::vector<Reprojection> landings(rays.size());
-        std::size_t begin = 0;
-        while (begin < rays.size()) {   // states of the lens, one after the other
-            const std::size_t state = aim_.state_at(rays[begin].ray.time);
-            std::size_t end = begin;
-            while (end < rays.size() && aim_.state_at(rays[end].ray.time) == state) ++end;
-            aim_.trace(state, probe.ghost, std::span(rays).subspan(begin, end - begin),
-                       std::span(nm).subspan(begin, end - begin),
-                       std::span(landings).subspan(begin, end - begin));
-            begin = end;
-        }
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            const auto px = aim_.on_frame(landings[i], rays[i].ray.time);
-            if (!px) continue;
-            const FlareArrival& path = paths[i];
-            const double light = landings[i].response * luminance_of(path) / path.density / probe.count;
-            ++found.hits, found.flux += light;
-            found.low = {std::min(found.low.x, path.at.x), std::min(found.low.y, path.at.y)};
-            found.high = {std::max(found.high.x, path.at.x), std::max(found.high.y, path.at.y)};
-            const double x = px->x, y = px->y;
-            const double moments[5] = {x, y, x * x, y * y, x * y};
-            for (int k = 0; k < 5; ++k) found.sum[k] += moments[k];
-            found.at.push_back(path.at), found.light.push_back(float(light));
-        }
-        paths.clear(), rays.clear(), nm.clear();
-    };
-    const int sequence = probe.source * ghosts() + probe.ghost;
-    for (int i = 0; i < probe.count; ++i) {
-        PathSampler sampler(sequence, -3, std::uint32_t(i), 0);
-        const CameraRandom c = sampler.camera();
-        const Vec2f at = probe.where.at(c.lens);
-        const FlareAim::Random u{c.film.x, c.lambda, sampler.next_2d(), aim_.shutter().draw_any(c.time)};
-        auto path = aim_.aim(probe.source, probe.ghost, at, pdf, u);
-        if (!path || !(luminance_of(*path) > 0)) continue;
-        paths.push_back(*path), rays.push_back(path->lens);
-        nm.push_back(path->wavelengths.nm[i % kWavelengths]);
-        if (rays.size() == kLensBatch) follow();
+FlareKnowledge Learner::learn() {
+    const std::vector<FlareFound> wide = look_wide();
+    std::vector<double> weights(wide.size());
+    const FlareTiles first = tiles_of(wide);
+    for (std::size_t i = 0; i < wide.size(); ++i) weights[i] = FlareWeights(wide[i], first, 1).sum;
+    const std::vector<std::size_t> order = order_of(weights);
+    const double all = std::accumulate(weights.begin(), weights.end(), 0.0), total = count(kFine);
+    std::vector<FlareFound> fine(order.size());
+    std::vector<int> across(order.size());
+    parallel_tasks(threads_, std::int64_t(order.size()), [&](std::int64_t k) {
+        const double own = total * weights[order[k]] / all;
+        across[k] = std::clamp(int(std::sqrt(own / kPerCell)), kLeastAcross, kMostAcross);
+        fine[k] = look_closely(wide[order[k]], first, across[k]);
+    });
+    FlareKnowledge known;
+    for (std::size_t i = 0; i < wide.size(); ++i) known.cells_of_pair.push_back(wide[i].probe.source);
+    for (const FlareRectangle& front : front_) known.cells.push_back(FlareCells::evenly(front));
+    const FlareTiles tiles = tiles_of(fine);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (fine[k].hits.empty()) continue;
+        const FlareWeights own(fine[k], tiles, across[k]);
+        weights[order[k]] = own.sum;
+        known.cells_of_pair[order[k]] = int(known.cells.size());
+        known.cells.push_back(cells_of(wide[order[k]], fine[k], own));
     }
-    follow();
+    known.pairs = choice(std::move(weights));
+    return known;
+}
+
+double Learner::count(const Rays& rays) const {
+    return std::clamp(rays.per_pixel * aim_.sensor().width * aim_.sensor().height, rays.least, rays.most);
+}
+
+/// Where light of a source comes in by any ghost.
+FlareRectangle Learner::scout(int source) const {
+    const int count = std::max(8, kScouts / ghosts());
+    FlareFound all{{source, 0, 0}};
+    for (int g = 0; g < ghosts(); ++g) all.add(probe_flare(aim_, {source, g, count}));
+    return all.hits.empty() ? FlareRectangle{} : all.narrowed();
+}
+
+/// Of some ghosts the frame sees a tiny part, through a tiny part of the front: around the ray that was nearest.
+FlareFound Learner::search(FlareFound found) const {
+    for (int i = 0; i < kZooms && found.hits.empty() && std::isfinite(found.near_px); ++i) {
+        const FlareRectangle& old = found.probe.where;
+        const Vec2f half = old.size * (1.5f / std::sqrt(float(found.probe.count)));
+        const Vec2f low = found.near_at - half;
+        found = probe_flare(aim_, {found.probe.source, found.probe.ghost, kZoomRays, {low, half * 2}});
+    }
     return found;
 }
 
-FlareKnowledge Learner::learn() {
-    std::vector<double> strength(aim_.sources().count());
-    parallel_tasks(threads_, aim_.sources().count(), [&](std::int64_t s) {
-        strength[s] = aim_.sources().strength(int(s)) * aim_.visible_share(int(s));
+/// By every pair.
+std::vector<FlareFound> Learner::look_wide() {
+    parallel_tasks(threads_, sources(), [&](std::int64_t s) {
+        visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
+        front_[s] = scout(int(s));
     });
-    const double all = std::accumulate(strength.begin(), strength.end(), 0.0);
-    std::vector<Found> found(std::size_t(aim_.sources().count()) * ghosts());
+    const double all = std::accumulate(strength_.begin(), strength_.end(), 0.0), total = count(kWide);
+    std::vector<FlareFound> found(strength_.size() * std::size_t(ghosts()));
     parallel_tasks(threads_, std::int64_t(found.size()), [&](std::int64_t i) {
-        const int source = int(i / ghosts());
-        const double rays = kProbes * strength[source] / all / ghosts();
-        const int count = std::clamp(int(rays) / 8 * 8, kFewest, kMost);
-        found[i] = probe({source, int(i % ghosts()), count});
+        const int source = int(i / ghosts()), own = int(total * strength_[source] / all / ghosts());
+        const int count = std::clamp(own / 8 * 8, kFewest, kMost);
+        found[i] = probe_flare(aim_, {source, int(i % ghosts()), count, front_[source]});
+        if (count >= kSearched) found[i] = search(std::move(found[i]));
     });
-    refine(found);
-    return std::move(known_);
+    return found;
+}
+
+FlareTiles Learner::tiles_of(const std::vector<FlareFound>& found) const {
+    FlareTiles tiles(aim_.sensor());
+    for (const FlareFound& f : found)
+        for (const FlareFound::Hit& hit : f.hits)
+            tiles.add(hit.px, visible_[f.probe.source] * hit.luminance * hit.share);
+    tiles.finish();
+    return tiles;
+}
+
+/// Pairs that are to be looked at again, those that weigh most first.
+std::vector<std::size_t> Learner::order_of(const std::vector<double>& weights) const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        if (weights[i] > 0) order.push_back(i);
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return weights[i]; });
+    order.resize(std::min(order.size(), kMostPairs));
+    return order;
+}
+
+/// Where light comes in, as long as that is small in what was looked at.
+FlareRectangle Learner::narrow(const FlareFound& wide) const {
+    FlareProbe probe{wide.probe.source, wide.probe.ghost, kLook, wide.narrowed()};
+    for (int i = 0; i < 2; ++i) {
+        FlareFound closer = probe_flare(aim_, probe);
+        if (closer.hits.empty()) break;
+        closer.reach(wide);
+        const FlareRectangle next = closer.narrowed();
+        const bool done = next.area() > 0.5f * probe.where.area();
+        probe.where = next;
+        if (done) break;
+    }
+    return probe.where;
+}
+
+/// In rounds: thin rings of light are followed from where they were hit by chance.
+FlareFound Learner::look_closely(const FlareFound& wide, const FlareTiles& tiles, int across) const {
+    FlareFound found{{wide.probe.source, wide.probe.ghost, 0, narrow(wide)}};
+    std::vector<double> rays(std::size_t(across) * across);
+    const int total = kPerCell * int(rays.size());
+    for (int round = 0; round < kRounds; ++round) {
+        const int count = total / kRounds;
+        const FlareWeights weights(found, tiles, across, 2);
+        const bool known = !found.hits.empty();
+        const Distribution2D cells = known ? Distribution2D(across, across, weights.cells) : Distribution2D();
+        FlareProbe probe = found.probe;
+        probe.first = found.probe.count, probe.count = count, probe.cells = known ? &cells : nullptr;
+        found.add(probe_flare(aim_, probe));
+        const double all = std::accumulate(weights.cells.begin(), weights.cells.end(), 0.0);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            rays[i] += count * (known ? weights.cells[i] / all : 1 / double(rays.size()));
+        found.share(rays, across);
+    }
+    return found;
+}
+
+FlareCells Learner::cells_of(const FlareFound& wide, const FlareFound& fine, const FlareWeights& weights) const {
+    FlareCells cells;
+    cells.inner = fine.probe.where, cells.outer = wide.narrowed(), cells.front = front_[wide.probe.source];
+    cells.weights = Distribution2D(weights.across, weights.across, weights.cells);
+    cells.wavelengths = DiscreteDistribution(std::span<const double>(weights.wavelengths));
+    cells.blind = std::clamp(kFewHits / float(fine.hits.size()), kBlindCell, 0.5f);
+    return cells;
 }
 
 /// Pairs by what is not learned: strength of the source, and reflectances straight on.
 std::vector<double> Learner::blind() const {
-    std::vector<double> bright, weights;
-    for (int g = 0; g < ghosts(); ++g) bright.push_back(aim_.reflectance(g));
-    for (int s = 0; s < aim_.sources().count(); ++s)
-        for (const double r : bright) weights.push_back(aim_.sources().strength(s) * r);
+    std::vector<double> weights;
+    for (int s = 0; s < sources(); ++s)
+        for (int g = 0; g < ghosts(); ++g) weights.push_back(aim_.sources().strength(s) * aim_.reflectance(g));
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     for (double& w : weights) w /= sum;
     return weights;
-}
-
-/// Looks again at what brings nearly all of the light, where it enters.
-void Learner::refine(const std::vector<Found>& found) {
-    std::vector<std::size_t> order;
-    double flux = 0, known = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        flux += found[i].flux;
-        if (found[i].hits > 0) order.push_back(i);
-    }
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return found[i].flux; });
-    std::size_t kept = 0;
-    while (kept < order.size() && kept < kMostPairs && known < kKnown * flux) known += found[order[kept++]].flux;
-    std::vector<double> weights(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) weights[i] = found[i].weight();
-    known_.cells.resize(kept), known_.cells_of_pair.assign(found.size(), -1);
-    std::vector<Found> fine(kept);
-    parallel_tasks(threads_, std::int64_t(kept), [&](std::int64_t k) {
-        const std::size_t i = order[k];
-        const bool strong = found[i].flux > kStrong * flux;
-        const int across = strong ? kFine : kCoarse;
-        const Probe again{int(i) / ghosts(), int(i) % ghosts(), kPerCell * across * across};
-        known_.cells[k] = cells_of(again, found[i], fine[k]);
-    });
-    for (std::size_t k = 0; k < kept; ++k) {
-        if (fine[k].hits == 0) continue;
-        known_.cells_of_pair[order[k]] = int(k);
-        weights[order[k]] = fine[k].weight();
-    }
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        if (aim_.sources().reflected(int(i) / ghosts())) weights[i] *= kReflected;
-    pool(weights);
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    const std::vector<double> even = blind();
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        weights[i] = sum > 0 ? (1 - kBlindPair) * weights[i] / sum + kBlindPair * even[i] : even[i];
-    known_.pairs = DiscreteDistribution(std::span<const double>(weights));
 }
 
 /// Of a dim source few rays were looked at: which ghosts it has is known better from all sources together.
@@ -194,62 +207,25 @@ void Learner::pool(std::vector<double>& weights) const {
     double all = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) of_ghost[i % ghosts()] += weights[i], all += weights[i];
     if (!(all > 0)) return;
-    for (int s = 0; s < aim_.sources().count(); ++s) {
+    for (int s = 0; s < sources(); ++s) {
         double* own = weights.data() + std::size_t(s) * ghosts();
         const double sum = std::accumulate(own, own + ghosts(), 0.0);
         for (int g = 0; g < ghosts(); ++g) own[g] = (1 - kPooled) * own[g] + kPooled * sum * of_ghost[g] / all;
     }
 }
 
-/// A rectangle that holds what was found to let light in, and as much around it as the rays may have missed.
-FlareRectangle Learner::narrowed(const FlareRectangle& old, const Found& found) {
-    const float step = 1.5f / std::sqrt(float(found.count)), more = 0.05f + 2 / float(found.hits);
-    const Vec2f size = found.high - found.low, end = old.low + old.size;
-    const Vec2f margin{more * size.x + step * old.size.x, more * size.y + step * old.size.y};
-    const Vec2f low{std::max(old.low.x, found.low.x - margin.x), std::max(old.low.y, found.low.y - margin.y)};
-    return {low,
-            {std::min(end.x, found.high.x + margin.x) - low.x, std::min(end.y, found.high.y + margin.y) - low.y}};
-}
-
-/// What enters through the cells of the rectangle that lets light in.
-FlareCells Learner::cells_of(const Probe& wide, const Found& found, Found& fine) const {
-    FlareCells cells;
-    cells.outer = narrowed({}, found);
-    Probe probe{wide.source, wide.ghost, kLook, cells.outer};
-    for (int i = 0; i < 2; ++i) {   // closer, while it is small in what was looked at
-        const Found closer = this->probe(probe);
-        if (closer.hits == 0) break;
-        const FlareRectangle next = narrowed(probe.where, closer);
-        const bool done = next.area() > 0.5f * probe.where.area();
-        probe.where = next;
-        if (done) break;
+/// With a share that is drawn blindly; what is in the way of a source makes it weigh less, and what costs time.
+DiscreteDistribution Learner::choice(std::vector<double> weights) const {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const int source = int(i) / ghosts();
+        weights[i] *= std::sqrt(visible_[source]) * (aim_.sources().reflected(source) ? kReflected : 1);
     }
-    probe.count = wide.count;
-    fine = this->probe(probe);
-    cells.inner = probe.where;
-    cells.blind = std::clamp(2 / std::sqrt(float(std::max(fine.hits, 1))), kBlindCell, 0.5f);
-    const int across = int(std::lround(std::sqrt(double(probe.count) / kPerCell)));
-    std::vector<float> light(std::size_t(across) * across), spread(light.size());
-    for (std::size_t i = 0; i < fine.at.size(); ++i) {
-        const Vec2f in = cells.inner.in(fine.at[i]);
-        const int c = std::clamp(int(in.x * float(across)), 0, across - 1),
-                  r = std::clamp(int(in.y * float(across)), 0, across - 1);
-        light[std::size_t(r) * across + c] += fine.light[i];
-    }
-    // A cell whose rays all missed may be lit at its edge where its neighbours are.
-    for (int r = 0; r < across; ++r)
-        for (int c = 0; c < across; ++c) {
-            float around = 0;
-            for (int k = 0; k < 9; ++k) {
-                const int y = r + k / 3 - 1, x = c + k % 3 - 1;
-                if (x >= 0 && x < across && y >= 0 && y < across)
-                    around += light[std::size_t(y) * across + x];
-            }
-            const float own = light[std::size_t(r) * across + c];
-            spread[std::size_t(r) * across + c] = own + 0.02f * around;
-        }
-    if (fine.flux > 0) cells.weights = Distribution2D(across, across, spread);
-    return cells;
+    pool(weights);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const std::vector<double> even = blind();
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = sum > 0 ? (1 - kBlindPair) * weights[i] / sum + kBlindPair * even[i] : even[i];
+    return DiscreteDistribution(std::span<const double>(weights));
 }
 
 }  // namespace
@@ -257,6 +233,16 @@ FlareCells Learner::cells_of(const Probe& wide, const Found& found, Found& fine)
 FlareKnowledge learn_flare(const FlareAim& aim, int threads) {
     if (aim.ghosts() == 0 || aim.sources().count() == 0) return {};
     return Learner(aim, threads).learn();
+}
+
+FlareKnowledge naive_flare(const FlareAim& aim) {
+    FlareKnowledge known;
+    const std::vector<double> weights(std::size_t(aim.sources().count()) * aim.ghosts(), 1.0);
+    if (weights.empty()) return known;
+    known.pairs = DiscreteDistribution(std::span<const double>(weights));
+    known.cells_of_pair.assign(weights.size(), 0);
+    known.cells.push_back(FlareCells::evenly({}));
+    return known;
 }
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// flare_learn.h -- which emitters light which ghosts, and through which part of the front lens, found by exact
-// rays: how much light each pair of source and ghost brings, and from which cells of the front.
+// flare_learn.h -- which emitters light which ghosts, through which part of the front lens and at which
+// wavelengths, found by exact rays.
 //
 // Source: Pekkarinen and Balzer 2019, Physically Based Lens Flare Rendering in The Lego Movie 2, DigiPro
 // (sampling of ghosts and front cells from traced rays).
@@ -13,11 +13,13 @@ namespace dg {
 
 struct FlareKnowledge {
     DiscreteDistribution pairs;        // source x ghosts + ghost
-    std::vector<int> cells_of_pair;    // -1: evenly
+    std::vector<int> cells_of_pair;
     std::vector<FlareCells> cells;
 };
 
 /// Nothing in it where nothing shines, or nothing reflects.
 FlareKnowledge learn_flare(const FlareAim& aim, int threads);
+/// The same without a look: all pairs, all of the square and all wavelengths alike.
+FlareKnowledge naive_flare(const FlareAim& aim);
 
 }  // namespace dg

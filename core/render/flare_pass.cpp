@@ -52,8 +52,8 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
 void FlarePass::begin(Workspace& work, std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), settings_.seed);
     const CameraRandom u = sampler.camera();
-    const FlareAim::Random random{u.film.y, u.lambda, sampler.next_2d(), settings_.shutter.draw_any(u.time)};
-    auto path = guide_.draw(u.film.x, u.lens, random);
+    auto path = guide_.draw({u.film.x, u.film.y, u.lambda, u.lens, sampler.next_2d(),
+                             settings_.shutter.draw_any(u.time)});
     if (!path) return;
     path->density *= per_sample_ * scale_;
     work.paths.push_back(*path);

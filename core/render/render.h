@@ -25,6 +25,7 @@ struct FlarePlan {
     double per_sample = 0;
     int order = 2;   // reflections: 2, or 4 as well
     bool highlights = true;   // of what other things send to the lens, too
+    bool learned = true;   // false: all ghosts and the whole front alike, the plain reference
     std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
 };
 

@@ -161,6 +161,17 @@ Wavelengths Wavelengths::sample(float u) {
     return w;
 }
 
+Wavelengths Wavelengths::at(Spectrum u, Spectrum density) {
+    Wavelengths w;
+    for (int k = 0; k < kWavelengths; ++k) {
+        const float scaled = std::clamp(u[k], 0.f, 0x1.fffffep-1f) * kCells;
+        const int cell = int(scaled);
+        const float width = kQuantile[cell + 1] - kQuantile[cell];
+        look_up(w, k, kQuantile[cell] + width * (scaled - float(cell)), width * kCells / density[k]);
+    }
+    return w;
+}
+
 void Wavelengths::end_secondary() {
     if (secondary_ended) return;
     secondary_ended = true;

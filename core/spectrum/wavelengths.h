@@ -21,6 +21,9 @@ struct Wavelengths {
 
     /// u in [0,1); importance sampled (see wavelengths.cpp).
     static Wavelengths sample(float u);
+    /// Four of their own: each at its u of the table that sample() draws by, together drawn over the u with so
+    /// many times the even density.
+    static Wavelengths at(Spectrum u, Spectrum density);
 
     Spectrum reflectance(Rgb c) const { return red * c.x + green * c.y + blue * c.z; }
     Spectrum emission(Rgb c) const { return d65 * reflectance(c); }
