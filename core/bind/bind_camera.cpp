@@ -204,7 +204,8 @@ void bind_camera(nb::module_& m) {
              "The lens at some moments (fractions of the interval) is that of these cameras.")
         .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,
              "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")
-        .def_rw("sensor_stack", &Camera::sensor_stack, "What of the body reflects: for ghosts alone.")
+        .def_rw("sensor_stack", &Camera::sensor_stack, "What of the body reflects: for ghosts and scatter alone.")
+        .def_rw("scatter", &Camera::scatter, "How the parts of an exact lens scatter, where that is drawn.")
         .def_prop_ro("lens_numbers", &lens_numbers,
                      "Film distance (mm), iris radius (mm), 1 / focus distance (1/m), tilts (deg) of a pinhole or thin lens.")
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,

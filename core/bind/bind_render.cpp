@@ -11,6 +11,7 @@
 #include "render/light_guide.h"
 #include "render/pilot.h"
 #include "render/render.h"
+#include "render/scatter_guide.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -60,7 +61,8 @@ auto draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
     }
     return std::tuple{complete.load(), counters.camera_rays, counters.stopped_rays, counters.rays,
                       counters.light_paths, counters.splats_off_film, counters.flare_paths,
-                      counters.flare_rays, counters.flare_hits};
+                      counters.flare_rays, counters.flare_hits, counters.scatter_paths,
+                      counters.scatter_hits};
 }
 
 using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
@@ -171,6 +173,25 @@ void bind_render(nb::module_& m) {
              nb::keep_alive<1, 3>(),
              "Finds once what ghosts are drawn by; to be called again after any change. False: no light "
              "makes a ghost.")
+        .def_prop_rw("scatter", [](const RenderSettings& s) { return s.scatter.per_sample; },
+                     [](RenderSettings& s, double paths) {
+                         if (!(paths >= 0 && paths <= kMostLightPaths))
+                             throw input_error("render", "scatter", "0 .. 1e9 paths per sample index",
+                                               std::to_string(paths));
+                         s.scatter.per_sample = paths;
+                     },
+                     "Light that the lens's parts scatter: paths per sample index.")
+        .def("prepare_scatter",
+             [](RenderSettings& s, const Scene& scene, const Camera& camera) {
+                 s.scatter.guide.reset();
+                 const auto guide = std::make_shared<const ScatterGuide>(scene, camera, s);
+                 s.scatter.guide = guide;
+                 return !guide->empty();
+             },
+             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             nb::keep_alive<1, 3>(),
+             "Finds once what scattered light is drawn by; to be called again after any change. False: nothing "
+             "shines, or nothing scatters.")
         .def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
                      [](RenderSettings& s, const std::string& name) {
                          if (name == "both") s.technique = Technique::both;
@@ -205,7 +226,8 @@ void bind_render(nb::module_& m) {
           },
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
           "Draws samples [begin, end) of every pixel. Returns (complete, camera rays, "
-          "stopped rays, rays, light paths, splats off the film, flare paths, flare rays, those on film).");
+          "stopped rays, rays, light paths, splats off the film, flare paths, flare rays, those on film, scatter "
+          "paths, those on film).");
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {

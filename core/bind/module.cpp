@@ -14,6 +14,7 @@ void bind_polynomial(nb::module_& m);
 void bind_optics(nb::module_& m);
 void bind_lens_fit(nb::module_& m);
 void bind_ghosts(nb::module_& m);
+void bind_scatter(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
@@ -43,6 +44,7 @@ NB_MODULE(_core, m) {
     bind_optics(m);
     bind_lens_fit(m);
     bind_ghosts(m);
+    bind_scatter(m);
     bind_scene(m);
     bind_camera(m);
     bind_shutter(m);

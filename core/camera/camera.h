@@ -43,7 +43,8 @@ struct Camera {
     LensKind lens;              // as it is at mid-interval: what H0 is measured with
     LensMotion lens_motion = {};
     Keyed<LensSetting> setting = {};  // empty: it stays
-    SensorStack sensor_stack = {};    // what of the body reflects: for ghosts alone
+    SensorStack sensor_stack = {};    // what of the body reflects: for ghosts and scatter alone
+    LensScatter scatter = {};         // how an exact lens's parts scatter, where that is drawn
 };
 
 /// Fills rays[i] (camera frame) for samples[i], with the lens as it is at their times; weight 0: stopped by

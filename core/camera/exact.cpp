@@ -381,6 +381,28 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
     }
 }
 
+ScatterLens ExactLens::scatter(const SensorStack& stack, const LensScatter& parts) const {
+    const State& s = *state_;
+    return {s.lens, s.film_plane(), s.settings.iris, s.iris_radius, stack, s.settings.half_diagonal_mm, parts};
+}
+
+Reprojection ExactLens::reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
+                                  std::uint64_t seed) const {
+    const Affine3d back = inverse(state_->turn);
+    const Vec3d pupil{0, 0, state_->order.entrance_pupil_z}, offset{0, 0, advance_};
+    // From the scene on: the camera's rays go the other way.
+    const Vec3d start = back.vector(to_double(ray.ray.origin) / kMetre - offset) + pupil;
+    const Vec3d direction = normalize(back.vector(-to_double(ray.ray.direction)));
+    const auto light = lens.walk({start, direction}, n, ray.iris_opening, seed, {});
+    if (!light) return {};
+    Reprojection out{{film_shift_.x - float(light->film.x), film_shift_.y - float(light->film.y)}};
+    out.transmittance =
+        float(light->weight) * dirt_transmission({float(start.x), float(start.y)},
+                                                 {float(light->iris.x), float(light->iris.y)});
+    out.response = out.transmittance * float(1 / unit_) * kPerMm2;
+    return out;
+}
+
 ExactLens::Ball ExactLens::front_ball() const {
     const Prescription& lens = state_->lens;
     double r = clear_radius(lens.surfaces.front());

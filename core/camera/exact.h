@@ -14,6 +14,7 @@
 #include "optics/polynomial/lens_fit.h"
 #include "optics/ghost_lens.h"
 #include "optics/pupil.h"
+#include "optics/scatter_lens.h"
 
 namespace dg {
 
@@ -76,6 +77,14 @@ class ExactLens {
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    const GhostLens& ghosts, const std::vector<GhostStep>& steps,
                    std::span<Reprojection> out) const;
+
+    /// The lens with barrel and blades. Error if those are not known or cannot be (scatter_lens.h).
+    ScatterLens scatter(const SensorStack& stack, const LensScatter& parts) const;
+    /// One walk of a scene ray through them, drawn by `seed`: where it comes to the film, and with how much
+    /// light. No camera ray is drawn like that: aim weight and etendue are 0.
+    Reprojection reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
+                           std::uint64_t seed) const;
+
     /// A ball (camera frame, m) that holds the clear front of the first surface.
     struct Ball {
         Vec3d center;

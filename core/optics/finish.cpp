@@ -9,8 +9,8 @@
 namespace dg {
 namespace {
 
-constexpr int kSteps = 128;              // of the albedo over the cosine
-constexpr int kAround = 48, kOut = 32;   // points of its integral
+constexpr int kSteps = 64;               // of the albedo over the cosine
+constexpr int kAround = 16, kOut = 24;   // points of its integral: half the way around, and outward
 
 /// Reflectance of a binder of index 1.5 over that of straight light, 0.04.
 double growth(double cosine) {
@@ -51,14 +51,14 @@ FinishScatter::FinishScatter(const Finish& finish, const char* where) : finish_(
                           std::to_string(most) + " of it at one angle");
 }
 
-/// Evenly around the middle of the lobe, and outward by equal shares of it.
+/// Evenly around the middle of the lobe, of which one half is as the other, and outward by equal shares of it.
 double FinishScatter::glossy_albedo(double cosine) const {
     if (finish_.gloss == 0) return 0;
     const Vec3d in{std::sqrt(1 - cosine * cosine), 0, cosine};
     double sum = 0;
     for (int k = 0; k < kAround; ++k)
         for (int j = 0; j < kOut; ++j) {
-            const Vec2d u{(j + 0.5) / kOut, (k + 0.5) / kAround};
+            const Vec2d u{(j + 0.5) / kOut, 0.5 * (k + 0.5) / kAround};
             const Vec2d b = finish_.lobe.sample(mirrored(in), 1, u);
             const double pdf = finish_.lobe.pdf(mirrored(in), 1, b);
             if (pdf > 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "math/error.h"
@@ -10,11 +11,21 @@
 namespace dg {
 namespace {
 
-constexpr int kRays = 32;   // from the middle of a lobe to the edge of the disc, over half the way around
 constexpr double kInverseSquare = 1e-6;   // slopes this close to -2 integrate to a logarithm
 
 double square(double x) {
     return x * x;
+}
+
+/// Ways out of a middle, over half the way around.
+template <int kCount>
+std::array<Vec2d, kCount> ways_out() {
+    std::array<Vec2d, kCount> ways;
+    for (int k = 0; k < kCount; ++k) {
+        const double phi = kPiD * (k + 0.5) / kCount;
+        ways[k] = {std::cos(phi), std::sin(phi)};
+    }
+    return ways;
 }
 
 /// From a point of a disc of radius n to its edge, along a direction (unit): the positive root of
@@ -44,17 +55,15 @@ double HarveyShack::radius(double u, double most) const {
     return knee * std::sqrt(std::max(0.0, std::expm1(log)));
 }
 
-/// The mean over all ways out of the middle; the integrand is smooth and goes around, so few ways are enough.
+/// The mean over all ways out of the middle: smooth, and the same after a turn, so the error falls as
+/// (offset / n)^(2 ways).
 double HarveyShack::over_directions(double offset, double n) const {
-    static const std::array<Vec2d, kRays> kWays = [] {
-        std::array<Vec2d, kRays> ways;
-        for (int k = 0; k < kRays; ++k)
-            ways[k] = {std::cos(kPiD * (k + 0.5) / kRays), std::sin(kPiD * (k + 0.5) / kRays)};
-        return ways;
-    }();
+    static const std::array few = ways_out<8>();
+    static const std::array many = ways_out<32>();
+    const std::span<const Vec2d> ways = offset < 0.5 * n ? std::span<const Vec2d>(few) : many;
     double sum = 0;
-    for (const Vec2d way : kWays) sum += within(to_edge({offset, 0}, way, n));
-    return sum / kRays;
+    for (const Vec2d way : ways) sum += within(to_edge({offset, 0}, way, n));
+    return sum / double(ways.size());
 }
 
 Vec2d HarveyShack::sample(Vec2d middle, double n, Vec2d u) const {

@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-constexpr double kRimShare = 0.2, kImageShare = 0.3;    // of what metal scatters; the rest by its finish
+constexpr double kRimShare = 0.1, kImageShare = 0.5;   // of what metal scatters; the rest by its finish
 constexpr double kFlat = 1e-7;                           // mm
 constexpr double kFarthest = 1e4;                        // mm: images beyond are no targets
 
@@ -39,16 +39,21 @@ void check(const Prescription& lens) {
 
 }  // namespace
 
+void check_scatter(const LensScatter& scatter) {
+    FinishScatter(scatter.barrel, "barrel"), FinishScatter(scatter.blades, "blades");
+    check_lobe(scatter.surface_lobe, "surface");
+    if (!(scatter.surface_rms_nm >= 0 && scatter.surface_rms_nm <= 1000))
+        throw input_error("scatter", "roughness of the surfaces", "0 to 1000 nm RMS",
+                          std::to_string(scatter.surface_rms_nm));
+}
+
 ScatterLens::ScatterLens(const Prescription& lens, const FilmPlane& film, const Iris& iris, double iris_radius,
                          const SensorStack& stack, double half_diagonal, const LensScatter& scatter)
     : ghosts_((check(lens), GhostLens(lens, film, iris, iris_radius, stack, half_diagonal))),
       scatter_(scatter),
       barrel_(scatter.barrel, "barrel"),
       blades_(scatter.blades, "blades") {
-    check_lobe(scatter.surface_lobe, "surface");
-    if (!(scatter.surface_rms_nm >= 0 && scatter.surface_rms_nm <= 1000))
-        throw input_error("scatter", "roughness of the surfaces", "0 to 1000 nm RMS",
-                          std::to_string(scatter.surface_rms_nm));
+    check_scatter(scatter);
     const Prescription& whole = ghosts_.tracer().prescription();
     for (std::size_t i = 0; i < whole.surfaces.size(); ++i) {
         coatings_.push_back(coating_at(whole, int(i)));

@@ -26,12 +26,15 @@ struct LensScatter {
     HarveyShack surface_lobe{};
 };
 
+/// Throws Error that names the value.
+void check_scatter(const LensScatter& scatter);
+
 /// Light that came to the film.
 struct ScatteredLight {
     Vec2d film{};        // mm, in the film plane's coordinates
     Vec2d iris{};        // mm, where it last crossed the stop
     double weight = 0;   // of it, of the light that entered
-    int events = 0;      // how often it was scattered
+    int events = 0;      // how often it was scattered; 0: the picture's or a ghost's (ScatterDraw::all)
 };
 
 /// Where light ends. `lost`: between surfaces of a prescription that run into each other. `chance`: what a walk
@@ -46,6 +49,7 @@ struct ScatterDraw {
     bool aimed = true;         // some of what metal scatters goes where the film is
     bool forced = true;        // half of the walks are made to scatter at some polished surface
     bool dice = true;          // dim walks are ended by chance
+    bool all = false;          // what nothing scattered counts, too
 };
 
 class ScatterLens {

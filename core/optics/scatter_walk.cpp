@@ -11,6 +11,10 @@ namespace {
 constexpr int kMostEvents = 256;
 constexpr double kBackOff = 1e-2;    // mm, before the first surface
 constexpr double kClear = 1e-7;      // mm: nearer than that is where the ray starts
+constexpr double kTurned = 0.15;     // least chance of a mirror to turn scattered light that goes from the film
+/// The ends of a narrow lobe hold little of its light, and reach all of the frame.
+constexpr HarveyShack kWide{0.25, -3};
+constexpr double kWideShare = 0.5;
 constexpr double kKept = 4;          // walks that metal dims to less than 1 / kKept are ended by chance
 
 /// Numbers of one walk by event, so that wavelengths whose ways part for a moment stay alike.
@@ -73,6 +77,7 @@ class ScatterLens::Walk {
     Vec3d aimed(const std::vector<Target>& targets, double choice, Vec2d u) const;
     double aimed_pdf(const std::vector<Target>& targets, const Vec3d& direction) const;
     bool land(const Meeting& at);
+    bool counts() const { return draw_.all || scattered_ > 0; }
     bool end(LightEnd where) {
         deposit(where, weight_);
         weight_ = 0;
@@ -119,7 +124,7 @@ std::optional<ScatteredLight> ScatterLens::Walk::follow(const LensRay& ray, Lens
             const bool front = gap_ == 0, rear = gap_ >= int(lens_.rims_.size());
             const double weight = weight_;
             end(front ? LightEnd::front : rear ? LightEnd::rear : LightEnd::lost);
-            if (!front || draw_.toward_film || scattered_ == 0) return std::nullopt;
+            if (!front || draw_.toward_film || !counts()) return std::nullopt;
             if (left) *left = ray_;
             return ScatteredLight{{}, iris_, weight, scattered_};
         }
@@ -128,7 +133,7 @@ std::optional<ScatteredLight> ScatterLens::Walk::follow(const LensRay& ray, Lens
             if (land(at)) continue;
             const double weight = weight_;
             end(LightEnd::film);
-            if (!draw_.toward_film || scattered_ == 0) return std::nullopt;
+            if (!draw_.toward_film || !counts()) return std::nullopt;
             return ScatteredLight{film_, iris_, weight, scattered_};
         }
         if (!(at.kind == Kind::wall ? off_metal(lens_.barrel_, at.hit) : cross(at))) return std::nullopt;
@@ -249,8 +254,12 @@ void ScatterLens::Walk::interface(const Meeting& at) {
     const double chance = draw_.forced && scattered_ == 0 && rough > 0 ? lens_.forced_ : rough;
     const double u = u_.next();
     if (u >= chance) {
-        const bool goes_on = u_.next() * (1 - rough) < through - rough_through;
-        reweigh(weight_ * (1 - rough) / (1 - chance));
+        const double natural = (back - rough_back) / (1 - rough);
+        const bool away = draw_.forced && draw_.toward_film && scattered_ > 0 && at.sign < 0;
+        const double mirror = away ? std::max(natural, std::min(kTurned, 1e3 * natural)) : natural;
+        const bool goes_on = u_.next() >= mirror;
+        const double kept = goes_on ? (1 - natural) / (1 - mirror) : natural / mirror;
+        reweigh(weight_ * kept * (1 - rough) / (1 - chance));
         ray_.direction = goes_on ? *bent : reflect(d, at.hit, at.sign);
         gap_ += goes_on ? at.sign : 0;
         return;
@@ -260,8 +269,12 @@ void ScatterLens::Walk::interface(const Meeting& at) {
     const TangentFrame frame(at.hit.normal);
     const Vec3d local = frame.into(d);
     const Vec2d middle{n1 * local.x, n1 * local.y};
-    const Vec2d b = lens_.scatter_.surface_lobe.sample(middle, n, u_.next_2d());
-    const double pdf = lens_.scatter_.surface_lobe.pdf(middle, n, b) * chance * part;
+    const HarveyShack& lobe = lens_.scatter_.surface_lobe;
+    const double wide = draw_.aimed && draw_.toward_film ? kWideShare : 0;
+    const bool far = wide > 0 && u_.next() < wide;
+    const Vec2d b = (far ? kWide : lobe).sample(middle, n, u_.next_2d());
+    const double pdf =
+        ((1 - wide) * lobe.pdf(middle, n, b) + (wide > 0 ? wide * kWide.pdf(middle, n, b) : 0)) * chance * part;
     const double value = draw_.toward_film ? kernel(middle, n1, b, n, at) : kernel(b, n, middle, n1, at);
     ++scattered_;
     reweigh(pdf > 0 ? weight_ * value / pdf : 0);

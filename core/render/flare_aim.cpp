@@ -30,6 +30,21 @@ Ray flare_shadow(const FlarePoint& from, const Ray& from_lens) {
     return shadow_ray(from.point.position, cosine, from_lens);
 }
 
+Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,
+                     const FlareArrival& path, PathSampler sampler, std::uint64_t& rays) {
+    const Ray ray = to_world(camera, path.lens.ray);
+    if (path.from.reflected) {
+        PathSettings onward = settings;
+        onward.straight = onward.caustics = false;
+        Wavelengths wavelengths = path.wavelengths;
+        return radiance(scene, ray, wavelengths, sampler, onward, nullptr, &rays).sum();
+    }
+    ++rays;
+    const Ray shadow = flare_shadow(path.from, ray);
+    if (!is_traceable(shadow)) return 0.f;
+    return path.radiance * scene.visibility_along(shadow, path.wavelengths);
+}
+
 FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings)
     : scene_(scene),
       camera_(camera),

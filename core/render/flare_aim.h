@@ -26,6 +26,11 @@ struct FlareArrival {
 /// From where it comes to where rays of the lens start; world.
 Ray flare_shadow(const FlarePoint& from, const Ray& from_lens);
 
+/// What comes from the world along the way of a path, as its wavelengths may reach the film each in its place.
+/// `sampler`: for paths through the scene, which light that other things reflect needs; `rays` counts them all.
+Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,
+                     const FlareArrival& path, PathSampler sampler, std::uint64_t& rays);
+
 class FlareAim {
   public:
     /// An exact lens; it and the scene outlive this. Of the settings: sensor, shutter, reach of the filter.

@@ -91,27 +91,11 @@ void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Repro
     const FlareArrival& path = work.paths[index];
     const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
     if (!film_ray.in_reach()) return;
-    const Spectrum light = this->light(work, index);
+    const Spectrum light =
+        flare_light(scene_, camera_, settings_.path, path, work.samplers[index], work.counters.rays);
     if (light.is_black()) return;
     film_ray.splat(film_, light * float(1 / path.density), path.wavelengths, work.u_pixel[index],
                    work.sample[index], Film::Layer::flare);
-}
-
-/// What comes from the world along the way of a path, as wavelengths may reach the film each in its place.
-Spectrum FlarePass::light(Workspace& work, std::size_t index) const {
-    const FlareArrival& path = work.paths[index];
-    const Ray ray = to_world(camera_, path.lens.ray);
-    if (path.from.reflected) {
-        PathSettings settings = settings_.path;
-        settings.straight = settings.caustics = false;
-        Wavelengths wavelengths = path.wavelengths;
-        return radiance(scene_, ray, wavelengths, work.samplers[index], settings, nullptr, &work.counters.rays)
-            .sum();
-    }
-    ++work.counters.rays;
-    const Ray shadow = flare_shadow(path.from, ray);
-    if (!is_traceable(shadow)) return 0.f;
-    return path.radiance * scene_.visibility_along(shadow, path.wavelengths);
 }
 
 }  // namespace dg

@@ -38,7 +38,6 @@ class FlarePass {
     void begin(Workspace& work, std::uint64_t index) const;
     void trace(Workspace& work, std::size_t first, std::size_t last) const;
     void finish(Workspace& work, std::size_t path, std::span<const Reprojection> landings) const;
-    Spectrum light(Workspace& work, std::size_t path) const;
 
     const Scene& scene_;
     const Camera& camera_;

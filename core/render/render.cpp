@@ -13,6 +13,7 @@
 #include "math/error.h"
 #include "render/dispersion.h"
 #include "render/flare_pass.h"
+#include "render/scatter_pass.h"
 #include "render/light_pass.h"
 #include "render/parallel.h"
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr int kTileSize = 16;      // px: neighbours share geometry in the caches
 constexpr int kLightBlock = 4096;  // light paths of one task
+constexpr int kScatterBlock = 2048;
 constexpr int kFlareBlock = 16384; // flare paths: enough of one ghost to fill the SIMD lanes
 constexpr int kBatchSize = 1024;   // camera samples per call of the lens: fills the SIMD lanes
 
@@ -45,12 +47,14 @@ struct Workspace {
     RenderCounters counters;
     LightPass::Workspace light;
     FlarePass::Workspace flare;
+    RenderCounters scatter;
 };
 
 RenderCounters operator+(const RenderCounters& a, const RenderCounters& b) {
     return {a.camera_rays + b.camera_rays, a.stopped_rays + b.stopped_rays, a.rays + b.rays,
             a.light_paths + b.light_paths, a.splats_off_film + b.splats_off_film,
-            a.flare_paths + b.flare_paths, a.flare_rays + b.flare_rays, a.flare_hits + b.flare_hits};
+            a.flare_paths + b.flare_paths, a.flare_rays + b.flare_rays, a.flare_hits + b.flare_hits,
+            a.scatter_paths + b.scatter_paths, a.scatter_hits + b.scatter_hits};
 }
 
 /// Light paths [first, last) in blocks.
@@ -97,6 +101,7 @@ class Renderer {
         if (weight_.draws_light())
             light_.emplace(scene, camera, film, settings, density_, weight_, cone_);
         if (settings.flare.per_sample > 0) set_up_flare();
+        if (settings.scatter.per_sample > 0) set_up_scatter();
         // Where light paths share in what is found, the hero's own landing is needed too.
         first_traced_ = weight_.off() ? 1 : 0;
         end_traced_ = exact_ ? kWavelengths : weight_.off() ? 0 : 1;
@@ -108,6 +113,9 @@ class Renderer {
     }
     std::array<std::uint64_t, 2> flare_paths() const {
         return flare_ ? paths(settings_.flare.per_sample) : std::array<std::uint64_t, 2>{0, 0};
+    }
+    std::array<std::uint64_t, 2> scatter_paths() const {
+        return scatter_ ? paths(settings_.scatter.per_sample) : std::array<std::uint64_t, 2>{0, 0};
     }
     std::array<std::uint64_t, 2> paths(double per_sample) const {
         const SampleRound& round = settings_.round;
@@ -127,6 +135,10 @@ class Renderer {
 
     void draw_flare(Workspace& work, std::uint64_t first, std::uint64_t last) const {
         flare_->draw(work.flare, first, last);
+    }
+
+    void draw_scatter(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+        scatter_->draw(work.scatter, first, last);
     }
 
     void draw_tile(Workspace& work, int x0, int y0, int x1, int y1) const {
@@ -163,6 +175,16 @@ class Renderer {
         if (!flare_guide_->empty())
             flare_.emplace(scene_, camera_, film_, settings_, density_,
                            settings_.flare.per_sample * samples_per_count(), *flare_guide_);
+    }
+
+    void set_up_scatter() {
+        if (!std::holds_alternative<ExactLens>(camera_.lens))
+            throw input_error("render", "scatter", "a lens that is traced", "an ideal one");
+        scatter_guide_ = settings_.scatter.guide;
+        if (!scatter_guide_) scatter_guide_ = std::make_shared<const ScatterGuide>(scene_, camera_, settings_);
+        if (!scatter_guide_->empty())
+            scatter_.emplace(scene_, camera_, film_, settings_, density_,
+                             settings_.scatter.per_sample * samples_per_count(), *scatter_guide_);
     }
 
     /// Samples [begin, end) that this call draws of a pixel.
@@ -293,6 +315,8 @@ class Renderer {
     std::optional<LightPass> light_;
     std::shared_ptr<const FlareGuide> flare_guide_;   // null where none is drawn
     std::optional<FlarePass> flare_;
+    std::shared_ptr<const ScatterGuide> scatter_guide_;   // null where none is drawn
+    std::optional<ScatterPass> scatter_;
     int first_traced_, end_traced_;
 };
 
@@ -309,9 +333,10 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
     const LightTasks straight(renderer.light_paths(settings.light.m1), kLightBlock),
         bounced(renderer.light_paths(settings.light.m2), kLightBlock),
-        flare(renderer.flare_paths(), kFlareBlock);
+        flare(renderer.flare_paths(), kFlareBlock), scatter(renderer.scatter_paths(), kScatterBlock);
     const std::int64_t tiles = std::int64_t(columns) * rows;
-    const std::int64_t light = tiles + straight.count() + bounced.count(), tasks = light + flare.count();
+    const std::int64_t light = tiles + straight.count() + bounced.count(), ghosts = light + flare.count();
+    const std::int64_t tasks = ghosts + scatter.count();
     std::atomic<std::int64_t> done{0};
     std::atomic<bool> stop{false};
     const auto draw = [&](std::int64_t task) {
@@ -321,6 +346,9 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
             const int x = x0 + int(task % columns) * kTileSize, y = y0 + int(task / columns) * kTileSize;
             renderer.draw_tile(work, x, y, std::min(x + kTileSize, x0 + region.width),
                                std::min(y + kTileSize, y0 + region.height));
+        } else if (task >= ghosts) {
+            const auto [first, last] = scatter[task - ghosts];
+            renderer.draw_scatter(work, first, last);
         } else if (task >= light) {
             const auto [first, last] = flare[task - light];
             renderer.draw_flare(work, first, last);
@@ -335,7 +363,7 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
     parallel_tasks(settings.threads, tasks, draw);
     RenderCounters counters;
     for (Workspace& work : workspaces)
-        counters = counters + work.counters + work.light.counters + work.flare.counters;
+        counters = counters + work.counters + work.light.counters + work.flare.counters + work.scatter;
     return counters;
 }
 

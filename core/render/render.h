@@ -19,6 +19,7 @@ namespace dg {
 
 struct LightGuide;   // light_guide.h
 class FlareGuide;    // flare_guide.h
+class ScatterGuide;  // scatter_guide.h
 
 /// Ghosts, drawn from the emitters (flare_pass.h); 0 paths per sample index, for the whole frame: none.
 struct FlarePlan {
@@ -27,6 +28,12 @@ struct FlarePlan {
     bool highlights = true;   // of what other things send to the lens, too
     bool learned = true;   // false: all ghosts and the whole front alike, the plain reference
     std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
+};
+
+/// Light that the lens's own parts scatter, drawn from the emitters (scatter_pass.h).
+struct ScatterPlan {
+    double per_sample = 0;   // paths per sample index, for the whole frame; 0: none
+    std::shared_ptr<const ScatterGuide> guide;   // of this picture; null: each call makes its own
 };
 
 /// What becomes of the other wavelengths of a path once glass has bent the hero's ray.
@@ -67,6 +74,7 @@ struct RenderSettings {
     Technique technique = Technique::both;
     std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
     FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
+    ScatterPlan scatter;                        // the same; it is in the layer of flare
 };
 
 struct RenderCounters {
@@ -75,6 +83,7 @@ struct RenderCounters {
     std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
     std::uint64_t flare_paths = 0;
     std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
+    std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: with some wavelength
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

@@ -13,6 +13,7 @@ from .errors import DaguerreError, InputError, MismatchError, OutputError, Usage
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
 from .motion import Keys, Spin, keys, spin
+from .scatter import LensScatter
 from .scene import Scene
 from .shutter import RollingShutter
 
@@ -34,6 +35,7 @@ __all__ = [
     "Gltf",
     "InputError",
     "Keys",
+    "LensScatter",
     "Material",
     "MismatchError",
     "OutputError",

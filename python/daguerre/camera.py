@@ -17,6 +17,7 @@ from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
     from .lenses import Lens
+    from .scatter import LensScatter
     from .shutter import RollingShutter, ShutterCurve
 
 
@@ -101,6 +102,8 @@ class Camera:
         cover_glass: Of the body, before its sensor: thickness and gap to the sensor (mm), and its
             index if wanted [1.5168]. It has ghosts (``flare``); the picture is that without it.
         sensor_reflectance: How much light the sensor sends back into the lens, 0 .. 1.
+        scatter: How barrel, blades and surfaces of an exact lens scatter, where that is drawn
+            (``docs/scatter.md``); None: as a well-made lens does.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Film shift, mm.
         tilt: The lens is turned about its entrance pupil: degrees about the camera's x (up is
@@ -149,6 +152,7 @@ class Camera:
     ripple: tuple[float, ...] | None = None
     cover_glass: tuple[float, ...] | None = None
     sensor_reflectance: float = 0.0
+    scatter: LensScatter | None = None
     natural_vignetting: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
     tilt: tuple[float, float] = (0.0, 0.0)

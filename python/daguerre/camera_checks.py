@@ -82,11 +82,11 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
             raise UsageError(
                 f"camera: {name}: wanted lens_model exact, got {model}, which has no elements"
             )
-    for name in ("cover_glass", "sensor_reflectance"):
+    for name in ("cover_glass", "sensor_reflectance", "scatter"):
         if model not in TRACED and getattr(camera, name):
             raise UsageError(
                 f"camera: {name}: wanted a lens with surfaces (lens_model exact), got {model}: "
-                "it is for ghosts"
+                f"it is for {'scattered light' if name == 'scatter' else 'ghosts'}"
             )
     if model == "polynomial" and camera.ripple is not None:
         raise UsageError("camera: ripple: wanted lens_model exact, got polynomial, which is smooth")

@@ -28,6 +28,7 @@ from .flare import stack_facts, stack_of
 from .focusing import Focus, ideal_direction
 from .lenses.checking import frame_notes
 from .lenses.errors import LensError, from_core
+from .scatter import parts_of
 
 DEFAULT_F_STOP = 5.6
 
@@ -101,6 +102,7 @@ def set_up(
         exact, fitted = _traced_lens(camera, model, sharp, frame, focus)
         core, h0 = _core.Camera.exact(pose, exact), exact.h0
         core.sensor_stack = stack_of(camera)
+        core.scatter = parts_of(camera)
     else:
         core, h0 = _core_camera(camera, model, sharp, pose, film)
     facts = {

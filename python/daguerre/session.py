@@ -29,6 +29,9 @@ from .flare import PER_PIXEL, check_flare, check_highlights, check_lens
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
+from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
+from .scatter import check_lens as check_scatter_lens
+from .scatter import check_scatter, scatter_facts
 from .scene import Scene
 from .truth import GroundTruth, check_gt_time, focused
 from .waves import Diffraction, check_diffraction
@@ -70,6 +73,8 @@ class Session:
         flare_order: Their reflections: 2, or 4 for those of four as well.
         flare_highlights: Light that mirrors, glass and walls send to the lens has ghosts, too: on
             or off.
+        scatter: Light that barrel, blades and surfaces of an exact lens scatter
+            (``docs/scatter.md``): off, auto, or paths per sample index.
         diffraction: Light is a wave at the iris (``docs/diffraction.md``): True, or a
             ``Diffraction`` with the number of bands and zones.
         technique: Who draws what both could find: both, or camera or light alone (to check one
@@ -100,6 +105,7 @@ class Session:
         flare: str | float = "off",
         flare_order: int = 2,
         flare_highlights: bool | str = True,
+        scatter: str | float = "off",
         technique: str = "both",
         diffraction: bool | Diffraction = False,
     ) -> None:
@@ -114,6 +120,7 @@ class Session:
         if flare_order not in (2, 4):
             raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
         flare_highlights = check_highlights(flare_highlights)
+        scatter_paths = check_scatter(scatter)
         self.diffraction = check_diffraction(diffraction)
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
@@ -153,6 +160,7 @@ class Session:
         self._settings.flare_order = flare_order
         self._settings.flare_highlights = flare_highlights
         self.flare = self._prepare_flare(flare_paths)
+        self.scatter = self._prepare_scatter(scatter_paths)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
@@ -161,6 +169,7 @@ class Session:
         self.light_path_count = self.splats_off_film = 0
         self.flare_spots, self.survey_rays = self._settings.flare_survey
         self.flare_path_count = self.flare_rays = self.flare_hits = 0
+        self.scatter_path_count = self.scatter_hits = 0
         self._identity = {
             "resolution": [self.width, self.height],
             "crop": list(self.crop),
@@ -177,6 +186,8 @@ class Session:
         if self.flare > 0:
             self._identity |= {"flare": self.flare, "flare_order": flare_order}
             self._identity |= {"flare_highlights": flare_highlights}
+        if self.scatter > 0:
+            self._identity |= {"scatter": self.scatter, "scatters": self._scatters()}
         if self._pupils is not None:
             self._identity["pupils"] = _hash_json(self._pupils)
 
@@ -202,6 +213,26 @@ class Session:
         self._settings.flare = PER_PIXEL * self.width * self.height if paths is None else paths
         return float(self._settings.flare)
 
+    def _prepare_scatter(self, paths: float | None) -> float:
+        """Paths per sample index; 0: off, or there is nothing to scatter. As of flare."""
+        if paths == 0:
+            return 0.0
+        check_scatter_lens(self._setup.facts["lens_model"])
+        try:
+            shines = self._settings.prepare_scatter(self._core_scene, self._setup.core)
+        except ValueError as error:
+            raise InputError(f"scatter: {error}") from None
+        if not shines:
+            self.notes.append("scatter: nothing shines in this scene, or the lens scatters nothing")
+            return 0.0
+        per_frame = SCATTER_PER_PIXEL * self.width * self.height
+        self._settings.scatter = per_frame if paths is None else paths
+        return float(self._settings.scatter)
+
+    def _scatters(self) -> dict[str, Any]:
+        """What the parts of the lens are like."""
+        return scatter_facts(self.camera)
+
     def _plan_waves(self) -> dict[str, Any] | None:
         """The pupils of mid-shutter, if light is diffracted."""
         if self.diffraction is None:
@@ -211,7 +242,7 @@ class Session:
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
-        layers = (self.aovs, self.light_paths != OFF, self.flare > 0)
+        layers = (self.aovs, self.light_paths != OFF, self.flare > 0 or self.scatter > 0)
         bands = self.diffraction.bands if self.diffraction is not None else 0
         return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, bands=bands)
 
@@ -282,6 +313,8 @@ class Session:
         self.flare_path_count += flare[0]
         self.flare_rays += flare[1]
         self.flare_hits += flare[2]
+        self.scatter_path_count += flare[3]
+        self.scatter_hits += flare[4]
         self.samples += camera_rays
         return True
 
@@ -407,6 +440,8 @@ class Session:
             "filter": self._identity["filter"],
             "light_paths": show_plan(self.light_paths),
             "flare": f"{self.flare:.17g}" if self.flare else None,
+            "scatter": f"{self.scatter:.17g}" if self.scatter else None,
+            "lens_scatter": self._scatters() if self.scatter else None,
             "diffraction": self.diffraction.words if self.diffraction else None,
             "pupils": self._pupils,
             "scene_hash": self.key["scene"],

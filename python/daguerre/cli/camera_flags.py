@@ -184,6 +184,33 @@ class CameraFlags:
             panel=_CAMERA,
         ),
     ] = None
+    scatter_barrel: Annotated[
+        float | None,
+        option(
+            "--scatter-barrel",
+            metavar="SHARE",
+            help="For --scatter: what barrel and edges of the glass send to all sides [0.03].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    scatter_blades: Annotated[
+        float | None,
+        option(
+            "--scatter-blades",
+            metavar="SHARE",
+            help="For --scatter: the same of the blades of the iris [0.03].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    scatter_surface_nm: Annotated[
+        float | None,
+        option(
+            "--scatter-surface-nm",
+            metavar="NM",
+            help="For --scatter: RMS roughness of the polished surfaces, nm [1].",
+            panel=_CAMERA,
+        ),
+    ] = None
     sensor: Annotated[
         Text,
         option(
@@ -290,7 +317,19 @@ class CameraFlags:
                 from daguerre.io.iris import read_grey
 
                 out[name] = read_grey(path)
+        if parts := self._scatter():
+            from daguerre.scatter import LensScatter
+
+            out["scatter"] = LensScatter(**parts)
         return _refuse_rivals(out)
+
+    def _scatter(self) -> dict[str, float]:
+        given = {
+            "barrel": self.scatter_barrel,
+            "blades": self.scatter_blades,
+            "surface_rms_nm": self.scatter_surface_nm,
+        }
+        return {name: value for name, value in given.items() if value is not None}
 
 
 def _cover_glass(flag: str, text: str) -> tuple[float, ...]:

@@ -128,6 +128,14 @@ def lens(
         float | None,
         option("--sensor-reflectance", metavar="R", help="0 to 1, for --flare [0].", panel=BENCH),
     ] = None,
+    veiling_glare: Annotated[
+        bool,
+        option(
+            "--veiling-glare",
+            help="How much of a white world a black patch shows, by ghosts and by scatter.",
+            panel=BENCH,
+        ),
+    ] = False,
     zoom: Annotated[
         str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.", panel=BENCH)
     ] = None,
@@ -178,6 +186,10 @@ def lens(
 
     if ghosts.wanted:
         return ghosts.show(bench(), plot=plot, drawing=drawing, json=json)
+    if veiling_glare:
+        from .lens_glare import show_glare
+
+        return show_glare(bench(), json=json)
     if drawing is not None:
         _write_drawing(bench(), drawing)
     if point is not None:

@@ -11,6 +11,7 @@ import typer
 from daguerre.errors import UsageError
 from daguerre.flare import check_flare, check_highlights
 from daguerre.light_paths import check_light_paths
+from daguerre.scatter import check_scatter
 
 from . import console
 from .camera_flags import CameraFlags
@@ -141,6 +142,16 @@ def render(
             panel=_SAMPLING,
         ),
     ] = "on",
+    scatter: Annotated[
+        str,
+        option(
+            "--scatter",
+            metavar="auto|off|N",
+            help="Light that barrel, iris and surfaces of an exact lens scatter; N paths per "
+            "sample index [off].",
+            panel=_SAMPLING,
+        ),
+    ] = "off",
     diffraction: Annotated[
         bool,
         option(
@@ -204,7 +215,10 @@ def render(
     if flare_order not in (2, 4):
         raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
     highlights = check_highlights(flare_highlights, "--flare-highlights")
+    wanted_scatter = check_scatter(scatter, "--scatter")
     changes = camera_flags.changes() | shutter_flags.changes()
+    if wanted_scatter == 0 and "scatter" in changes:
+        raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
     plans: list[tuple[int | None, Plan]] = [(None, plan)]
     if numbers is not None:
         plans = [(n, plan.of_frame(n)) for n in numbers]
@@ -229,6 +243,8 @@ def render(
         settings["flare"] = "auto" if wanted_flare is None else wanted_flare
         settings["flare_order"] = flare_order
         settings["flare_highlights"] = highlights
+    if wanted_scatter != 0:
+        settings["scatter"] = "auto" if wanted_scatter is None else wanted_scatter
     if diffraction:
         from daguerre.waves import Diffraction
 

@@ -42,7 +42,8 @@ OWN_NUMBERS = (
     "motion_missing",
 )  # fmt: skip
 OWN_STRINGS = (
-    "version", "scene_hash", "filter", "denoised", "gt_time", "light_paths", "flare", "diffraction",
+    "version", "scene_hash", "filter", "denoised", "gt_time", "light_paths", "flare", "scatter",
+    "diffraction",
 )  # fmt: skip
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]

@@ -48,7 +48,8 @@ ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
-    "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare, diffraction",
+    "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare, scatter, "
+    "diffraction",
     "build": "the build of daguerre",
 }
 #: Of the settings, what a header tells as it is.

@@ -1,0 +1,121 @@
+"""Veiling glare of a lens on the bench: what a black patch in a white world shows of the world.
+
+After ISO 9358: the veiling glare index is the light in the middle of the picture of a black patch,
+over what it would be were the patch as white as all around it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import daguerre._core as _core
+from daguerre.errors import InputError
+from daguerre.scatter import core_parts
+
+from .ghosts import NM, WEIGHTS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from daguerre.scatter import LensScatter
+
+    from .bench import Bench
+
+WALKS = 60000
+_BATCHES = 10
+
+
+class VeilingGlare:
+    """The veiling glare index, and what makes it.
+
+    Walks leave the film, go backward through the lens and say where they come from: from the
+    patch's own direction is the picture, from elsewhere glare. Light is that of a D65 world as the
+    eye sees it; the world is white up to 90 degrees from the axis, and far away.
+
+    Args:
+        bench: The lens.
+        scatter: How its parts scatter; None: as those of a well-made lens.
+        stack: What of the body reflects; None: nothing.
+        patch_mm: Diameter of the picture of the patch, on the axis; None: a tenth of the image
+            circle's.
+        walks: From the film, all wavelengths together.
+        seed: Of all random numbers.
+
+    Attributes:
+        index: Veiling glare index, %.
+        ghosts: Light by reflections alone, over that of the picture; its standard error is
+            ``ghosts_error``.
+        scatter: The same of light that barrel, blades or surfaces scattered.
+
+    Raises:
+        InputError: A lens whose barrel is not known, or parts that cannot be.
+    """
+
+    def __init__(
+        self,
+        bench: Bench,
+        *,
+        scatter: LensScatter | None = None,
+        stack: _core.SensorStack | None = None,
+        patch_mm: float | None = None,
+        walks: int = WALKS,
+        seed: int = 0,
+    ) -> None:
+        self.patch_mm = patch_mm or 0.2 * bench.field_mm
+        try:
+            lens = _core.ScatterLens(
+                bench.lens.prescription,
+                bench.film_z,
+                _core.Iris(),
+                bench.iris_radius,
+                stack or _core.SensorStack(),
+                bench.field_mm,
+                core_parts(scatter),
+            )
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        edge = math.cos(math.atan(0.5 * self.patch_mm / abs(bench.order.efl)))
+        each = max(1, walks // (_BATCHES * len(NM)))
+        sums = np.array(
+            [
+                _light(lens, 0.1 * self.patch_mm, edge, each, seed * _BATCHES + i)
+                for i in range(_BATCHES)
+            ]
+        )
+        picture = sums[:, 0].mean()
+        if not picture > 0:
+            raise InputError(f"{bench.lens.name}: veiling glare: no light comes to the film")
+        shares = sums / picture
+        mean, spread = shares.mean(0), shares.std(0, ddof=1) / math.sqrt(_BATCHES)
+        self.ghosts, self.scatter = float(mean[1]), float(mean[2])
+        self.ghosts_error, self.scatter_error = float(spread[1]), float(spread[2])
+        glare = self.ghosts + self.scatter
+        self.index = 100 * glare / (1 + glare)
+
+    def facts(self) -> dict[str, Any]:
+        """All of it as plain values."""
+        return {
+            "index_percent": self.index,
+            "ghosts": self.ghosts,
+            "ghosts_error": self.ghosts_error,
+            "scatter": self.scatter,
+            "scatter_error": self.scatter_error,
+            "patch_mm": self.patch_mm,
+        }
+
+
+def _light(
+    lens: _core.ScatterLens, spot: float, edge: float, walks: int, seed: int
+) -> NDArray[np.float64]:
+    """Of the picture, of ghosts and of what is scattered, with the eye's shares of wavelengths."""
+    total = np.zeros(3)
+    for k, (nm, share) in enumerate(zip(NM, WEIGHTS, strict=True)):
+        found = np.asarray(lens.from_film((0.0, 0.0), spot, nm, walks, seed * len(NM) + k))
+        cosine, weight, events = found[:, 0], found[:, 2], found[:, 3]
+        around = (cosine > 0) & (cosine < edge)
+        parts = (cosine >= edge) & (events == 0), around & (events == 0), around & (events > 0)
+        total += share * np.array([weight[part].sum() for part in parts])
+    return total
