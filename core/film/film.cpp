@@ -20,13 +20,13 @@ std::array<float, 11> aov_values(const AovSample& s) {
             s.normal.z, s.albedo.x,   s.albedo.y,   s.albedo.z,   s.alpha};
 }
 
-/// Holds a pixel that several threads may write.
-class PixelLock {
+/// Holds a pixel, or a row, that several threads may write.
+class Lock {
   public:
-    explicit PixelLock(std::uint32_t& word) : lock_(word) {
+    explicit Lock(std::uint32_t& word) : lock_(word) {
         while (lock_.exchange(1, std::memory_order_acquire)) std::this_thread::yield();
     }
-    ~PixelLock() { lock_.store(0, std::memory_order_release); }
+    ~Lock() { lock_.store(0, std::memory_order_release); }
 
   private:
     std::atomic_ref<std::uint32_t> lock_;
@@ -47,6 +47,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.aovs) aovs_.resize(pixels);
     if (layout.splats) splats_.resize(pixels);
     if (layout.flare) flare_.resize(pixels);
+    if (layout.splats || layout.flare) row_locks_.resize(std::size_t(kLockStride) * layout.height);
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
                           std::to_string(layout.bands));
@@ -68,14 +69,14 @@ void Film::mark_bad(Pixel& pixel, std::uint32_t sample) {
 
 void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
-    if (i >= 0) add_to(pixels_[i], pixels_[i], sample, xyz);
+    if (i >= 0 && !add_to(pixels_[i], xyz)) mark_bad(pixels_[i], sample);
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
-    const PixelLock lock(pixels_[i].lock);
-    add_to(pixels_[i], pixels_[i], sample, xyz);
+    const Lock lock(pixels_[i].lock);
+    if (!add_to(pixels_[i], xyz)) mark_bad(pixels_[i], sample);
 }
 
 Film::Sums& Film::sums_of(Layer layer, std::size_t i) {
@@ -85,10 +86,19 @@ Film::Sums& Film::sums_of(Layer layer, std::size_t i) {
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer) {
-    const std::int64_t i = find(x, y);
-    if (i < 0) return;
-    const PixelLock lock(pixels_[i].lock);
-    add_to(sums_of(layer, i), pixels_[i], sample, xyz);
+    if (find(x, y) >= 0) splat_row(x, y, sample, std::span(&xyz, 1), layer);
+}
+
+void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer) {
+    const std::int64_t first = find(x, y);
+    DG_CHECK(first, >=, 0);
+    Sums* const sums = &sums_of(layer, first + xyz.size() - 1) - (xyz.size() - 1);
+    const Lock lock(row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]);
+    for (std::size_t k = 0; k < xyz.size(); ++k) {
+        if (xyz[k] == Vec3f{0, 0, 0} || add_to(sums[k], xyz[k])) continue;
+        const Lock pixel(pixels_[first + k].lock);
+        mark_bad(pixels_[first + k], sample);
+    }
 }
 
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -105,14 +115,16 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                  Spectrum radiance, Layer layer) {
+    if (bands_.empty()) return splat(x, y, sample, wavelengths.to_xyz(radiance), layer);
     const std::int64_t i = find(x, y);
     if (i >= 0) add_light(sums_of(layer, i), i, sample, wavelengths, radiance);
 }
 
 void Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
                      const Wavelengths& wavelengths, Spectrum radiance) {
-    const PixelLock lock(pixels_[i].lock);
-    if (!add_to(sums, pixels_[i], sample, wavelengths.to_xyz(radiance)) || bands_.empty()) return;
+    const Lock lock(pixels_[i].lock);
+    if (!add_to(sums, wavelengths.to_xyz(radiance))) return mark_bad(pixels_[i], sample);
+    if (bands_.empty()) return;
     const float per_nm = float(layout_.bands) / (kMaxWavelength - kMinWavelength);
     const Spectrum light = radiance * wavelengths.measure() * per_nm;
     for (int k = 0; k < kWavelengths; ++k) {
@@ -122,11 +134,8 @@ void Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
     }
 }
 
-bool Film::add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const {
-    if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) {
-        mark_bad(pixel, sample);
-        return false;
-    }
+bool Film::add_to(Sums& sums, Vec3f xyz) const {
+    if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) return false;
     const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
     sums.xyz[0].add(xyz.x);
     sums.xyz[1].add(xyz.y);
@@ -148,7 +157,7 @@ void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
     const std::array<float, 11> values = aov_values(aov);
     const auto first = values.begin() + (aov.hit ? 0 : kHitAovs);
     if (!std::all_of(first, values.end(), fits_film)) {
-        const PixelLock lock(pixels_[i].lock);
+        const Lock lock(pixels_[i].lock);
         mark_bad(pixels_[i], sample);
         return;
     }

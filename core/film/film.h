@@ -66,6 +66,8 @@ class Film {
     /// which no mean is to be taken off; so they are sums of their own.
     enum class Layer { splats, flare };
     void splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats);
+    /// The same for pixels side by side within the region, of a film without bands.
+    void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer);
     /// What the wavelengths of a sample bring, to XYZ and to their bands: what the three above do with a
     /// colour.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance);
@@ -139,8 +141,8 @@ class Film {
     std::int64_t find(int x, int y) const;
     /// Those of a pixel's splats; the layout has that layer.
     Sums& sums_of(Layer layer, std::size_t i);
-    /// To the pixel's own sums, or to those of its splats; false if the sample was bad.
-    bool add_to(Sums& sums, Pixel& pixel, std::uint32_t sample, Vec3f xyz) const;
+    /// To a pixel's own sums, or to those of its splats; false if the sample is bad.
+    bool add_to(Sums& sums, Vec3f xyz) const;
     /// To XYZ and bands, under the pixel's lock: with bands, splats and samples share their sums.
     void add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance);
@@ -159,6 +161,9 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
+    // Of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
+    static constexpr int kLockStride = 16;   // one per cache line
+    std::vector<std::uint32_t> row_locks_;
     std::vector<ValueSum> bands_;   // those of a pixel side by side
 };
 

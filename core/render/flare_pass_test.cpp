@@ -56,6 +56,16 @@ TEST_CASE("ghosts from the emitters are those that rays from the film find") {
     }
 }
 
+TEST_CASE("what is drawn by what was learned is what is drawn by nothing") {
+    const auto scene = bright_scene();
+    Prescription lens = test::wide_angle();
+    lens.coating = Coating::broadband;   // wavelengths differ most
+    const Camera camera = camera_with(lens);
+    const Blocks learned = forward(*scene, camera, 8, 40000), plain = forward(*scene, camera, 8, 100000, false);
+    INFO(show(learned) << show(plain));
+    CHECK(equality(learned, plain) > 1e-3);
+}
+
 TEST_CASE("a lens that reflects nothing has no flare") {
     Prescription lens = test::tessar();
     lens.coating = Coating::perfect;

@@ -18,7 +18,8 @@ struct Batch {
     std::vector<Reprojection> landings;
 
     void add(const FlareArrival& path, float u) {
-        paths.push_back(path), rays.push_back(path.lens), nm.push_back(path.wavelengths.nm[0]), lambda.push_back(u);
+        paths.push_back(path), rays.push_back(path.lens);
+        nm.push_back(path.wavelengths.nm[0]), lambda.push_back(u);
     }
     void trace(const FlareAim& aim, int ghost) {
         landings.assign(rays.size(), Reprojection{});
@@ -106,7 +107,10 @@ void FlareFound::add(const FlareFound& other) {
 }
 
 void FlareFound::share(const std::vector<double>& rays, int across) {
-    for (Hit& hit : hits) hit.share = float(1 / (rays[cell_of(probe.where, hit.at, across)] * double(rays.size())));
+    for (Hit& hit : hits) {
+        const double own = rays[cell_of(probe.where, hit.at, across)];
+        hit.share = float(1 / (own * double(rays.size())));
+    }
 }
 
 void FlareFound::reach(const FlareFound& other) {

@@ -43,9 +43,11 @@ inline RenderCounters draw_flare(const Scene& scene, const Camera& camera, Film&
     return render(scene, camera, film, s, nullptr);
 }
 
-inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, double paths) {
+inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, double paths,
+                      bool learned = true) {
     Blocks all;
     RenderSettings s = settings(0, paths);
+    s.flare.learned = learned;
     s.flare.guide = std::make_shared<const FlareGuide>(scene, camera, s);
     for (int k = 0; k < pictures; ++k) {
         s.seed = std::uint64_t(k) + 1;

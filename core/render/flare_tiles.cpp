@@ -20,7 +20,8 @@ FlareTiles::FlareTiles(const Sensor& sensor) {
 }
 
 std::size_t FlareTiles::index(Vec2f px) const {
-    const int x = std::clamp(int(px.x * per_px_), 0, columns_ - 1), y = std::clamp(int(px.y * per_px_), 0, rows_ - 1);
+    const int x = std::clamp(int(px.x * per_px_), 0, columns_ - 1);
+    const int y = std::clamp(int(px.y * per_px_), 0, rows_ - 1);
     return std::size_t(y) * columns_ + x;
 }
 

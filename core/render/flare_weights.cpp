@@ -47,7 +47,8 @@ void FlareWeights::weigh_wavelengths(const FlareFound& found, const FlareTiles& 
     wavelengths.assign(bins, 1);
     if (bins == 1) return;
     std::vector<double> weights(bins);
-    for (const FlareFound::Hit& hit : found.hits) weights[place(hit.lambda, bins)] += hit.share * square(hit, tiles);
+    for (const FlareFound::Hit& hit : found.hits)
+        weights[place(hit.lambda, bins)] += hit.share * square(hit, tiles);
     for (double& w : weights) w = std::sqrt(w);
     const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / bins;
     if (!(mean > 0)) return;

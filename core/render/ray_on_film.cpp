@@ -96,6 +96,18 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
     return all;
 }
 
+/// What one wavelength brings by itself: the colour is the same in all pixels.
+void RayOnFilm::splat_color(Film& film, Vec3f xyz, std::uint32_t sample, Film::Layer layer,
+                            const Footprint& at) const {
+    const Footprint::Box box = at.box();
+    std::array<Vec3f, kWidestBox> row;
+    for (int y = box.y0; y < box.y1; ++y) {
+        const Vec3f in_row = xyz * at.row(y);
+        for (int x = box.x0; x < box.x1; ++x) row[x - box.x0] = in_row * at.column(x);
+        film.splat_row(box.x0, y, sample, std::span(row.data(), std::size_t(box.x1 - box.x0)), layer);
+    }
+}
+
 /// What landings [first, last) bring, one value for each pixel.
 void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample, Film::Layer layer, std::size_t first,
@@ -107,6 +119,11 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
         if (!reaches(i)) continue;
         for (int x = 0; x < width; ++x) columns[x].set(int(i), at_[i]->column(all.x0 + x));
         for (int y = 0; y < height; ++y) rows[y].set(int(i), at_[i]->row(all.y0 + y));
+    }
+    if (last - first == 1 && landings_.size() > 1 && film.layout().bands == 0 && film_density_.even()) {
+        Spectrum own{0.f};
+        own.set(int(first), light[int(first)]);
+        return splat_color(film, wavelengths.to_xyz(own), sample, layer, *at_[first]);
     }
     for (int y = 0; y < height; ++y) {
         if (landings_.size() == 1) rows[y] = Spectrum(rows[y][0]);
