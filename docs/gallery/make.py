@@ -5,7 +5,7 @@
 
 FOLDER holds the chess set (scenes/open_chess_set_512.glb) and the panorama
 (hdri/st_peters_square_night_1k.hdr) that the repository does not ship; without it those pictures
-stay as they are. --page writes the page alone. What is shown is in pictures.py.
+stay as they are. --page writes the pages alone. What is shown is in pictures.py and words.py.
 """
 
 from __future__ import annotations
@@ -18,12 +18,20 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+import word_page
 from numpy.typing import NDArray
 from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
+from words import WORDS
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-EXAMPLES = (["night_table.py", NIGHT], ["extensions.py"], ["motion.py"], ["lens_scenes.py"])
+EXAMPLES = (
+    ["night_table.py", NIGHT],
+    ["extensions.py"],
+    ["motion.py"],
+    ["lens_scenes.py"],
+    ["imperfections.py"],
+)
 
 INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
 
@@ -43,6 +51,12 @@ ABOUT_LIGHT = """## Light that finds its way to the sensor
 
 Light is followed from the lamps too; [light-paths.md](../light-paths.md) tells how. Nothing is
 denoised here.
+"""
+
+ABOUT_WORDS = """## Imperfections
+
+Spherical aberration, coma, colour, astigmatism, distortion, vignetting, bloom, halos and stars,
+each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
 """
 
 ABOUT_BLENDER = """## A lens that left
@@ -120,7 +134,7 @@ def main() -> None:
     every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
-    parser.add_argument("--only", action="append", choices=[p.name for p in every])
+    parser.add_argument("--only", action="append", choices=[p.name for p in [*every, *WORDS]])
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     if not given.page:
@@ -130,9 +144,13 @@ def main() -> None:
             wanted = not given.only or picture.name in given.only
             if wanted and (given.data or not picture.needs_data):
                 render(picture, given.data and given.data.resolve())
-    page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS)]
+        for word in WORDS:
+            if not given.only or word.name in given.only:
+                word_page.make(word, lambda command: run(command, None))
+    page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
     page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER, ABOUT_MOTION, *section(MOTION)]
     (HERE / "README.md").write_text("\n".join(page) + CREDITS)
+    (HERE / "imperfections.md").write_text(word_page.page())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,1 @@
+"""Scenes that show one imperfection of lenses each."""

@@ -1,0 +1,174 @@
+"""The scenes of examples/imperfections.py, and the page of the gallery that is made with them."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+import typer.main
+
+import daguerre as dg
+from daguerre import analysis, cli
+from daguerre.post.recipe import from_words
+
+ROOT = Path(__file__).resolve().parent.parent
+GALLERY = ROOT / "docs" / "gallery"
+sys.path[:0] = [str(GALLERY), str(ROOT / "examples")]
+
+import word_page  # noqa: E402
+from agreement import compare, displacement, fringes  # noqa: E402
+from sheet import compose  # noqa: E402
+from ways import Panel, Word  # noqa: E402
+from words import WEAK, WORDS  # noqa: E402
+
+import axial_colour  # noqa: E402
+
+SCENES = ("wheel", "fair", "strings", "wall", "trees", "dusk")
+COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in panel.commands]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("imperfections")
+    make(made)
+    return made
+
+
+def make(folder: Path) -> None:
+    script = ROOT / "examples" / "imperfections.py"
+    subprocess.run([sys.executable, script, "-o", folder], check=True, capture_output=True)
+
+
+def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
+    make(tmp_path)
+    for name in SCENES:
+        assert (tmp_path / f"{name}.glb").read_bytes() == (folder / f"{name}.glb").read_bytes()
+        assert (tmp_path / f"{name}.glb").stat().st_size < 5_000_000
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_loads_without_a_warning_and_shines(folder: Path, name: str) -> None:
+    scene = dg.load(folder / f"{name}.glb")
+    assert scene.warnings == []
+    camera = scene.cameras.get("50 mm") or scene.cameras["Camera"]
+    frame = dg.render(scene, camera.with_(lens="pinhole"), spp=4, resolution=(48, 32), max_depth=1)
+    assert np.isfinite(frame.rgb).all()
+    assert (frame.rgb.max(axis=2) > 0.003).mean() > 0.5
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_commands_are_understood(command: str) -> None:
+    program, *rest = shlex.split(command)
+    if program == "python":
+        assert (ROOT / rest[0]).exists()
+        return
+    name, *flags = rest
+    given = typer.main.get_command(cli.app).commands[name].make_context(name, flags).params
+    if name == "post":
+        assert from_words(given["effect"])
+
+
+def test_every_picture_is_written_by_a_command() -> None:
+    written = set(re.findall(r"out/imperfections/(\w+)\.exr", " ".join(COMMANDS)))
+    shown = {p.file for word in WORDS for p in word_page.panels(word) if p.file}
+    assert shown <= written
+
+
+def test_the_page_is_what_the_words_say() -> None:
+    assert (GALLERY / "imperfections.md").read_text() == word_page.page()
+    for word in WORDS:
+        assert (GALLERY / f"{word.name}.jpg").stat().st_size < 400_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("word", WORDS, ids=lambda word: word.name)
+def test_small_pictures_of_every_word(word: Word, tmp_path: Path) -> None:
+    """All commands, at a tenth of the size: each writes what the next one reads."""
+    for script in ("imperfections.py", "lens_scenes.py"):
+        only = ["--only", "lamps"] if script == "lens_scenes.py" else []
+        scenes = [sys.executable, ROOT / "examples" / script, *only]
+        subprocess.run(scenes, check=True, cwd=tmp_path, capture_output=True)
+    for panel in word_page.panels(word):
+        for command in panel.commands:
+            program, *rest = shlex.split(small(command))
+            rest = [str(ROOT / part) if part.startswith("examples/") else part for part in rest]
+            own = [] if program == "python" else ["-m", "daguerre.cli"]
+            subprocess.run([sys.executable, *own, *rest], check=True, cwd=tmp_path)
+    sheet = compose(word, tmp_path / "out/imperfections")
+    assert sheet.ndim == 3
+
+
+def small(command: str) -> str:
+    """The same with a tenth of the pixels on each side, and a few samples."""
+    tenth = [lambda m: f"--res {int(m[1]) // 10}x{int(m[2]) // 10}"]
+    command = re.sub(r"--res (\d+)x(\d+)", tenth[0], command)
+    command = re.sub(r"--spp \d+", "--spp 2", command)
+    command = re.sub(r"--light-paths \d+", "--light-paths 1000", command)
+    command = command.replace("portrait-85mm-f2-and", "portrait-85mm-f2-and")
+    return re.sub(
+        r"--crop ([\d,]+)",
+        lambda m: "--crop " + ",".join(str(int(v) // 10) for v in m[1].split(",")),
+        command.replace("lens=examples/", f"lens={ROOT}/examples/"),
+    )
+
+
+def test_displacement_finds_a_planted_shift() -> None:
+    y, x = np.mgrid[:120, :180].astype(np.float32)
+
+    def waves(right: float, down: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float32]]:
+        u, v = x - right, y - down
+        grey = 0.5 + 0.2 * np.sin(u / 4) * np.cos(v / 5) + 0.1 * np.sin((u + v) / 7)
+        return np.repeat(grey[:, :, None], 3, axis=2).astype(np.float32)
+
+    assert displacement(waves(0, 0), waves(0, 0)) < 1e-4
+    assert displacement(waves(0, 0), waves(0.4, -0.7)) == pytest.approx(0.806, abs=0.05)
+    assert displacement(waves(0, 0), waves(2.0, 0)) == pytest.approx(2.0, abs=0.1)
+    coloured = np.stack([waves(0.3, 0)[..., 0], waves(0, 0)[..., 1], waves(0, -0.6)[..., 2]], 2)
+    assert fringes(coloured)["red"] == pytest.approx(0.3, abs=0.03)
+    assert fringes(coloured)["blue"] == pytest.approx(0.6, abs=0.05)
+
+
+def test_figures_of_a_picture_twice_as_bright() -> None:
+    one = np.full((40, 40, 3), 0.5, np.float32)
+    figures = compare(one, 2 * one)
+    assert figures["light"] == pytest.approx(2)
+    assert figures["relmse"] == pytest.approx(0.25 / 0.26)
+
+
+def test_panels_show_the_same_part_of_the_frame(tmp_path: Path) -> None:
+    """A picture whose data window reaches farther is cut to that of the first."""
+    for name, (x, y, width, height) in {"one": (20, 10, 30, 20), "two": (5, 4, 60, 40)}.items():
+        spec = oiio.ImageSpec(width, height, 3, oiio.FLOAT)
+        spec.x, spec.y = x, y
+        spec.full_width, spec.full_height = 100, 60
+        at = np.stack(np.meshgrid(np.arange(x, x + width), np.arange(y, y + height)), 2) / 100
+        picture = oiio.ImageBuf(spec)
+        pixels = np.concatenate([at, 0 * at[:, :, :1]], axis=2).astype(np.float32)
+        picture.set_pixels(spec.roi, pixels)
+        assert picture.write(str(tmp_path / f"{name}.exr"))
+    sheet = compose(Word("w", "", "", ((Panel("a", "one"), Panel("b", "two")),)), tmp_path)
+    assert np.array_equal(sheet[26:46, :30], sheet[26:46, 36:66])
+
+
+def test_the_cylinder_has_a_quarter_of_a_dioptre() -> None:
+    """On the axis both foci lie f^2 / 4 m apart, to first order."""
+    bench = analysis.set_up(dg.lenses.load(ROOT / WEAK))
+    foci = analysis.field_curvature(bench, [0.0])
+    apart = abs(float(foci.sagittal[0] - foci.tangential[0]))
+    assert apart == pytest.approx(85.0**2 * 0.25e-3, rel=0.05)
+
+
+def test_each_colour_is_sharp_where_axial_colour_says() -> None:
+    lens = dg.lenses.load("minolta-mc-rokkor-58mm-f1.2")
+    film = analysis.set_up(lens, focus_m=3.0)
+    sharp = axial_colour.sharp_distances(film, 3.0)
+    for nm, distance in zip(axial_colour.CHANNEL_NM, sharp, strict=True):
+        there = analysis.set_up(lens, focus_m=distance)
+        image = there.film_z + float(analysis.axial_colour(there, [nm])[0])
+        assert image == pytest.approx(film.film_z, abs=0.01)
