@@ -175,7 +175,7 @@ std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, doubl
     const Rgb value = value_of(*from, *way);
     if (!(max_component(value) > 0)) return std::nullopt;
     path.ghost = ghost, path.at = at, path.from = *from;
-    path.wavelengths = Wavelengths::at(u.lambda, u.lambda_density);
+    path.wavelengths = Wavelengths::at(u.lambda.u, u.lambda.density);
     path.radiance = path.wavelengths.emission(value);
     return path;
 }
@@ -193,7 +193,7 @@ double FlareAim::visible_share(int source) const {
         PathSampler sampler(source, -5, std::uint32_t(i), 0);
         const CameraRandom c = sampler.camera();
         const Vec2f at{2 * c.lens.x - 1, 2 * c.lens.y - 1};
-        const Random u{c.film.x, c.lambda, 1.f, sampler.next_2d(), shutter_.draw_any(c.time)};
+        const Random u{c.film.x, c.lambda, sampler.next_2d(), shutter_.draw_any(c.time)};
         const auto path = aim(source, 0, at, 0.25, u);
         if (!path) continue;
         ++all;

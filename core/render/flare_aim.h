@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "light/flare_sources.h"
+#include "render/flare_lambda.h"
 #include "render/render.h"
 #include "spectrum/wavelengths.h"
 
@@ -51,7 +52,7 @@ class FlareAim {
     /// From random numbers by purpose.
     struct Random {
         float select;
-        Spectrum lambda, lambda_density;   // as of Wavelengths::at
+        FlareLambda lambda;
         Vec2f point;
         Moment moment;
     };

@@ -1,7 +1,5 @@
 #include "render/flare_cells.h"
 
-#include <algorithm>
-
 namespace dg {
 
 FlareCells FlareCells::evenly(const FlareRectangle& front) {
@@ -33,13 +31,11 @@ double FlareCells::pdf(Vec2f at) const {
     return blind * elsewhere + (1 - blind) * cells;
 }
 
-FlareCells::Lambda FlareCells::lambda(float u) const {
-    Lambda four;
-    const int hero = std::min(int(u * kWavelengths), kWavelengths - 1);
+FlareLambda FlareCells::lambda(float u) const {
+    FlareLambda four(u);
+    if (wavelengths.empty()) return four;
     for (int k = 0; k < kWavelengths; ++k) {
-        const float quarter = u + float((hero + k) % kWavelengths - hero) / kWavelengths;
-        const auto drawn = wavelengths.empty() ? ContinuousSample1D{quarter, 1, 0}
-                                               : wavelengths.sample_continuous(quarter);
+        const ContinuousSample1D drawn = wavelengths.sample_continuous(four.u[k]);
         four.u.set(k, drawn.x), four.density.set(k, drawn.pdf);
     }
     return four;

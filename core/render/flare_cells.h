@@ -2,7 +2,7 @@
 // comes: what places on the front and wavelengths are drawn by.
 #pragma once
 #include "math/distribution.h"
-#include "spectrum/spectrum.h"
+#include "render/flare_lambda.h"
 
 namespace dg {
 
@@ -36,12 +36,7 @@ struct FlareCells {
     /// Of what is drawn without knowledge of cells.
     static constexpr float kOuter = 0.5f, kFront = 0.4f;
 
-    /// Four wavelengths, one in each quarter of what is drawn, and in any of them the hero: u of Wavelengths::at,
-    /// and its density.
-    struct Lambda {
-        Spectrum u{0.f}, density{1.f};
-    };
-    Lambda lambda(float u) const;
+    FlareLambda lambda(float u) const;
 };
 
 }  // namespace dg

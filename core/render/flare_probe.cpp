@@ -85,7 +85,8 @@ FlareFound probe_flare(const FlareAim& aim, const FlareProbe& probe) {
     for (int i = probe.first; i < probe.first + probe.count; ++i) {
         PathSampler sampler(sequence, kSequence, std::uint32_t(i), 0);
         const CameraRandom c = sampler.camera();
-        const FlareAim::Random u{c.film.x, c.lambda, 1.f, sampler.next_2d(), aim.shutter().draw_any(c.time)};
+        const FlareAim::Random u{
+            c.film.x, {Spectrum(c.lambda), 1.f}, sampler.next_2d(), aim.shutter().draw_any(c.time)};
         Vec2f in = c.lens;
         if (probe.cells) {
             const Sample2D cell = probe.cells->sample(in);
