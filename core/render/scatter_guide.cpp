@@ -1,7 +1,6 @@
 #include "render/scatter_guide.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "math/hash.h"
@@ -35,15 +34,6 @@ int cell_of(Vec2f at) {
 }
 
 }  // namespace
-
-FlareAim::Random even_wavelengths(float select, float lambda, Vec2f point, Moment moment) {
-    Spectrum quarters{0.f};
-    for (int k = 0; k < kWavelengths; ++k) {
-        const float u = lambda + float(k) / kWavelengths;
-        quarters.set(k, u - std::floor(u));
-    }
-    return {select, quarters, 1.f, point, moment};
-}
 
 ScatterGuide::ScatterGuide(const Scene& scene, const Camera& camera, const RenderSettings& settings)
     : scene_(scene), camera_(camera), aim_(scene, camera, settings) {
@@ -107,7 +97,7 @@ ScatterGuide::Found ScatterGuide::look(int source, int walks) const {
     for (int i = 0; i < walks; ++i) {
         PathSampler sampler(source, kSequence, std::uint32_t(i), std::uint64_t(walks));
         const CameraRandom c = sampler.camera();
-        const auto u = even_wavelengths(c.film.x, c.lambda, sampler.next_2d(), aim_.shutter().draw_any(c.time));
+        const FlareAim::Random u{c.film.x, c.lambda, sampler.next_2d(), aim_.shutter().draw_any(c.time)};
         const auto path = aim_.aim(source, 0, on_square(c.lens), kSquarePdf, u);
         if (!path) continue;
         const float nm = path->wavelengths.nm[i % kWavelengths];

@@ -12,9 +12,6 @@
 
 namespace dg {
 
-/// Wavelengths as of Wavelengths::sample: a walk needs all four, wherever they land.
-FlareAim::Random even_wavelengths(float select, float lambda, Vec2f point, Moment moment);
-
 class ScatterGuide {
   public:
     /// As FlareAim. Error for a lens whose barrel is not known.

@@ -31,7 +31,7 @@ void ScatterPass::draw(RenderCounters& counters, std::uint64_t first, std::uint6
 void ScatterPass::draw_one(RenderCounters& counters, std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), settings_.seed);
     const CameraRandom u = sampler.camera();
-    const auto random = even_wavelengths(u.film.y, u.lambda, sampler.next_2d(), settings_.shutter.draw_any(u.time));
+    const FlareAim::Random random{u.film.y, u.lambda, sampler.next_2d(), settings_.shutter.draw_any(u.time)};
     const auto path = guide_.draw(u.film.x, u.lens, random);
     if (!path) return;
     const float time = path->lens.ray.time;
