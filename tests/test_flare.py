@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre import analysis
+from daguerre.analysis.ghosts import Ghosts
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.io.merging import merge
@@ -234,6 +236,17 @@ def test_the_bench_lists_ghosts(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "55 ghosts" in capsys.readouterr().out
     assert main(["lens", LENS, "--flare", "10", "--cover-glass", "2,1"]) == 0
     assert "66 ghosts" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("angle", [12.0, 80.0])
+def test_few_rays_find_the_ghosts_of_a_fisheye(angle: float) -> None:
+    bench = analysis.set_up(dg.lenses.load("nikon-fisheye-6mm-f5.6"))
+    few, many = (Ghosts(bench, angle, rays=rays) for rays in (1024, 16384))
+    lights = [{g.surfaces: g.light for g in ghosts.all} for ghosts in (few, many)]
+    total = sum(lights[1].values())
+    assert sum(lights[0].values()) == pytest.approx(total, rel=0.1)
+    for surfaces, light in lights[1].items():
+        assert lights[0][surfaces] == pytest.approx(light, abs=0.02 * total)
 
 
 @pytest.mark.parametrize(

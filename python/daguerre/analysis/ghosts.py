@@ -144,16 +144,24 @@ class Ghosts:
         """Rays of the section that come through, from the left edge of the drawing to the film."""
         angle = math.radians(self.angle_deg)
         direction = [0.0, math.sin(angle), math.cos(angle)]
-        front = self.bench.lens.surfaces[0].semi_diameter or 0.5 * self.bench.pupil_diameter
-        found = []
-        for y in np.linspace(-front, front, 401):
-            origin = [0.0, float(y), 0.0]
-            path = np.asarray(
-                self.core.path(list(ghost.surfaces), origin, direction, DESIGN_WAVELENGTH_NM)
-            )
-            if len(path):
-                start = path[0] - 0.25 * self.bench.film_z * np.asarray(direction)
-                found.append(np.vstack([start, path]))
+        low = -(self.bench.lens.surfaces[0].semi_diameter or 0.5 * self.bench.pupil_diameter)
+        high = -low
+        for _ in range(3):  # closer, where few of many come through
+            found, heights = [], []
+            for y in np.linspace(low, high, 401):
+                path = np.asarray(
+                    self.core.path(
+                        list(ghost.surfaces), [0.0, float(y), 0.0], direction, DESIGN_WAVELENGTH_NM
+                    )
+                )
+                if len(path):
+                    start = path[0] - 0.25 * self.bench.film_z * np.asarray(direction)
+                    found.append(np.vstack([start, path]))
+                    heights.append(float(y))
+            if not found or len(found) >= 4 * _DRAWN:
+                break
+            gap = (high - low) / 400
+            low, high = heights[0] - gap, heights[-1] + gap
         step = max(1, len(found) // _DRAWN)
         return found[step // 2 :: step][:_DRAWN]
 
