@@ -307,19 +307,21 @@ bool ScatterLens::Walk::off_metal(const FinishScatter& finish, const LensHit<dou
     if (finish.is_black()) return end(LightEnd::metal);
     const TangentFrame frame(hit.normal);
     const Vec3d in = frame.into(-ray_.direction);
-    const double absorbed = weight_ * (1 - finish.albedo(in.z));
+    const double albedo = finish.albedo(in.z), absorbed = weight_ * (1 - albedo);
     deposit(LightEnd::metal, absorbed);
     // What faces the scene has nothing to aim at.
     static const std::vector<Target> kNone;
     const bool aims = draw_.aimed && draw_.toward_film && hit.normal.z > -0.999 &&
                       std::size_t(gap_) < lens_.targets_.size();
     const auto& targets = aims ? lens_.targets_[gap_] : kNone;
-    double own = 1;
-    for (const Target& t : targets) own -= t.share;
+    // No more is aimed than keeps walks from gaining light: off white metal they would, again and again.
+    double all = 0;
+    for (const Target& t : targets) all += t.share;
+    const double aim = all > 0 ? std::min(1.0, (1 - albedo) / all) : 0, own = 1 - aim * all;
     const double choice = u_.next(), lobe = u_.next();
     const Vec2d u = u_.next_2d();
-    const Vec3d way = choice < own ? finish.sample(in, lobe, u) : frame.into(aimed(targets, choice - own, u));
-    const double pdf = own * finish.pdf(in, way) + aimed_pdf(targets, frame.out_of(way));
+    const Vec3d way = choice < own ? finish.sample(in, lobe, u) : frame.into(aimed(targets, (choice - own) / aim, u));
+    const double pdf = own * finish.pdf(in, way) + aim * aimed_pdf(targets, frame.out_of(way));
     const double kept = pdf > 0 ? finish.value(in, way) * way.z / pdf : 0;
     ++scattered_;
     reweigh(weight_ * kept, absorbed);
