@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import analysis, colour, lenses
+from daguerre.analysis import diffraction
 from daguerre.analysis.diffraction import PlainPupil, far_field, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import lens_pupil, zone_pupils
@@ -38,8 +39,6 @@ def blades(count: int, rotation: float = 0, curvature: float = 0) -> Iris:
 )
 def test_the_light_of_a_period_is_that_of_the_pupil(iris: Iris) -> None:
     """Parseval: all points of a whole period have all of the light, to 1e-6."""
-    from daguerre.analysis import diffraction
-
     pupil = PlainPupil(8, iris)
     span = pupil.high[0] - pupil.low[0]
     step, length = diffraction._raster(span, 300 * 0.002 / (1e-6 * NM), 2.0)
@@ -119,6 +118,19 @@ def test_the_airy_disc(f_number: float) -> None:
     # Of unit area: P / (lambda N)^2 pi / 4 in the middle.
     peak = math.pi / 4 * (pitch / (1e-6 * NM * f_number)) ** 2
     assert spread.max() == pytest.approx(peak, rel=0.01)
+
+
+def test_coarse_pixels_cost_no_more_than_fine_ones() -> None:
+    """Pixels of hundreds of fringes: as many samples as for a fine kernel, and all the light."""
+    pupil = PlainPupil(4, blades(6))
+    for pitch in (1.0, 30.0):
+        pattern = diffraction.pattern_of(pupil, 400, pitch, 3)
+        assert pattern is not None
+        assert len(pattern.light) < 1.1 * diffraction.SAMPLES * diffraction.MOST_FRINGES
+    kernel = far_field(pupil, NM, 0.3, 5)
+    assert kernel[2, 2] > 0.995
+    assert kernel.sum() == pytest.approx(1, abs=1e-3)
+    assert (kernel[2, :2] > 0).all()
 
 
 def test_a_square_pupil_is_a_product_of_sinc_squared() -> None:

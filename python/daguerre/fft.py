@@ -76,10 +76,9 @@ class Fft2:
         self.shape, self.threads = shape, threads
         self.spectrum_shape = (shape[0], shape[1] // 2 + 1)
 
-    def forward(self, values: Real, out: Complex | None = None) -> Complex:
-        """Spectrum of values (h, w) with h, w at most ``shape``, padded with zeros."""
+    def forward(self, values: Real, made: Complex) -> Complex:
+        """Makes the spectrum of values (h, w) with h, w at most ``shape``, padded with zeros."""
         columns = self.shape[1]
-        made = np.empty(self.spectrum_shape, np.complex64) if out is None else out
         made[len(values) :] = 0
 
         def along_rows(part: slice) -> None:
@@ -112,20 +111,28 @@ class Fft2:
             return np.ascontiguousarray(spectrum.real)
         return spectrum
 
-    def add_product(self, total: Complex, spectrum: Complex, kernel: Complex | Real) -> None:
-        """Adds a product to ``total``."""
+    def add_product(
+        self, total: Complex, spectrum: Complex, kernel: Complex | Real, *, new: bool
+    ) -> None:
+        """Adds a product to ``total``, or overwrites it."""
 
         def lines(part: slice) -> None:
             for first in range(part.start, part.stop, LINES):
                 some = slice(first, min(first + LINES, part.stop))
-                total[some] += spectrum[some] * kernel[some]
+                if new:
+                    np.multiply(spectrum[some], kernel[some], out=total[some])
+                else:
+                    total[some] += spectrum[some] * kernel[some]
 
         in_parallel(self.threads, self.shape[0], lines)
 
-    def inverse(self, spectrum: Complex, rows: slice) -> Real:
-        """Rows of what has this spectrum, counted around; the spectrum is overwritten."""
+    def inverse(self, spectrum: Complex, rows: slice, space: Real) -> Real:
+        """Rows of what has this spectrum, counted around; the spectrum is overwritten.
+
+        The result lies in ``space``, which has the transform's shape.
+        """
         count = rows.stop - rows.start
-        out = np.empty((count, self.shape[1]), np.float32)
+        out = space[:count]
 
         def along_columns(part: slice) -> None:
             some = spectrum[:, part]

@@ -138,17 +138,25 @@ def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float3
     nm = band_wavelengths(bands.shape[2], -(-LEAST_WAVELENGTHS // bands.shape[2]))[bright]
     kernels = _kernels(pupils, nm, pitch, _size(pupils, pitch, bands.shape[:2]), threads)
     xyz = np.zeros((*bands.shape[:2], 3), np.float32)
+    plane, made = (np.empty((*bands.shape[:2], 1), np.float32) for _ in range(2))
     for b, half in zip(bright, kernels, strict=True):
-        plane = np.ascontiguousarray(bands[:, :, b, None])
-        plane = spread(plane, _whole(half), threads=threads)
-        for k in range(3):
-            xyz[:, :, k] += colours[b, k] * plane[:, :, 0]
+        plane[:] = bands[:, :, b, None]
+        spread(plane, _whole(half), threads=threads, out=made)
+        _add(xyz, made, colours[b])
     mean = _whole(np.tensordot(light[bright] / light[bright].sum(), kernels, 1))
     del kernels
     rest = _beside(bands, colours * (light > DARK * light.max())[:, None], film.mean_xyz())
     for k in range(3):
-        xyz[:, :, k] += spread(rest[:, :, k, None], mean, threads=threads)[:, :, 0]
+        plane[:] = rest[:, :, k, None]
+        spread(plane, mean, threads=threads, out=made)
+        _add(xyz, made, np.eye(3, dtype=np.float32)[k])
     return xyz
+
+
+def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[np.float32]) -> None:
+    """Adds light (H, W, 1) of a colour; row by row, to save memory."""
+    for row, light in zip(xyz, plane, strict=True):
+        row += light * colour
 
 
 def _beside(
@@ -185,7 +193,7 @@ def _kernels(
         Their right halves, shape (B, Z, Z, size, size // 2 + 1): kernels of perfect waves are
         symmetric about their middle.
     """
-    from .analysis.diffraction import far_fields
+    from .analysis.diffraction import far_fields, light_of
 
     each = nm.shape[1]
     out = np.zeros((len(nm), len(pupils), len(pupils), size, size // 2 + 1), np.float32)
@@ -193,12 +201,12 @@ def _kernels(
         for x, pupil in enumerate(row):
             found = far_fields(pupil, nm.ravel().tolist(), pitch, size, threads=threads)
             for n, kernel in enumerate(found):
-                share = np.float32(1 / (each * kernel.sum(dtype=np.float64)))
-                out[n // each, y, x] += kernel[:, size // 2 :] * share
+                out[n // each, y, x] += kernel / np.float32(each * light_of(kernel))
     return out
 
 
 def _whole(half: NDArray[np.float32]) -> NDArray[np.float32]:
     """Kernels (Z, Z, h, w, 1, 1) of their right halves."""
-    left = half[:, :, ::-1, :0:-1]
-    return np.concatenate([left, half], axis=3)[..., None, None]
+    from .analysis.diffraction import both_halves
+
+    return both_halves(half)[..., None, None]

@@ -117,7 +117,10 @@ class Pattern:
         return bool(self.light.shape[0] != self.light.shape[1])
 
     def on_pixels(self, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
-        """Shares of the light in pixels, rows from the top, shape (size, size), odd."""
+        """Shares of the light in pixels, rows from the top, shape (size, size), odd.
+
+        Of a perfect wave the right half alone, from the middle column on: (size, size // 2 + 1).
+        """
         pixel = pitch_mm / (1e-6 * wavelength_nm * self.spacing)
         reach = len(self.light) // 2
         edges = (np.arange(size + 1, dtype=np.float64) - 0.5 * size) * pixel
@@ -128,7 +131,17 @@ class Pattern:
         right = np.concatenate([[0.0], edges[size // 2 + 1 :]]) + TAPS
         half = pixel_integrals(self.light, *down, *_weights(right, 1.0))
         half[:, 0] += half[::-1, 0]
-        return np.concatenate([half[::-1, :0:-1], half], axis=1)
+        return np.asarray(half)
+
+
+def both_halves(right: Floats) -> Floats:
+    """Kernels (..., size, size) of what perfect waves have from the middle column on."""
+    return np.concatenate([right[..., ::-1, :0:-1], right], axis=-1)
+
+
+def light_of(right: Floats) -> float:
+    """Sum of a kernel of which the right half is given."""
+    return float(2 * right.sum(dtype=np.float64) - right[:, 0].sum(dtype=np.float64))
 
 
 def pattern_of(
@@ -177,7 +190,8 @@ def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) ->
     Returns:
         Share of the light in each pixel, rows from the top, shape (size, size).
     """
-    return next(far_fields(pupil, [wavelength_nm], pitch_mm, size, threads=1))
+    found = next(far_fields(pupil, [wavelength_nm], pitch_mm, size, threads=1))
+    return both_halves(found) if pupil.perfect else found
 
 
 def far_fields(
@@ -188,11 +202,14 @@ def far_fields(
     *,
     threads: int = 0,
 ) -> Iterator[Floats]:
-    """``far_field`` of one wavelength after the other, as many at a time as there are threads."""
+    """``far_field`` of one wavelength after the other, as many at a time as there are threads.
+
+    Of perfect waves right halves alone, as of ``Pattern.on_pixels``.
+    """
     if size % 2 == 0:
         raise ValueError(f"size: wanted an odd number, got {size}")
     if size == 1:
-        yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)
+        yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)  # half of it, and whole
         return
     raster = pitch_mm, size
 
@@ -203,7 +220,7 @@ def far_fields(
 
     def one(nm: float) -> Floats:
         pattern = shared if pupil.perfect else pattern_of(pupil, nm, *raster)
-        dark = np.zeros((size, size), np.float32)
+        dark = np.zeros((size, size // 2 + 1 if pupil.perfect else size), np.float32)
         return dark if pattern is None else pattern.on_pixels(nm, *raster)
 
     with ThreadPoolExecutor(count) as pool:

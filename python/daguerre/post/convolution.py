@@ -54,20 +54,23 @@ class Spreader:
         self.block = self._parts[-1].block if banded else picture[0]
         self._height, self._outs = picture[0], kernels.shape[4]
 
-    def rows(self, light: Real, first: int, wanted: Rows) -> Real:
+    def rows(self, light: Real, first: int, wanted: Rows, out: Real | None = None) -> Real:
         """Spreads light.
 
         Args:
             light: Shape (h, W, I); all rows that reach ``wanted``, as far as the picture has them.
             first: The row of the picture at which they begin.
             wanted: Rows to make.
+            out: Where to put them, overwritten; None: somewhere new.
 
         Returns:
             Shape (rows, W, J), float32; where a channel was not finite its value stays (J = I).
         """
         whole = bool(np.isfinite(light).all())
         known = light if whole else np.where(np.isfinite(light), light, np.float32(0))
-        out = np.zeros((wanted.end - wanted.begin, light.shape[1], self._outs), np.float32)
+        if out is None:
+            out = np.empty((wanted.end - wanted.begin, light.shape[1], self._outs), np.float32)
+        out[:] = 0
         for begin in range(wanted.begin, wanted.end, self.block):
             rows = Rows(begin, min(begin + self.block, wanted.end))
             some = out[rows.begin - wanted.begin : rows.end - wanted.begin]
@@ -147,17 +150,18 @@ def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
     return done.rows(planes, 0, whole).reshape(picture.shape)
 
 
-def spread(planes: Real, kernels: Real, *, threads: int = 0) -> Real:
+def spread(planes: Real, kernels: Real, *, threads: int = 0, out: Real | None = None) -> Real:
     """A picture with its light spread by kernels that change over the frame.
 
     Args:
         planes: Shape (H, W, I).
         kernels: Shape (Y, X, h, w, J, I), as of ``Spreader``.
         threads: 0: all cores.
+        out: Where to put the result; None: somewhere new.
 
     Returns:
         Shape (H, W, J), float32; where a channel was not finite its value stays (J = I).
     """
     size = planes.shape[0], planes.shape[1]
     done = Spreader(kernels, size, threads=threads, banded=False)
-    return done.rows(planes, 0, Rows(0, size[0]))
+    return done.rows(planes, 0, Rows(0, size[0]), out)

@@ -96,20 +96,25 @@ class Part:
         begin = max(wanted.begin - (h - 1 - h // 2), first)
         read = Rows(begin, min(wanted.end + h // 2, first + len(light)))
 
-        def tile(place: Tile) -> Iterator[tuple[int, Real]]:
+        def tile(place: Tile, space: _Space) -> Iterator[tuple[int, Real]]:
             part = light[place.rows.start - first : place.rows.stop - first, place.columns]
-            return self._spread(part, place, wanted)
+            return self._spread(part, place, wanted, space)
+
+        def alone(place: Tile) -> list[tuple[int, Real]]:
+            return list(tile(place, _Space(self._fft, self._outs, shared=False)))
+
+        space = _Space(self._fft, self._outs, shared=True)
 
         for row in self._tiles(read, light.shape[1]):
             # Tiles are added one after the other in their order: the bits do not depend on threads.
             if self._threads > 1 and len(row) > 1:
                 with ThreadPoolExecutor(self._threads) as pool:
-                    made = list(pool.map(lambda place: list(tile(place)), row))
+                    made = list(pool.map(alone, row))
                 for place, planes in zip(row, made, strict=True):
                     self._put(out, planes, place, wanted)
             else:
                 for place in row:
-                    self._put(out, tile(place), place, wanted)
+                    self._put(out, tile(place, space), place, wanted)
 
     def _tiles(self, read: Rows, width: int) -> Iterator[list[Tile]]:
         """Tiles that cover these rows, by rows; they begin at the same rows whatever is read."""
@@ -130,26 +135,26 @@ class Part:
         top, bottom = place.rows.start - h // 2, place.rows.stop + h - 1 - h // 2
         return Rows(max(top, wanted.begin), min(bottom, wanted.end))
 
-    def _spread(self, light: Real, place: Tile, wanted: Rows) -> Iterator[tuple[int, Real]]:
+    def _spread(
+        self, light: Real, place: Tile, wanted: Rows, space: _Space
+    ) -> Iterator[tuple[int, Real]]:
         """What a tile's light becomes, by channel: rows that it reaches, columns around."""
         fft, rows = self._fft, self._reached(place, wanted)
-        sums: dict[int, Complex] = {}
-        spectrum: Complex | None = None
+        summed: set[int] = set()
         for y, x, i in sorted({(y, x, i) for y, x, _, i in self._transforms}):
             share = self._share(light[:, :, i], place, y, x)
             if rows.end <= rows.begin or share is None or not share.any():
                 continue
-            spectrum = fft.forward(share, spectrum)
+            spectrum = fft.forward(share, space.spectrum)
             for j in range(self._outs):
                 kernel = self._transforms.get((y, x, j, i))
                 if kernel is None:
                     continue
-                if j not in sums:
-                    sums[j] = np.zeros(fft.spectrum_shape, np.complex64)
-                fft.add_product(sums[j], spectrum, kernel)
+                fft.add_product(space.sums[j], spectrum, kernel, new=j not in summed)
+                summed.add(j)
         here = slice(rows.begin - place.rows.start, rows.end - place.rows.start)
-        for j in sorted(sums):
-            yield j, fft.inverse(sums.pop(j), here)
+        for j in sorted(summed):
+            yield j, fft.inverse(space.sums[j], here, space.result(j))
 
     def _share(self, light: Real, place: Tile, y: int, x: int) -> Real | None:
         """What of a tile's light a zone spreads."""
@@ -175,6 +180,25 @@ class Part:
             plane = out[rows.begin - wanted.begin : rows.end - wanted.begin, left:right, j]
             for at, piece in around(left - place.columns.start, right - left, period):
                 plane[:, at : at + piece.stop - piece.start] += values[:, piece]
+
+
+class _Space:
+    """Memory for tiles, one after the other: new pages cost as much as the sums on them.
+
+    Args:
+        fft: The transforms.
+        outs: Channels that are made.
+        shared: Whether one channel's result is done with before the next one is made.
+    """
+
+    def __init__(self, fft: Fft2, outs: int, *, shared: bool) -> None:
+        self.spectrum = np.empty(fft.spectrum_shape, np.complex64)
+        self.sums = [np.empty(fft.spectrum_shape, np.complex64) for _ in range(outs)]
+        self._results = [np.empty(fft.shape, np.float32) for _ in range(1 if shared else outs)]
+
+    def result(self, j: int) -> Real:
+        """For the channel j."""
+        return self._results[j % len(self._results)]
 
 
 class Plan(NamedTuple):

@@ -6,13 +6,13 @@ from itertools import islice
 
 import numpy as np
 
-from daguerre.analysis.diffraction import Pupil, far_fields
+from daguerre.analysis.diffraction import Pupil, both_halves, far_fields, light_of
 from daguerre.colour import rgb_mixes
 
 from .kernels import Floats
 
 AT_ONCE = 6  # wavelengths
-STRETCH = 1 << 16  # pixels that are mixed at a time, to save memory
+STRETCH = 1 << 14  # pixels that are mixed at a time, to save memory
 
 
 def starburst(
@@ -25,16 +25,21 @@ def starburst(
     """
     nm, mixes = rgb_mixes(wavelengths)
     spreads = far_fields(pupil, nm.tolist(), pitch_mm, size, threads=threads)
-    out = np.zeros((9, size * size), np.float32)
+    columns = size // 2 + 1 if pupil.perfect else size
+    out = np.zeros((9, size * columns), np.float32)
+    group = np.zeros((AT_ONCE, size * columns), np.float32)
     for first in range(0, wavelengths, AT_ONCE):
-        group = np.stack([s.ravel() for s in islice(spreads, AT_ONCE)])
-        # What falls outside of the window is given to all of it: nothing is lost.
-        shares = mixes[first : first + AT_ONCE].reshape(-1, 9)
-        shares = shares / group.sum(axis=1, dtype=np.float64)[:, None]
-        for pixels in range(0, size * size, STRETCH):
+        shares = np.zeros((AT_ONCE, 9), np.float32)
+        for k, kernel in enumerate(islice(spreads, AT_ONCE)):
+            group[k] = kernel.ravel()
+            # What falls outside of the window is given to all of it: nothing is lost.
+            light = light_of(kernel) if pupil.perfect else kernel.sum(dtype=np.float64)
+            shares[k] = mixes[first + k].ravel() / light
+        for pixels in range(0, size * columns, STRETCH):
             part = np.s_[:, pixels : pixels + STRETCH]
-            out[part] += shares.T.astype(np.float32) @ group[part]
-    return np.moveaxis(out.reshape(3, 3, size, size), (0, 1), (2, 3))
+            out[part] += shares.T @ group[part]
+    mixed = out.reshape(3, 3, size, columns)
+    return np.moveaxis(both_halves(mixed) if pupil.perfect else mixed, (0, 1), (2, 3))
 
 
 def tail_only(kernel: Floats, core_px: float) -> Floats:
