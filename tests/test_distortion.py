@@ -23,6 +23,7 @@ from daguerre.distortion import (
     Stereographic,
 )
 from daguerre.distortion.lens import LensDistortion
+from daguerre.distortion.lens_map import LensMap
 from daguerre.errors import DaguerreError, InputError
 
 ALL = OpenCV(
@@ -42,6 +43,8 @@ MODELS = [
     Orthographic(),
 ]
 POINTS = np.random.default_rng(3).uniform(-1, 1, (2000, 2)) * [0.7, 0.5]
+
+SQUEEZED = "schneider-anamorphic-60mm"
 
 
 def lens(name: str = "canon-ef-11-24mm-f4", **setting: float) -> LensDistortion:
@@ -134,14 +137,61 @@ def test_a_lens_ends_where_its_picture_ends():
     assert np.isfinite(fisheye.undistort([[19 / focal, 0]])).all()
     assert np.isnan(fisheye.undistort([[20.5 / focal, 0]])).all()
     with pytest.raises(InputError, match="the same on all sides"):
-        LensDistortion(set_up(lenses.load(anamorphic())), 10.0)
+        LensDistortion(set_up(lenses.load(SQUEEZED)), 10.0)
 
 
-def anamorphic() -> str:
-    for name in lenses.names():
-        if not lenses.load(name).prescription.is_axially_symmetric:
-            return name
-    pytest.skip("the library has no anamorphic lens")
+def skew_lens(kind: str):
+    """A bench, and half of the film, mm."""
+    if kind == "anamorphic":
+        return set_up(lenses.load(SQUEEZED), focus_m=3.0), (12.45, 10.35)
+    item = lenses.load("double-gauss-50mm-f2").decentered((9, 10), (0.4, -0.3), (1.0, 0.5))
+    return set_up(item, focus_m=3.0), (18.0, 12.0)
+
+
+@pytest.mark.parametrize("kind", ["anamorphic", "decentred"])
+@pytest.mark.parametrize("nm", [450.0, 650.0])
+def test_a_skew_lens_is_its_chief_rays(kind, nm):
+    """Each film point, upside down, shows what its chief ray meets on the plane in focus."""
+    bench, half = skew_lens(kind)
+    model = LensMap(bench, half, nm)
+    picture = np.random.default_rng(2).uniform(-1, 1, (50, 2)) * half  # mm to the right and down
+    rays = chief_rays(bench, picture * (-1, 1), nm)
+    away = bench.order.entrance_pupil.z - bench.focus_mm
+    share = (away - rays.points[:, 2]) / rays.directions[:, 2]
+    met = rays.points[:, :2] + share[:, None] * rays.directions[:, :2]
+    ideal = met / bench.focus_mm * (1, -1)  # x to the right, y down
+    bent = picture / model.focal_mm
+    assert np.abs(model.undistort(bent) - ideal).max() * max(model.focal_mm) < 1e-6  # mm
+    assert model.distort(ideal) == pytest.approx(bent, abs=1e-9)
+    assert np.abs(ideal - bent).max() * min(model.focal_mm) > 0.1  # and there is something to see
+
+
+def test_the_scales_of_a_squeezed_picture_are_the_lens_s_own():
+    bench = set_up(lenses.load(SQUEEZED))
+    across, down = LensMap(bench, (12.45, 10.35)).focal_mm
+    orders = [bench.lens.first_order(section=section).efl for section in ("x", "y")]
+    assert (across, down) == pytest.approx([abs(efl) for efl in orders], rel=0.03)
+    near = np.array([[1e-3, 0], [0, 1e-3]])
+    assert LensMap(bench, (12.45, 10.35)).undistort(near) == pytest.approx(near, rel=1e-4, abs=1e-9)
+
+
+def test_both_maps_say_the_same_of_a_straight_lens():
+    bench = set_up(lenses.load("canon-ef-11-24mm-f4"), zoom_mm=23, focus_m=2.0)
+    radial, flat = LensDistortion(bench, 21.7, 545.0), LensMap(bench, (18.0, 12.0), 545.0)
+    assert flat.focal_mm == pytest.approx((radial.focal_length_mm,) * 2, rel=1e-6)
+    film = np.random.default_rng(3).uniform(-1, 1, (200, 2)) * (18, 12)
+    found, wanted = (m.undistort(film / radial.focal_length_mm) for m in (flat, radial))
+    assert np.abs(found - wanted).max() * radial.focal_length_mm < 1e-3 * 0.006  # mm of a pixel
+
+
+def test_a_map_ends_where_its_film_or_its_light_ends():
+    bench = set_up(lenses.load("canon-ef-15mm-f2.8-fisheye"))
+    model = LensMap(bench, (22.0, 22.0))
+    focal = model.focal_mm[0]
+    assert np.isfinite(model.undistort([[15 / focal, 0], [0, -15 / focal]])).all()
+    far = model.undistort([[21.9 / focal, 21.9 / focal], [23 / focal, 0], [np.nan, 0]])
+    assert np.isnan(far).all()
+    assert np.isnan(model.distort([[1e3, 0]])).all()
 
 
 @pytest.mark.parametrize("points", [[1, 2], [[1, 2, 3]], [["a", "b"]], [[1], [1, 2]]])

@@ -159,6 +159,48 @@ def test_the_model_s_end_is_exact_and_said(tmp_path, capsys):
     assert read(source)[0]["A"][0, 0] == 0
 
 
+SQUEEZED = "model=lens,lens=schneider-anamorphic-60mm,focus=3m,sensor=24.9x20.7,lateral_colour=0"
+
+
+def test_an_anamorphic_lens_bends_files_and_straightens_them(tmp_path, capsys):
+    image = soft(120, 100)
+    channels = dict(zip("RGB", np.moveaxis(image, 2, 0).copy(), strict=True))
+    channels["motion.U"] = np.ones((100, 120), np.float32)
+    source = write(tmp_path / "in.exr", channels)
+    bent, back = tmp_path / "bent.exr", tmp_path / "back.exr"
+    for one, other, inverse in ((source, bent, 0), (bent, back, 1)):
+        word = f"distortion:{SQUEEZED},inverse={inverse}"
+        assert dg.cli.main(["post", str(one), "-o", str(other), "--effect", word]) == 0
+    assert "motion.U: moved with their pixels, not turned" in capsys.readouterr().err
+    first, middle, last = (read(path)[0]["G"] for path in (source, bent, back))
+    inner = np.s_[10:-10, 12:-12]
+    assert np.abs(middle - first)[inner].max() > 0.05
+    assert np.abs(last - first)[inner].max() < 0.02
+
+
+def test_the_axis_is_where_the_file_says(tmp_path):
+    """A sensor moved to the right and up sees it to the left and below: nothing moves there."""
+    offset = np.array([5000, 3000], np.float32)
+    source = write(tmp_path / "in.exr", planes(100, 120), sensorCenterOffset=offset)
+    for effect in (f"distortion:{SQUEEZED}", "distortion:k1=-0.3,focal_length=20,sensor=24.9x20.7"):
+        st = tmp_path / "st.exr"
+        assert post(source, "-o", tmp_path / "out.exr", "--effect", f"{effect},stmap={st}") == 0
+        found = read(st)[0]
+        x, y = np.meshgrid(np.arange(120) + 0.5, np.arange(100) + 0.5)
+        moved = np.hypot(found["R"] * 120 - x, (1 - found["G"]) * 100 - y)
+        still = np.unravel_index(np.nanargmin(moved), moved.shape)
+        pitch = 24.9 / 120
+        assert still[1] == pytest.approx(59.5 - 5 / pitch, abs=1.5)
+        assert still[0] == pytest.approx(49.5 + 3 / pitch, abs=1.5)
+
+
+def test_vignetting_of_a_lens_wants_it_the_same_on_all_sides(tmp_path, capsys):
+    source = write(tmp_path / "in.exr", planes())
+    word = "vignetting:model=lens,lens=schneider-anamorphic-60mm,sensor=24.9x20.7"
+    assert dg.cli.main(["post", str(source), "-o", str(source), "--effect", word]) == 2
+    assert "vignetting: lens: wanted one that is the same on all sides" in capsys.readouterr().err
+
+
 def test_a_lens_bends_each_colour_its_own_way():
     image = np.ones((400, 600, 3), np.float32) * (np.arange(600) % 50 < 25)[None, :, None]
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"))

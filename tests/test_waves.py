@@ -11,8 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre import colour, pupil_files, waves
+from daguerre import analysis, colour, lenses, pupil_files, waves
 from daguerre.analysis.diffraction import PlainPupil
+from daguerre.analysis.off_axis import off_axis
+from daguerre.camera_setup import set_up
 from daguerre.errors import InputError, UsageError
 from daguerre.io.merging import merge
 from daguerre.io.passes import pass_of, read_pass, write_pass
@@ -167,6 +169,59 @@ def test_zones_of_a_lens_see_their_own_pupils() -> None:
     widths = (kernels > 0.1 * kernels.max(axis=(2, 3), keepdims=True)).sum(axis=(2, 3))
     assert widths[0, 0] > widths[1, 1]  # narrow pupils spread more
     assert one.metadata["diffraction"] == "4 bands, 3 x 3 zones"
+
+
+def middles(zones: int = 2, sensor: tuple[float, float] = (20.0, 16.0), **more: Any) -> Any:
+    """Middles of the pupils' windows (direction cosines x, y), by zone, shape (Z, Z, 2)."""
+    cam = dg.Camera(
+        lens="double-gauss-50mm-f2", f_stop=4.0, focus_distance=3.0, sensor_size=sensor, **more
+    )
+    setup = set_up(dg.Scene(), cam, (40, 32), None)
+    pupils = waves._pupils(Diffraction(4, zones), cam, setup)
+    return np.array([[np.add(p.low, p.high) / 2 for p in row] for row in pupils])
+
+
+def test_a_shifted_frame_sees_the_pupils_of_its_own_place() -> None:
+    """A frame moved right and up is the upper right of a larger one."""
+    large, moved = middles(3), middles(1, shift=(10.0, 8.0))
+    np.testing.assert_allclose(moved[0, 0], large[0, 2], atol=1e-6)
+    assert moved[0, 0, 0] > 0.05
+    assert moved[0, 0, 1] > 0.05
+
+
+@pytest.mark.parametrize(
+    "more", [{"tilt": (5.0, 0.0)}, {"decenter": (((9, 10), (0.0, 1.0), (0.0, 0.0)),)}]
+)
+def test_what_is_off_the_axis_has_pupils_off_the_axis(more: dict[str, Any]) -> None:
+    """Up and down differ; left and right do not, for both move along y alone."""
+    straight, skew = middles(), middles(**more)
+    up, down = skew[0, :, 1], -skew[1, :, 1]
+    assert np.abs(up - down).min() > 3e-3
+    np.testing.assert_allclose(skew[:, 0] * (-1, 1), skew[:, 1], atol=1e-6)
+    mirrored = straight[::-1] * (1, -1)
+    np.testing.assert_allclose(mirrored, straight, atol=1e-6)
+    # A turn the other way mirrors it.
+    other = {
+        "tilt": (-5.0, 0.0), "decenter": (((9, 10), (0.0, -1.0), (0.0, 0.0)),)
+    }  # fmt: skip
+    back = middles(**{name: other[name] for name in more})
+    np.testing.assert_allclose(back[::-1] * (1, -1), skew, atol=1e-5)
+
+
+def test_a_turned_lens_sees_as_the_camera_does() -> None:
+    """Directions of chief rays across the film, against the camera's own, but for the middle."""
+    lens, f_stop, away = "double-gauss-50mm-f2", 4.0, 3.0
+    film = np.array([[0.0, 0], [9, 0], [0, 9], [0, -9], [-6, -7]])
+    for tilt in ((5.0, 0.0), (0.0, 5.0), (4.0, -3.0)):
+        cam = dg.Camera(lens=lens, f_stop=f_stop, focus_distance=away, tilt=tilt)
+        core = set_up(dg.Scene(), cam, (36, 24), None).core.chief_rays()
+        wanted = np.asarray(core.rays(film)[1])
+        bench = analysis.set_up(lenses.load(lens), f_stop=f_stop, focus_m=away, by="paraxial")
+        found = -analysis.chief_rays(off_axis(bench, (), tilt), -film).directions
+        slopes = [d[:, :2] / -d[:, 2:] for d in (wanted, found)]
+        off = slopes[1] - slopes[0]
+        np.testing.assert_allclose(off, np.broadcast_to(off[0], off.shape), atol=4e-4)
+        assert np.abs(off[0]).max() < 5e-3  # the camera keeps the middle of its picture
 
 
 class Film:

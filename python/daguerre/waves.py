@@ -87,26 +87,32 @@ def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[lis
     from .analysis.diffraction import PlainPupil
     from .analysis.iris import iris_of
     from .analysis.lens_pupil import zone_pupils
+    from .analysis.off_axis import off_axis
     from .camera_checks import TRACED, lens_and_model
+    from .camera_prescription import decenters
 
     facts = setup.facts
     if facts.get("f_stop") is None:
         raise UsageError("diffraction: wanted a lens with an iris, got a pinhole")
     lens, _ = lens_and_model(camera)
-    if lens is None or facts["lens_model"] not in TRACED or any(camera.tilt):
+    if lens is None or facts["lens_model"] not in TRACED:
         efl = facts.get("effective_focal_length_mm", facts["focal_length_mm"])
         seen = facts["f_stop"] * setup.pinhole_focal_length / efl
         return [[PlainPupil(seen, iris_of(camera))]]  # the same everywhere
-    bench = set_up(
-        lens,
-        f_stop=facts["f_stop"],
-        focus_m=facts["focus_distance_m"],
-        zoom_mm=facts.get("zoom_mm") if camera.zoom is not None else None,
-        by=cast("By", camera.focus_by),
+    bench = off_axis(
+        set_up(
+            lens,
+            f_stop=facts["f_stop"],
+            focus_m=facts["focus_distance_m"],
+            zoom_mm=facts.get("zoom_mm") if camera.zoom is not None else None,
+            by=cast("By", camera.focus_by),
+        ),
+        decenters(camera),
+        camera.tilt,
     )
     iris = iris_of(camera, bench.order.stop_semi_diameter / bench.iris_radius)
-    x, y = facts["shift_mm"]
-    return zone_pupils(bench, setup.frame_size, wanted.zones, iris, center_mm=(x, y))
+    x, y = facts["shift_mm"]  # of the frame against the picture, which is upside down on the film
+    return zone_pupils(bench, setup.frame_size, wanted.zones, iris, center_mm=(-x, -y))
 
 
 def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float32]:

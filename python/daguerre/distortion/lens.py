@@ -55,7 +55,8 @@ class LensDistortion(Radial):
     def __post_init__(self) -> None:
         if not self.bench.lens.prescription.is_axially_symmetric:
             raise InputError(
-                f"{self.bench.lens.name}: distortion: wanted a lens that is the same on all sides"
+                f"{self.bench.lens.name}: distortion: wanted a lens that is the same on all sides "
+                "(LensMap is for others)"
             )
 
     @cached_property

@@ -12,6 +12,7 @@ USUAL = {
     "motion.u": ("motion.U", "motion.X", "Vector.X", "velocity.X", "forward.u", "motionvector.R"),
     "motion.v": ("motion.V", "motion.Y", "Vector.Y", "velocity.Y", "forward.v", "motionvector.G"),
 }
+BACK: tuple[str, ...] = ("motion_back.U", "motion_back.V")  # to the frame before
 PARTS = {"motion": ("motion.u", "motion.v")}
 
 

@@ -15,7 +15,7 @@ from daguerre.errors import UsageError
 
 from .array import step_on_array
 from .effect import Effect, Step, Values
-from .optics import FOCAL_LENGTH, LENS, SENSOR, bench, film_plane, focal_length_mm
+from .optics import FOCAL_LENGTH, LENS, SENSOR, axis, bench, film_plane, focal_length_mm
 from .parameter import Parameter
 from .picture import Canvas, Image
 from .warp import FILTER, FloatArray, PointMap, Warp, WarpStep
@@ -124,14 +124,15 @@ def camera(
     canvas: Canvas, values: Values
 ) -> tuple[list[Distortion], tuple[float, float], tuple[float, float]]:
     """The models (one, or one per colour), focal lengths and centre (px) of a set of values."""
+    middle = axis(canvas, values)
     centre = tuple(
-        canvas.centre[k] if values[name] is None else values[name] + 0.5
+        middle[k] if values[name] is None else values[name] + 0.5
         for k, name in enumerate(("cx", "cy"))
     )
     if values["model"] == "lens":
         colours = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
-        made, pixels = lens_models(canvas, values, colours)
-        return made, (pixels, pixels), (centre[0], centre[1])
+        made, focal_px = lens_models(canvas, values, colours)
+        return made, focal_px, (centre[0], centre[1])
     if values["fx"] is not None:
         focal = (values["fx"], values["fy"] or values["fx"])
     else:
@@ -142,22 +143,27 @@ def camera(
 
 def lens_models(
     canvas: Canvas, values: Values, wavelengths_nm: Sequence[float]
-) -> tuple[list[Distortion], float]:
-    """Models of a lens of the library, one per wavelength, and the focal length of the picture, px.
+) -> tuple[list[Distortion], tuple[float, float]]:
+    """Models of a lens of the library, one per wavelength, and focal lengths of the picture, px.
 
-    That is the lens's own: near the axis nothing moves.
+    Those are the lens's own, across and down: near the axis nothing moves.
     """
     from daguerre.distortion.lens import LensDistortion
+    from daguerre.distortion.lens_map import LensMap
 
     if values["lens"] is None:
         raise UsageError("lens: wanted a name or a file with model=lens, got nothing")
-    pitch_mm = film_plane(canvas, values).pitch_mm
+    film = film_plane(canvas, values)
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
-    reach = np.abs(corners + canvas.corner - canvas.centre).max(axis=0)
+    reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.centre).max(axis=0)
     item = bench(values)
-    reach_mm = 1.02 * math.hypot(*reach) * pitch_mm
-    made = LensDistortion.of_colours(item, reach_mm, wavelengths_nm)
-    return list(made), made[0].focal_length_mm / pitch_mm
+    if not item.lens.prescription.is_axially_symmetric:
+        maps = LensMap.of_colours(item, (float(reach[0]), float(reach[1])), wavelengths_nm)
+        across, down = maps[0].focal_mm
+        return list(maps), (across / film.pitch_mm, down / film.pitch_mm)
+    made = LensDistortion.of_colours(item, math.hypot(*reach), wavelengths_nm)
+    pixels = made[0].focal_length_mm / film.pitch_mm
+    return list(made), (pixels, pixels)
 
 
 def _model(values: Values) -> Distortion:

@@ -17,7 +17,7 @@ from daguerre.errors import UsageError
 from .array import on_array
 from .distortion import CHANNEL_NM, lens_models, point_map
 from .effect import Effect, Step, Values
-from .optics import LENS, SENSOR
+from .optics import LENS, SENSOR, axis
 from .parameter import Parameter
 from .picture import Canvas, Image
 from .warp import FILTER, Warp, WarpStep
@@ -62,7 +62,8 @@ class Between(Distortion):
 def _make(canvas: Canvas, values: Values) -> Step:
     if len(canvas.colours) < 3:
         raise UsageError(f"{canvas.where}: lateral-colour: wanted R, G and B, got grey")
-    unit = 0.5 * math.hypot(*canvas.full_size)
+    half = 0.5 * math.hypot(*canvas.full_size)
+    unit = half, half
     if values["model"] == "lens":
         models, unit = _of_lens(canvas, values)
     else:
@@ -71,7 +72,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
             for colour in ("red", "blue")
         ]
     red, blue = (
-        Warp.of(canvas, point_map(m, (unit, unit), canvas.centre, inverse=values["inverse"]))
+        Warp.of(canvas, point_map(m, unit, axis(canvas, values), inverse=values["inverse"]))
         for m in models
     )
     same = Warp.of(canvas, lambda points: points)
@@ -80,8 +81,8 @@ def _make(canvas: Canvas, values: Values) -> Step:
     )
 
 
-def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], float]:
-    """Red and blue of a lens against its green, and the unit of its models, px."""
+def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], tuple[float, float]]:
+    """Red and blue of a lens against its green, and the units of its models, px."""
     (red, green, blue), focal_px = lens_models(canvas, values, CHANNEL_NM)
     return [Between(green, red), Between(green, blue)], focal_px
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from daguerre.analysis.iris import Iris
     from daguerre.analysis.pencils import Pencil
 
-WAVES = 257  # px across a kernel: what is wider is made of rays
+WAVES = 257  # px across a kernel: what is wider is made of rays,
+FRINGES = 500.0  # and what is wider than so many wavelengths x f-number
 RAYS = 96  # across a pupil
 
 
@@ -42,7 +43,8 @@ def _make(canvas: Canvas, values: Values) -> Step:
     if not found:
         raise InputError(f"{canvas.where}: lens-psf: {lens.lens.name}: no light arrives")
     size = _size(canvas, found, film.pitch_mm)
-    waves, count = values["waves"] and size <= WAVES, values["wavelengths"]
+    narrow = size <= WAVES and size * film.pitch_mm <= FRINGES * 0.55e-3 * lens.f_stop
+    waves, count = values["waves"] and narrow, values["wavelengths"]
     kernels = [
         [_kernel(lens, light, iris, film.pitch_mm, size, count, waves) for light in row]
         for row in lights

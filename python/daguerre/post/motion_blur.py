@@ -28,7 +28,6 @@ SCAN = 256  # rows
 SKY = 1e9  # m
 DEPTH_STEP = 0.08  # ratio of depths, less 1, of surfaces of which one hides the other
 SPEED_STEP = 0.5  # without depth: of asinh(px)
-BACK: tuple[str, ...] = ("motion_back.U", "motion_back.V")
 #: When in the exposure a picture of ground truth was taken.
 OPENS = {"open": 0.0, "mid": -0.5, "close": -1.0}
 
@@ -37,7 +36,7 @@ class _MotionBlur(Step):
     def __init__(self, canvas: Canvas, values: Values) -> None:
         self._where = canvas.where
         self._next = [channels.find(canvas, role) for role in channels.roles_of("motion")]
-        self._last = [name for name in BACK if name in canvas.planes]
+        self._last = [name for name in channels.BACK if name in canvas.planes]
         self._depth = _depth_channel(canvas)
         self._scale = values["scale"] * np.array([1, -1 if values["v_up"] else 1], np.float32)
         exposure = values["shutter_angle"] / 360

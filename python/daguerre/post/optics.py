@@ -65,16 +65,35 @@ def film_plane(canvas: Canvas, values: Values) -> Plane:
     Raises:
         UsageError: Neither says how large it is.
     """
-    size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
-    if size is None and _positive(pitch):
-        return Plane(canvas.centre, pitch[0] * 1e-3)
-    size = size or canvas.facts.get("sensorOverallDimensions")
-    if not _positive(size):
+    pitch_mm = _pitch_mm(canvas, values)
+    if pitch_mm is None:
         raise UsageError(
             f"{canvas.where}: sensor: wanted its size, such as sensor=36x24 (mm): "
             "the file does not say it"
         )
-    return Plane(canvas.centre, size[0] / canvas.full_size[0])
+    return Plane(axis(canvas, values), pitch_mm)
+
+
+def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
+    """Where the lens's axis meets the picture, px: its middle, or beside it if the file says so.
+
+    ``sensorCenterOffset`` is how far the sensor's middle lies to the right and up, um, as the
+    picture is seen; it needs the size of pixels.
+    """
+    offset, pitch_mm = canvas.facts.get("sensorCenterOffset"), _pitch_mm(canvas, values)
+    x, y = canvas.centre
+    if pitch_mm is None or not _finite(offset):
+        return x, y
+    return x - 1e-3 * offset[0] / pitch_mm, y + 1e-3 * offset[1] / pitch_mm
+
+
+def _pitch_mm(canvas: Canvas, values: Values) -> float | None:
+    """Of a pixel; None: nobody says it."""
+    size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
+    if size is None and _positive(pitch):
+        return pitch[0] * 1e-3
+    size = size or canvas.facts.get("sensorOverallDimensions")
+    return size[0] / canvas.full_size[0] if _positive(size) else None
 
 
 def focal_length_mm(canvas: Canvas, values: Values) -> float:
@@ -108,6 +127,10 @@ def bench(values: Values) -> Bench:
         item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom"),
         by=values["focus_by"],
     )  # fmt: skip
+
+
+def _finite(pair: Any) -> TypeGuard[tuple[float, float]]:
+    return isinstance(pair, tuple) and len(pair) == 2 and all(math.isfinite(v) for v in pair)
 
 
 def _positive(pair: Any) -> TypeGuard[tuple[float, float]]:

@@ -78,10 +78,14 @@ def _of_lens(canvas: Canvas, values: Values) -> Falloff:
     """Light on the film relative to the axis, from exact rays through the whole pupil."""
     from daguerre.analysis.illumination import relative_illumination
 
-    film = film_plane(canvas, values)
+    film, lens = film_plane(canvas, values), bench(values)
+    if not lens.lens.prescription.is_axially_symmetric:
+        raise UsageError(
+            f"vignetting: lens: wanted one that is the same on all sides, got {lens.lens.name}"
+        )
     corner = 0.5 * math.hypot(*canvas.full_size) * film.pitch_mm
     heights = np.linspace(0, corner, HEIGHTS)
-    light = relative_illumination(bench(values), heights).relative
+    light = relative_illumination(lens, heights).relative
 
     def falloff(rows: Rows) -> NDArray[np.float32]:
         return np.interp(film.radii(canvas, rows), heights, light).astype(np.float32)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import SourceMap, remap, remap_nearest
 
+from .channels import BACK, USUAL
 from .effect import Step
 from .parameter import Parameter
 from .picture import Band, Canvas, Rows
@@ -156,6 +157,9 @@ class WarpStep(Step):
         if len(self._warps) == 3 and count >= 3:
             self._map_of[:3] = [0, 1, 2]
         self._undefined = 0
+        moving = {name.lower() for role in ("motion.u", "motion.v") for name in USUAL[role]}
+        moving |= {name.lower() for name in BACK}
+        self._motion = [name for name in canvas.planes if name.lower() in moving]
 
     def warps(self, rows: Rows) -> Sequence[Warp]:
         """The maps for some rows."""
@@ -185,10 +189,18 @@ class WarpStep(Step):
         return np.asarray(moved.view(words.dtype).astype(plane.dtype, copy=False))
 
     def remarks(self) -> list[str]:
-        """Where a model had no answer."""
-        if not self._undefined:
-            return []
-        return [f"{self._undefined} pixels, for which the model has no answer, were set to 0"]
+        """Where a model had no answer, and what a map does not turn."""
+        said = []
+        if self._undefined:
+            said.append(
+                f"{self._undefined} pixels, for which the model has no answer, were set to 0"
+            )
+        if self._motion:
+            said.append(
+                f"{', '.join(self._motion)}: moved with their pixels, not turned: they still say "
+                "the motion in the picture before"
+            )
+        return said
 
 
 def _displacements(points: NDArray[Any], canvas: Canvas, place: PointMap) -> FloatArray:
