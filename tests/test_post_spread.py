@@ -17,7 +17,7 @@ from .test_post import post, read, write
 
 WORDS = {
     "bloom": "bloom:radius=3,share=0.4",
-    "halo": "halo:sensor=3x5,share=0.5",
+    "halo": "halo:sensor=3x5,share=0.5,thickness=0.08",
     "glare": "glare:sensor=3x5,share=0.3",
     "diffraction": "diffraction:f_number=16,blades=5,rotation=9,sensor=0.6x1,size=61,wavelengths=6",
     "star": "star:f_number=16,blades=5,rotation=9,sensor=0.6x1,size=61,wavelengths=6,share=0.5",
