@@ -324,10 +324,33 @@ def test_pictures_for_screens_are_refused(tmp_path, capsys):
     assert post(tmp_path / "in.png", "-o", tmp_path / "out.exr", "--effect", NOTHING) == 2
     assert "scene-linear .exr" in capsys.readouterr().err
     source = write(tmp_path / "in.exr", planes())
-    assert post(source, "-o", tmp_path / "out.png", "--effect", NOTHING) == 2
+    assert post(source, "-o", tmp_path / "out.jpg", "--effect", NOTHING) == 2
+    assert "wanted .exr, or .png" in capsys.readouterr().err
     assert post(source, "-o", tmp_path / "nowhere" / "out.exr", "--effect", NOTHING) == 5
     assert post(tmp_path / "no.exr", "-o", tmp_path / "out.exr", "--effect", NOTHING) == 3
     assert post(source, "-o", tmp_path / "out.exr") == 2
+
+
+def test_a_png_is_the_picture_for_the_eye(tmp_path):
+    import OpenImageIO as oiio
+
+    source = write(tmp_path / "in.exr", {**planes(), "R": np.full((70, 40), 0.214, np.float32)})
+    assert post(source, "-o", tmp_path / "out.png", "--effect", NOTHING) == 0
+    shown = oiio.ImageInput.open(str(tmp_path / "out.png")).read_image(oiio.UINT8)
+    assert shown.shape == (70, 40, 3)
+    assert np.unique(shown[:, :, 0]).tolist() == [127]  # half of white, by eye
+    grey = write(tmp_path / "grey.exr", {"Y": np.full((70, 40), 0.214, np.float32)})
+    assert post(grey, "-o", tmp_path / "out.png", "--effect", NOTHING) == 0
+    shown = oiio.ImageInput.open(str(tmp_path / "out.png")).read_image(oiio.UINT8)
+    assert (shown == 127).all()
+
+
+def test_files_may_have_commas_in_their_names(tmp_path):
+    kernel = write(tmp_path / "a,b, c.exr", {c: np.ones((1, 1), np.float32) for c in "RGB"})
+    source = write(tmp_path / "in,1.exr", planes())
+    word = f"psf:file={kernel},normalise=1"
+    assert post(source, "-o", tmp_path / "out,1.exr", "--effect", word) == 0
+    assert read(tmp_path / "out,1.exr")[0]["R"] == pytest.approx(planes()["R"], abs=1e-5)
 
 
 def test_the_list_names_parameters_with_units(capsys):

@@ -37,6 +37,16 @@ def write_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") ->
             raise OutputError(f"{path}: cannot write: {reason.replace(str(temp), str(path))}")
 
 
+def write_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Writes (H, W, 3) uint8 that are no frame's.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
+    if reason := _write(path, pixels, {}):
+        raise OutputError(f"{path}: cannot write: {reason}")
+
+
 def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
     """The same file as bytes, for notebooks."""
     with TemporaryDirectory() as folder:

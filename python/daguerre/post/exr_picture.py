@@ -76,6 +76,19 @@ def check_linear(path: str | os.PathLike[str]) -> None:
         )
 
 
+def check_target(path: str | os.PathLike[str]) -> None:
+    """What effects make is light: it goes into another file of light.
+
+    Raises:
+        UsageError: Another format.
+    """
+    suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
+    if suffix != ".exr":
+        raise UsageError(
+            f"{path}: wanted .exr, or .png for the eye alone, got {suffix or 'no suffix'!r}"
+        )
+
+
 def _colours(names: list[str], where: str) -> tuple[str, ...]:
     for colours in (("R", "G", "B"), ("Y",)):
         if all(name in names for name in colours):

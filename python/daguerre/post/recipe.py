@@ -38,7 +38,11 @@ def from_words(words: Sequence[str]) -> list[Planned]:
         name, _, rest = word.partition(":")
         where = f"--effect {name}"
         given: dict[str, Any] = {}
+        key = ""
         for part in filter(None, rest.split(",")):
+            if "=" not in part and key:  # a comma in a value, such as the name of a file
+                given[key] += f",{part}"
+                continue
             key, equals, value = part.partition("=")
             key = key.strip()
             if not equals:

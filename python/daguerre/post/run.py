@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from daguerre.io.atomic import atomic_path
 from daguerre.io.exr_bands import ExrWriter
 
 from . import channels
+from .display import Display
 from .effect import Step
-from .exr_picture import ExrPicture, check_linear
+from .exr_picture import ExrPicture, check_target
 from .picture import bands
 from .recipe import Planned, as_json, in_order
 from .tiles import BLOCK, chained
@@ -51,7 +53,8 @@ def process(
 
     Args:
         source: An .exr; its first part is used.
-        target: The .exr to write, whole or not at all; may be the same file.
+        target: The .exr to write, whole or not at all; may be the same file. Or a .png: the colours
+            alone, as a screen shows them.
         planned: From ``recipe.from_words`` or ``recipe.plan``.
         roles: Channels by role (``depth``, ``motion.u``, ``motion.v``) where names are unusual.
         progress: Called with rows done, of how many, and their width.
@@ -61,7 +64,9 @@ def process(
         UsageError: A value that does not fit this picture.
         OutputError: The target cannot be written.
     """
-    check_linear(target)
+    shown = Path(target).suffix.lower() == ".png"
+    if not shown:
+        check_target(target)
     planned, _ = in_order(planned)
     picture = ExrPicture(source, roles)
     with picture.reader as reader, atomic_path(target) as temp:
@@ -69,9 +74,14 @@ def process(
         made = chained(steps, picture)
         before = reader.facts.get(HISTORY)
         history = f"{before}\n{as_json(planned)}" if before else as_json(planned)
-        with ExrWriter(temp, reader.header, {HISTORY: history}) as writer:
+        out: ExrWriter | Display
+        out = Display(temp) if shown else ExrWriter(temp, reader.header, {HISTORY: history})
+        with out as writer:
             for band in bands(made, BLOCK):
-                writer.write(picture.planes(band))
+                if isinstance(writer, Display):
+                    writer.write(band.image, picture.canvas.alpha)
+                else:
+                    writer.write(picture.planes(band))
                 progress(band.rows.end, reader.height, reader.width)
     remarks = [f"{p.effect.name}: {r}" for p, s in zip(planned, steps, strict=True)
                for r in s.remarks()]  # fmt: skip
