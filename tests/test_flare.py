@@ -216,6 +216,30 @@ def test_highlights_are_the_same_with_any_threads_and_another_picture_without(
         session(flare_highlights="maybe")
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"flare_order": 4}, "flare_order: wanted with flare$"),
+        ({"flare_highlights": "off"}, "flare_highlights: wanted with flare or scatter$"),
+    ],
+)
+def test_what_nothing_would_heed_is_refused(
+    options: dict[str, Any], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(UsageError, match=message):
+        session(flare="off", **options)
+    ((name, value),) = options.items()
+    flag = "--" + name.replace("_", "-")
+    assert main(["render", "s.glb", "-o", "a.exr", flag, str(value)]) == 2
+    assert f"{flag}: wanted with --flare" in capsys.readouterr().err
+
+
+def test_scattered_highlights_are_another_picture() -> None:
+    on, off = (session(flare="off", scatter=100.0, flare_highlights=h) for h in (True, False))
+    assert on.scatter > 0
+    assert on.key != off.key
+
+
 @pytest.mark.parametrize("value", ["on", -1, "1,2", True, float("nan"), 1e10])
 def test_bad_numbers_are_refused(value: Any) -> None:
     with pytest.raises(UsageError, match="flare: wanted auto, off, or a number"):

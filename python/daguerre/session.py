@@ -25,7 +25,7 @@ from .camera import Camera
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
-from .flare import PER_PIXEL, check_flare, check_highlights, check_lens
+from .flare import PER_PIXEL, check_flare, check_highlights, check_lens, check_used
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
@@ -121,6 +121,11 @@ class Session:
             raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
         flare_highlights = check_highlights(flare_highlights)
         scatter_paths = check_scatter(scatter)
+        check_used(
+            {"flare_order": flare_order != 2, "flare_highlights": not flare_highlights},
+            flare=flare_paths != 0,
+            scatter=scatter_paths != 0,
+        )
         self.diffraction = check_diffraction(diffraction)
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
@@ -185,9 +190,10 @@ class Session:
         }
         if self.flare > 0:
             self._identity |= {"flare": self.flare, "flare_order": flare_order}
-            self._identity |= {"flare_highlights": flare_highlights}
         if self.scatter > 0:
             self._identity |= {"scatter": self.scatter, "scatters": self._scatters()}
+        if self.flare > 0 or self.scatter > 0:
+            self._identity |= {"flare_highlights": flare_highlights}
         if self._pupils is not None:
             self._identity["pupils"] = _hash_json(self._pupils)
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.flare import check_flare, check_highlights
+from daguerre.flare import check_flare, check_highlights, check_used
 from daguerre.light_paths import check_light_paths
 from daguerre.scatter import check_scatter
 
@@ -216,6 +216,11 @@ def render(
         raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
     highlights = check_highlights(flare_highlights, "--flare-highlights")
     wanted_scatter = check_scatter(scatter, "--scatter")
+    check_used(
+        {"--flare-order": flare_order != 2, "--flare-highlights": not highlights},
+        flare=wanted_flare != 0,
+        scatter=wanted_scatter != 0,
+    )
     changes = camera_flags.changes() | shutter_flags.changes()
     if wanted_scatter == 0 and "scatter" in changes:
         raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
@@ -242,6 +247,7 @@ def render(
     if wanted_flare != 0:
         settings["flare"] = "auto" if wanted_flare is None else wanted_flare
         settings["flare_order"] = flare_order
+    if wanted_flare != 0 or wanted_scatter != 0:
         settings["flare_highlights"] = highlights
     if wanted_scatter != 0:
         settings["scatter"] = "auto" if wanted_scatter is None else wanted_scatter
