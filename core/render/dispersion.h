@@ -68,6 +68,11 @@ class FilmDensity {
     float shutter_weight() const { return shutter_ ? shutter_->weight() : 1; }
     /// Of |f| s over film points and times, by which densities are divided.
     float integral() const { return float(filter_.absolute_integral()) * shutter_weight(); }
+    /// As that, of times drawn from all at which any line is open.
+    double integral_of_any_time() const {
+        const Shutter* shutter = rolling();
+        return filter_.absolute_integral() * (shutter ? double(shutter->any_share() * shutter->weight()) : 1);
+    }
     /// n of a pixel of the region; 1 where all are alike.
     float count(Pixel p) const {
         if (even()) return 1;

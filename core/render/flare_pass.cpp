@@ -22,9 +22,7 @@ FlarePass::FlarePass(const Scene& scene, const Camera& camera, Film& film, const
       density_(density),
       guide_(guide),
       per_sample_(per_sample),
-      scale_(density.filter().absolute_integral()) {
-    if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
-}
+      scale_(density.integral_of_any_time()) {}
 
 /// All paths first, then one ghost after the other: rays by the same surfaces share the lanes.
 void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {

@@ -10,8 +10,7 @@ LightWeight::LightWeight(const Scene& scene, const Camera& camera, const Sensor&
     if (!guide_)
         guide_ = std::make_shared<const LightGuide>(scene, camera, sensor,
                                                     density.filter().radius(), plan);
-    scale_ = density.filter().absolute_integral();
-    if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
+    scale_ = density.integral_of_any_time();
 }
 
 Viewpoint LightWeight::viewpoint(float time) const {

@@ -18,9 +18,7 @@ ScatterPass::ScatterPass(const Scene& scene, const Camera& camera, Film& film, c
       density_(density),
       guide_(guide),
       per_sample_(per_sample),
-      scale_(density.filter().absolute_integral()) {
-    if (const Shutter* shutter = density.rolling()) scale_ *= shutter->any_share() * shutter->weight();
-}
+      scale_(density.integral_of_any_time()) {}
 
 void ScatterPass::draw(RenderCounters& counters, std::uint64_t first, std::uint64_t last) const {
     for (std::uint64_t i = first; i < last; ++i) draw_one(counters, i);

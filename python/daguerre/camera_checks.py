@@ -18,6 +18,18 @@ MODELS = ("exact", "polynomial", "thick", "thin", "pinhole")
 TRACED = ("exact", "polynomial")
 
 
+def check_surfaces(model: str, where: str) -> None:
+    """What only a lens with surfaces has.
+
+    Raises:
+        UsageError: The lens has none.
+    """
+    if model not in TRACED:
+        raise UsageError(
+            f"{where}: wanted a lens with surfaces (lens_model {' or '.join(TRACED)}), got {model}"
+        )
+
+
 def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
     """The prescription, if any, and which of ``MODELS``."""
     model = camera.lens_model

@@ -10,34 +10,11 @@ from typing import Any
 import daguerre._core as _core
 
 from .camera import Camera
-from .camera_checks import TRACED
 from .checks import number, numbers, short
 from .errors import UsageError
-from .light_paths import MOST, path_counts
 
 #: Paths per sample index that ``auto`` takes, for each pixel of the frame.
 PER_PIXEL = 0.5
-WANTED = f"auto, off, or a number of paths per sample index, 0 .. {MOST:g}"
-
-
-def check_flare(value: object, where: str = "flare") -> float | None:
-    """Paths per sample index; 0: no flare; None: as many as suit the frame.
-
-    Args:
-        value: ``"auto"``, ``"off"``, or a number, which may be text.
-        where: For messages.
-
-    Raises:
-        UsageError: None of these, or a number out of range.
-    """
-    if value == "auto":
-        return None
-    if value == "off":
-        return 0.0
-    paths = path_counts([value], 1)
-    if paths is None:
-        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
-    return paths[0]
 
 
 def check_highlights(value: object, where: str = "flare_highlights") -> bool:
@@ -70,19 +47,6 @@ def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
             dashes = "--" if name.startswith("--") else ""
             also = f" or {dashes}scatter" if "highlights" in name else ""
             raise UsageError(f"{name}: wanted with {dashes}flare{also}")
-
-
-def check_lens(model: str, where: str = "flare") -> None:
-    """Only surfaces make ghosts.
-
-    Raises:
-        UsageError: The lens has none.
-    """
-    if model not in TRACED:
-        raise UsageError(
-            f"{where}: wanted a lens with surfaces, which reflect light (lens_model "
-            f"{' or '.join(TRACED)}), got {model}"
-        )
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:

@@ -35,13 +35,34 @@ def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
     if value == "off":
         return OFF
     parts: Sequence[Any] = value.split(",") if isinstance(value, str) else _pair(value)
-    numbers = path_counts(parts, 2)
+    numbers = _path_counts(parts, 2)
     if numbers is None:
         raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
     return numbers[0], numbers[1] if len(numbers) == 2 else 0.0
 
 
-def path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
+def check_paths(value: object, where: str) -> float | None:
+    """Paths of one kind per sample index; 0: none; None: as many as suit the frame.
+
+    Args:
+        value: ``"auto"``, ``"off"``, or a number, which may be text.
+        where: For messages.
+
+    Raises:
+        UsageError: None of these, or a number out of range.
+    """
+    if value == "auto":
+        return None
+    if value == "off":
+        return 0.0
+    paths = _path_counts([value], 1)
+    if paths is None:
+        wanted = f"auto, off, or a number of paths per sample index, 0 .. {MOST:g}"
+        raise UsageError(f"{where}: wanted {wanted}; got {short(value)}")
+    return paths[0]
+
+
+def _path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
     """One to ``most`` numbers of paths per sample index, which may be text; None: they are not."""
     try:
         if any(isinstance(part, bool | bytes) for part in parts):

@@ -10,17 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import daguerre._core as _core
 
-from .camera_checks import TRACED
 from .checks import number, numbers, short
 from .errors import UsageError
-from .light_paths import MOST, path_counts
 
 if TYPE_CHECKING:
     from .camera import Camera
 
 #: Paths per sample index that ``auto`` takes, for each pixel of the frame.
 PER_PIXEL = 2.0
-WANTED = f"auto, off, or a number of paths per sample index, 0 .. {MOST:g}"
 
 
 @dataclass(frozen=True)
@@ -47,39 +44,6 @@ class LensScatter:
     gloss_lobe: tuple[float, float] = (0.1, -2.5)
     surface_rms_nm: float = 1.0
     surface_lobe: tuple[float, float] = (0.01, -1.5)
-
-
-def check_scatter(value: object, where: str = "scatter") -> float | None:
-    """Paths per sample index; 0: no scatter; None: as many as suit the frame.
-
-    Args:
-        value: ``"auto"``, ``"off"``, or a number, which may be text.
-        where: For messages.
-
-    Raises:
-        UsageError: None of these, or a number out of range.
-    """
-    if value == "auto":
-        return None
-    if value == "off":
-        return 0.0
-    paths = path_counts([value], 1)
-    if paths is None:
-        raise UsageError(f"{where}: wanted {WANTED}; got {short(value)}")
-    return paths[0]
-
-
-def check_lens(model: str, where: str = "scatter") -> None:
-    """Only a lens with surfaces has a barrel.
-
-    Raises:
-        UsageError: The lens has none.
-    """
-    if model not in TRACED:
-        raise UsageError(
-            f"{where}: wanted a lens with surfaces, which has a barrel and an iris (lens_model "
-            f"{' or '.join(TRACED)}), got {model}"
-        )
 
 
 def parts_of(camera: Camera) -> _core.LensScatter:

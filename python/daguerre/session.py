@@ -22,16 +22,17 @@ from . import shutter
 from .adaptive import Round, check_noise, rounds
 from .build import build, content_hash
 from .camera import Camera
+from .camera_checks import check_surfaces
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
-from .flare import PER_PIXEL, check_flare, check_highlights, check_lens, check_used
+from .flare import PER_PIXEL as FLARE_PER_PIXEL
+from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
-from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, show_plan
+from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
-from .scatter import check_lens as check_scatter_lens
-from .scatter import check_scatter, scatter_facts
+from .scatter import scatter_facts
 from .scene import Scene
 from .truth import GroundTruth, check_gt_time, focused
 from .waves import Diffraction, check_diffraction
@@ -116,11 +117,11 @@ class Session:
         threads = whole(threads, "threads", 0, 1024, "0 (all) .. 1024")
         max_depth = whole(max_depth, "max_depth", 1, 4096)
         wanted = check_light_paths(light_paths)
-        flare_paths = check_flare(flare)
+        flare_paths = check_paths(flare, "flare")
         if flare_order not in (2, 4):
             raise UsageError(f"flare_order: wanted 2 or 4, got {short(flare_order)}")
         flare_highlights = check_highlights(flare_highlights)
-        scatter_paths = check_scatter(scatter)
+        scatter_paths = check_paths(scatter, "scatter")
         check_used(
             {"flare_order": flare_order != 2, "flare_highlights": not flare_highlights},
             flare=flare_paths != 0,
@@ -164,8 +165,10 @@ class Session:
         self._settings.prepare_light(self._core_scene, self._setup.core)
         self._settings.flare_order = flare_order
         self._settings.flare_highlights = flare_highlights
-        self.flare = self._prepare_flare(flare_paths)
-        self.scatter = self._prepare_scatter(scatter_paths)
+        dark = "no light of this scene makes a ghost in this lens"
+        self.flare = self._prepare("flare", flare_paths, FLARE_PER_PIXEL, dark)
+        dark = "nothing shines in this scene, or the lens scatters nothing"
+        self.scatter = self._prepare("scatter", scatter_paths, SCATTER_PER_PIXEL, dark)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
@@ -204,36 +207,22 @@ class Session:
         share = (x1 - x0) * (y1 - y0) / (self.width * self.height)
         return m1 * share, m2 * share
 
-    def _prepare_flare(self, paths: float | None) -> float:
-        """Paths per sample index; 0: off, or no light makes a ghost. Of a crop as of its frame."""
+    def _prepare(self, name: str, paths: float | None, per_pixel: float, dark: str) -> float:
+        """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
         if paths == 0:
             return 0.0
-        check_lens(self._setup.facts["lens_model"])
+        check_surfaces(self._setup.facts["lens_model"], name)
+        prepare = getattr(self._settings, f"prepare_{name}")
         try:
-            shines = self._settings.prepare_flare(self._core_scene, self._setup.core)
+            shines = prepare(self._core_scene, self._setup.core)
         except ValueError as error:
-            raise InputError(f"flare: {error}") from None
+            raise InputError(f"{name}: {error}") from None
         if not shines:
-            self.notes.append("flare: no light of this scene makes a ghost in this lens")
+            self.notes.append(f"{name}: {dark}")
             return 0.0
-        self._settings.flare = PER_PIXEL * self.width * self.height if paths is None else paths
-        return float(self._settings.flare)
-
-    def _prepare_scatter(self, paths: float | None) -> float:
-        """Paths per sample index; 0: off, or there is nothing to scatter. As of flare."""
-        if paths == 0:
-            return 0.0
-        check_scatter_lens(self._setup.facts["lens_model"])
-        try:
-            shines = self._settings.prepare_scatter(self._core_scene, self._setup.core)
-        except ValueError as error:
-            raise InputError(f"scatter: {error}") from None
-        if not shines:
-            self.notes.append("scatter: nothing shines in this scene, or the lens scatters nothing")
-            return 0.0
-        per_frame = SCATTER_PER_PIXEL * self.width * self.height
-        self._settings.scatter = per_frame if paths is None else paths
-        return float(self._settings.scatter)
+        wanted = per_pixel * self.width * self.height if paths is None else paths
+        setattr(self._settings, name, wanted)
+        return float(wanted)
 
     def _scatters(self) -> dict[str, Any]:
         """What the parts of the lens are like."""

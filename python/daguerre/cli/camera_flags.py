@@ -323,7 +323,7 @@ class CameraFlags:
             out["scatter"] = LensScatter(**parts)
         return _refuse_rivals(out)
 
-    def _scatter(self) -> dict[str, float]:
+    def _scatter(self) -> dict[str, Any]:
         given = {
             "barrel": self.scatter_barrel,
             "blades": self.scatter_blades,

@@ -9,9 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.flare import check_flare, check_highlights, check_used
-from daguerre.light_paths import check_light_paths
-from daguerre.scatter import check_scatter
+from daguerre.flare import check_highlights, check_used
+from daguerre.light_paths import check_light_paths, check_paths
 
 from . import console
 from .camera_flags import CameraFlags
@@ -211,11 +210,11 @@ def render(
     check_names(plan.outputs, numbers)
     _check_numbers(seed, threads, max_depth)
     wanted_light = check_light_paths(light_paths, "--light-paths")
-    wanted_flare = check_flare(flare, "--flare")
+    wanted_flare = check_paths(flare, "--flare")
     if flare_order not in (2, 4):
         raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
     highlights = check_highlights(flare_highlights, "--flare-highlights")
-    wanted_scatter = check_scatter(scatter, "--scatter")
+    wanted_scatter = check_paths(scatter, "--scatter")
     check_used(
         {"--flare-order": flare_order != 2, "--flare-highlights": not highlights},
         flare=wanted_flare != 0,
