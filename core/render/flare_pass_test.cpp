@@ -66,6 +66,22 @@ TEST_CASE("what is drawn by what was learned is what is drawn by nothing") {
     CHECK(equality(learned, plain) > 1e-3);
 }
 
+TEST_CASE("what lands beside the frame counts as far as the filter reaches") {
+    const auto scene = bright_scene();
+    const Camera camera = camera_with(test::tessar());
+    RenderSettings s = settings(1, 100);
+    s.filter = Filter(FilterKind::gaussian, 2);
+    const FlareAim aim(*scene, camera, s);
+    const auto lands = [&](Vec2f px) {
+        return aim.on_frame({.film_mm = s.sensor.mm_from_px(px), .transmittance = 0.1f}, 0.5f).has_value();
+    };
+    for (const float y : {-1.9f, kHeight + 1.9f}) CHECK(lands({3, y}));
+    for (const float x : {-1.9f, kWidth + 1.9f}) CHECK(lands({x, 3}));
+    for (const float y : {-2.1f, kHeight + 2.1f}) CHECK_FALSE(lands({3, y}));
+    for (const float x : {-2.1f, kWidth + 2.1f}) CHECK_FALSE(lands({x, 3}));
+    CHECK_FALSE(aim.on_frame({.film_mm = {0, 0}, .transmittance = 0}, 0.5f).has_value());
+}
+
 TEST_CASE("a lens that reflects nothing has no flare") {
     Prescription lens = test::tessar();
     lens.coating = Coating::perfect;
