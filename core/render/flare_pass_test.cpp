@@ -66,6 +66,25 @@ TEST_CASE("what is drawn by what was learned is what is drawn by nothing") {
     CHECK(equality(learned, plain) > 1e-3);
 }
 
+TEST_CASE("from a near light rays are as dense as solid angles of the square tell") {
+    SceneDescription near;
+    near.lights = {PointLight{Vec3f{0.01f, 0.02f, -0.04f}, {1, 1, 1}}};
+    const auto scene = Scene::build(std::move(near));
+    const Camera camera = camera_with(test::tessar());
+    const FlareAim aim(*scene, camera, settings(1, 100));
+    const FlareAim::Random u{0, 0.5f, {0, 0}, {.time = 0.5f}};
+    const auto middle = aim.aim(0, 0, {0, 0}, 0.25, u);
+    REQUIRE(middle);
+    for (const Vec2f at : {Vec2f{0.5f, 0}, Vec2f{0.3f, -0.4f}, Vec2f{-0.6f, 0.1f}}) {
+        const auto path = aim.aim(0, 0, at, 0.25, u);
+        REQUIRE(path);
+        // The square lies across the way from its middle: d = h / cos, and d^2 / cos is per sr what is per m2.
+        const double cosine = dot(path->lens.ray.direction, middle->lens.ray.direction);
+        CHECK(cosine < 0.995);
+        CHECK(path->density / middle->density == doctest::Approx(std::pow(cosine, -3)).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("what lands beside the frame counts as far as the filter reaches") {
     const auto scene = bright_scene();
     const Camera camera = camera_with(test::tessar());
