@@ -3,8 +3,8 @@
     python bench/flare_highlights.py [--json] [--paths 200000]
 
 Three balls on a floor, under a sky of one colour, and a sun: matte ones with the sun in the frame,
-whose ghosts it is that must not get noisier; and of chrome with the sun behind the camera, where all
-that is bright comes by way of them. CPU seconds of one thread, without and with highlights; the
+whose ghosts must not get noisier; and of chrome with the sun behind the camera, where all that is
+bright comes by way of them. CPU seconds of one thread, without and with highlights; the
 error is relMSE of the flare as of ``bench/flare.py``, from two pictures and their mean.
 """
 

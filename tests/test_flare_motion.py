@@ -33,7 +33,7 @@ Pictures = NDArray[np.float64]
 
 
 def camera(**changes: Any) -> dg.Camera:
-    return dg.Camera(**({"lens": LENS, "f_stop": 4.0, "focus_distance": 3.0} | changes))
+    return dg.Camera(**{"lens": LENS, "f_stop": 4.0, "focus_distance": 3.0, **changes})
 
 
 def across(first: Any, last: Any) -> dg.Keys:
