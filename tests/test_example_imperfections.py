@@ -15,6 +15,7 @@ import typer.main
 
 import daguerre as dg
 from daguerre import analysis, cli
+from daguerre.analysis.ghosts import Ghosts
 from daguerre.post.recipe import from_words
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,6 +29,7 @@ from ways import Panel, Word  # noqa: E402
 from words import WEAK, WORDS  # noqa: E402
 
 import axial_colour  # noqa: E402
+import polynomial_ghosts  # noqa: E402
 
 SCENES = ("wheel", "fair", "strings", "wall", "trees", "dusk")
 COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in panel.commands]
@@ -86,36 +88,40 @@ def test_the_page_is_what_the_words_say() -> None:
         assert (GALLERY / f"{word.name}.jpg").stat().st_size < 400_000
 
 
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the page's commands find their scenes."""
+    made = tmp_path_factory.mktemp("page")
+    make(made / "out" / "imperfections")
+    lamps = [ROOT / "examples" / "lens_scenes.py", "--only", "lamps"]
+    subprocess.run([sys.executable, *lamps], check=True, cwd=made, capture_output=True)
+    return made
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("word", WORDS, ids=lambda word: word.name)
-def test_small_pictures_of_every_word(word: Word, tmp_path: Path) -> None:
+def test_small_pictures_of_every_word(word: Word, workplace: Path) -> None:
     """All commands, at a tenth of the size: each writes what the next one reads."""
-    for script in ("imperfections.py", "lens_scenes.py"):
-        only = ["--only", "lamps"] if script == "lens_scenes.py" else []
-        scenes = [sys.executable, ROOT / "examples" / script, *only]
-        subprocess.run(scenes, check=True, cwd=tmp_path, capture_output=True)
     for panel in word_page.panels(word):
         for command in panel.commands:
             program, *rest = shlex.split(small(command))
-            rest = [str(ROOT / part) if part.startswith("examples/") else part for part in rest]
             own = [] if program == "python" else ["-m", "daguerre.cli"]
-            subprocess.run([sys.executable, *own, *rest], check=True, cwd=tmp_path)
-    sheet = compose(word, tmp_path / "out/imperfections")
-    assert sheet.ndim == 3
+            subprocess.run([sys.executable, *own, *rest], check=True, cwd=workplace)
+    assert compose(word, workplace / "out" / "imperfections").ndim == 3
 
 
 def small(command: str) -> str:
-    """The same with a tenth of the pixels on each side, and a few samples."""
-    tenth = [lambda m: f"--res {int(m[1]) // 10}x{int(m[2]) // 10}"]
-    command = re.sub(r"--res (\d+)x(\d+)", tenth[0], command)
-    command = re.sub(r"--spp \d+", "--spp 2", command)
-    command = re.sub(r"--light-paths \d+", "--light-paths 1000", command)
-    command = command.replace("portrait-85mm-f2-and", "portrait-85mm-f2-and")
-    return re.sub(
-        r"--crop ([\d,]+)",
-        lambda m: "--crop " + ",".join(str(int(v) // 10) for v in m[1].split(",")),
-        command.replace("lens=examples/", f"lens={ROOT}/examples/"),
-    )
+    """The same with a tenth of the pixels on each side, and little light; from any folder."""
+
+    def tenth(number: re.Match[str]) -> str:
+        return str(int(number[0]) // 10)
+
+    for flag in (r"--res \d+x\d+", r"--crop [\d,]+"):
+        command = re.sub(flag, lambda m: re.sub(r"\d+", tenth, m[0]), command)
+    for flag, value in (("spp", 2), ("light-paths", 1000), ("flare", 1000)):
+        command = re.sub(rf"--{flag} \d+", f"--{flag} {value}", command)
+    command = re.sub(r"(?<![\w/])examples/", f"{ROOT}/examples/", command)
+    return f"{command} --count 2" if "polynomial_ghosts" in command else command
 
 
 def test_displacement_finds_a_planted_shift() -> None:
@@ -172,3 +178,25 @@ def test_each_colour_is_sharp_where_axial_colour_says() -> None:
         there = analysis.set_up(lens, focus_m=distance)
         image = there.film_z + float(analysis.axial_colour(there, [nm])[0])
         assert image == pytest.approx(film.film_z, abs=0.01)
+
+
+def test_ghosts_by_polynomials_land_where_exact_rays_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Middle and size of a ghost that is all on the film, 5 degrees off the axis."""
+    monkeypatch.setattr(polynomial_ghosts, "GRID", 64)
+    bench = analysis.set_up(dg.lenses.load("zeiss-biotar-50mm-f1.4"), f_stop=4)
+    exact = Ghosts(bench, 5.0).find((2, 0))
+    toward = np.array([0.0, np.sin(np.radians(5)), np.cos(np.radians(5))])
+    red, green, blue = polynomial_ghosts.footprint(bench, (0, 2), toward, 7)
+    middle = green.mean(axis=0)
+    assert middle == pytest.approx(exact.center, abs=0.05)
+    radius = np.sqrt(((green - middle) ** 2).sum(axis=1).mean())
+    assert radius == pytest.approx(exact.radius, rel=0.05)
+    assert abs(red.mean(axis=0)[1] - blue.mean(axis=0)[1]) > 0.01  # they have colours
+
+
+def test_the_sun_is_drawn_upright() -> None:
+    """A ghost beside the sun's own picture lands on its side of the picture's middle."""
+    points = np.array([[-3.0, 2.0]])  # the film has right and left, up and down changed
+    share = polynomial_ghosts.spread(points, 0.1, (100, 200))
+    assert share.sum() == pytest.approx(1)
+    assert np.argwhere(share)[0].tolist() == [70, 130]

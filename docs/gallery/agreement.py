@@ -19,7 +19,8 @@ def agreement(word: Word, folder: Path) -> list[Figures]:
     for row in word.rows:
         planes, window = read(folder / f"{row[0].file}.exr")
         truth = colours(planes, row[0].layer)
-        first: Figures = {"picture": row[0].caption, "noise": _noise(planes, truth)}
+        noise = math.nan if row[0].layer else _noise(planes, truth)  # of a layer it is not known
+        first: Figures = {"picture": row[0].caption, "noise": noise}
         found.append(first | (fringes(truth) if word.fringes else {}))
         for panel in row[1:]:
             if panel.none:

@@ -55,8 +55,8 @@ denoised here.
 
 ABOUT_WORDS = """## Imperfections
 
-Spherical aberration, coma, colour, astigmatism, distortion, vignetting, bloom, halos and stars,
-each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
+Spherical aberration, coma, colour, astigmatism, distortion, vignetting, flares, bloom, halos and
+stars, each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
 """
 
 ABOUT_BLENDER = """## A lens that left

@@ -6,7 +6,7 @@ from ways import OUT, Panel, Ways, Word, post, render
 
 DARK = "--max-depth 1"
 STRINGS, WHEEL, FAIR = (f"{OUT}/{name}.glb" for name in ("strings", "wheel", "fair"))
-WALL, TREES = (f"{OUT}/{name}.glb" for name in ("wall", "trees"))
+WALL, TREES, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "dusk"))
 NOKTON = "voigtlander-nokton-50mm-f1.5"
 PANCOLAR = "zeiss-jena-pancolar-50mm-f2"
 PETZVAL = "petzval-100mm-f2.2"
@@ -298,6 +298,75 @@ but printing, film and taste do; it is there as an effect.""",
     ),
 )
 
+_FLARED = f"--lens {BIOTAR} --focus inf"
+_SEEN = f"--res 480x320 {DARK} --spp 32 --light-paths off"
+
+
+def _flare_row(file: str, camera: str, sun: str, note: str) -> tuple[Panel, ...]:
+    """Ghosts traced, by polynomials, and made up."""
+    seen = f"{camera}{_FLARED}"
+    return (
+        Panel(
+            f"traced{note}",
+            f"{file}_traced",
+            (render(DUSK, f"{seen} --f-stop 4 {_SEEN} --flare 150000", f"{file}_traced"),),
+        ),
+        Panel(
+            f"polynomial{note}",
+            f"{file}_polynomial",
+            (
+                render(
+                    DUSK,
+                    f"{seen} --f-stop 4 --lens-model polynomial --degree 9 {_SEEN}",
+                    f"{file}_none",
+                ),
+                f"python examples/polynomial_ghosts.py {OUT}/{file}_none.exr "
+                f"{OUT}/{file}_polynomial.exr --lens {BIOTAR} --f-stop 4 --sun={sun}",
+            ),
+        ),
+        Panel(
+            f"2D{note}",
+            f"{file}_2d",
+            (
+                render(DUSK, f"{seen} --lens-model pinhole {_SEEN}", f"{file}_pinhole"),
+                post(
+                    f"{file}_pinhole",
+                    f"{file}_2d",
+                    "fake-flare:threshold=50,reflectance=0.04,ghosts=12,seed=3",
+                ),
+            ),
+        ),
+    )
+
+
+FLARES = Word(
+    "flares",
+    "Lens flares",
+    """\
+A sun in the frame, 11 degrees off the axis, through a Biotar of 1927: its glass is not coated,
+each surface sends 4 % back, and 45 pairs of surfaces make as many ghosts, strung along the line
+through the sun and the middle of the picture. Some are patches of the round iris, some have
+caustics, and their edges have colours. The second row is the ghosts alone; in the third the
+camera has turned away until the sun stands at the very edge, just outside of a pinhole's frame,
+and ghosts are still in it. Polynomials draw them by the construction kit of Hullin, Hanika and
+Heidrich (examples/polynomial_ghosts.py): a Taylor series for each pair and colour, about the
+middle of its light. They know front and iris, but no other mounts, take the light of each ghost
+from `daguerre lens NAME --flare`, and leave out faint ghosts that have no series there; the
+thin streaks are series beyond their reach. The fake knows neither lens nor sun: its ghosts are
+made up, and are gone with the sun. Light that barrel, blades and glass scatter is another part
+of flare: [scatter.md](../scatter.md).""",
+    (
+        _flare_row("flare", "", "-11,4.2", ""),
+        (
+            Panel("traced, ghosts alone", "flare_traced", layer="flare"),
+            Panel("polynomial, ghosts alone", "flare_polynomial", layer="flare"),
+            Panel("2D", none="The fake keeps no layer of its own."),
+        ),
+        _flare_row("flare_aside", "--camera aside ", "-21,4.41", ", sun at the edge"),
+    ),
+    quality=82,
+)
+
 _STARS = "--f-stop 16 --blades 6 --blade-curvature 0"
 STARS = Word(
     "stars",
@@ -382,4 +451,4 @@ lens, so it is an effect of the darkroom only.""",
 )
 
 WORDS = [SPHERICAL, COMA, AXIAL, LATERAL, ASTIGMATISM, CYLINDER, DISTORTION, VIGNETTING]
-WORDS += [STARS, BLOOM, HALOS]
+WORDS += [FLARES, STARS, BLOOM, HALOS]

@@ -12,13 +12,17 @@ import numpy as np
 from imperfections.glow import Glow
 from kit import shapes, textures
 from kit.glb import Glb
-from kit.pose import Point
+from kit.pose import Point, look
 
 SUN = (-11.0, 4.2)  # to the right and up, degrees
 DIAMETER = 0.53  # of the sun, degrees
 LUMINANCE = 9000.0  # cd/m2, of which 1 shows as white
+COLOR = (1.0, 0.86, 0.66)
+AUREOLE = ((1.7, 40.0), (2.6, 3.0))  # of haze: in radii of the sun, cd/m2
 FAR = 1000.0  # m
+EDGE = 36.0  # of sky and water to each side, degrees
 HORIZON = -2.6  # degrees
+ASIDE = math.radians(10)  # how far to the right the second camera looks
 
 
 def make() -> Glb:
@@ -29,8 +33,14 @@ def make() -> Glb:
     _boat(glow, (26.0, 0.0, -150.0))
     _lighthouse(glow)
     right, up = (math.tan(math.radians(a)) * FAR for a in SUN)
-    glow.lamp((right, up, -FAR), 0.5 * math.radians(DIAMETER) * FAR, (1, 0.86, 0.66), LUMINANCE)
+    radius = 0.5 * math.radians(DIAMETER) * FAR
+    glow.lamp((right, up, -FAR), radius, COLOR, LUMINANCE)
+    for behind, (wide, luminance) in enumerate(AUREOLE, 1):
+        glow.lamp((right, up, -FAR - behind), wide * radius, COLOR, luminance)
     glow.camera((0, 0, 0), (0, 0, -FAR), 50, 8, (0, 0, -FAR))
+    aside = glow.glb.add_camera("aside", 50, 8, FAR)
+    turn = look((0, 0, 0), (math.sin(ASIDE), 0, -math.cos(ASIDE)))
+    glow.glb.add_node("aside", camera=aside, rotation=turn)
     return glow.glb
 
 
@@ -40,33 +50,33 @@ def _height(degrees: float, away: float) -> float:
 
 def _sky(glow: Glow) -> None:
     """Brighter toward the horizon and around the sun."""
-    high, wide = 160, 320
+    high, wide = 160, 384
     y, x = np.mgrid[:high, :wide]
-    right, up = 60.0 * (x / wide - 0.5), 20.0 - 23.0 * y / high
+    right, up = 2 * EDGE * (x / wide - 0.5), 20.0 - 23.0 * y / high
     near = np.exp(-np.hypot(right - SUN[0], 1.4 * (up - SUN[1])) / 6)
     colors = [(0.20, 0.25, 0.40), (0.38, 0.36, 0.45), (0.62, 0.47, 0.42), (0.78, 0.52, 0.36)]
     sky = textures.ramp(np.clip(y / high, 0, 1), colors) + near[..., None] * (0.26, 0.24, 0.16)
     sky += 0.004 * textures.noise((high, wide), (2, 6), 3)[..., None]
     top, bottom = _height(20, 1.2 * FAR), _height(-3, 1.2 * FAR)
-    side = 2 * _height(30, 1.2 * FAR)
+    side = 2 * _height(EDGE, 1.2 * FAR)
     at = (0, 0.5 * (top + bottom), -1.2 * FAR)
     glow.hang("sky", shapes.square(side, top - bottom), sky, at)
 
 
 def _water(glow: Glow) -> None:
     """Dark waves, and the way of light under the sun."""
-    high, wide = 200, 600
+    high, wide = 200, 720
     y, x = np.mgrid[:high, :wide]
     depth = (y + 0.5) / high
     waves = textures.noise((high, wide), (1.5, 7), 9) * (0.3 + depth)
-    right = 60.0 * (x / wide - 0.5)
+    right = 2 * EDGE * (x / wide - 0.5)
     path = np.exp(-(((right - SUN[0]) / (1.4 + 3.5 * depth)) ** 2))
     color = textures.ramp(depth, [(0.42, 0.34, 0.34), (0.19, 0.20, 0.27), (0.10, 0.12, 0.18)])
     color = color * (1 + 0.25 * waves)[..., None]
     glitter = np.clip(waves - 0.2 + 0.4 * (1 - depth), 0, 1.2) * path
     color += glitter[..., None] * (0.75, 0.60, 0.42)
     top, bottom = _height(HORIZON, 0.9 * FAR), _height(-15, 0.9 * FAR)
-    side = 2 * _height(30, 0.9 * FAR)
+    side = 2 * _height(EDGE, 0.9 * FAR)
     at = (0, 0.5 * (top + bottom), -0.9 * FAR)
     glow.hang("water", shapes.square(side, top - bottom), color, at)
 
