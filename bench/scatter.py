@@ -104,14 +104,12 @@ def main() -> None:
     )
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
-    facts = {
-        "noise": noise(arguments),
-        "veiling_glare": [glare(name, arguments.walks) for name in arguments.glare],
-    }
+    drawn = noise(arguments)
+    glares = [glare(name, arguments.walks) for name in arguments.glare]
     if arguments.json:
-        print(json.dumps(facts, indent=2))
+        print(json.dumps({"noise": drawn, "veiling_glare": glares}, indent=2))
         return
-    for line in (facts["noise"], *facts["veiling_glare"]):
+    for line in (drawn, *glares):
         print(
             ", ".join(
                 f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in line.items()

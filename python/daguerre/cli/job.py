@@ -177,6 +177,14 @@ class Job:
             "highlights": f"{session.flare_spots} bright spots, by {session.survey_rays} rays",
         }
 
+    def _scatter_stats(self) -> dict[str, str]:
+        """Of light that the lens's parts scatter, as of ghosts."""
+        count = self.session.scatter_path_count
+        if not count:
+            return {}
+        share = self.session.scatter_hits / count
+        return {"scatter": f"{count} paths, {share:.1%} of them to the frame"}
+
     def _print_stats(self, elapsed: float) -> None:
         import resource
 
@@ -194,6 +202,7 @@ class Job:
             "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
             **self._light_stats(),
             **self._flare_stats(),
+            **self._scatter_stats(),
             "bad samples": str(self.session.bad_samples[0]),
             "peak memory": f"{usage.ru_maxrss / 1024:.0f} MB",
         }
