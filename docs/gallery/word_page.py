@@ -48,6 +48,7 @@ the sheet (`--tone soft`) and measures, against the traced picture of the row:
 | noise | the relMSE that the traced picture's own noise makes |
 
 Polynomials draw with the same random numbers as the lens, so most of their noise is the same.
+Where shapes differ, as of discs and ghosts, displacement says little.
 """
 
 
