@@ -234,7 +234,7 @@ class Film:
         return self._bands
 
     def mean_xyz(self) -> NDArray[np.float32]:
-        return self._xyz
+        return self._xyz.copy()
 
 
 def planned(pupils: Any, bands: int, pitch_mm: float = 0.006) -> dict[str, Any]:

@@ -150,8 +150,11 @@ def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float3
         spread(plane, _whole(half), threads=threads, out=made)
         _add(xyz, made, colours[b])
     mean = _whole(np.tensordot(light[bright] / light[bright].sum(), kernels, 1))
-    del kernels
-    rest = _beside(bands, colours * (light > DARK * light.max())[:, None], film.mean_xyz())
+    del kernels, half  # the loop's last one is a view of them all
+    rest = film.mean_xyz()  # a new array at each call
+    colours[light <= DARK * light.max()] = 0
+    for row, known in zip(rest, bands, strict=True):
+        row -= known @ colours  # what bands do not tell
     for k in range(3):
         plane[:] = rest[:, :, k, None]
         spread(plane, mean, threads=threads, out=made)
@@ -163,16 +166,6 @@ def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[n
     """Adds light (H, W, 1) of a colour; row by row, to save memory."""
     for row, light in zip(xyz, plane, strict=True):
         row += light * colour
-
-
-def _beside(
-    bands: NDArray[np.float32], colours: NDArray[np.float32], xyz: NDArray[np.float32]
-) -> NDArray[np.float32]:
-    """What bands do not tell of XYZ; row by row, to save memory."""
-    rest = np.empty_like(xyz)
-    for y, row in enumerate(bands):
-        rest[y] = xyz[y] - row @ colours
-    return rest
 
 
 def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
