@@ -51,6 +51,17 @@ def test_a_white_world_is_one_on_the_axis(model: str) -> None:
     assert luminance.mean() == pytest.approx(1, abs=0.01)
 
 
+def test_a_pinhole_heeds_no_f_stop() -> None:
+    """A file's camera may be faster than the lens that takes its place."""
+    found = []
+    for stop in ({}, {"f_stop": 1.2}):
+        camera = dg.Camera(lens=LENS, lens_model="pinhole", focus_distance=3.0).with_(**stop)
+        found.append(rays(camera, [(3.0, 2.0)], 4)[1])
+    np.testing.assert_array_equal(found[0], found[1])
+    with pytest.raises(dg.DaguerreError, match=r"wanted f/\S+ or narrower"):
+        white("exact", f_stop=1.2)
+
+
 @pytest.mark.parametrize("model", ["thin", "thick", "exact"])
 def test_a_grey_iris_takes_no_exposure(model: str) -> None:
     """Pictures of the iris count as their own unit, grey and black parts alike."""

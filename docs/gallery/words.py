@@ -351,8 +351,9 @@ camera has turned away until the sun stands at the very edge, just outside of a 
 and ghosts are still in it. Polynomials draw them by the construction kit of Hullin, Hanika and
 Heidrich (examples/polynomial_ghosts.py): a Taylor series for each pair and colour, about the
 middle of its light. They know front and iris, but no other mounts, take the light of each ghost
-from `daguerre lens NAME --flare`, and leave out faint ghosts that have no series there; the
-thin streaks are series beyond their reach. The fake knows neither lens nor sun: its ghosts are
+from `daguerre lens NAME --flare`, and leave out ghosts that have no series there, of which the
+crescent at the right edge of the third row is one; the thin streaks are series beyond their
+reach. The fake knows neither lens nor sun: its ghosts are
 made up, and are gone with the sun. Light that barrel, blades and glass scatter is another part
 of flare: [scatter.md](../scatter.md).""",
     (

@@ -87,7 +87,7 @@ def set_up(
     lens = lens if camera.zoom is None else lens.at_zoom(camera.zoom)
     order = lens.first_order()
     transmittance = _transmittance(lens, order)
-    f_stop = _f_stop(camera, lens, order, transmittance)
+    f_stop = _f_stop(camera, lens, model, order, transmittance)
     if any(camera.tilt):
         imaging = _imaging(order)
         focus.sharp_at = lambda point: tilt.focus_on(imaging, camera.tilt, point)
@@ -213,10 +213,16 @@ def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
 
 
 def _f_stop(
-    camera: Camera, lens: lenses.Lens, order: lenses.FirstOrder, transmittance: float
+    camera: Camera,
+    lens: lenses.Lens,
+    model: str,
+    order: lenses.FirstOrder,
+    transmittance: float,
 ) -> float:
     if camera.t_stop is None:
-        return camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+        f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+        # A pinhole does not open: a scene's f-stop that the lens lacks is no error.
+        return max(f_stop, order.f_number) if model == "pinhole" else f_stop
     f_stop = camera.t_stop * math.sqrt(transmittance)
     if f_stop < 0.99 * order.f_number:  # as the core grants
         widest = order.f_number / math.sqrt(transmittance)
