@@ -101,7 +101,7 @@ bool FlareSources::has_size(int source) const {
 std::optional<FlarePoint> FlareSources::sample(int which, float u_select, Vec2f u, float time,
                                                const Viewpoint& view) const {
     const Source& source = sources_[which];
-    if (source.highlight >= 0) return highlights_.sample(source.highlight, u);
+    if (source.highlight >= 0) return highlights_.sample(source.highlight, u, time);
     if (source.tile) return sample_tile(*source.tile, u, time);
     if (source.hot >= 0) {
         const Environment::Sample s = hot_parts_[source.hot].sample(u, time);

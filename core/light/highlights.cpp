@@ -9,7 +9,8 @@ std::optional<Vec2f> HighlightSpot::meet(const Ray& ray) const {
     const Vec3f way = frame.to_local(ray.direction), from = frame.to_local(ray.origin - anchor);
     if (!(way.z > 0)) return std::nullopt;
     const Vec2f s{way.x / way.z, way.y / way.z};
-    return Vec2f{s.x + nearness * (from.x - s.x * from.z), s.y + nearness * (from.y - s.y * from.z)};
+    const Vec2f at{s.x + nearness * (from.x - s.x * from.z), s.y + nearness * (from.y - s.y * from.z)};
+    return at - velocity * (ray.time - 0.5f);
 }
 
 bool HighlightSpot::holds(const Ray& ray) const {
@@ -20,9 +21,9 @@ bool HighlightSpot::holds(const Ray& ray) const {
 }
 
 /// On its plane; at infinity a direction.
-FlarePoint HighlightSpot::sample(Vec2f u) const {
+FlarePoint HighlightSpot::sample(Vec2f u, float time) const {
     const Sample2D s = weights.sample(u);
-    const Vec2f t{low.x + size.x * s.x, low.y + size.y * s.y};
+    const Vec2f t = Vec2f{low.x + size.x * s.x, low.y + size.y * s.y} + velocity * (time - 0.5f);
     const Vec3f way = frame.to_world({t.x, t.y, 1});
     const float pdf = s.pdf / (size.x * size.y), far = length(way);
     FlarePoint from;
@@ -49,8 +50,8 @@ double Highlights::illuminance(int part) const {
     return tile.luminance * tile.tile.solid_angle();
 }
 
-FlarePoint Highlights::sample(int part, Vec2f u) const {
-    return part < spots() ? spots_[part].sample(u) : tiles_[part - spots()].sample(u);
+FlarePoint Highlights::sample(int part, Vec2f u, float time) const {
+    return part < spots() ? spots_[part].sample(u, time) : tiles_[part - spots()].sample(u);
 }
 
 bool Highlights::owns(int part, const Ray& ray) const {

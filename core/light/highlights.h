@@ -3,7 +3,7 @@
 //
 // A mirror shows a lamp at the place of its image, as if there were a lamp; so does glass. Seen from all over the
 // front of a lens that image stays where it is, while its direction changes. So bright spots are parts of planes
-// as far away as their images are, and only the rest is drawn by direction.
+// as far away as their images are, which go along with what moves; only the rest is drawn by direction.
 #pragma once
 #include <optional>
 #include <span>
@@ -21,15 +21,16 @@ struct HighlightSpot {
     Vec3f anchor;            // m
     Frame frame;             // z: the way
     float nearness = 0;      // 1 / distance of the plane, 1/m; 0: at infinity
-    Vec2f low{}, size{};
+    Vec2f velocity{};        // of tangents, per exposure: of what moves, or is seen from what moves
+    Vec2f low{}, size{};     // at mid-exposure
     Distribution2D weights{};   // of the luminance
     double luminance = 0;    // cd/m2: mean
 
-    /// Where a ray meets the plane; nothing behind the anchor.
+    /// Where a ray meets the plane, moved to mid-exposure; nothing behind the anchor.
     std::optional<Vec2f> meet(const Ray& ray) const;
     bool holds(const Ray& ray) const;
     double solid_angle() const { return double(size.x) * size.y; }   // nearly
-    FlarePoint sample(Vec2f u) const;
+    FlarePoint sample(Vec2f u, float time) const;
 };
 
 /// Directions that are not bright spots.
@@ -52,7 +53,7 @@ class Highlights {
     int spots() const { return int(spots_.size()); }
     /// lux, on a surface that faces it.
     double illuminance(int part) const;
-    FlarePoint sample(int part, Vec2f u) const;
+    FlarePoint sample(int part, Vec2f u, float time) const;
     /// A ray to the world is drawn by the first spot that holds it alone, and by a tile if none does.
     bool owns(int part, const Ray& ray) const;
 

@@ -22,6 +22,7 @@ constexpr int kGrid = 16, kPerCell = 4;  // what is known of a spot in the end
 constexpr std::size_t kMostSpots = 48;
 constexpr double kHot = 8;               // times the mean: a spot
 constexpr double kPeak = 16;             // what one path finds: there may be one
+constexpr double kMoves = 0.1;           // of the variance of what is bright: such a share is no chance
 constexpr float kBright = 0.1f;          // of the luminance of what is bright: belongs to it
 constexpr float kLeast = 0.1f;           // of the mean: no part of a spot or tile is drawn less often
 constexpr int kTileSequence = -6, kSpotSequence = -16;   // where pixels have their row
@@ -90,7 +91,7 @@ class Surveyor {
     std::optional<Look> look(const Toward& toward, PathSampler& sampler, float spread, std::uint64_t& rays) const {
         const CameraRandom u = sampler.camera();
         const Moment moment = view_.shutter.draw_any(u.time);
-        const auto ray = view_.ray(toward(u.film), {2 * u.lens.x - 1, 2 * u.lens.y - 1}, moment.time);
+        const auto ray = view_.ray(toward(u.film, moment.time), {2 * u.lens.x - 1, 2 * u.lens.y - 1}, moment.time);
         if (!ray) return std::nullopt;
         const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
         Wavelengths own = wavelengths;
@@ -107,6 +108,7 @@ class Surveyor {
     std::vector<HighlightSpot> worth_it(std::vector<HighlightSpot> spots);
     bool learn(HighlightSpot& spot, std::span<const HighlightSpot> before, int sequence);
     std::optional<HighlightTile> rest(std::size_t tile, std::span<const HighlightSpot> spots) const;
+    Vec2f velocity(const HighlightSpot& spot, std::span<const Look> looks) const;
     float nearness(const HighlightSpot& spot, std::span<const Look> looks) const;
 
     const Scene& scene_;
@@ -126,7 +128,7 @@ void Surveyor::look_around() {
         for (int i = 0; i < kCount; ++i) {
             PathSampler sampler(int(t), kTileSequence, std::uint32_t(i), 0);
             int cell = 0;
-            const auto toward = [&](Vec2f u) {
+            const auto toward = [&](Vec2f u, float) {
                 cell = int(u.y * kCells) * kCells + int(u.x * kCells);
                 return FlarePoint{{.position = tiles_[t].at(u)}, true};
             };
@@ -188,9 +190,9 @@ std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int s
     for (int i = 0; i < count; ++i) {
         PathSampler sampler(sequence, kSpotSequence, std::uint32_t(i), 0);
         int cell = 0;
-        const auto toward = [&](Vec2f u) {
+        const auto toward = [&](Vec2f u, float time) {
             cell = int(u.y * kGrid) * kGrid + int(u.x * kGrid);
-            return evenly.sample(u);
+            return evenly.sample(u, time);
         };
         if (auto found = look(toward, sampler, spread, rays)) {
             found->cell = cell;
@@ -223,6 +225,28 @@ float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks)
     return best * view_.radius < 1e-5f ? 0 : best;
 }
 
+/// By which what is bright moves along, as it is seen on the plane so far: least squares.
+Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const Look> looks) const {
+    HighlightSpot still = spot;
+    still.velocity = {};
+    double sum = 0, t = 0, tt = 0, x = 0, y = 0, tx = 0, ty = 0, squares = 0;
+    for (const Look& l : looks) {
+        const auto s = still.meet(l.ray);
+        if (!s) continue;
+        const double w = l.luminance, time = l.ray.time;
+        sum += w, t += w * time, tt += w * time * time;
+        squares += w * (double(s->x) * s->x + double(s->y) * s->y);
+        x += w * s->x, y += w * s->y, tx += w * time * s->x, ty += w * time * s->y;
+    }
+    if (!(sum > 0)) return spot.velocity;
+    const double spread = tt - t * t / sum;
+    if (!(spread > 1e-6 * sum)) return {};   // an exposure of no length
+    const double vx = (tx - t * x / sum) / spread, vy = (ty - t * y / sum) / spread;
+    const double explained = (vx * vx + vy * vy) * spread, variance = squares - (x * x + y * y) / sum;
+    if (explained < kMoves * variance) return {};
+    return {float(vx), float(vy)};
+}
+
 /// The rectangle about what is bright in it, until that fills it.
 void Surveyor::close_in(HighlightSpot& spot, int index) {
     float spread = kSpread;
@@ -236,7 +260,8 @@ void Surveyor::close_in(HighlightSpot& spot, int index) {
         for (const Look& l : looks)
             if (l.luminance > least) bright.push_back(l);
         HighlightSpot closer = spot;
-        closer.nearness = nearness(spot, bright);
+        closer.velocity = velocity(spot, bright);
+        closer.nearness = nearness(closer, bright);
         Extent extent;
         for (const Look& l : bright)
             if (const auto at = closer.meet(l.ray)) extent.add(*at);
