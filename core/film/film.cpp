@@ -101,6 +101,19 @@ void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> 
     }
 }
 
+void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) const {
+    constexpr std::size_t kLine = 64;   // bytes
+    const std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
+    const int left = std::max(x0, layout_.offset_x), right = std::min(x1, layout_.offset_x + layout_.width),
+              bottom = std::min(y1, layout_.offset_y + layout_.height);
+    if (left >= right || sums.empty()) return;
+    for (int y = std::max(y0, layout_.offset_y); y < bottom; ++y) {
+        const char* const row = reinterpret_cast<const char*>(sums.data() + find(left, y));
+        for (std::size_t at = 0; at < std::size_t(right - left) * sizeof(Sums); at += kLine)
+            __builtin_prefetch(row + at, 1);
+    }
+}
+
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance) {
     if (bands_.empty()) return add(x, y, sample, wavelengths.to_xyz(radiance));

@@ -75,6 +75,8 @@ class Film {
                     Spectrum radiance);
     void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance, Layer layer = Layer::splats);
+    /// Before splats to pixels [x0, x1) x [y0, y1): their sums come from memory while other things are done.
+    void prefetch(int x0, int x1, int y0, int y1, Layer layer) const;
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
     /// layouts differ.

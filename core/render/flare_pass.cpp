@@ -9,6 +9,8 @@ namespace dg {
 namespace {
 
 constexpr int kSequence = -4;   // where pixels have their row, in the sampler's scramble
+constexpr float kFarthestPx = 1e6f;   // from the frame: no pixel is there
+constexpr float kMostReach = 2.5f;    // px: of wider filters RayOnFilm chooses one pixel
 constexpr std::size_t kChunk = kLensBatch / kWavelengths;   // paths per call of the lens
 
 }  // namespace
@@ -72,6 +74,7 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
     const FlareArrival& any = work.paths[work.order[first]];
     guide_.aim().trace(guide_.aim().state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
     for (std::size_t i = first; i < last; ++i) {
+        if (i + 1 < last) prefetch(work, i + 1 - first);
         const std::span own(work.landings.data() + (i - first) * kWavelengths, std::size_t(kWavelengths));
         const float time = work.paths[work.order[i]].lens.ray.time;
         bool hits = false;
@@ -82,6 +85,19 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
             hits |= on_film;
         }
         if (hits) finish(work, work.order[i], own);
+    }
+}
+
+/// For a path of those that were traced last.
+void FlarePass::prefetch(const Workspace& work, std::size_t path) const {
+    const float reach = settings_.filter.radius();
+    if (reach > kMostReach) return;
+    for (std::size_t k = path * kWavelengths; k < (path + 1) * kWavelengths; ++k) {
+        if (!(work.landings[k].transmittance > 0)) continue;
+        const Vec2f px = settings_.sensor.px_from_mm(work.landings[k].film_mm);
+        if (!(std::abs(px.x) < kFarthestPx && std::abs(px.y) < kFarthestPx)) continue;
+        film_.prefetch(int(std::floor(px.x - reach)), int(std::ceil(px.x + reach)), int(std::floor(px.y - reach)),
+                       int(std::ceil(px.y + reach)), Film::Layer::flare);
     }
 }
 

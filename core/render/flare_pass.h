@@ -37,6 +37,7 @@ class FlarePass {
   private:
     void begin(Workspace& work, std::uint64_t index) const;
     void trace(Workspace& work, std::size_t first, std::size_t last) const;
+    void prefetch(const Workspace& work, std::size_t path) const;
     void finish(Workspace& work, std::size_t path, std::span<const Reprojection> landings) const;
 
     const Scene& scene_;
