@@ -206,7 +206,7 @@ def prisms() -> dg.Scene:
     [
         ((96, 64), (0, 0, 48, 40), 16),
         # Here the lens's own colours fall outside of the crop, so the hero is weighed otherwise.
-        ((7680, 5120), (600, 800, 608, 808), 300),
+        pytest.param((7680, 5120), (600, 800, 608, 808), 300, marks=pytest.mark.slow),
     ],
 )
 def test_dispersive_glass_agrees_through_the_exact_lens_with_the_hero_alone(
