@@ -15,10 +15,10 @@ from daguerre.analysis.ghosts import Ghosts
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.io.merging import merge
-from daguerre.io.passes import pass_of, read_pass, write_pass
 from daguerre.session import Session
 
 from . import scenes
+from .pass_files import through_files
 
 LENS = "double-gauss-50mm-f2"
 SIZE = (36, 24)
@@ -81,9 +81,7 @@ def test_threads_ranges_and_crops_bring_the_same_light(tmp_path: Path) -> None:
     first, second = session(threads=3), session(threads=2)
     first.draw(0, 1)
     second.draw(1, 3)
-    for name, part in (("a", first), ("b", second)):
-        write_pass(tmp_path / f"{name}.exr", part.frame(), pass_of(part))
-    frame, _ = merge([read_pass(tmp_path / "a.exr"), read_pass(tmp_path / "b.exr")])
+    frame, _ = merge(through_files(tmp_path, first, second))
     assert frame.flare is not None
     np.testing.assert_array_equal(frame.rgb, whole.frame().rgb)
     np.testing.assert_array_equal(frame.flare, whole.frame().flare)
@@ -97,10 +95,10 @@ def test_another_number_of_paths_is_another_picture(tmp_path: Path) -> None:
     for i, paths in enumerate((PATHS, 2 * PATHS)):
         drawn = session(flare=paths)
         drawn.draw(i, i + 1)
-        write_pass(tmp_path / f"{i}.exr", drawn.frame(), pass_of(drawn))
-        parts.append(read_pass(tmp_path / f"{i}.exr"))
+        parts.append(drawn)
+    passes = through_files(tmp_path, *parts)
     with pytest.raises(MismatchError, match="flare"):
-        merge(parts)
+        merge(passes)
 
 
 def test_the_file_has_the_layer(tmp_path: Path) -> None:
@@ -203,11 +201,9 @@ def test_highlights_are_the_same_with_any_threads_and_another_picture_without(
     whole.draw(0, 2)
     parts = [session(mirrored(), threads=3), session(mirrored(), threads=2)]
     parts.append(session(mirrored(), flare_highlights=False))
-    passes = []
     for i, part in enumerate(parts):
         part.draw(min(i, 1), min(i, 1) + 1)
-        write_pass(tmp_path / f"{i}.exr", part.frame(), pass_of(part))
-        passes.append(read_pass(tmp_path / f"{i}.exr"))
+    passes = through_files(tmp_path, *parts)
     frame, _ = merge(passes[:2])
     np.testing.assert_array_equal(frame.flare, whole.frame().flare)
     with pytest.raises(MismatchError, match="flare"):

@@ -16,10 +16,10 @@ from daguerre.analysis.glare import VeilingGlare
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.io.merging import merge
-from daguerre.io.passes import pass_of, read_pass, write_pass
 from daguerre.session import Session
 
 from . import scenes
+from .pass_files import through_files
 
 LENS = "double-gauss-50mm-f2"
 SIZE = (36, 24)
@@ -95,9 +95,7 @@ def test_threads_and_ranges_bring_the_same_light(tmp_path: Path) -> None:
     whole.draw(0, 3)
     first.draw(0, 1)
     second.draw(1, 3)
-    for name, part in (("a", first), ("b", second)):
-        write_pass(tmp_path / f"{name}.exr", part.frame(), pass_of(part))
-    frame, _ = merge([read_pass(tmp_path / "a.exr"), read_pass(tmp_path / "b.exr")])
+    frame, _ = merge(through_files(tmp_path, first, second))
     np.testing.assert_array_equal(frame.rgb, whole.frame().rgb)
     np.testing.assert_array_equal(frame.flare, whole.frame().flare)
 
@@ -110,10 +108,10 @@ def test_other_paths_or_parts_are_another_picture(change: dict[str, Any], tmp_pa
     for i, options in enumerate(({}, change)):
         drawn = session(**options)
         drawn.draw(i, i + 1)
-        write_pass(tmp_path / f"{i}.exr", drawn.frame(), pass_of(drawn))
-        parts.append(read_pass(tmp_path / f"{i}.exr"))
+        parts.append(drawn)
+    passes = through_files(tmp_path, *parts)
     with pytest.raises(MismatchError, match="scatter"):
-        merge(parts)
+        merge(passes)
 
 
 def test_the_file_says_so(tmp_path: Path) -> None:

@@ -2,7 +2,8 @@
 // lamps in mirrors, the sun on chrome and water, bright walls. Found once for a picture, before its ghosts.
 //
 // Paths from all over the front and over the exposure look everywhere; bright spots are looked at again, more
-// and more closely. Lamps too small to be come upon in mirrors are spread out at first (glints.h). What lights the front directly is left out.
+// and more closely. Lamps too small to be come upon in mirrors are spread out at first (glints.h). What lights
+// the front directly is left out.
 #pragma once
 #include <functional>
 
