@@ -7,11 +7,11 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "render/flare_guide.h"
+#include "render/flare/flare_guide.h"
 #include "render/light_guide.h"
 #include "render/pilot.h"
 #include "render/render.h"
-#include "render/scatter_guide.h"
+#include "render/flare/scatter_guide.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

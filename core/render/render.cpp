@@ -12,8 +12,8 @@
 #include "camera/pixel_cone.h"
 #include "math/error.h"
 #include "render/dispersion.h"
-#include "render/flare_pass.h"
-#include "render/scatter_pass.h"
+#include "render/flare/flare_pass.h"
+#include "render/flare/scatter_pass.h"
 #include "render/light_pass.h"
 #include "render/parallel.h"
 

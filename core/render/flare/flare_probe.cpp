@@ -1,4 +1,4 @@
-#include "render/flare_probe.h"
+#include "render/flare/flare_probe.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Ghosts of light that mirrors, glass and walls send to the lens.
-#include "render/highlight_survey.h"
+#include "render/flare/highlight_survey.h"
 
 #include <doctest/doctest.h>
 
-#include "render/flare_scenes.h"
+#include "render/flare/flare_scenes.h"
 
 using namespace dg;
 

@@ -8,7 +8,7 @@
 #pragma once
 #include <vector>
 
-#include "render/flare_guide.h"
+#include "render/flare/flare_guide.h"
 #include "render/ray_on_film.h"
 
 namespace dg {

@@ -5,7 +5,7 @@
 // Units and weights are those of light_pass.h; no other technique finds this light.
 #pragma once
 #include "render/ray_on_film.h"
-#include "render/scatter_guide.h"
+#include "render/flare/scatter_guide.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "render/flare_guide.h"
+#include "render/flare/flare_guide.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "render/flare_cells.h"
+#include "render/flare/flare_cells.h"
 
 namespace dg {
 

@@ -1,9 +1,9 @@
-#include "render/flare_aim.h"
+#include "render/flare/flare_aim.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/highlight_survey.h"
+#include "render/flare/highlight_survey.h"
 #include "render/light_arrival.h"
 
 namespace dg {

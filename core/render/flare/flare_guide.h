@@ -7,8 +7,8 @@
 #pragma once
 #include <optional>
 
-#include "render/flare_aim.h"
-#include "render/flare_learn.h"
+#include "render/flare/flare_aim.h"
+#include "render/flare/flare_learn.h"
 
 namespace dg {
 

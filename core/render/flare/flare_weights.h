@@ -6,8 +6,8 @@
 #pragma once
 #include <vector>
 
-#include "render/flare_probe.h"
-#include "render/flare_tiles.h"
+#include "render/flare/flare_probe.h"
+#include "render/flare/flare_tiles.h"
 
 namespace dg {
 

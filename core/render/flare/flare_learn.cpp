@@ -1,10 +1,10 @@
-#include "render/flare_learn.h"
+#include "render/flare/flare_learn.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "render/flare_weights.h"
+#include "render/flare/flare_weights.h"
 #include "render/parallel.h"
 
 namespace dg {

@@ -1,4 +1,4 @@
-#include "render/glints.h"
+#include "render/flare/glints.h"
 
 #include <algorithm>
 #include <cmath>

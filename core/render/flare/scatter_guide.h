@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "math/distribution.h"
-#include "render/flare_aim.h"
+#include "render/flare/flare_aim.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "render/flare_pass.h"
+#include "render/flare/flare_pass.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/scatter_pass.h"
+#include "render/flare/scatter_pass.h"
 
 #include "math/hash.h"
 

@@ -6,8 +6,8 @@
 #pragma once
 #include <vector>
 
-#include "render/flare_aim.h"
-#include "render/flare_cells.h"
+#include "render/flare/flare_aim.h"
+#include "render/flare/flare_cells.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "render/scatter_guide.h"
+#include "render/flare/scatter_guide.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,11 +1,11 @@
-#include "render/highlight_survey.h"
+#include "render/flare/highlight_survey.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 
-#include "render/glints.h"
+#include "render/flare/glints.h"
 #include "render/parallel.h"
 
 namespace dg {

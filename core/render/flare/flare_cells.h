@@ -2,7 +2,7 @@
 // comes: what places on the front and wavelengths are drawn by.
 #pragma once
 #include "math/distribution.h"
-#include "render/flare_lambda.h"
+#include "render/flare/flare_lambda.h"
 
 namespace dg {
 

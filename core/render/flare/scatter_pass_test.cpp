@@ -1,10 +1,10 @@
 // Scattered light drawn from the emitters is that which walks find that leave the film, go through the lens
 // backward, and look what shines where they come out: nothing is aimed or learned there.
-#include "render/scatter_pass.h"
+#include "render/flare/scatter_pass.h"
 
 #include <doctest/doctest.h>
 
-#include "render/flare_scenes.h"
+#include "render/flare/flare_scenes.h"
 
 using namespace dg;
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <random>
 
-#include "render/flare_pass.h"
+#include "render/flare/flare_pass.h"
 #include "render/light_path_scenes.h"
 
 namespace dg {

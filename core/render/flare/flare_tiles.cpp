@@ -1,4 +1,4 @@
-#include "render/flare_tiles.h"
+#include "render/flare/flare_tiles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include "camera/camera.h"
 #include "light/flare_sources.h"
-#include "render/flare_lambda.h"
+#include "render/flare/flare_lambda.h"
 #include "render/render.h"
 #include "spectrum/wavelengths.h"
 

@@ -1,10 +1,10 @@
 // Ghosts drawn from the emitters are those that rays find which leave the film, go the same ways backward, and
 // look what shines where they come out: nothing is aimed or learned there.
-#include "render/flare_pass.h"
+#include "render/flare/flare_pass.h"
 
 #include <doctest/doctest.h>
 
-#include "render/flare_scenes.h"
+#include "render/flare/flare_scenes.h"
 
 using namespace dg;
 

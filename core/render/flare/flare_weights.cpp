@@ -1,4 +1,4 @@
-#include "render/flare_weights.h"
+#include "render/flare/flare_weights.h"
 
 #include <algorithm>
 #include <cmath>
