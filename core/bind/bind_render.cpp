@@ -165,7 +165,8 @@ void bind_render(nb::module_& m) {
         .def("prepare_flare",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.flare.guide.reset();
-                 const auto guide = std::make_shared<const FlareGuide>(scene, camera, s);
+                 const auto guide = std::make_shared<const FlareGuide>(
+                     std::make_shared<const FlareAim>(scene, camera, s), s);
                  s.flare.guide = guide;
                  return !guide->empty();
              },
@@ -184,7 +185,10 @@ void bind_render(nb::module_& m) {
         .def("prepare_scatter",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.scatter.guide.reset();
-                 const auto guide = std::make_shared<const ScatterGuide>(scene, camera, s);
+                 const bool same = s.flare.guide && s.flare.guide->aim().is_of(scene, camera);
+                 const auto guide = std::make_shared<const ScatterGuide>(
+                     same ? s.flare.guide->shared_aim() : std::make_shared<const FlareAim>(scene, camera, s),
+                     scene, camera, s);
                  s.scatter.guide = guide;
                  return !guide->empty();
              },

@@ -24,6 +24,12 @@ struct LensScatter {
     Finish barrel{}, blades{};
     double surface_rms_nm = 1;   // roughness of every polished surface; 0: none
     HarveyShack surface_lobe{};
+
+    /// Anything at all.
+    bool scatters() const {
+        const auto shines = [](const Finish& f) { return f.diffuse > 0 || f.gloss > 0; };
+        return shines(barrel) || shines(blades) || surface_rms_nm > 0;
+    }
 };
 
 /// Throws Error that names the value.

@@ -171,7 +171,9 @@ class Renderer {
         if (!std::holds_alternative<ExactLens>(camera_.lens))
             throw input_error("render", "flare", "a lens that is traced", "an ideal one");
         flare_guide_ = settings_.flare.guide;
-        if (!flare_guide_) flare_guide_ = std::make_shared<const FlareGuide>(scene_, camera_, settings_);
+        if (!flare_guide_)
+            flare_guide_ = std::make_shared<const FlareGuide>(
+                std::make_shared<const FlareAim>(scene_, camera_, settings_), settings_);
         if (!flare_guide_->empty())
             flare_.emplace(scene_, camera_, film_, settings_, density_,
                            settings_.flare.per_sample * samples_per_count(), *flare_guide_);
@@ -181,7 +183,11 @@ class Renderer {
         if (!std::holds_alternative<ExactLens>(camera_.lens))
             throw input_error("render", "scatter", "a lens that is traced", "an ideal one");
         scatter_guide_ = settings_.scatter.guide;
-        if (!scatter_guide_) scatter_guide_ = std::make_shared<const ScatterGuide>(scene_, camera_, settings_);
+        if (!scatter_guide_)
+            scatter_guide_ = std::make_shared<const ScatterGuide>(
+                flare_guide_ ? flare_guide_->shared_aim()
+                             : std::make_shared<const FlareAim>(scene_, camera_, settings_),
+                scene_, camera_, settings_);
         if (!scatter_guide_->empty())
             scatter_.emplace(scene_, camera_, film_, settings_, density_,
                              settings_.scatter.per_sample * samples_per_count(), *scatter_guide_);

@@ -68,7 +68,7 @@ FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSetting
         radius_ = std::max(radius_, ball.radius + length(ball.center - center_));
     }
     sources_ = FlareSources(scene.lights(), views());
-    if (settings.flare.highlights && !mirrors_.empty()) look_for_highlights(settings);
+    if (settings.flare.highlights && (!mirrors_.empty() || camera.scatter.scatters())) look_for_highlights(settings);
 }
 
 void FlareAim::add_state(const Camera& camera, const ExactLens& lens) {
@@ -128,6 +128,16 @@ std::optional<Vec2f> FlareAim::on_frame(const Reprojection& landing, float time)
     for (int i = -1; i <= 1; ++i)   // the filter reaches some lines
         if (shutter_.opening(std::clamp(line + i, 0, lines - 1), time) > 0) return px;
     return std::nullopt;
+}
+
+int FlareAim::mark_arrived(std::span<Reprojection> landings, float time) const {
+    int arrived = 0;
+    for (Reprojection& landing : landings) {
+        const bool on_film = on_frame(landing, time).has_value();
+        landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
+        arrived += on_film;
+    }
+    return arrived;
 }
 
 double FlareAim::reflectance(int ghost) const {

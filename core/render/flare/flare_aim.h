@@ -34,9 +34,13 @@ Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSetting
 
 class FlareAim {
   public:
-    /// An exact lens; it and the scene outlive this. Of the settings: sensor, shutter, reach of the filter.
+    /// An exact lens; it and the scene outlive this. Of the settings: sensor, shutter, reach of the filter, and
+    /// for highlights how paths go on in the scene.
     FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings);
 
+    bool is_of(const Scene& scene, const Camera& camera) const {
+        return &scene == &scene_ && &camera == &camera_;
+    }
     int ghosts() const { return int(mirrors_.size()); }
     const FlareSources& sources() const { return sources_; }
     /// Bright spots among what other things send to the lens, and how many rays it took to find them.
@@ -68,6 +72,8 @@ class FlareAim {
 
     /// Where on the frame a landing is, px; nothing outside of the filter's reach.
     std::optional<Vec2f> on_frame(const Reprojection& landing, float time) const;
+    /// Tells RayOnFilm which of a path's landings arrive; how many do.
+    int mark_arrived(std::span<Reprojection> landings, float time) const;
 
   private:
     struct State {

@@ -5,6 +5,7 @@
 // rays (flare_learn.h). A share of the paths is drawn without that knowledge, so that what the rays missed costs
 // noise and no bias.
 #pragma once
+#include <memory>
 #include <optional>
 
 #include "render/flare/flare_aim.h"
@@ -14,14 +15,14 @@ namespace dg {
 
 class FlareGuide {
   public:
-    /// As FlareAim.
-    FlareGuide(const Scene& scene, const Camera& camera, const RenderSettings& settings)
-        : aim_(scene, camera, settings),
-          known_(settings.flare.learned ? learn_flare(aim_, settings.threads) : naive_flare(aim_)) {}
+    FlareGuide(std::shared_ptr<const FlareAim> aim, const RenderSettings& settings)
+        : aim_(std::move(aim)),
+          known_(settings.flare.learned ? learn_flare(*aim_, settings.threads) : naive_flare(*aim_)) {}
 
     /// Nothing shines, or nothing reflects: there is no flare.
     bool empty() const { return known_.pairs.empty(); }
-    const FlareAim& aim() const { return aim_; }
+    const FlareAim& aim() const { return *aim_; }
+    std::shared_ptr<const FlareAim> shared_aim() const { return aim_; }
 
     /// From random numbers by purpose; nothing if the path cannot bring light.
     struct Random {
@@ -32,7 +33,7 @@ class FlareGuide {
     std::optional<FlareArrival> draw(const Random& u) const;
 
   private:
-    FlareAim aim_;
+    std::shared_ptr<const FlareAim> aim_;
     FlareKnowledge known_;
 };
 

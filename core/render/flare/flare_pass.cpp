@@ -77,14 +77,9 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
         if (i + 1 < last) prefetch(work, i + 1 - first);
         const std::span own(work.landings.data() + (i - first) * kWavelengths, std::size_t(kWavelengths));
         const float time = work.paths[work.order[i]].lens.ray.time;
-        bool hits = false;
-        for (Reprojection& landing : own) {
-            const bool on_film = guide_.aim().on_frame(landing, time).has_value();
-            landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
-            work.counters.flare_hits += on_film;
-            hits |= on_film;
-        }
-        if (hits) finish(work, work.order[i], own);
+        const int arrived = guide_.aim().mark_arrived(own, time);
+        work.counters.flare_hits += std::uint64_t(arrived);
+        if (arrived > 0) finish(work, work.order[i], own);
     }
 }
 

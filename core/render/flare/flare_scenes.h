@@ -48,7 +48,7 @@ inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, do
     Blocks all;
     RenderSettings s = settings(0, paths);
     s.flare.learned = learned;
-    s.flare.guide = std::make_shared<const FlareGuide>(scene, camera, s);
+    s.flare.guide = std::make_shared<const FlareGuide>(std::make_shared<const FlareAim>(scene, camera, s), s);
     for (int k = 0; k < pictures; ++k) {
         s.seed = std::uint64_t(k) + 1;
         Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});

@@ -17,11 +17,6 @@ constexpr double kDim = 0.002;    // of the light: what brings less is not looke
 constexpr int kCells = 16;        // across
 constexpr int kSequence = -7;     // where pixels have their row, in the sampler's scramble
 
-bool scatters(const LensScatter& parts) {
-    const auto shines = [](const Finish& f) { return f.diffuse > 0 || f.gloss > 0; };
-    return shines(parts.barrel) || shines(parts.blades) || parts.surface_rms_nm > 0;
-}
-
 /// Evenly over the square of FlareAim.
 Vec2f on_square(Vec2f u) {
     return {2 * u.x - 1, 2 * u.y - 1};
@@ -35,22 +30,23 @@ int cell_of(Vec2f at) {
 
 }  // namespace
 
-ScatterGuide::ScatterGuide(const Scene& scene, const Camera& camera, const RenderSettings& settings)
-    : scene_(scene), camera_(camera), aim_(scene, camera, settings) {
+ScatterGuide::ScatterGuide(std::shared_ptr<const FlareAim> aim, const Scene& scene, const Camera& camera,
+                           const RenderSettings& settings)
+    : scene_(scene), camera_(camera), aim_(std::move(aim)) {
     const auto add = [&](const LensKind& kind) {
         const ExactLens& lens = std::get<ExactLens>(kind);
         states_.push_back({lens, lens.scatter(camera.sensor_stack, camera.scatter)});
     };
     if (camera.lens_motion.lenses.empty()) add(camera.lens);
     for (const LensKind& lens : camera.lens_motion.lenses) add(lens);
-    if (scatters(camera.scatter) && aim_.sources().count() > 0) learn(settings.threads);
+    if (camera.scatter.scatters() && aim_->sources().count() > 0) learn(settings.threads);
 }
 
 std::optional<FlareArrival> ScatterGuide::draw(float u_source, Vec2f front, const FlareAim::Random& u) const {
     const DiscreteSample source = sources_.sample(u_source);
     const Front& known = fronts_[source.index];
     const Vec2f at = known.sample(front);
-    return aim_.aim(source.index, 0, at, known.pdf(at) * double(source.pmf), u);
+    return aim_->aim(source.index, 0, at, known.pdf(at) * double(source.pmf), u);
 }
 
 Vec2f ScatterGuide::Front::sample(Vec2f u) const {
@@ -68,7 +64,7 @@ double ScatterGuide::Front::pdf(Vec2f at) const {
 
 ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64_t seed) const {
     const float time = path.lens.ray.time;
-    const State& state = states_[aim_.state_at(time)];
+    const State& state = states_[aim_->state_at(time)];
     const Vec2f shift = setting_at(camera_, time).film_shift_mm;   // the film lay elsewhere then
     Landings landings;
     for (int k = 0; k < kWavelengths; ++k) {
@@ -80,9 +76,9 @@ ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64
 
 /// What one walk of one wavelength brings to the frame, if it comes there.
 std::optional<double> ScatterGuide::light_of(const FlareArrival& path, float nm, std::uint64_t seed) const {
-    const State& state = states_[aim_.state_at(path.lens.ray.time)];
+    const State& state = states_[aim_->state_at(path.lens.ray.time)];
     const auto landing = state.lens.reproject(path.lens, state.parts.at(nm), state.parts, seed);
-    if (!aim_.on_frame(landing, path.lens.ray.time)) return std::nullopt;
+    if (!aim_->on_frame(landing, path.lens.ray.time)) return std::nullopt;
     Spectrum seen = path.radiance;
     if (!path.from.reflected) {   // else it is about what was seen from the lens
         const Ray shadow = flare_shadow(path.from, to_world(camera_, path.lens.ray));
@@ -97,8 +93,8 @@ ScatterGuide::Found ScatterGuide::look(int source, int walks) const {
     for (int i = 0; i < walks; ++i) {
         PathSampler sampler(source, kSequence, std::uint32_t(i), std::uint64_t(walks));
         const CameraRandom c = sampler.camera();
-        const FlareAim::Random u{c.film.x, c.lambda, sampler.next_2d(), aim_.shutter().draw_any(c.time)};
-        const auto path = aim_.aim(source, 0, on_square(c.lens), kSquarePdf, u);
+        const FlareAim::Random u{c.film.x, c.lambda, sampler.next_2d(), aim_->shutter().draw_any(c.time)};
+        const auto path = aim_->aim(source, 0, on_square(c.lens), kSquarePdf, u);
         if (!path) continue;
         const float nm = path->wavelengths.nm[i % kWavelengths];
         const auto light = light_of(*path, nm, hash64(std::uint64_t(source), std::uint64_t(i)));
@@ -129,12 +125,12 @@ ScatterGuide::Front ScatterGuide::front_of(const Found& found) {
 }
 
 void ScatterGuide::learn(int threads) {
-    const int count = aim_.sources().count();
+    const int count = aim_->sources().count();
     std::vector<Found> found(count);
     std::vector<double> brought(count), weights(count);
     parallel_tasks(threads, count, [&](std::int64_t s) {
         found[s] = look(int(s), std::clamp(kFirst / count, kFewest, kMost));
-        brought[s] = aim_.sources().strength(int(s)) * aim_.visible_share(int(s));
+        brought[s] = aim_->sources().strength(int(s)) * aim_->visible_share(int(s));
     });
     double all = 0;
     for (const Found& f : found) all += f.light;

@@ -3,6 +3,7 @@
 // that what the walks missed costs noise and no bias.
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,12 +15,13 @@ namespace dg {
 
 class ScatterGuide {
   public:
-    /// As FlareAim. Error for a lens whose barrel is not known.
-    ScatterGuide(const Scene& scene, const Camera& camera, const RenderSettings& settings);
+    /// The aim's scene and camera. Error for a lens whose barrel is not known.
+    ScatterGuide(std::shared_ptr<const FlareAim> aim, const Scene& scene, const Camera& camera,
+                 const RenderSettings& settings);
 
     /// Nothing shines, or nothing scatters.
     bool empty() const { return sources_.empty(); }
-    const FlareAim& aim() const { return aim_; }
+    const FlareAim& aim() const { return *aim_; }
 
     /// From random numbers by purpose; nothing if the path cannot bring light.
     std::optional<FlareArrival> draw(float source, Vec2f front, const FlareAim::Random& u) const;
@@ -54,7 +56,7 @@ class ScatterGuide {
 
     const Scene& scene_;
     const Camera& camera_;
-    FlareAim aim_;
+    std::shared_ptr<const FlareAim> aim_;
     std::vector<State> states_;
     DiscreteDistribution sources_;
     std::vector<Front> fronts_;   // by source

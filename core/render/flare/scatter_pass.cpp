@@ -34,13 +34,7 @@ void ScatterPass::draw_one(RenderCounters& counters, std::uint64_t index) const 
     if (!path) return;
     const float time = path->lens.ray.time;
     ScatterGuide::Landings landings = guide_.trace(*path, hash64(settings_.seed, index));
-    bool hits = false;
-    for (Reprojection& landing : landings) {
-        const bool on_film = guide_.aim().on_frame(landing, time).has_value();
-        landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
-        hits |= on_film;
-    }
-    if (!hits) return;
+    if (guide_.aim().mark_arrived(landings, time) == 0) return;
     ++counters.scatter_hits;
     const RayOnFilm film_ray(density_, settings_.sensor, landings, time);
     if (!film_ray.in_reach()) return;

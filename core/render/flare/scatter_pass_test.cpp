@@ -42,7 +42,8 @@ RenderSettings scatter_settings(std::uint64_t seed, double paths, bool reflected
 Blocks from_emitters(const Scene& scene, const Camera& camera, int pictures, double paths, bool reflected = false) {
     Blocks all;
     RenderSettings s = scatter_settings(0, paths, reflected);
-    s.scatter.guide = std::make_shared<const ScatterGuide>(scene, camera, s);
+    const auto aim = std::make_shared<const FlareAim>(scene, camera, s);
+    s.scatter.guide = std::make_shared<const ScatterGuide>(aim, scene, camera, s);
     for (int k = 0; k < pictures; ++k) {
         s.seed = std::uint64_t(k) + 1;
         Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
