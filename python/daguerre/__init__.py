@@ -18,8 +18,9 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import distortion, lenses, polynomial, post
+    from . import distortion, lenses, polynomial, post, sensors
     from .frame import Frame
+    from .raw import Raw
     from .session import Session, iter_render, render
     from .waves import Diffraction
 
@@ -40,6 +41,7 @@ __all__ = [
     "MismatchError",
     "OutputError",
     "PointLight",
+    "Raw",
     "RollingShutter",
     "Scene",
     "Session",
@@ -57,6 +59,7 @@ __all__ = [
     "polynomial",
     "post",
     "render",
+    "sensors",
     "spin",
 ]
 
@@ -64,6 +67,7 @@ __all__ = [
 _LAZY = {
     "Diffraction": "waves",
     "Frame": "frame",
+    "Raw": "raw",
     "Session": "session",
     "iter_render": "session",
     "render": "session",
@@ -71,7 +75,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("distortion", "lenses", "polynomial", "post"):
+    if name in ("distortion", "lenses", "polynomial", "post", "sensors"):
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)

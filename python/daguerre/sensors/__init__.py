@@ -1,0 +1,22 @@
+"""Sensors: the library, files of the schema ``daguerre-sensor/0.1``, one sensor in numbers."""
+
+from .curve import Curve
+from .ideal import ideal
+from .library import load, names
+from .mosaic import PATTERNS, Mosaic
+from .reader import read
+from .sensor import DarkCurrent, DualGain, HotPixels, Sensor
+
+__all__ = [
+    "PATTERNS",
+    "Curve",
+    "DarkCurrent",
+    "DualGain",
+    "HotPixels",
+    "Mosaic",
+    "Sensor",
+    "ideal",
+    "load",
+    "names",
+    "read",
+]

@@ -1,0 +1,51 @@
+"""The ideal sensors: no noise but that of light itself, and no error of colour."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import illuminants
+from .mosaic import Mosaic
+from .sensor import SATURATION_LX_S, Sensor
+
+NAMES = ("ideal", "ideal-mono")
+_SOURCE = "computed: CIE 1931 colour matching functions"
+
+
+def ideal(name: str = "ideal") -> Sensor:
+    """A full-frame sensor of 24 MP whose channels are X, Y and Z of the CIE, or one that sees all.
+
+    Args:
+        name: ``ideal``: red, green and blue respond as the colour matching functions x, y, z, each
+            with one electron per photon at its peak, so a matrix turns raw values into exact
+            colours (Luther's condition). ``ideal-mono``: one electron per photon everywhere.
+    """
+    nm = np.arange(380.0, 781.0)
+    if name == "ideal-mono":
+        curves, pattern = np.ones((1, nm.size)), "mono"
+    else:
+        rows = [
+            np.interp(nm, illuminants.NM, row / illuminants.NM) for row in illuminants.observer().T
+        ]
+        curves = np.stack([row / row.max() for row in rows])
+        pattern = "bayer-rggb"
+    channels = ("Y",) if pattern == "mono" else ("R", "G", "B")
+    sensor = Sensor(
+        name=name,
+        make="Daguerre",
+        model="ideal" if name == "ideal" else "ideal monochrome",
+        source=_SOURCE if name == "ideal" else "one electron per photon",
+        licence="Apache-2.0",
+        pixel_pitch=6.0,
+        resolution=(6000, 4000),
+        pattern=Mosaic.of(pattern, channels),
+        channels=channels,
+        wavelengths=nm,
+        quantum_efficiency=curves,
+        full_well=1e6,
+        bit_depth=16,
+        base_iso=100,
+        iso_range=(1, 1e6),
+    )
+    # The well is as deep as makes the speed by saturation 100.
+    return sensor.with_(full_well=SATURATION_LX_S / 100 * float(sensor.white_electrons().max()))

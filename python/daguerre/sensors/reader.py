@@ -1,0 +1,146 @@
+"""Reads sensor files: JSON of the schema ``daguerre-sensor/0.1``; see docs/sensors.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.io.json_item import Item
+from daguerre.io.json_text import parse
+
+from .curve import Curve
+from .mosaic import Mosaic
+from .sensor import DarkCurrent, DualGain, HotPixels, Sensor
+
+SCHEMA = "daguerre-sensor/0.1"
+MAX_BYTES = 16_000_000
+MEMBERS = (
+    *("schema", "name", "make", "model", "source", "licence", "assumed", "note"),
+    *("pixel_pitch_um", "resolution", "size_mm", "fill_factor", "pattern", "wavelengths_nm"),
+    *("quantum_efficiency", "infrared_cut", "cover_glass", "full_well_e", "dual_gain"),
+    *("read_noise_e", "dark_current", "prnu", "dsnu_e", "hot_pixels", "black_level_dn"),
+    *("bit_depth", "iso_range", "base_iso", "crosstalk", "low_pass_um"),
+)
+
+
+def read(path: str | Path) -> Sensor:
+    """Reads one sensor.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > MAX_BYTES or not path.is_file():
+            raise InputError(f"{path}: sensor file: wanted a file of at most {MAX_BYTES} bytes")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+    root = parse(data, str(path))
+    schema = root.need("schema")
+    if schema.value != SCHEMA:
+        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
+    for member in root.members():
+        if member.key not in MEMBERS:
+            member.fail(f"not known{suggest(str(member.key), MEMBERS)}")
+    try:
+        return _sensor(root)
+    except InputError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+    except DaguerreError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _sensor(root: Item) -> Sensor:
+    curves = root.need("quantum_efficiency").members()
+    channels = tuple(str(curve.key) for curve in curves)
+    name = root.need("name").text()
+    size = root.get("size_mm")
+    columns, rows = root.need("resolution").numbers(2, 1, 65536)
+    low, high = root.need("iso_range").numbers(2)
+    return Sensor(
+        name=name,
+        make=root.need("make").text(),
+        model=root.need("model").text(),
+        source=root.need("source").text(),
+        licence=root.need("licence").text(),
+        assumed=tuple(item.text() for item in root.list_of("assumed")),
+        note=_text(root, "note"),
+        pixel_pitch=root.need("pixel_pitch_um").number(),
+        resolution=(int(columns), int(rows)),
+        size=(0.0, 0.0) if size is None else _pair(size.numbers(2)),
+        fill_factor=root.number_of("fill_factor", 1.0),
+        pattern=Mosaic.of(root.need("pattern").text(), channels, f"sensor {name}"),
+        channels=channels,
+        wavelengths=_list(root.need("wavelengths_nm")),
+        quantum_efficiency=_rows(root, curves),
+        infrared_cut=_curve(root.get("infrared_cut")),
+        cover_glass=_curve(root.get("cover_glass")),
+        full_well=root.need("full_well_e").number(),
+        read_noise=tuple(_pair(row.numbers(2)) for row in root.need("read_noise_e")),
+        dual_gain=_dual_gain(root.get("dual_gain")),
+        dark_current=_dark_current(root.get("dark_current")),
+        prnu=root.number_of("prnu", 0.0),
+        dsnu=root.number_of("dsnu_e", 0.0),
+        hot_pixels=_hot_pixels(root.get("hot_pixels")),
+        black_level=root.need("black_level_dn").integer(),
+        bit_depth=root.need("bit_depth").integer(1, 16),
+        iso_range=(low, high),
+        base_iso=root.need("base_iso").number(),
+        crosstalk=root.number_of("crosstalk", 0.0),
+        low_pass=root.number_of("low_pass_um", 0.0),
+    )
+
+
+def _text(root: Item, key: str) -> str:
+    item = root.get(key)
+    return "" if item is None else item.text()
+
+
+def _pair(values: tuple[float, ...]) -> tuple[float, float]:
+    return values[0], values[1]
+
+
+def _list(item: Item) -> Any:
+    return [element.number() for element in item]
+
+
+def _rows(root: Item, curves: list[Item]) -> Any:
+    count = len(list(root.need("wavelengths_nm")))
+    for curve in curves:
+        if len(list(curve)) != count:
+            curve.fail(
+                f"wrong length: wanted {count} numbers, one for each wavelength, "
+                f"got {len(list(curve))}"
+            )
+    return [[element.number(0, 1) for element in curve] for curve in curves]
+
+
+def _curve(item: Item | None) -> Curve | None:
+    if item is None or item.value is None:
+        return None
+    return Curve(_list(item.need("wavelengths_nm")), _list(item.need("transmittance")))
+
+
+def _dual_gain(item: Item | None) -> DualGain | None:
+    if item is None or item.value is None:
+        return None
+    return DualGain(item.need("iso").number(), item.need("full_well_e").number())
+
+
+def _dark_current(item: Item | None) -> DarkCurrent:
+    if item is None:
+        return DarkCurrent()
+    return DarkCurrent(
+        item.need("rate_e_per_s").number(),
+        item.need("temperature_c").number(),
+        item.need("doubling_k").number(),
+    )
+
+
+def _hot_pixels(item: Item | None) -> HotPixels:
+    if item is None:
+        return HotPixels()
+    return HotPixels(item.need("share").number(), item.need("rate_e_per_s").number())
