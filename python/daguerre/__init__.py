@@ -56,6 +56,7 @@ __all__ = [
     "keys",
     "lenses",
     "load",
+    "load_frame",
     "polynomial",
     "post",
     "render",
@@ -115,3 +116,14 @@ def load(
         scene.add_camera("framing", camera)
         scene.warnings.append("no camera in the file; 'framing' has everything in view")
     return scene
+
+
+def load_frame(path: str | Path) -> Frame:
+    """Reads a picture (.exr) with all its channels and facts, of Daguerre or another program.
+
+    Raises:
+        InputError: It cannot be read; the message names the file.
+    """
+    from .io.exr import read_frame
+
+    return read_frame(path)

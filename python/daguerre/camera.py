@@ -120,7 +120,11 @@ class Camera:
         shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction
             of the time, opening); of a leaf the radius of the iris.
         rolling_shutter: Lines of pixels that are exposed in turn; None: as the type has it.
-        iso, exposure_compensation: For development; they never change ``frame.rgb``.
+        iso, exposure_compensation: For development; they never change ``frame.rgb``. Nor do
+        exposure_time: Of the light, s, where that is another than the motion blur's shutter.
+        exposure_f_stop: Of the light, where that is another than the blur's; of a pinhole [8].
+        responsivity: Factor on the exposure.
+        white_balance: For development: colour temperature, K, or chromaticity (x, y).
         motion: Parameters that change over time.
     """
 
@@ -165,6 +169,10 @@ class Camera:
     rolling_shutter: RollingShutter | None = None
     iso: float = 100.0
     exposure_compensation: float = 0.0
+    exposure_time: float | None = None
+    exposure_f_stop: float | None = None
+    responsivity: float = 1.0
+    white_balance: float | tuple[float, float] | None = None
     motion: dict[str, Dynamic] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

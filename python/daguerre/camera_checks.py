@@ -12,6 +12,7 @@ from . import lenses, shutter
 from .camera import IDEAL, LIMITS, Camera
 from .checks import number, numbers, short, whole
 from .errors import UsageError, suggest
+from .exposure import check_exposure
 
 MODELS = ("exact", "polynomial", "thick", "thin", "pinhole")
 #: those that have a prescription's elements
@@ -63,7 +64,7 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
     if camera.focus_distance is not None:
         _positive("focus_distance", camera.focus_distance, infinite=True)
     shutter.check(camera)
-    number(camera.exposure_compensation, "camera: exposure_compensation")
+    check_exposure(camera)
     for shift in numbers(camera.shift, "camera: shift", 2, "two finite numbers (mm)"):
         number(shift, "camera: shift", *LIMITS["shift"])
     for tilt in numbers(camera.tilt, "camera: tilt", 2, "two finite angles (degrees)"):

@@ -23,6 +23,7 @@ from .camera_pose import motion_facts
 from .camera_pose import pose as pose_over
 from .checks import short
 from .errors import InputError, UsageError
+from .exposure import exposure_facts, exposure_notes, lens_h0
 from .focusing import Focus, ideal_direction
 from .lens_motion import LensMotion
 from .scene import Scene
@@ -109,6 +110,8 @@ def set_up(
                 f"{traced.count('exact')} of the {len(traced)} states of the lens are not fitted "
                 "well enough: the exact lens draws them"
             )
+    setup.facts["h0"] = lens_h0(camera, setup.facts, setup.pinhole_focal_length)
+    setup.notes += exposure_notes(camera, setup.facts, shutter.shutter_time(camera))
     setup.facts = (
         {"lens_model": model}
         | setup.facts
@@ -121,6 +124,7 @@ def set_up(
             "world_from_camera": np.asarray(world).tolist(),
             "iso": camera.iso,
             "exposure_compensation": camera.exposure_compensation,
+            **exposure_facts(camera),
             "shutter": shutter.facts(camera, resolution),
             **facts,
         }

@@ -48,6 +48,10 @@ class Frame:
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
         metadata: Facts of camera and render; see ``daguerre.io.exr``.
+        channels: What the sensor named in the metadata sees, shape (H, W, C), where one was named:
+            D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
+        bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
+            of luminance 1 is some 1 in each.
         bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
     """
 
@@ -60,6 +64,8 @@ class Frame:
     metadata: dict[str, Any] = field(default_factory=dict)
     bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, [])
     flare: NDArray[np.float32] | None = None
+    channels: NDArray[np.float32] | None = None
+    bands: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:

@@ -26,6 +26,7 @@ from .camera_checks import check_surfaces
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
+from .exposure import exposure_metadata
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
@@ -405,7 +406,7 @@ class Session:
             "isoSpeed": camera.iso,
             "time": self.scene.time,
             **shutter.metadata(camera),
-            "aperture": facts.get("f_stop"),
+            **exposure_metadata(camera, facts, shutter.shutter_time(camera)),
             "tStop": facts.get("t_stop"),
             "pixelAspectRatio": facts.get("squeeze", 1.0),
             "focus": facts.get("focus_distance_m"),
@@ -426,7 +427,6 @@ class Session:
                 width * facts.get("squeeze", 1.0),
                 height,
             ),
-            "h0": facts.get("h0"),
             "camera": facts,
             "seed": self._identity["seed"],
             **self._sample_facts(),

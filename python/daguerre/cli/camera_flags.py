@@ -258,6 +258,37 @@ class CameraFlags:
         float | None,
         option("--ev", metavar="EV", help="For metadata and development only.", panel=_CAMERA),
     ] = None
+    exposure_time: Annotated[
+        Text,
+        option(
+            "--exposure-time",
+            metavar="S",
+            help="Of the light, where motion blur is to be of another [--shutter].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    exposure_f_stop: Annotated[
+        Text,
+        option(
+            "--exposure-f-stop",
+            metavar="N",
+            help="Of the light, where blur is to be of another [--f-stop; of a pinhole 8].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    responsivity: Annotated[
+        float | None,
+        option("--responsivity", metavar="X", help="Factor on the exposure [1].", panel=_CAMERA),
+    ] = None
+    wb: Annotated[
+        Text,
+        option(
+            "--wb",
+            metavar="K|X,Y",
+            help="White balance for development: 5600, or a chromaticity.",
+            panel=_CAMERA,
+        ),
+    ] = None
     natural_vignetting: Annotated[
         bool | None,
         option(
@@ -282,6 +313,9 @@ class CameraFlags:
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
             "ripple": ("ripple", "--ripple", lambda f, t: q.numbers(f, t, 2, "2,100")),
             "cover_glass": ("cover_glass", "--cover-glass", _cover_glass),
+            "exposure_time": ("exposure_time", "--exposure-time", q.time_s),
+            "exposure_f_stop": ("exposure_f_stop", "--exposure-f-stop", q.f_number),
+            "wb": ("white_balance", "--wb", q.white),
             "tilt": ("tilt", "--tilt", lambda f, t: q.numbers(f, t, 2, "0,6")),
         }
         plain = {
@@ -298,6 +332,7 @@ class CameraFlags:
             "fit": "sensor_fit",
             "iso": "iso",
             "ev": "exposure_compensation",
+            "responsivity": "responsivity",
             "sensor_reflectance": "sensor_reflectance",
             "natural_vignetting": "natural_vignetting",
         }

@@ -87,6 +87,16 @@ def t_number(flag: str, text: str) -> float:
     )
 
 
+def white(flag: str, text: str) -> float | tuple[float, float]:
+    """A colour temperature in K such as ``5600`` or ``5600K``, or x and y."""
+    if "," in text:
+        x, y = numbers(flag, text, 2, "0.3127,0.3290")
+        return x, y
+    wanted = "a colour temperature such as 5600, or x,y such as 0.3127,0.3290"
+    kelvin = text.strip().removesuffix("K").removesuffix("k")
+    return _finite(flag, text, _quantity(flag, kelvin, {"": 1.0}, "", wanted))
+
+
 def decenter(
     flag: str, text: str
 ) -> tuple[tuple[int, int], tuple[float, float], tuple[float, float]]:

@@ -5,6 +5,7 @@ Standard attributes: OpenEXR "Standard Optional Attributes"; those with ``daguer
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import os
@@ -38,13 +39,14 @@ VECTORS = (
 MATRICES = ("worldToCamera", "worldToNDC")
 RATIONALS = ("captureRate",)
 OWN_NUMBERS = (
-    "samples", "samples_min", "samples_max", "noise", "seed", "h0", "time", "bad_samples",
-    "motion_missing",
+    "samples", "samples_min", "samples_max", "noise", "seed", "h0", "luminance_exposure",
+    "exposure_compensation", "time", "bad_samples", "motion_missing", "bands",
 )  # fmt: skip
 OWN_STRINGS = (
     "version", "scene_hash", "filter", "denoised", "gt_time", "light_paths", "flare", "scatter",
-    "diffraction",
+    "diffraction", "sensor", "sensor_hash", "sensor_from",
 )  # fmt: skip
+OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 
@@ -73,9 +75,11 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
     }
     header |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
     header |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
-    if known.get("bad_sample_places"):
-        places = known["bad_sample_places"]
-        header["daguerre:bad_sample_places"] = json.dumps(places, default=jsonable)
+    header |= {
+        f"daguerre:{key}": json.dumps(known[key], default=jsonable)
+        for key in OWN_JSON
+        if known.get(key)
+    }
     if "camera" in known:
         camera = without_infinity(known["camera"])
         header["daguerre:camera"] = json.dumps(camera, sort_keys=True, default=jsonable)
@@ -83,13 +87,21 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
-    """The channels of a frame: R G B A, its AOVs, flare.R/G/B, variance.R/G/B and samples.Y.
+    """The channels of a frame by the names of the file, all that it has.
 
-    An array of three planes stands for three channels, as OpenEXR has it: no copies are made.
+    R G B A, its AOVs, flare.R/G/B, variance.R/G/B, samples.Y, those of its sensor (sensor.R) and
+    its bands of wavelengths (bands.0380-0405, nm). An array of three planes stands for three
+    channels, as OpenEXR has it: no copies are made.
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
     planes |= frame.aovs
+    if frame.channels is not None:
+        names = frame.metadata["sensor_channels"]
+        planes |= {f"sensor.{name}": frame.channels[..., i] for i, name in enumerate(names)}
+    if frame.bands is not None:
+        names = band_names(frame.bands.shape[2])
+        planes |= {f"bands.{name}": frame.bands[..., i] for i, name in enumerate(names)}
     if frame.flare is not None:
         planes["flare"] = frame.flare
     if frame.variance is not None:
@@ -97,6 +109,21 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
     if frame.samples is not None:
         planes["samples.Y"] = frame.samples.astype(np.float32)
     return {name: _plane(name, plane) for name, plane in planes.items()}
+
+
+def band_names(count: int) -> list[str]:
+    """First and last wavelength of each band in whole nm, such as 0380-0405."""
+    from daguerre.colour import FIRST_NM, LAST_NM
+
+    edges = np.rint(np.linspace(FIRST_NM, LAST_NM, count + 1)).astype(int).tolist()
+    return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]
+
+
+def read_frame(path: str | os.PathLike[str]) -> Frame:
+    """Reads a picture with all its channels and facts; see :mod:`daguerre.io.exr_frame`."""
+    from .exr_frame import read_frame as read
+
+    return read(path)
 
 
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:

@@ -161,7 +161,7 @@ def _name(data: bytes, at: int) -> tuple[str, int]:
 
 _FORMATS = {
     "int": "<i", "float": "<f", "double": "<d", "v2i": "<2i", "v2f": "<2f", "v3f": "<3f",
-    "box2i": "<4i", "chromaticities": "<8f", "compression": "<B",
+    "m44f": "<16f", "box2i": "<4i", "chromaticities": "<8f", "compression": "<B",
 }  # fmt: skip
 
 

@@ -61,6 +61,8 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "resolution": _is_size,
     "crop": _is_crop,
     "aovs": _are_names,
+    "sensor_channels": _are_names,
+    "white_balance": _is_pair,
 }
 
 
