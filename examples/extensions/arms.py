@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import FLOAT, U8, Shape, Track
 from extensions.studio import Studio
 from kit import shapes
-from kit.glb import FLOAT, U8, Shape, Track
 from kit.pose import turn_y
 
 ARMS, JOINTS, LINK = 8, 7, 0.062  # arms, joints of each, and the way between two, m

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.io.glb_writer import Glb
 from extensions.plants import any_turn, blade, leaf, leafy, scatter, stones
 from extensions.studio import Studio
 from kit import ktx2, shapes, textures
-from kit.glb import Glb
 from kit.pose import look
 
 SUN_FROM = (-1.6, 1.3, -3.0)

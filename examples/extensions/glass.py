@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import Point, turn_y
 
 BRILLIANT = [(0, 0), (0.5, 0.43), (0.5, 0.46), (0.42, 0.53), (0.27, 0.6), (0, 0.6)]

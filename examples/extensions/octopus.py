@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import FLOAT, Glb, Track
 from extensions.arms import add_arms
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import FLOAT, Glb, Track
 
 PERIOD_S = 4.0
 

@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Shape
 from extensions.studio import Studio
 from kit import packing, shapes
-from kit.glb import Glb, Shape
 from kit.pose import Point, turn_y
 
 

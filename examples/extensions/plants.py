@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.io.glb_writer import ARRAY_BUFFER, FLOAT, Shape
 from extensions.studio import Studio
 from kit import shapes
-from kit.glb import ARRAY_BUFFER, FLOAT, Shape
 
 
 def scatter(

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import Point
 
 VARIANTS = ("at sea", "in the woods")

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from extensions.houses import add_houses, add_sky
 from extensions.letters import written
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import Point, look, turn_y
 
 RED, AMBER, TEAL = (1.0, 0.1, 0.06), (1.0, 0.5, 0.12), (0.1, 0.9, 0.75)

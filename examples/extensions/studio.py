@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Shape
 from kit import shapes
-from kit.glb import Glb, Shape
 from kit.pose import Point, look
 
 

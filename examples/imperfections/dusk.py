@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from imperfections.glow import Glow
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import Point, look
 
 SUN = (-11.0, 4.2)  # to the right and up, degrees

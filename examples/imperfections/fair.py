@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import Glb
 from imperfections.glow import BLUE, COOL, GOLD, PINK, RED, TEAL, WARM, WHITE, Glow
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import Point
 
 AWAY = 60.0  # of the wheel and the booths, m

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from daguerre.io.glb_writer import Shape
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Shape
 from kit.pose import Point
 
 WARM, GOLD, COOL = (1.0, 0.62, 0.30), (1.0, 0.78, 0.45), (0.60, 0.78, 1.0)

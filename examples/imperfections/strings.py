@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from extensions.letters import written
 from imperfections.glow import COOL, GOLD, PINK, TEAL, WARM, Glow
 from kit import shapes, textures
-from kit.glb import Glb
 
 FOCUS = 1.6  # of the sign, m
 NEAR, FAR = 0.62, 40.0  # of the lamps, m

@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import Glb, Shape
 from imperfections.glow import Glow
 from kit import shapes, textures
-from kit.glb import Glb, Shape
 from kit.pose import Point
 
 FOCUS = 3.0  # m

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import Glb
 from imperfections.glow import Glow
 from kit import shapes, textures
-from kit.glb import Glb
 
 #: Focal lengths, mm, that the cameras are named after.
 CAMERAS = (8, 15, 17, 25, 35, 50, 85, 100, 200)

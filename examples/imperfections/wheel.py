@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import Glb, Shape
 from imperfections.glow import BLUE, GOLD, RED, WARM, WHITE, Glow
 from kit import shapes
-from kit.glb import Glb, Shape
 
 AWAY = 2.2  # m
 SPOKES = 24

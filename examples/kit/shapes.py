@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kit.glb import Shape
+from daguerre.io.glb_writer import Shape
 
 
 def _shape(p: ArrayLike, n: ArrayLike, uv: ArrayLike, i: ArrayLike) -> Shape:

@@ -8,7 +8,7 @@ are stylised: 1 cd/m2 shows as 1.
 
 from __future__ import annotations
 
-from kit.glb import Glb
+from daguerre.io.glb_writer import Glb
 from kit.pose import Point, look
 from lens_scenes import hall, head, lanterns, table
 from night.stage import Stage

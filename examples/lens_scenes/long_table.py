@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import look
 from lens_scenes.table import add_men
 from night.stage import PALETTE, Stage

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb
 from kit import shapes, textures
-from kit.glb import Glb
 from kit.pose import look, turn_y
 from lens_scenes.view_camera import add_view_camera
 from night import things

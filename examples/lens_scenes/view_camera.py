@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.io.glb_writer import Shape
 from kit import shapes, textures
-from kit.glb import Shape
 from kit.pose import turn_y
 from night.stage import Stage
 

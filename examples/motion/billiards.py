@@ -12,9 +12,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.glb_writer import Glb, Track
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb, Track
 from kit.moves import after, rolling, turn
 from kit.pose import Point
 from motion.figures import ink

@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Track
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb, Track
 from kit.moves import turn
 
 BALLS, RADIUS, DROP, HEIGHT = 5, 0.025, 0.14, 0.19

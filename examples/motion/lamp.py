@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Track
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb, Track
 from kit.moves import swinging
 
 PERIOD_S, FLICKERS_PER_SECOND = 2.0, 5

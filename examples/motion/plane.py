@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Shape
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb, Shape
 from kit.moves import spinning, turn
 
 TURNS_PER_SECOND, END_S, BLADES = 24, 1.0, 3

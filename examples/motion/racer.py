@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Track
 from extensions.studio import Studio
 from kit import shapes, textures
-from kit.glb import Glb, Track
 from kit.moves import following, going, spinning
 from kit.pose import look
 from motion.figures import roundel

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.io.glb_writer import Glb, Track
 from extensions import street
-from kit.glb import Glb, Track
 from kit.moves import going
 from kit.pose import look
 

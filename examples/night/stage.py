@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from daguerre.io.glb_writer import Glb, Shape
 from kit import shapes, textures
-from kit.glb import Glb, Shape
 from kit.pose import Point
 
 WARM, CANDLE, COOL = (1.0, 0.60, 0.26), (1.0, 0.55, 0.18), (0.55, 0.75, 1.0)

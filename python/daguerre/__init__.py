@@ -18,7 +18,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import distortion, lenses, polynomial, post, sensors
+    from . import charts, distortion, lenses, polynomial, post, sensors
     from .frame import Frame
     from .raw import Raw
     from .session import Session, iter_render, render
@@ -51,6 +51,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "charts",
     "distortion",
     "iter_render",
     "keys",
@@ -76,7 +77,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("distortion", "lenses", "polynomial", "post", "sensors"):
+    if name in ("charts", "distortion", "lenses", "polynomial", "post", "sensors"):
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)

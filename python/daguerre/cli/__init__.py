@@ -18,6 +18,7 @@ import typer
 from daguerre.errors import DaguerreError, suggest
 
 from . import console
+from .chart import chart
 from .info import info
 from .lens import lens
 from .lenses import lenses
@@ -38,7 +39,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (render, merge, post, info, lenses, lens, version):
+for command in (render, merge, post, info, lenses, lens, chart, version):
     app.command(name=command.__name__)(command)
 
 

@@ -1,4 +1,7 @@
-"""A small glTF 2.0 writer: meshes, pictures, materials, nodes and animations into one .glb file."""
+"""A small glTF 2.0 writer: meshes, pictures, materials, nodes and animations into one .glb file.
+
+Charts and the example scenes are made with it.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .atomic import write_bytes
 
 I8, U8, I16, U16, U32, FLOAT = 5120, 5121, 5122, 5123, 5125, 5126
 DTYPES = {I8: "i1", U8: "u1", I16: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
@@ -153,20 +158,31 @@ class Glb:
             self.json["nodes"][parent].setdefault("children", []).append(node)
         return node
 
-    def add_camera(self, name: str, focal_length_mm: float, f_stop: float, focus_m: float) -> int:
-        """Adds a 36 x 24 mm camera: glTF's perspective, and EXT_camera_physical for the rest."""
+    def add_camera(
+        self,
+        name: str,
+        focal_length_mm: float,
+        f_stop: float,
+        focus_m: float,
+        sensor_mm: tuple[float, float] = (36, 24),
+    ) -> int:
+        """Adds a camera: glTF's perspective, and EXT_camera_physical for the rest."""
         physical = {
-            "sensorSize": [36, 24],
+            "sensorSize": list(sensor_mm),
             "focalLength": focal_length_mm,
             "fStop": f_stop,
             "focusDistance": focus_m,
         }
-        yfov = 2 * math.atan(12 / focal_length_mm)
+        yfov = 2 * math.atan(sensor_mm[1] / 2 / focal_length_mm)
         self.use("EXT_camera_physical")
         camera = {
             "name": name,
             "type": "perspective",
-            "perspective": {"aspectRatio": 1.5, "yfov": yfov, "znear": 0.01},
+            "perspective": {
+                "aspectRatio": sensor_mm[0] / sensor_mm[1],
+                "yfov": yfov,
+                "znear": 0.01,
+            },
             "extensions": {"EXT_camera_physical": physical},
         }
         return self.add("cameras", camera)
@@ -212,8 +228,7 @@ class Glb:
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self.binary)
+        head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
+        data = head + text + struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("wb") as file:
-            file.write(struct.pack("<4sII", b"glTF", 2, size))
-            file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-            file.write(struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary)
+        write_bytes(path, data)

@@ -1,0 +1,60 @@
+"""Test charts as scenes, with what is known about them, and what pictures of them tell.
+
+See ``docs/charts.md``.
+"""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+from daguerre.checks import number
+from daguerre.errors import UsageError, suggest
+
+from . import colour, dead_leaves, siemens_star, slanted_edge, step_wedge
+from .chart import Chart, Patch
+from .measure import EdgeResponse, edge_response, means, places, star_modulation, texture_response
+
+__all__ = [
+    "KINDS",
+    "Chart",
+    "EdgeResponse",
+    "Patch",
+    "edge_response",
+    "make",
+    "means",
+    "places",
+    "star_modulation",
+    "texture_response",
+]
+
+#: By name: a function that makes it; its parameters are the chart's.
+KINDS = {
+    "colour": colour.make,
+    "dead-leaves": dead_leaves.make,
+    "siemens-star": siemens_star.make,
+    "slanted-edge": slanted_edge.make,
+    "step-wedge": step_wedge.make,
+}
+
+
+def make(name: str, **parameters: Any) -> Chart:
+    """A chart.
+
+    Args:
+        name: One of ``KINDS``.
+        parameters: Of that kind; ``width`` (m) of all. See ``docs/charts.md``.
+
+    Raises:
+        UsageError: No such chart or parameter, or a value that makes none.
+    """
+    if name not in KINDS:
+        raise UsageError(f"chart: wanted {', '.join(KINDS)}; got {name!r}{suggest(name, KINDS)}")
+    known = inspect.signature(KINDS[name]).parameters
+    for parameter in parameters:
+        if parameter not in known:
+            raise UsageError(
+                f"chart {name}: {parameter}: wanted {', '.join(known)}{suggest(parameter, known)}"
+            )
+    number(parameters.get("width", 1.0), "chart: width", 1e-4, 1e4)
+    return KINDS[name](**parameters)

@@ -1,0 +1,255 @@
+"""What pictures of charts tell, rendered or photographed: edges, stars, texture, patches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.checks import to_numbers
+from daguerre.errors import InputError
+
+from .chart import Chart
+
+FloatArray = NDArray[np.float64]
+_FINER = 4  # bins of the edge's profile per pixel, as ISO 12233 has it
+
+
+@dataclass(frozen=True)
+class EdgeResponse:
+    """What an edge became.
+
+    Attributes:
+        frequency: Cycles per pixel, shape (F,), from 0.
+        response: Modulation at these frequencies, shape (F,), 1 at 0.
+        angle: Of the edge against the rows or columns that it is nearer to, degrees.
+        low: Light on the dark side.
+        high: Light on the light side.
+    """
+
+    frequency: FloatArray
+    response: FloatArray
+    angle: float
+    low: float
+    high: float
+
+    def at(self, frequency: ArrayLike) -> FloatArray:
+        """The response at frequencies (cycles per pixel), linear between."""
+        return np.asarray(np.interp(frequency, self.frequency, self.response))
+
+    @property
+    def mtf50(self) -> float:
+        """Where the response first falls to a half, cycles per pixel; infinite if it never does."""
+        below = np.flatnonzero(self.response < 0.5)
+        if not below.size or below[0] == 0:
+            return np.inf
+        i = int(below[0])
+        (f0, f1), (r0, r1) = self.frequency[i - 1 : i + 1], self.response[i - 1 : i + 1]
+        return float(f0 + (r0 - 0.5) / (r0 - r1) * (f1 - f0))
+
+
+def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
+    """The spatial frequency response by a slanted edge, as ISO 12233 measures it.
+
+    The edge's place is found in each row; all rows together sample the edge's profile finer than
+    pixels do, and the Fourier transform of its slope is the response. What quarter-pixel bins and
+    differences do to it is divided out; what a pixel's own area does is part of it.
+
+    Args:
+        region: Linear light, shape (H, W), with one edge through it from side to side that is
+            nearly, but not quite, along the columns or the rows.
+        bend: Degree of the polynomial that the edge follows: above 1 where distortion bends it.
+
+    Raises:
+        InputError: No such edge is in the region.
+    """
+    light = _plane(region)
+    rows, columns = light.shape
+    if abs(_slope(light, 0)) > abs(_slope(light, 1)):
+        light = light.T
+        rows, columns = columns, rows
+    if light[:, : columns // 2].sum() > light[:, columns - columns // 2 :].sum():
+        light = light[:, ::-1]
+    place = _edge(light, bend)
+    turned = np.gradient(place)
+    if np.ptp(place) < 1:
+        raise InputError(
+            "edge: wanted one that crosses a column of pixels (slanted by some degrees)"
+        )
+    across = np.cos(np.arctan(turned))[:, None]  # from along the row to across the edge
+    distance = (np.arange(columns)[None] - place[:, None]) * across
+    reach = min(float(np.quantile(place, 0)), columns - 1 - float(np.quantile(place, 1)))
+    reach = max(reach - 1, 2.0)
+    slope, low, high = _profile(distance, light, reach)
+    n = len(slope)
+    window = np.hamming(2 * n + 1)[1::2]
+    spectrum = np.abs(np.fft.rfft(slope * window))
+    frequency = np.fft.rfftfreq(n, 1 / _FINER)
+    with np.errstate(invalid="ignore"):
+        # A bin is the mean of what fell into it, a difference spans one bin: two quarter boxes.
+        response = spectrum / spectrum[0] / np.sinc(frequency / _FINER) ** 2
+    wanted = frequency <= 1
+    angle = float(np.degrees(np.arctan(np.mean(turned))))
+    return EdgeResponse(frequency[wanted], response[wanted], angle, low, high)
+
+
+def _plane(region: ArrayLike) -> FloatArray:
+    light = to_numbers(region, "edge", "region", "shape (H, W)").astype(np.float64)
+    if light.ndim != 2 or min(light.shape) < 8:
+        raise InputError(f"edge: region: wanted (H, W) of at least 8 x 8 pixels, got {light.shape}")
+    if not np.isfinite(light).all():
+        raise InputError(
+            f"edge: region: wanted finite light, got {(~np.isfinite(light)).sum()} that is not"
+        )
+    return light
+
+
+def _slope(light: FloatArray, axis: int) -> float:
+    """How much lighter the picture gets from one side to the other."""
+    half = light.shape[axis] // 2
+    first, second = np.split(light, [half], axis)
+    return float(second.mean() - first.mean())
+
+
+def _edge(light: FloatArray, bend: int) -> FloatArray:
+    """Where the edge crosses each row: the middle of its slope, then a curve through all, again."""
+    slope = np.diff(light, axis=1)
+    at = np.arange(slope.shape[1]) + 0.5
+    rows = np.arange(len(light))
+    window = np.ones_like(slope)
+    for _ in range(4):
+        weights = slope * window
+        total = weights.sum(axis=1)
+        if not (total > 0.05 * np.abs(slope).sum(axis=1)).all():
+            raise InputError("edge: wanted one edge from dark to light in each row of the region")
+        middle = (weights * at).sum(axis=1) / total
+        place = np.polyval(np.polyfit(rows, middle, bend), rows)
+        width = max(4.0, 0.25 * slope.shape[1])
+        window = np.exp(-0.5 * ((at[None] - place[:, None]) / width) ** 4)
+    return np.asarray(place)
+
+
+def _profile(
+    distance: FloatArray, light: FloatArray, reach: float
+) -> tuple[FloatArray, float, float]:
+    """Differences of the edge's profile in bins of a quarter pixel, and the light on both sides."""
+    half = int(reach * _FINER)
+    bins = np.floor(distance * _FINER + 0.5).astype(int) + half
+    inside = (bins >= 0) & (bins <= 2 * half)
+    count = np.bincount(bins[inside], minlength=2 * half + 1)
+    total = np.bincount(bins[inside], light[inside], minlength=2 * half + 1)
+    filled = np.flatnonzero(count)
+    profile = np.interp(np.arange(2 * half + 1), filled, total[filled] / count[filled])
+    side = max(half // 2, 1)
+    return np.diff(profile), float(profile[:side].mean()), float(profile[-side:].mean())
+
+
+def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
+    """Where points of a chart are in a rendered picture, if the lens does not distort, px.
+
+    Args:
+        points: m, in the chart's plane, shape (N, 2).
+        metadata: Of the frame: ``worldToNDC`` and ``resolution``.
+    """
+    try:
+        matrix = np.asarray(metadata["worldToNDC"], np.float64)
+        width, height = metadata["resolution"]
+    except KeyError as error:
+        raise InputError(f"chart: metadata: wanted {error}, got none") from None
+    flat = np.asarray(points, np.float64).reshape(-1, 2)
+    seen = np.c_[flat, np.zeros(len(flat)), np.ones(len(flat))] @ matrix
+    ndc = seen[:, :2] / seen[:, 3:]
+    return np.asarray((ndc * [1, -1] + 1) / 2 * [width, height])
+
+
+def means(
+    picture: ArrayLike, chart: Chart, metadata: Mapping[str, Any], *, inner: float = 0.6
+) -> FloatArray:
+    """Mean of each patch of a chart of patches, in the order of its truth.
+
+    Args:
+        picture: Shape (H, W, C) or (H, W).
+        chart: Of kind colour or step-wedge.
+        metadata: As for ``places``.
+        inner: Share of a patch's side that is looked at.
+
+    Returns:
+        Shape (patches, C) or (patches,).
+    """
+    if "patches" not in chart.truth:
+        raise InputError(f"chart: wanted one of patches, got {chart.name}")
+    pixels = np.asarray(picture)
+    found = []
+    for patch in chart.truth["patches"]:
+        half = inner * patch["side_m"] / 2
+        center = np.asarray(patch["center_m"])
+        corners = places([center - half, center + half], metadata)
+        x0, y0 = np.ceil(corners.min(axis=0) - 0.5).astype(int)
+        x1, y1 = np.floor(corners.max(axis=0) + 0.5).astype(int)
+        part = pixels[max(y0, 0) : max(y1, 0), max(x0, 0) : max(x1, 0)]
+        if part.size == 0:
+            raise InputError(
+                f"chart: patch {patch['name']!r}: wanted it in the picture, got it outside"
+            )
+        found.append(part.reshape(-1, *part.shape[2:]).mean(axis=0))
+    return np.asarray(found, np.float64)
+
+
+def star_modulation(
+    picture: ArrayLike, center: ArrayLike, radii: ArrayLike, cycles: int
+) -> FloatArray:
+    """Modulation of a Siemens star around circles: the first harmonic over the mean (ISO 12233).
+
+    Args:
+        picture: Linear light, shape (H, W).
+        center: Of the star, px (x right, y down, pixel centres at half).
+        radii: px, shape (R,); the frequency there is cycles / (2 pi r) per pixel.
+        cycles: Around the star.
+
+    Returns:
+        Modulation, shape (R,).
+    """
+    light = np.asarray(picture, np.float64)
+    rows, columns = np.indices(light.shape)
+    x, y = columns + 0.5 - np.asarray(center)[0], rows + 0.5 - np.asarray(center)[1]
+    radius, angle = np.hypot(x, y), np.arctan2(y, x)
+    found = []
+    for r in np.atleast_1d(np.asarray(radii, np.float64)):
+        ring = np.abs(radius - r) < 0.75
+        basis = np.c_[
+            np.ones(ring.sum()), np.cos(cycles * angle[ring]), np.sin(cycles * angle[ring])
+        ]
+        mean, a, b = np.linalg.lstsq(basis, light[ring], rcond=None)[0]
+        found.append(np.hypot(a, b) / mean)
+    return np.asarray(found)
+
+
+def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """The modulation of texture against the same texture as it is, by frequency.
+
+    The real part of the cross spectrum over the reference's own: noise, which has nothing to do
+    with the chart, drops out (Kirk, Herzer, Artmann and Kunz 2014, Description of texture loss
+    using the dead leaves target, Proc. SPIE 9014).
+
+    Args:
+        picture: Linear light, shape (H, W).
+        reference: The chart without lens and noise, of the same pixels; say by ``chart.camera()``.
+
+    Returns:
+        Frequencies, cycles per pixel, from 0 to 0.5, and the response at them.
+    """
+    a, b = (np.asarray(p, np.float64) for p in (picture, reference))
+    if a.ndim != 2 or a.shape != b.shape:
+        raise InputError(f"texture: wanted two planes of one shape, got {a.shape} and {b.shape}")
+    rows, columns = a.shape
+    window = np.hanning(rows)[:, None] * np.hanning(columns)[None]
+    seen, wanted = (np.fft.fft2((p - p.mean()) * window) for p in (a, b))
+    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(columns), np.fft.fftfreq(rows)))
+    steps = min(rows, columns) // 2
+    bins = np.minimum((frequency * 2 * steps).astype(int), steps)
+    cross = np.bincount(bins.ravel(), (seen * wanted.conj()).real.ravel(), steps + 1)[:steps]
+    power = np.bincount(bins.ravel(), (np.abs(wanted) ** 2).ravel(), steps + 1)[:steps]
+    return (np.arange(steps) + 0.5) / (2 * steps), cross / power

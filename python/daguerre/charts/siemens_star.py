@@ -1,0 +1,75 @@
+"""A Siemens star: spokes that come closer toward the middle: frequency is a place (ISO 12233)."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from daguerre.checks import number, whole
+from daguerre.errors import UsageError
+
+from .chart import Chart, Patch, grey
+
+PROFILES = ("sine", "bar")
+_PARTS = {
+    "sine": 32,
+    "bar": 2,
+}  # of a cycle; 32 steps: what is no sine is under 0.5 % below the 31st harmonic
+
+
+def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: float = 0.9) -> Chart:
+    """A star in the middle, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
+
+    Args:
+        width: m.
+        cycles: Around, 4 to 360.
+        profile: sine (its light is (white / 2) (1 + 0.95 cos)) or bar (white and 0.025 of it).
+        white: Share of the chart's white.
+    """
+    if profile not in PROFILES:
+        raise UsageError(f"chart: profile: wanted sine or bar, got {profile!r}")
+    cycles = whole(cycles, "chart: cycles", 4, 360)
+    number(white, "chart: white", 0, 1, above=0)
+    height = width / 1.5
+    radius = 0.45 * height
+    parts = _PARTS[profile]
+    bounds = 2 * np.pi * np.arange(cycles * parts + 1) / (cycles * parts)
+    light = _light(parts) * white
+    patches = [
+        Patch(
+            "star",
+            radius * np.array([[0, 0], [np.cos(a), np.sin(a)], [np.cos(b), np.sin(b)]]),
+            grey(float(light[i % parts])),
+        )
+        for i, (a, b) in enumerate(pairwise(bounds))
+    ]
+    facts = {
+        "cycles": cycles,
+        "profile": profile,
+        "center_m": [0.0, 0.0],
+        "radius_m": radius,
+        "modulation": modulation(profile),
+        "mean": float(light.mean()),
+    }
+    return Chart("siemens-star", (width, height), tuple(patches), grey(white / 2), facts)
+
+
+def _light(parts: int) -> np.ndarray:
+    """Of the parts of a cycle: the mean of the sine over each, so that sums of parts are exact."""
+    if parts == 2:
+        return np.array([1.0, 0.025])
+    middle = 2 * np.pi * (np.arange(parts) + 0.5) / parts
+    return np.asarray(0.5 * (1 + 0.95 * np.sinc(1 / parts) * np.cos(middle)))
+
+
+def modulation(profile: str) -> float:
+    """Of the first harmonic of a cycle, over the mean.
+
+    Light in steps of 1 / n cycle that are means of a sine of amplitude m has a first harmonic of
+    m sinc(1 / n)^2; a bar has 4 / pi of its contrast.
+    """
+    parts = _PARTS[profile]
+    light = _light(parts)
+    first = np.abs(np.sum(light * np.exp(-2j * np.pi * np.arange(parts) / parts))) * 2 / parts
+    return float(first * np.sinc(1 / parts) / light.mean())

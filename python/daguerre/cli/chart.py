@@ -1,0 +1,80 @@
+"""``daguerre chart``: test charts as scenes, with what is known about them."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from daguerre.errors import UsageError
+
+from . import console
+from . import quantities as q
+from .flags import option
+
+
+def chart(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="See --list.")] = None,
+    output: Annotated[
+        Path | None,
+        option("-o", "--output", metavar="FILE.glb", help="The truth goes beside it, as .json."),
+    ] = None,
+    parameter: Annotated[
+        list[str] | None,
+        option("--set", metavar="KEY=VALUE", help="Of the chart; repeatable; see --list."),
+    ] = None,
+    luminance: Annotated[
+        float, option("--luminance", metavar="X", help="Of its white, cd/m2 [100].")
+    ] = 100.0,
+    paint: Annotated[
+        bool, option("--paint", help="Matt paint for light of your own, instead of shining.")
+    ] = False,
+    focal_length: Annotated[
+        str, option("--focal-length", metavar="MM", help="Of its camera, mm [50].")
+    ] = "50",
+    sensor_width: Annotated[
+        str, option("--sensor-width", metavar="MM", help="Of its camera, mm [36].")
+    ] = "36",
+    list_charts: Annotated[bool, option("--list", help="Every chart with its parameters.")] = False,
+) -> int:
+    """Writes a test chart as a scene, with a camera that it fills, and its truth."""
+    from daguerre import charts
+
+    if list_charts:
+        for known, make in charts.KINDS.items():
+            print(f"{known}: {(inspect.getdoc(make) or '').splitlines()[0]}")
+            for p in inspect.signature(make).parameters.values():
+                print(f"    {p.name} [{p.default}]")
+        return 0
+    if name is None or output is None:
+        raise UsageError("chart: wanted NAME -o FILE.glb (see `daguerre chart --list`)")
+    made = charts.make(name, **_parameters(parameter or []))
+    made.save(
+        output,
+        luminance=None if paint else luminance,
+        focal_length=q.length_mm("--focal-length", focal_length),
+        sensor_width=q.length_mm("--sensor-width", sensor_width),
+    )
+    console.note(f"wrote {output} and {output.with_suffix('.json').name}")
+    return 0
+
+
+def _parameters(words: list[str]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            raise UsageError(f"--set: wanted KEY=VALUE, got {word!r}")
+        found[key] = _value(value)
+    return found
+
+
+def _value(text: str) -> int | float | str:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
