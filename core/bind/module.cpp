@@ -22,6 +22,7 @@ void bind_spectrum(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_truth(nb::module_& m);
+void bind_develop_expose(nb::module_& m);
 void bind_post_warp(nb::module_& m);
 void bind_post_blur(nb::module_& m);
 void bind_post_grain(nb::module_& m);
@@ -52,6 +53,7 @@ NB_MODULE(_core, m) {
     bind_film(m);
     bind_render(m);
     bind_truth(m);
+    bind_develop_expose(m);
     bind_post_warp(m);
     bind_post_blur(m);
     bind_post_grain(m);

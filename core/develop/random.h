@@ -1,0 +1,42 @@
+// random.h -- random numbers of a photosite: a stream for each seed and place, and no state.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "math/hash.h"
+#include "math/vec.h"
+
+namespace dg {
+
+/// Uniform and normal numbers. The same bits for the same seed, use and place, on any number of threads.
+class PixelRandom {
+public:
+    /// Of a row; `use` tells streams of one place apart. Rows are told apart once, pixels many times.
+    static std::uint64_t row_key(std::uint64_t seed, int use, int y) { return hash64(seed, use, y); }
+
+    PixelRandom(std::uint64_t row_key, int x) : state_(mix64(row_key ^ std::uint64_t(std::uint32_t(x)))) {}
+
+    /// SplitMix64: hashes of an arithmetic sequence. Source: Steele, Lea and Flood 2014, Fast splittable
+    /// pseudorandom number generators.
+    std::uint64_t bits() { return mix64(state_ += 0x9e3779b97f4a7c15ull); }
+
+    /// In (0, 1): neither end.
+    double uniform() { return (double(bits() >> 12) + 0.5) * 0x1p-52; }
+
+    struct Pair {
+        float a, b;
+    };
+
+    /// Two independent normal numbers, up to 5.9 in size. Source: Box and Muller 1958.
+    Pair normal_pair() {
+        const std::uint64_t r = bits();
+        const float u = (float(r >> 40) + 0.5f) * 0x1p-24f, v = float(r & 0xffffffu) * 0x1p-24f;
+        const float radius = std::sqrt(-2.f * std::log(u)), angle = 2.f * kPi * v;
+        return {radius * std::cos(angle), radius * std::sin(angle)};
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+}  // namespace dg
