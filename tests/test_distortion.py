@@ -51,6 +51,16 @@ def lens(name: str = "canon-ef-11-24mm-f4", **setting: float) -> LensDistortion:
     return LensDistortion(set_up(lenses.load(name), **setting), 20.0)
 
 
+@pytest.mark.parametrize("name", ["laikin-projection-28mm-f2.8", "canon-ef-11-24mm-f4"])
+def test_focal_length_is_the_scale_on_the_axis(name: str):
+    # Of two small heights, extrapolated to none; the first lens's chief rays end early.
+    bench = set_up(lenses.load(name))
+    heights = np.array([0.004, 0.008]) * bench.order.efl
+    near, far = heights / chief_rays(bench, heights).angles
+    focal = LensDistortion(bench, 20.0).focal_length_mm
+    assert focal == pytest.approx((4 * near - far) / 3, rel=3e-9)
+
+
 @pytest.mark.parametrize("model", [*MODELS, lens()], ids=lambda m: type(m).__name__)
 def test_there_and_back(model: Distortion):
     bent = model.distort(POINTS)

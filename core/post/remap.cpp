@@ -1,5 +1,6 @@
 #include "post/remap.h"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,9 +9,10 @@
 #include <string>
 
 #include "math/error.h"
-#include "math/vec.h"
+#include "post/interleave.h"
 #include "post/remap_tile.h"
 #include "post/remap_wide.h"
+#include "post/tile_map.h"
 
 namespace dg {
 namespace {
@@ -18,74 +20,6 @@ namespace {
 constexpr int kCell = SourceMap::kCell;
 constexpr int kMaxRegion =
     16 * kTileWidth * kTileHeight;  // pixels; beyond it a map is torn
-
-/// Displacements and stretches of a tile's pixels by one map.
-struct TileMap {
-    float dx[kTileHeight][kTileWidth], dy[kTileHeight][kTileWidth];
-    float sx[kTileHeight][kTileWidth], sy[kTileHeight][kTileWidth];
-    bool stretched = false;  // else sx and sy are 1, and not set
-
-    void read(const SourceMap& map, int x0, int y0, bool antialias) {
-        CellMap cell;
-        stretched = false;
-        for (int v = 0; v < kTileHeight; v += kCell)
-            for (int u = 0; u < kTileWidth; u += kCell) {
-                const int column = (x0 + u) / kCell, row = (y0 - map.top + v) / kCell;
-                if (row < 0 || y0 + v < map.top || column >= map.columns ||
-                    row >= map.rows) {
-                    blank(u, v);
-                    continue;
-                }
-                cell.read(map, column, row);
-                for (int j = 0; j < kCell; ++j) {
-                    std::copy_n(cell.dx[j], kCell, dx[v + j] + u);
-                    std::copy_n(cell.dy[j], kCell, dy[v + j] + u);
-                }
-                stretched = stretched || (antialias && shrinks(cell));
-            }
-        if (stretched) read_stretches();
-    }
-
-  private:
-    void blank(int u, int v) {
-        for (int j = 0; j < kCell; ++j) {
-            std::fill_n(dx[v + j] + u, kCell, NAN);
-            std::fill_n(dy[v + j] + u, kCell, NAN);
-        }
-    }
-
-    /// Squares of steps in the source, across and down, at one pixel of a cell whose rows
-    /// are `stride` apart: by differences within the cell, so that no other cell has a
-    /// say.
-    static Vec2f steps(const float* x, const float* y, int stride, int i, int j) {
-        const int i0 = std::min(i, kCell - 2), j0 = std::min(j, kCell - 2);
-        const int a = j * stride + i0, b = j0 * stride + i;
-        const float xx = 1 + x[a + 1] - x[a], xy = x[b + stride] - x[b];
-        const float yx = y[a + 1] - y[a], yy = 1 + y[b + stride] - y[b];
-        return {xx * xx + xy * xy, yx * yx + yy * yy};
-    }
-
-    static bool shrinks(const CellMap& c) {
-        float most = 0;
-        for (int j = 0; j < kCell; ++j)
-            for (int i = 0; i < kCell; ++i) {
-                const Vec2f s = steps(c.dx[0], c.dy[0], kCell, i, j);
-                most = std::max(most, std::max(s.x, s.y));  // NaN does not count
-            }
-        return stretch_of(std::sqrt(most)) > 1;
-    }
-
-    void read_stretches() {
-        for (int v = 0; v < kTileHeight; ++v)
-            for (int u = 0; u < kTileWidth; ++u) {
-                const int v0 = v / kCell * kCell, u0 = u / kCell * kCell;
-                const Vec2f s =
-                    steps(dx[v0] + u0, dy[v0] + u0, kTileWidth, u - u0, v - v0);
-                sx[v][u] = stretch_of(std::sqrt(s.x)),
-                sy[v][u] = stretch_of(std::sqrt(s.y));
-            }
-    }
-};
 
 struct Job {
     const RemapSource& source;
@@ -105,121 +39,125 @@ struct Split {
     explicit Split(float d) : whole(int(std::floor(d))), rest(d - float(whole)) {}
 };
 
+/// The memory for one tile after the other.
 class Tile {
   public:
-    Tile(Job& job, int x0, int y0)
+    explicit Tile(Job& job)
         : job_(job),
-          x0_(x0),
-          y0_(y0),
-          x1_(std::min(x0 + kTileWidth, job.source.width)),
-          top_(std::max(y0, job.begin)),
-          bottom_(std::min(y0 + kTileHeight, job.end)) {}
+          maps_(job.maps.size()),
+          values_(std::size_t(job.source.channels) * kPlane) {}
 
-    void run() {
-        for (int m = 0; m < int(job_.maps.size()); ++m) {
-            map_.read(job_.maps[m], x0_, y0_, job_.antialias);
-            const bool together = find_region(m);
-            for (int y = top_; y < bottom_; ++y) row(y, m, together);
+    void fill(int x0, int y0) {
+        x0_ = x0, y0_ = y0;
+        count_ = std::min(kTileWidth, job_.source.width - x0);
+        top_ = std::max(y0, job_.begin), bottom_ = std::min(y0 + kTileHeight, job_.end);
+        for (std::size_t m = 0; m < maps_.size(); ++m)
+            maps_[m].read(job_.maps[m], x0, y0, job_.antialias);
+        const bool together = find_region();
+        for (int y = top_; y < bottom_; ++y) {
+            for (std::size_t m = 0; m < maps_.size(); ++m) row(y, int(m), together);
+            write(y);
+            count_undefined(y);
         }
     }
 
   private:
+    static constexpr std::size_t kPlane = kTileWidth;
+
+    RemapPlaces places(int y, int m) const {
+        const TileMap& map = maps_[m];
+        const int v = y - y0_;
+        return {map.dx[v], map.dy[v], map.stretched ? map.sx[v] : nullptr, map.sy[v], x0_,
+                y, count_, job_.source.width, job_.source.height, &region_};
+    }
     bool inside(float x, float y) const {  // false for NaN
         return (x >= -0.5f) & (y >= -0.5f) & (x <= float(job_.source.width) - 0.5f) &
                (y <= float(job_.source.height) - 0.5f);
     }
-    float stretch_x(int u, int v) const { return map_.stretched ? map_.sx[v][u] : 1; }
-    float stretch_y(int u, int v) const { return map_.stretched ? map_.sy[v][u] : 1; }
 
-    /// The region that pixels within the source read; false if it would be absurdly
-    /// large.
-    bool find_region(int m) {
-        float left = INFINITY, right = -left, up = left, down = -left;
-        for (int y = top_; y < bottom_; ++y) {
-            const float *dx = map_.dx[y - y0_], *dy = map_.dy[y - y0_];
-            for (int u = 0; u < x1_ - x0_; ++u) {
-                const float x = float(x0_ + u) + dx[u], line = float(y) + dy[u];
-                const bool in = inside(x, line);
-                left = in && x < left ? x : left, right = in && x > right ? x : right;
-                up = in && line < up ? line : up, down = in && line > down ? line : down;
-            }
-        }
+    /// The region that pixels within the source read, by any map; false if it would be
+    /// absurdly large.
+    bool find_region() {
+        RemapBounds b;
+        for (std::size_t m = 0; m < maps_.size(); ++m)
+            for (int y = top_; y < bottom_; ++y) remap_bounds(places(y, int(m)), b);
         region_ = RemapRegion{0, 0, 0, 0, std::move(region_.values)};
-        if (!(left <= right && up <= down)) return false;  // nothing is there
+        if (!(b.left <= b.right && b.up <= b.down)) return false;  // nothing is there
         // A pixel more on either side: the sum of a place is rounded.
-        region_.x0 = int(std::floor(left)) - 2, region_.y0 = int(std::floor(up)) - 2;
-        region_.width = int(std::floor(right)) + 4 - region_.x0;
-        region_.height = int(std::floor(down)) + 4 - region_.y0;
+        region_.x0 = int(std::floor(b.left)) - 2, region_.y0 = int(std::floor(b.up)) - 2;
+        region_.width = int(std::floor(b.right)) + 4 - region_.x0;
+        region_.height = int(std::floor(b.down)) + 4 - region_.y0;
         if (std::int64_t(region_.width) * region_.height > kMaxRegion) return false;
-        fill(m);
+        read_region();
         return true;
     }
 
-    void fill(int m) {
+    void read_region() {
         const RemapSource& s = job_.source;
-        const std::size_t plane = std::size_t(region_.width) * region_.height;
-        region_.values.resize(plane * s.channels);
-        for (int j = 0; j < region_.height; ++j) {
-            const float* line = source_row(s, region_.y0 + j);
-            for (int c = 0; c < s.channels; ++c) {
-                if (job_.map_of[c] != m) continue;
-                float* to =
-                    region_.values.data() + c * plane + std::size_t(j) * region_.width;
-                for (int i = 0; i < region_.width; ++i) {
-                    const int x = std::clamp(region_.x0 + i, 0, s.width - 1);
-                    to[i] = line[std::size_t(x) * s.channels + c];
-                }
+        RemapRegion& r = region_;
+        r.values.resize(r.size() * s.channels);
+        const int left = std::clamp(-r.x0, 0, r.width),
+                  right = std::clamp(s.width - r.x0, left, r.width);
+        for (int j = 0; j < r.height; ++j) {
+            float* to = r.values.data() + std::size_t(j) * r.width;
+            const float* line =
+                source_row(s, r.y0 + j) + std::size_t(r.x0 + left) * s.channels;
+            split_channels(line, right - left, s.channels, to + left, r.size());
+            for (int c = 0; c < s.channels; ++c, to += r.size()) {
+                std::fill(to, to + left, to[left]);
+                std::fill(to + right, to + r.width, to[right - 1]);
             }
         }
     }
 
     void row(int y, int m, bool together) {
-        const RemapSource& s = job_.source;
-        const int v = y - y0_, count = x1_ - x0_;
-        RemapRow places;
-        std::fill_n(places.here, kTileWidth, 0);
-        if (together)
-            remap_places({map_.dx[v], map_.dy[v], map_.stretched ? map_.sx[v] : nullptr,
-                          map_.sy[v], x0_, y, s.width, s.height, &region_},
-                         places);
-        std::fill(places.offset + count, places.offset + kTileWidth, 0);
-        const auto filled = std::count(places.here, places.here + count, 1);
-        float* out =
-            job_.out + (std::size_t(y - job_.begin) * s.width + x0_) * s.channels;
-        for (int c = 0; c < s.channels; ++c) {
-            if (job_.map_of[c] != m) continue;
-            float values[kTileWidth] = {};
-            if (filled)
-                remap_row(region_.plane(c), region_.width, places,
-                          weights_of(job_.filter), (count + 3) / 4 * 4, values);
-            for (int u = 0; u < count; ++u)
-                out[std::size_t(u) * s.channels + c] = values[u];
-            for (int u = 0; filled < count && u < count; ++u)
-                if (!places.here[u])
-                    out[std::size_t(u) * s.channels + c] = other(u, v, c);
+        RemapRow row;
+        int filled = 0;
+        if (together) filled = remap_places(places(y, m), row);
+        channels_.clear();
+        for (int c = 0; c < job_.source.channels; ++c)
+            if (job_.map_of[c] == m)
+                channels_.push_back({region_.plane(c), values_.data() + c * kPlane});
+        if (filled)
+            remap_row(channels_, region_.width, row, weights_of(job_.filter));
+        for (int u = 0; filled < count_ && u < count_; ++u) {
+            if (filled && row.here[u]) continue;
+            for (int c = 0; c < job_.source.channels; ++c)
+                if (job_.map_of[c] == m) values_[c * kPlane + u] = other(u, y - y0_, c);
         }
-        if (m == 0) count_undefined(v, count);
     }
 
     /// A pixel that is stretched, far from its neighbours, or outside.
     float other(int u, int v, int c) const {
-        const float dx = map_.dx[v][u], dy = map_.dy[v][u];
+        const TileMap& map = maps_[job_.map_of[c]];
+        const float dx = map.dx[v][u], dy = map.dy[v][u];
         if (!inside(x0_ + u + dx, y0_ + v + dy)) return 0;
         const Split x(dx), y(dy);
-        return sample_wide(job_.source, c, {x0_ + u + x.whole, x.rest, stretch_x(u, v)},
-                           {y0_ + v + y.whole, y.rest, stretch_y(u, v)}, job_.filter);
+        const float sx = map.stretched ? map.sx[v][u] : 1,
+                    sy = map.stretched ? map.sy[v][u] : 1;
+        return sample_wide(job_.source, c, {x0_ + u + x.whole, x.rest, sx},
+                           {y0_ + v + y.whole, y.rest, sy}, job_.filter);
     }
 
-    void count_undefined(int v, int count) {
-        const auto lost = std::count_if(map_.dx[v], map_.dx[v] + count,
-                                        [](float d) { return !std::isfinite(d); });
+    void write(int y) {
+        const RemapSource& s = job_.source;
+        float* to = job_.out + (std::size_t(y - job_.begin) * s.width + x0_) * s.channels;
+        join_channels(values_.data(), kPlane, count_, s.channels, to);
+    }
+
+    void count_undefined(int y) {
+        const float* dx = maps_[0].dx[y - y0_];
+        const auto lost =
+            std::count_if(dx, dx + count_, [](float d) { return !std::isfinite(d); });
         if (lost) job_.undefined += lost;
     }
 
     Job& job_;
-    int x0_, y0_, x1_, top_, bottom_;
-    TileMap map_;
+    std::vector<TileMap> maps_;
+    std::vector<float> values_;  // of a row, channel by channel
+    std::vector<RemapChannel> channels_;
     RemapRegion region_;
+    int x0_ = 0, y0_ = 0, count_ = 0, top_ = 0, bottom_ = 0;
 };
 
 void check(const RemapSource& s, std::span<const SourceMap> maps,
@@ -260,8 +198,11 @@ RemapResult remap(const RemapSource& source, std::span<const SourceMap> maps,
     Job job{source, maps, map_of, begin, end, filter, antialias, result.values.get()};
     const int columns = (source.width + kTileWidth - 1) / kTileWidth;
     const int first = begin / kTileHeight, last = (end + kTileHeight - 1) / kTileHeight;
-    oneapi::tbb::parallel_for(first * columns, last * columns, [&](int k) {
-        Tile(job, k % columns * kTileWidth, k / columns * kTileHeight).run();
+    const oneapi::tbb::blocked_range<int> tiles(first * columns, last * columns);
+    oneapi::tbb::parallel_for(tiles, [&](const auto& part) {
+        Tile tile(job);
+        for (int k = part.begin(); k < part.end(); ++k)
+            tile.fill(k % columns * kTileWidth, k / columns * kTileHeight);
     });
     result.undefined = job.undefined;
     return result;

@@ -11,70 +11,153 @@ namespace dg {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D4 = hn::Full128<float>;
-using V4 = hn::Vec<D4>;
+// Vectors are blocks of four lanes. A block holds four neighbours in a row of the source,
+// or four pixels of the result.
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+constexpr int kLanes = int(hn::MaxLanes(D()));
 
-struct Bounded {
-    V4 value, low, high;  // four addends each
+HWY_INLINE V sum_of(V a, V b) { return hn::Add(a, b); }
+HWY_INLINE V least_of(V a, V b) { return hn::Min(a, b); }
+HWY_INLINE V most_of(V a, V b) { return hn::Max(a, b); }
+
+/// Four values each at offsets 0, 4, 8 ..: as many as there are blocks.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> blocks_at(Tag d, const float* p, const std::int32_t* offset) {
+    if constexpr (hn::MaxLanes(d) == 4) {
+        return hn::LoadU(d, p + offset[0]);
+    } else {
+        const hn::Half<Tag> half;
+        return hn::Combine(d, blocks_at(half, p, offset + hn::MaxLanes(half)),
+                           blocks_at(half, p, offset));
+    }
+}
+
+/// Each block of p[k] to one value by a fold of two: lane k of that block.
+template <V (*fold)(V, V)>
+HWY_INLINE V folded(const V (&p)[4]) {
+    const D d;
+    const hn::Repartition<std::uint64_t, D> pairs;
+    const auto a = hn::BitCast(pairs, fold(hn::InterleaveLower(d, p[0], p[1]),
+                                           hn::InterleaveUpper(d, p[0], p[1])));
+    const auto b = hn::BitCast(pairs, fold(hn::InterleaveLower(d, p[2], p[3]),
+                                           hn::InterleaveUpper(d, p[2], p[3])));
+    return fold(hn::BitCast(d, hn::InterleaveLower(pairs, a, b)),
+                hn::BitCast(d, hn::InterleaveUpper(pairs, a, b)));
+}
+
+/// Lane j of block k to lane k of block j, within each block.
+HWY_INLINE void transpose(V (&p)[4]) {
+    const D d;
+    const hn::Repartition<std::uint64_t, D> pairs;
+    const auto a = hn::BitCast(pairs, hn::InterleaveLower(d, p[0], p[1]));
+    const auto b = hn::BitCast(pairs, hn::InterleaveLower(d, p[2], p[3]));
+    const auto c = hn::BitCast(pairs, hn::InterleaveUpper(d, p[0], p[1]));
+    const auto e = hn::BitCast(pairs, hn::InterleaveUpper(d, p[2], p[3]));
+    p[0] = hn::BitCast(d, hn::InterleaveLower(pairs, a, b));
+    p[1] = hn::BitCast(d, hn::InterleaveUpper(pairs, a, b));
+    p[2] = hn::BitCast(d, hn::InterleaveLower(pairs, c, e));
+    p[3] = hn::BitCast(d, hn::InterleaveUpper(pairs, c, e));
+}
+
+/// Weights of kLanes pixels. Those of pixels k, k + 4, .. are blocks: `across` has the
+/// four columns' in a block, `down` one row's four times.
+struct Weights {
+    V across[4], down[4][4];
+
+    HWY_INLINE Weights(const RemapWeights& w, const float* tx, const float* ty) {
+        const D d;
+        const V x = hn::LoadU(d, tx), y = hn::LoadU(d, ty);
+        for (int i = 0; i < 4; ++i) across[i] = cubic(w, i, x);
+        transpose(across);
+        for (int j = 0; j < 4; ++j) {
+            const V weight = cubic(w, j, y);
+            down[0][j] = hn::Broadcast<0>(weight), down[1][j] = hn::Broadcast<1>(weight);
+            down[2][j] = hn::Broadcast<2>(weight), down[3][j] = hn::Broadcast<3>(weight);
+        }
+    }
+
+  private:
+    static HWY_INLINE V cubic(const RemapWeights& w, int i, V t) {
+        const D d;
+        const V a = hn::MulAdd(hn::Set(d, w.at[3][i]), t, hn::Set(d, w.at[2][i]));
+        return hn::MulAdd(hn::MulAdd(a, t, hn::Set(d, w.at[1][i])), t,
+                          hn::Set(d, w.at[0][i]));
+    }
 };
 
-/// Four weights at t.
-HWY_INLINE V4 weights_at(const V4 (&k)[4], float t) {
-    const V4 v = hn::Set(D4(), t);
-    return hn::MulAdd(hn::MulAdd(hn::MulAdd(k[3], v, k[2]), v, k[1]), v, k[0]);
+/// kLanes pixels of one channel: the weighed sum of 4 x 4 values, within their bounds.
+HWY_INLINE V filtered(const float* plane, int stride, const std::int32_t* offset,
+                      const Weights& w) {
+    const D d;
+    V sum[4], low[4], high[4];
+    for (int k = 0; k < 4; ++k) {
+        const V a = blocks_at(d, plane, offset + k),
+                b = blocks_at(d, plane + stride, offset + k),
+                c = blocks_at(d, plane + 2 * stride, offset + k),
+                e = blocks_at(d, plane + 3 * stride, offset + k);
+        V s = hn::Mul(a, w.down[k][0]);
+        s = hn::MulAdd(b, w.down[k][1], s);
+        s = hn::MulAdd(c, w.down[k][2], s);
+        sum[k] = hn::Mul(hn::MulAdd(e, w.down[k][3], s), w.across[k]);
+        low[k] = hn::Min(hn::Min(a, b), hn::Min(c, e));
+        high[k] = hn::Max(hn::Max(a, b), hn::Max(c, e));
+    }
+    const V s = folded<sum_of>(sum);
+    const V held = hn::Min(hn::Max(s, folded<least_of>(low)), folded<most_of>(high));
+    return hn::IfThenElse(hn::IsNaN(s), s, held);  // NaN stays
 }
 
-/// A pixel's 4 x 4 values: weighed, not yet added across; and bounds of each column.
-HWY_INLINE Bounded columns(const float* p, int stride, V4 wx, V4 wy) {
-    const D4 d;
-    const V4 a = hn::LoadU(d, p), b = hn::LoadU(d, p + stride),
-             c = hn::LoadU(d, p + 2 * stride), e = hn::LoadU(d, p + 3 * stride);
-    V4 sum = hn::Mul(a, hn::Broadcast<0>(wy));
-    sum = hn::MulAdd(b, hn::Broadcast<1>(wy), sum);
-    sum = hn::MulAdd(c, hn::Broadcast<2>(wy), sum);
-    sum = hn::MulAdd(e, hn::Broadcast<3>(wy), sum);
-    return {hn::Mul(sum, wx), hn::Min(hn::Min(a, b), hn::Min(c, e)),
-            hn::Max(hn::Max(a, b), hn::Max(c, e))};
+void Row(std::span<const RemapChannel> channels, int stride, const RemapRow& row,
+         const RemapWeights& weights) {
+    for (int i = 0; i < kTileWidth; i += kLanes) {
+        const Weights w(weights, row.tx + i, row.ty + i);
+        for (const RemapChannel& c : channels)
+            hn::StoreU(filtered(c.plane, stride, row.offset + i, w), D(), c.out + i);
+    }
 }
 
-/// Rows of four vectors become columns.
-HWY_INLINE void transpose(V4& a, V4& b, V4& c, V4& e) {
-    const D4 d;
-    const V4 ac_low = hn::InterleaveLower(d, a, c),
-             ac_high = hn::InterleaveUpper(d, a, c);
-    const V4 be_low = hn::InterleaveLower(d, b, e),
-             be_high = hn::InterleaveUpper(d, b, e);
-    a = hn::InterleaveLower(d, ac_low, be_low),
-    b = hn::InterleaveUpper(d, ac_low, be_low);
-    c = hn::InterleaveLower(d, ac_high, be_high),
-    e = hn::InterleaveUpper(d, ac_high, be_high);
-}
+/// Where kLanes pixels from i on lie in the source, and whether they do.
+struct Places {
+    V dx, dy, x, y;
+    hn::Mask<D> here;  // not for NaN
 
-void Places(const RemapPlaces& p, RemapRow& row) {
-    const hn::CappedTag<float, kTileWidth> d;
-    const hn::RebindToSigned<decltype(d)> di;
-    const auto half = hn::Set(d, -0.5f), one = hn::Set(d, 1);
-    const auto right = hn::Set(d, float(p.width) - 0.5f),
-               bottom = hn::Set(d, float(p.height) - 0.5f);
-    const auto y = hn::Set(d, float(p.y));
+    HWY_INLINE Places(const RemapPlaces& p, int i) {
+        const D d;
+        dx = hn::LoadU(d, p.dx + i), dy = hn::LoadU(d, p.dy + i);
+        x = hn::Add(hn::Set(d, float(p.x)), hn::Add(hn::Iota(d, float(i)), dx));
+        y = hn::Add(hn::Set(d, float(p.y)), dy);
+        here = hn::And(hn::Lt(hn::Iota(d, float(i)), hn::Set(d, float(p.count))),
+                       hn::And(inside(x, p.width), inside(y, p.height)));
+    }
+
+  private:
+    static HWY_INLINE hn::Mask<D> inside(V at, int size) {
+        const D d;
+        return hn::And(hn::Ge(at, hn::Set(d, -0.5f)),
+                       hn::Le(at, hn::Set(d, float(size) - 0.5f)));
+    }
+};
+
+int FindPlaces(const RemapPlaces& p, RemapRow& row) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const auto one = hn::Set(d, 1);
     const auto stride = hn::Set(di, p.region->width);
     const auto left = hn::Set(di, p.x - 1 - p.region->x0),
                up = hn::Set(di, p.y - 1 - p.region->y0);
-    for (int i = 0; i < kTileWidth; i += int(hn::Lanes(d))) {
-        const auto dx = hn::LoadU(d, p.dx + i), dy = hn::LoadU(d, p.dy + i);
-        const auto at_x =
-            hn::Add(hn::Set(d, float(p.x)), hn::Add(hn::Iota(d, float(i)), dx));
-        const auto at_y = hn::Add(y, dy);
-        auto here =
-            hn::And(hn::And(hn::Ge(at_x, half), hn::Le(at_x, right)),
-                    hn::And(hn::Ge(at_y, half), hn::Le(at_y, bottom)));  // false for NaN
+    int filled = 0;
+    for (int i = 0; i < kTileWidth; i += kLanes) {
+        const Places at(p, i);
+        auto here = at.here;
         if (p.sx != nullptr)
             here = hn::And(here, hn::And(hn::Eq(hn::LoadU(d, p.sx + i), one),
                                          hn::Eq(hn::LoadU(d, p.sy + i), one)));
-        const auto x0 = hn::Floor(hn::IfThenElseZero(here, dx)),
-                   y0 = hn::Floor(hn::IfThenElseZero(here, dy));
-        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(dx, x0)), d, row.tx + i);
-        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(dy, y0)), d, row.ty + i);
+        filled += int(hn::CountTrue(d, here));
+        const auto x0 = hn::Floor(hn::IfThenElseZero(here, at.dx)),
+                   y0 = hn::Floor(hn::IfThenElseZero(here, at.dy));
+        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(at.dx, x0)), d, row.tx + i);
+        hn::StoreU(hn::IfThenElseZero(here, hn::Sub(at.dy, y0)), d, row.ty + i);
         const auto column =
             hn::Add(hn::Add(hn::ConvertTo(di, x0), hn::Iota(di, i)), left);
         const auto line = hn::Add(hn::ConvertTo(di, y0), up);
@@ -83,29 +166,22 @@ void Places(const RemapPlaces& p, RemapRow& row) {
         hn::StoreU(hn::IfThenElseZero(flag, offset), di, row.offset + i);
         hn::StoreU(hn::IfThenElseZero(flag, hn::Set(di, 1)), di, row.here + i);
     }
+    return filled;
 }
 
-void Row(const float* plane, int stride, const RemapRow& row, const RemapWeights& weights,
-         int count, float* out) {
-    const D4 d;
-    V4 k[4];
-    for (int i = 0; i < 4; ++i) k[i] = hn::Load(d, weights.at[i]);
-    for (int i = 0; i < count; i += 4) {
-        Bounded p[4];
-        for (int j = 0; j < 4; ++j)
-            p[j] = columns(plane + row.offset[i + j], stride,
-                           weights_at(k, row.tx[i + j]), weights_at(k, row.ty[i + j]));
-        transpose(p[0].value, p[1].value, p[2].value, p[3].value);
-        transpose(p[0].low, p[1].low, p[2].low, p[3].low);
-        transpose(p[0].high, p[1].high, p[2].high, p[3].high);
-        const V4 sum =
-            hn::Add(hn::Add(p[0].value, p[1].value), hn::Add(p[2].value, p[3].value));
-        const V4 low = hn::Min(hn::Min(p[0].low, p[1].low), hn::Min(p[2].low, p[3].low));
-        const V4 high =
-            hn::Max(hn::Max(p[0].high, p[1].high), hn::Max(p[2].high, p[3].high));
-        const V4 held = hn::Min(hn::Max(sum, low), high);
-        hn::StoreU(hn::IfThenElse(hn::IsNaN(sum), sum, held), d, out + i);  // NaN stays
+void Bounds(const RemapPlaces& p, RemapBounds& bounds) {
+    const D d;
+    V left = hn::Set(d, bounds.left), right = hn::Set(d, bounds.right),
+      up = hn::Set(d, bounds.up), down = hn::Set(d, bounds.down);
+    for (int i = 0; i < kTileWidth; i += kLanes) {
+        const Places at(p, i);
+        left = hn::IfThenElse(at.here, hn::Min(left, at.x), left);
+        right = hn::IfThenElse(at.here, hn::Max(right, at.x), right);
+        up = hn::IfThenElse(at.here, hn::Min(up, at.y), up);
+        down = hn::IfThenElse(at.here, hn::Max(down, at.y), down);
     }
+    bounds = {hn::GetLane(hn::MinOfLanes(d, left)), hn::GetLane(hn::MaxOfLanes(d, right)),
+              hn::GetLane(hn::MinOfLanes(d, up)), hn::GetLane(hn::MaxOfLanes(d, down))};
 }
 
 }  // namespace HWY_NAMESPACE
@@ -115,15 +191,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace dg {
 HWY_EXPORT(Row);
-HWY_EXPORT(Places);
+HWY_EXPORT(FindPlaces);
+HWY_EXPORT(Bounds);
 
-void remap_places(const RemapPlaces& p, RemapRow& row) {
-    HWY_DYNAMIC_DISPATCH(Places)(p, row);
+int remap_places(const RemapPlaces& p, RemapRow& row) {
+    return HWY_DYNAMIC_DISPATCH(FindPlaces)(p, row);
 }
 
-void remap_row(const float* plane, int stride, const RemapRow& row,
-               const RemapWeights& weights, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(Row)(plane, stride, row, weights, count, out);
+void remap_bounds(const RemapPlaces& p, RemapBounds& bounds) {
+    HWY_DYNAMIC_DISPATCH(Bounds)(p, bounds);
+}
+
+void remap_row(std::span<const RemapChannel> channels, int stride, const RemapRow& row,
+               const RemapWeights& weights) {
+    HWY_DYNAMIC_DISPATCH(Row)(channels, stride, row, weights);
 }
 
 }  // namespace dg

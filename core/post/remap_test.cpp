@@ -1,8 +1,11 @@
 #include "post/remap.h"
 
 #include <doctest/doctest.h>
+#include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "math/error.h"
 
@@ -64,6 +67,39 @@ struct Shift {
 
 const std::vector<int> kOneMap{0, 0, 0};
 
+/// Keys' cubic (a = -1/2) at a place, by its formula in double; edges go on outside.
+double keys_cubic(const TestImage& image, double x, double y, int c) {
+    const auto weight = [](double d) {
+        d = std::abs(d);
+        return d < 1   ? (1.5 * d - 2.5) * d * d + 1
+               : d < 2 ? ((-0.5 * d + 2.5) * d - 4) * d + 2
+                       : 0;
+    };
+    const int x0 = int(std::floor(x)) - 1, y0 = int(std::floor(y)) - 1;
+    double sum = 0, low = INFINITY, high = -low;
+    for (int j = y0; j < y0 + 4; ++j)
+        for (int i = x0; i < x0 + 4; ++i) {
+            const double value = image.at(std::clamp(i, 0, image.width - 1),
+                                          std::clamp(j, 0, image.height - 1), c);
+            sum += weight(i - x) * weight(j - y) * value;
+            low = std::min(low, value), high = std::max(high, value);
+        }
+    return std::clamp(sum, low, high);
+}
+
+/// Runs the body once for every instruction set that was built and that this machine has.
+template <typename Body>
+void for_each_target(const Body& body) {
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        INFO("target " << std::string(hwy::TargetName(target)));
+        body();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 double parabola(double x, double y, int c) {
     return 2 + 0.01 * x * y + 0.002 * x * x - 0.001 * (c + 1) * y * y;
 }
@@ -105,6 +141,31 @@ TEST_CASE(
                 ++counted;
             }
         CHECK(counted > 2000);
+    }
+}
+
+TEST_CASE("any count of channels and any width, to the edges, on every SIMD target") {
+    const auto swirl = [](double x, double y) {
+        return Shift{0.03 * (y - 20) + 0.2, -0.03 * (x - 30) - 0.1};
+    };
+    for (const auto& [width, channels] :
+         {std::pair(75, 1), {66, 2}, {130, 3}, {61, 4}, {5, 5}}) {
+        const TestImage image(width, 41, channels, [](int x, int y, int c) {
+            return std::sin(x * 7.1 + y * 3.3 + c);
+        });
+        const TestMap map(width, 41, swirl);
+        const std::vector<int> one(channels, 0);
+        for_each_target([&, width = width, channels = channels] {
+            const auto out = remap(image.source(0, 41), {&map.map, 1}, one, 0, 41,
+                                   RemapFilter::cubic, true);
+            for (std::size_t k = 0; k < out.size; ++k) {
+                const int c = k % channels, u = k / channels % width,
+                          v = k / channels / width;
+                const double x = u + swirl(u, v).dx, y = v + swirl(u, v).dy;
+                if (x < -0.49 || y < -0.49 || x > width - 0.51 || y > 40.49) continue;
+                REQUIRE(std::abs(out.values[k] - keys_cubic(image, x, y, c)) < 1e-5);
+            }
+        });
     }
 }
 

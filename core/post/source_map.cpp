@@ -22,20 +22,21 @@ float value(const std::array<float, 4>& k, float t) {
 }
 
 /// One coordinate of a cell between nodes: along columns first, then along each row.
-void between(const SourceMap& map, int column, int row, int axis,
-             float (&out)[kCell][kCell]) {
-    const std::size_t stride = 2 * std::size_t(map.columns + 3);
-    const float* first = map.nodes.data() + row * stride + 2 * std::size_t(column) + axis;
+void between(const SourceMap& map, int column, int row, int axis, float* out,
+             int stride) {
+    const std::size_t line = 2 * std::size_t(map.columns + 3);
+    const float* first = map.nodes.data() + row * line + 2 * std::size_t(column) + axis;
     std::array<std::array<float, 4>, 4> down;
     for (int i = 0; i < 4; ++i) {
         const float* n = first + 2 * i;
-        down[i] = cubic(n[0], n[stride], n[2 * stride], n[3 * stride]);
+        down[i] = cubic(n[0], n[line], n[2 * line], n[3 * line]);
     }
     for (int v = 0; v < kCell; ++v) {
         const float t = float(v) / kCell;
         const auto along = cubic(value(down[0], t), value(down[1], t), value(down[2], t),
                                  value(down[3], t));
-        for (int u = 0; u < kCell; ++u) out[v][u] = value(along, float(u) / kCell);
+        for (int u = 0; u < kCell; ++u)
+            out[v * stride + u] = value(along, float(u) / kCell);
     }
 }
 
@@ -75,18 +76,17 @@ std::vector<float> SourceMap::displacements(int width, int begin, int end) const
     return out;
 }
 
-void CellMap::read(const SourceMap& map, int column, int row) {
-    const std::int32_t k = map.exact[std::size_t(row) * map.columns + column];
+void SourceMap::read_cell(int column, int row, float* dx, float* dy, int stride) const {
+    const std::int32_t k = exact[std::size_t(row) * columns + column];
     if (k < 0) {
-        between(map, column, row, 0, dx);
-        between(map, column, row, 1, dy);
+        between(*this, column, row, 0, dx, stride);
+        between(*this, column, row, 1, dy, stride);
         return;
     }
-    const float* p = map.exact_cells.data() + std::size_t(k) * kCell * kCell * 2;
-    for (int i = 0; i < kCell * kCell; ++i) {
-        dx[i / kCell][i % kCell] = p[2 * i];
-        dy[i / kCell][i % kCell] = p[2 * i + 1];
-    }
+    const float* p = exact_cells.data() + std::size_t(k) * kCell * kCell * 2;
+    for (int v = 0; v < kCell; ++v)
+        for (int u = 0; u < kCell; ++u, p += 2)
+            dx[v * stride + u] = p[0], dy[v * stride + u] = p[1];
 }
 
 }  // namespace dg

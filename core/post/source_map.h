@@ -26,6 +26,10 @@ struct SourceMap {
     /// Throws Error unless the sizes agree.
     void check() const;
 
+    /// Of the pixels of one cell, NaN where the map is not defined; rows are `stride`
+    /// apart.
+    void read_cell(int column, int row, float* dx, float* dy, int stride) const;
+
     /// Of all pixels of rows [begin, end) of a picture so wide: x and y, pixel by pixel.
     std::vector<float> displacements(int width, int begin, int end) const;
 };
@@ -34,7 +38,9 @@ struct SourceMap {
 struct CellMap {
     float dx[SourceMap::kCell][SourceMap::kCell], dy[SourceMap::kCell][SourceMap::kCell];
 
-    void read(const SourceMap& map, int column, int row);
+    void read(const SourceMap& map, int column, int row) {
+        map.read_cell(column, row, dx[0], dy[0], SourceMap::kCell);
+    }
 };
 
 }  // namespace dg

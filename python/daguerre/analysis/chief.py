@@ -14,6 +14,8 @@ from .bench import Bench, FloatArray
 
 STEPS = 8  # from the axis to the point; each starts from the last
 NEWTON = 6
+ON_THE_WAY = 1e-3  # of the iris: how well steps before the last are aimed
+EXACT = 1e-11
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,8 @@ def chief_rays(
         share = step / STEPS
         guess = film * share / reach if step < 2 else 2 * slopes - before
         before = slopes
-        slopes = _aimed(bench, film * share, guess, wavelength_nm)
+        miss = ON_THE_WAY if step < STEPS else EXACT
+        slopes = _aimed(bench, film * share, guess, wavelength_nm, miss)
     rays = bench.rays(*_from_film(bench, film, slopes), wavelength_nm, to_film=False, clip=False)
     directions = -rays.directions
     directions[~rays.passed] = np.nan
@@ -95,13 +98,15 @@ def as_film_points(film_mm: ArrayLike) -> FloatArray:
     return np.column_stack([np.zeros_like(film), film])
 
 
-def _aimed(bench: Bench, film: FloatArray, slopes: FloatArray, nm: float) -> FloatArray:
-    """Slopes that meet the middle of the stop, shape (N, 2)."""
+def _aimed(
+    bench: Bench, film: FloatArray, slopes: FloatArray, nm: float, miss: float
+) -> FloatArray:
+    """Slopes that meet the middle of the stop within a share of its radius, shape (N, 2)."""
     delta = 1e-5
     across, along = np.array([delta, 0.0]), np.array([0.0, delta])
     for _ in range(NEWTON):
         at = _iris(bench, film, slopes, nm)
-        if np.nanmax(np.abs(at), initial=0) < 1e-11 * bench.iris_radius:
+        if np.nanmax(np.abs(at), initial=0) < miss * bench.iris_radius:
             break
         jx = (_iris(bench, film, slopes + across, nm) - at) / delta
         jy = (_iris(bench, film, slopes + along, nm) - at) / delta

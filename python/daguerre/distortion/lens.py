@@ -20,6 +20,7 @@ from .monotone import SAMPLES, Monotone
 from .opencv import tangent
 
 HEIGHTS = 48
+NEAR, NEAR_HEIGHTS = 0.1, 10  # for the scale near the axis: up to a share of the reach
 DEGREE = 20
 TRIM = 1e-10  # of the angle: terms that are less are left out
 
@@ -62,7 +63,8 @@ class LensDistortion(Radial):
     @cached_property
     def focal_length_mm(self) -> float:
         """Image height over the tangent of the angle, near the axis, mm."""
-        angle, _ = _angles(self.bench, self.reach_mm, DESIGN_WAVELENGTH_NM)
+        near = NEAR * self.reach_mm
+        angle, _ = _angles(self.bench, near, DESIGN_WAVELENGTH_NM, NEAR_HEIGHTS)
         return 1 / float(angle(0.0))
 
     @cached_property
@@ -83,17 +85,19 @@ class LensDistortion(Radial):
         return self._to_ideal(radius)
 
 
-def _angles(bench: Bench, reach_mm: float, nm: float) -> tuple[Chebyshev, float]:
+def _angles(
+    bench: Bench, reach_mm: float, nm: float, rays: int = HEIGHTS
+) -> tuple[Chebyshev, float]:
     """Angle over image height as a function of its square, and how far it holds, mm."""
-    heights = reach_mm * np.sin(0.5 * np.pi * (np.arange(HEIGHTS) + 0.5) / HEIGHTS)
-    rays = chief_rays(bench, heights, nm)
-    slope = rays.directions[:, 1] / rays.directions[:, 2]
-    angles = rays.angles
+    heights = reach_mm * np.sin(0.5 * np.pi * (np.arange(rays) + 0.5) / rays)
+    chief = chief_rays(bench, heights, nm)
+    slope = chief.directions[:, 1] / chief.directions[:, 2]
+    angles = chief.angles
     if math.isfinite(bench.focus_mm):
         plane = bench.order.entrance_pupil.z - bench.focus_mm
-        seen = rays.points[:, 1] + slope * (plane - rays.points[:, 2])
+        seen = chief.points[:, 1] + slope * (plane - chief.points[:, 2])
         angles = np.arctan2(np.abs(seen), bench.focus_mm)
-    good = np.isfinite(angles) & (rays.directions[:, 2] > 0.02)
+    good = np.isfinite(angles) & (chief.directions[:, 2] > 0.02)
     count = len(good) if good.all() else int(np.argmin(good))
     if count < 8:
         raise InputError(f"{bench.lens.name}: distortion: wanted chief rays, got hardly any")

@@ -214,22 +214,27 @@ def _bad_cells(nodes: FloatArray) -> NDArray[np.bool_]:
 
     Its error is at most 3/128 of the fourth difference.
     """
-    rows, columns = nodes.shape[0] - 3, nodes.shape[1] - 3
-    known: NDArray[np.bool_] = np.asarray(np.isfinite(nodes).all(axis=2))
-    windows = np.lib.stride_tricks.sliding_window_view(known, (4, 4))
-    whole, some = windows.all(axis=(2, 3)), windows.any(axis=(2, 3))
-    off = np.zeros((rows, columns))
+    known = np.isfinite(nodes[..., 0]) & np.isfinite(nodes[..., 1])
+    whole, some = _folded(known, np.logical_and), _folded(known, np.logical_or)
+    off = np.zeros(whole.shape)
     for axis in (0, 1):
         if nodes.shape[axis] < 5:
             off[:] = np.inf  # a picture of a cell or two
             continue
-        fourth = np.abs(np.diff(np.where(known[:, :, None], nodes, 0), 4, axis)).max(axis=2)
+        fourth = np.abs(np.diff(np.where(known[:, :, None], nodes, 0), 4, axis))
         pad = [(0, 0), (0, 0)]
         pad[axis] = (2, 2)
-        spread = np.pad(fourth, pad, mode="edge")
-        near = np.lib.stride_tricks.sliding_window_view(spread, (4, 4)).max(axis=(2, 3))
-        off = np.maximum(off, 3 / 128 * near)
+        spread = np.pad(np.maximum(fourth[..., 0], fourth[..., 1]), pad, mode="edge")
+        off = np.maximum(off, 3 / 128 * _folded(spread, np.maximum))
     return np.asarray(some & ~(whole & (off <= TOLERANCE)))
+
+
+def _folded(values: NDArray[Any], fold: np.ufunc) -> NDArray[Any]:
+    """Over all windows of 4 x 4: first along columns, then along rows."""
+    for _ in range(2):
+        parts = [values[k : len(values) - 3 + k] for k in range(4)]
+        values = fold(fold(parts[0], parts[1]), fold(parts[2], parts[3])).T
+    return values
 
 
 def _stretch(y: FloatArray, step: int) -> FloatArray:
