@@ -16,6 +16,9 @@ from .errors import MismatchError, UsageError, suggest
 if TYPE_CHECKING:
     import os
 
+    from .raw import Raw
+    from .sensors.sensor import Sensor
+
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png")
 _STRIPE = 64  # rows
@@ -141,6 +144,62 @@ class Frame:
             from .io.png import write_png
 
             write_png(path, self, tone)
+
+    def expose(
+        self,
+        sensor: str | Sensor | None = None,
+        iso: float | None = None,
+        *,
+        seed: int = 0,
+        ev: float | None = None,
+        white_balance: Any = None,
+        temperature: float | None = None,
+    ) -> Raw:
+        """What a sensor makes of this light: a raw picture, with the noise of photons and sensor.
+
+        A pixel of the frame is one photosite, whatever the frame's resolution.
+
+        Args:
+            sensor: Name of the library (``dg.sensors.names()``), file, or sensor. By default the
+                one whose channels the frame holds, else "ideal".
+            iso: By default the camera's, where the sensor has it, else the sensor's base ISO.
+            seed: Of the shot's noise. The sensor's fixed pattern is by its serial number.
+            ev: Exposure compensation: light times 2^ev; by default the camera's.
+            white_balance: K or (x, y) that the neutral of the raw file is set to; by default the
+                camera's, else D65.
+            temperature: Of the sensor, deg C; by default that at which it was measured.
+
+        Raises:
+            DaguerreError: No such sensor, an ISO beyond it, or a frame whose facts do not tell its
+                exposure; the message names the field.
+        """
+        from .exposing import expose
+
+        return expose(
+            self,
+            sensor,
+            iso,
+            seed=seed,
+            ev=ev,
+            white_balance=white_balance,
+            temperature=temperature,
+        )
+
+    def exposure_truth(
+        self,
+        sensor: str | Sensor | None = None,
+        iso: float | None = None,
+        ev: float | None = None,
+    ) -> dict[str, NDArray[np.float32]]:
+        """What a photograph is measured against, without noise: channels to put into ``aovs``.
+
+        Returns:
+            ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the
+            light alone would saturate that channel's photosite; each of shape (H, W).
+        """
+        from .exposing import exposure_truth
+
+        return exposure_truth(self, sensor, iso, ev)
 
     def __repr__(self) -> str:
         spp = self.metadata.get("samples")

@@ -36,6 +36,7 @@ class Raw:
             as the numbers say.
         luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None: not
             known.
+        notes: What a user should know of it.
     """
 
     mosaic: NDArray[np.uint16]
@@ -49,6 +50,7 @@ class Raw:
     metadata: dict[str, Any] = field(default_factory=dict)
     clipped: NDArray[np.bool_] | None = None
     luminance_exposure: NDArray[np.float32] | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.mosaic.ndim != 2 or self.mosaic.dtype != np.uint16:

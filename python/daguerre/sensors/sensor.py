@@ -238,6 +238,12 @@ class Sensor:
         totals = np.array([illuminants.integral(row) for row in rows])
         return np.asarray(self.efficiency(at) * at / totals[:, None])
 
+    def band_weights(self, count: int) -> FloatArray:
+        """Channels of a frame from its ``bands``, shape (count, C); see ``daguerre.colour``."""
+        from daguerre.film_channels import weights_of_bands
+
+        return weights_of_bands(self, count)
+
     @property
     def hash(self) -> str:
         """Of what a frame's channels depend on: two sensors of one hash see the same."""
@@ -273,7 +279,7 @@ class Sensor:
     def white_level(self, iso: float) -> int:
         """The number of a full photosite, DN: of the converter or of the full well."""
         full = self.black_level + self.gain(iso) * self.full_well_at(iso)
-        return int(min(self.highest_dn, math.floor(full)))
+        return int(min(self.highest_dn, math.floor(full + 0.5)))
 
     def read_noise_at(self, iso: float) -> float:
         """Standard deviation of the noise that reading adds, e-."""
