@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,69 +29,110 @@ EXIF = {
 }
 
 
+class PngWriter:
+    """Writes a PNG row by row; the disk, and not memory, holds what is done."""
+
+    def __init__(
+        self,
+        path: Path,
+        width: int,
+        height: int,
+        metadata: Mapping[str, Any] = {},
+        *,
+        target: str | os.PathLike[str] | None = None,
+    ) -> None:
+        """Begins a file.
+
+        Args:
+            path: Where; put :func:`daguerre.io.atomic.atomic_path` around it.
+            width: px.
+            height: px.
+            metadata: Of a frame; what EXIF has a name for is kept.
+            target: The name that messages say, if it is another.
+
+        Raises:
+            OutputError: It cannot be written.
+        """
+        import OpenImageIO as oiio
+
+        self._path, self._name, self._next = path, str(target or path), 0
+        self._output = oiio.ImageOutput.create(str(path))
+        if self._output is None:
+            raise self._error(str(oiio.geterror()))
+        spec = oiio.ImageSpec(width, height, 3, oiio.UINT8)
+        spec.attribute("oiio:ColorSpace", "sRGB")
+        spec.attribute("Software", f"daguerre {metadata.get('version', '')}".strip())
+        for key, name in EXIF.items():
+            if metadata.get(key):
+                value = metadata[key]
+                spec.attribute(name, value if isinstance(value, str) else float(value))
+        if metadata.get("isoSpeed"):
+            spec.attribute("Exif:PhotographicSensitivity", round(float(metadata["isoSpeed"])))
+        self._check(self._output.open(str(path), spec))
+
+    def write(self, pixels: NDArray[np.uint8]) -> None:
+        """The next rows, shape (rows, W, 3).
+
+        Raises:
+            OutputError: The disk is full, or gone.
+        """
+        end = self._next + len(pixels)
+        rows = np.ascontiguousarray(pixels)
+        self._check(self._output.write_scanlines(self._next, end, 0, rows))
+        self._next = end
+
+    def close(self) -> None:
+        """Completes the file.
+
+        Raises:
+            OutputError: The disk is full, or gone.
+        """
+        self._check(self._output.close())
+        # libpng's writer need not notice a full disk, so what is there is read back.
+        with self._path.open("rb") as file:
+            if not _intact(file):
+                raise self._error("the file is not complete; is the disk full?")
+
+    def _check(self, done: bool) -> None:
+        # OpenImageIO may say that all is well and keep an error, a line for each block.
+        if not done or self._output.has_error:
+            lines = str(self._output.geterror()).splitlines() or ["unknown reason"]
+            raise self._error(lines[0].strip())
+
+    def _error(self, reason: str) -> OutputError:
+        reason = reason.replace(str(self._path), self._name)
+        return OutputError(f"{self._name}: cannot write: {reason}")
+
+
 def write_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
     """Writes the display picture of a frame, atomically."""
-    pixels = frame.display(tone)
     with atomic_path(path) as temp:
-        reason = _write(temp, pixels, frame.metadata)
-        if reason:
-            raise OutputError(f"{path}: cannot write: {reason.replace(str(temp), str(path))}")
-
-
-def write_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Writes (H, W, 3) uint8 that are no frame's.
-
-    Raises:
-        OutputError: It cannot be written.
-    """
-    if reason := _write(path, pixels, {}):
-        raise OutputError(f"{path}: cannot write: {reason}")
+        _write(temp, frame, tone, path)
 
 
 def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
     """The same file as bytes, for notebooks."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "frame.png"
-        reason = _write(path, frame.display(tone), frame.metadata)
-        if reason:
-            raise OutputError(f"{path}: cannot write: {reason}")
+        _write(path, frame, tone, path)
         return path.read_bytes()
 
 
-def _write(path: Path, pixels: NDArray[np.uint8], metadata: dict[str, Any]) -> str:
-    """Writes (H, W, 3) uint8; returns what went wrong, or an empty text."""
-    import OpenImageIO as oiio
-
-    output = oiio.ImageOutput.create(str(path))
-    if output is None:
-        return str(oiio.geterror())
-    height, width, count = pixels.shape
-    spec = oiio.ImageSpec(width, height, count, oiio.UINT8)
-    spec.attribute("oiio:ColorSpace", "sRGB")
-    spec.attribute("Software", f"daguerre {metadata.get('version', '')}".strip())
-    for key, name in EXIF.items():
-        if metadata.get(key):
-            value = metadata[key]
-            spec.attribute(name, value if isinstance(value, str) else float(value))
-    if metadata.get("isoSpeed"):
-        spec.attribute("Exif:PhotographicSensitivity", round(float(metadata["isoSpeed"])))
-    done = output.open(str(path), spec) and output.write_image(pixels) and output.close()
-    if not done:
-        return str(output.geterror() or "unknown reason")
-    # libpng's writer does not notice a full disk, so what is there is read back.
-    return "" if _intact(path.read_bytes()) else "the file is not complete; is the disk full?"
+def _write(path: Path, frame: Frame, tone: str, target: str | os.PathLike[str]) -> None:
+    pixels = frame.display(tone)
+    writer = PngWriter(path, frame.width, frame.height, frame.metadata, target=target)
+    writer.write(pixels)
+    writer.close()
 
 
-def _intact(data: bytes) -> bool:
+def _intact(file: BinaryIO) -> bool:
     """Whether every chunk has its checksum and the last one is IEND (PNG specification, 5.3)."""
-    place = 8
-    while place + 12 <= len(data):
-        length = int.from_bytes(data[place : place + 4], "big")
-        end = place + 8 + length
-        checksum = int.from_bytes(data[end : end + 4], "big")
-        if end + 4 > len(data) or zlib.crc32(data[place + 4 : end]) != checksum:
+    file.seek(8)
+    while len(head := file.read(8)) == 8:
+        length, kind = int.from_bytes(head[:4], "big"), head[4:]
+        found = zlib.crc32(file.read(length), zlib.crc32(kind))
+        if file.read(4) != found.to_bytes(4, "big"):
             return False
-        if data[place + 4 : place + 8] == b"IEND":
-            return end + 4 == len(data)
-        place = end + 4
+        if kind == b"IEND":
+            return not file.read(1)
     return False

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.frame import Frame
+from daguerre.io.png import PngWriter
 
-from .picture import Image
+from .picture import Canvas, Image
 
 
 class Display:
-    """Collects rows in 8 bits, and writes a PNG: sRGB, clipped at 1, as ``Frame.save`` does."""
+    """Writes a PNG row by row: sRGB, clipped at 1, as ``Frame.save`` does."""
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._rows: list[NDArray[np.uint8]] = []
+    def __init__(self, path: Path, canvas: Canvas, target: str | os.PathLike[str]) -> None:
+        """Begins a file at ``path``; messages call it ``target``."""
+        self._alpha = canvas.alpha
+        self._writer = PngWriter(path, canvas.width, canvas.height, target=target)
 
-    def write(self, image: Image, alpha: bool) -> None:
-        """The next rows, shape (rows, W, C); the last channel may be alpha, which is left out."""
-        colours = image[:, :, : image.shape[2] - alpha]
+    def write(self, image: Image) -> None:
+        """The next rows, shape (rows, W, C); alpha is left out."""
+        colours = image[:, :, : image.shape[2] - self._alpha]
         rgb = np.broadcast_to(colours, (*colours.shape[:2], 3))
-        self._rows.append(Frame(np.ascontiguousarray(rgb)).display())
+        self._writer.write(Frame(np.ascontiguousarray(rgb)).display())
 
     def __enter__(self) -> Self:
         return self
@@ -37,6 +39,4 @@ class Display:
         tb: TracebackType | None,
     ) -> None:
         if kind is None:
-            from daguerre.io.png import write_pixels
-
-            write_pixels(self._path, np.concatenate(self._rows))
+            self._writer.close()

@@ -75,11 +75,14 @@ def process(
         before = reader.facts.get(HISTORY)
         history = f"{before}\n{as_json(planned)}" if before else as_json(planned)
         out: ExrWriter | Display
-        out = Display(temp) if shown else ExrWriter(temp, reader.header, {HISTORY: history})
+        if shown:
+            out = Display(temp, picture.canvas, target)
+        else:
+            out = ExrWriter(temp, reader.header, {HISTORY: history})
         with out as writer:
             for band in bands(made, BLOCK):
                 if isinstance(writer, Display):
-                    writer.write(band.image, picture.canvas.alpha)
+                    writer.write(band.image)
                 else:
                     writer.write(picture.planes(band))
                 progress(band.rows.end, reader.height, reader.width)
