@@ -18,7 +18,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import charts, distortion, lenses, polynomial, post, sensors
+    from . import charts, distortion, lenses, polynomial, post, sensors, stocks
     from .frame import Frame
     from .raw import Raw
     from .session import Session, iter_render, render
@@ -63,6 +63,7 @@ __all__ = [
     "render",
     "sensors",
     "spin",
+    "stocks",
 ]
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
@@ -77,7 +78,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("charts", "distortion", "lenses", "polynomial", "post", "sensors"):
+    if name in ("charts", "distortion", "lenses", "polynomial", "post", "sensors", "stocks"):
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)

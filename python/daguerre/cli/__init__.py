@@ -25,6 +25,7 @@ from .lenses import lenses
 from .merge import merge
 from .post import post
 from .render import render
+from .stocks import stocks
 from .version import version
 
 INTERNAL = 70
@@ -39,7 +40,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (render, merge, post, info, lenses, lens, chart, version):
+for command in (render, merge, post, info, lenses, lens, stocks, chart, version):
     app.command(name=command.__name__)(command)
 
 

@@ -1,0 +1,28 @@
+"""``daguerre stocks``: the library of film."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from .flags import option
+
+
+def stocks(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
+    """Lists the film stocks of the library: name, kind, ISO, balance, RMS granularity."""
+    from json import dumps
+
+    from daguerre.stocks import load, names
+
+    found = [load(name) for name in names()]
+    if json:
+        keys = ("name", "kind", "iso", "balance", "granularity", "source")
+        print(dumps([{key: getattr(stock, key) for key in keys} for stock in found], indent=2))
+        return 0
+    width = max(len(stock.name) for stock in found)
+    for stock in found:
+        colours = "colour" if len(stock.layers) == 3 else "black and white"
+        print(
+            f"{stock.name.ljust(width)}  {stock.kind:8}  {colours:15}  ISO {stock.iso:<5g}  "
+            f"{stock.balance:.0f} K  RMS granularity {stock.granularity:g}"
+        )
+    return 0

@@ -1,0 +1,179 @@
+"""Exposed and developed film: densities, and the ways to a picture, by print or by scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import grain_pattern
+from daguerre.checks import number, whole
+from daguerre.colour import rgb_from_xyz
+from daguerre.errors import InputError
+from daguerre.exposure import luminance_exposure
+from daguerre.post.grain import sharpness
+from daguerre.sensors.fit import channels_from_xyz
+from daguerre.sensors.sensor import GREY_LX_S
+
+from .curve import GREY
+from .spread import kernels
+from .stock import Stock
+
+if TYPE_CHECKING:
+    from daguerre.development import Picture
+    from daguerre.frame import Frame
+
+#: Density of middle grey on paper or in a slide, above white: -log10(0.18).
+GREY_DENSITY = 0.745
+_DARKEST = 1e-12  # exposures are logarithms
+_STRIPE = 128  # rows
+
+
+@dataclass(eq=False)
+class Negative:
+    """Film after its bath; of reversal stock it is a slide.
+
+    Attributes:
+        density: Of each layer, shape (H, W, C).
+        stock: What it is.
+        metadata: Facts of the frame.
+    """
+
+    density: NDArray[np.float32]
+    stock: Stock
+    metadata: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        height, width = self.density.shape[:2]
+        return f"<Negative {width}x{height}, {self.stock.name}>"
+
+    def positive(self) -> NDArray[np.float32]:
+        """Linear Rec.709 of the print, or of the slide, white 1, middle grey 0.18: (H, W, 3).
+
+        A print is balanced by its lights: middle grey of the film's own light is neutral.
+        """
+        out = np.empty((*self.density.shape[:2], 3), np.float32)
+        matrix = _rgb_from_layers(self.stock)
+        for row in range(0, len(out), _STRIPE):
+            rows = slice(row, row + _STRIPE)
+            out[rows] = self._light(self.density[rows]) @ matrix.T
+        return out
+
+    def _light(self, density: NDArray[np.float32]) -> NDArray[np.float64]:
+        paper, light = self.stock.paper, np.empty(density.shape)
+        for k, layer in enumerate(self.stock.layers):
+            if self.stock.kind == "reversal" or paper is None:
+                light[..., k] = 10 ** (layer.curve.least - density[..., k])
+                continue
+            grey = paper.exposure(paper.least + GREY_DENSITY)
+            x = grey + layer.curve.density(GREY) - density[..., k]
+            light[..., k] = 10 ** (paper.least - paper.density(x))
+        return light
+
+    def scan(self) -> Frame:
+        """A frame of the light that made the densities, scene-linear, for any look.
+
+        What lies on the toe or shoulder comes back as it went, noisier; grain stays.
+        """
+        from daguerre.frame import Frame
+
+        stock = self.stock
+        unit = luminance_exposure(self.metadata) * stock.iso
+        seen = np.empty(self.density.shape)
+        for k, layer in enumerate(stock.layers):
+            seen[..., k] = 10 ** layer.curve.exposure(self.density[..., k]) / unit
+        rgb = (seen @ _rgb_from_layers(stock).T).astype(np.float32)
+        return Frame(rgb=rgb, metadata={**self.metadata, "isoSpeed": stock.iso})
+
+    def develop(self, **look: Any) -> Picture:
+        """The print, or the slide, for a screen; see ``daguerre.development.develop``."""
+        from daguerre.development import develop
+        from daguerre.frame import Frame
+
+        # So bright that the white of the paper is the screen's.
+        facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
+        facts["white_balance"] = None
+        return develop(Frame(rgb=self.positive(), metadata=facts), **look)
+
+
+def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
+    """As of ``Stock.expose``."""
+    seed = whole(seed, "stock: seed", 0, 2**53)
+    number(ev, "stock: ev", -64, 64)
+    facts = {**frame.metadata, "isoSpeed": stock.iso, "stock": stock.name}
+    facts["exposure_compensation"] = ev or None
+    unit = luminance_exposure(frame.metadata) * 2.0**ev * stock.iso
+    pitch = _pitch_um(frame)
+    light = _spread(layers_of(stock, frame), kernels(stock, pitch))
+    light *= np.float32(unit)
+    np.log10(np.maximum(light, _DARKEST), out=light)
+    for k, layer in enumerate(stock.layers):
+        for row in range(0, len(light), _STRIPE):
+            rows = slice(row, row + _STRIPE)
+            light[rows, :, k] = layer.curve.density(light[rows, :, k])
+    if stock.granularity > 0:
+        _add_grain(light, stock, pitch, seed)
+    return Negative(light, stock, facts)
+
+
+def layers_of(stock: Stock, frame: Frame) -> NDArray[np.float32]:
+    """What each layer sees: the light of the stock's balance is 1; shape (H, W, C), none below 0.
+
+    Of the best that the frame has: channels of this stock, else bands, else XYZ by a fitted matrix.
+    """
+    if frame.channels is not None and frame.metadata.get("sensor_hash") == stock.hash:
+        planes, matrix = frame.channels, np.eye(len(stock.layers))
+    elif frame.bands is not None:
+        from daguerre.film_channels import weights_of_bands
+
+        planes, matrix = frame.bands, weights_of_bands(stock, frame.bands.shape[2]).T
+    elif frame.xyz is not None:
+        planes, matrix = frame.xyz, channels_from_xyz(stock)
+    else:
+        planes, matrix = frame.rgb, channels_from_xyz(stock) @ np.linalg.inv(rgb_from_xyz())
+    matrix = (matrix / stock.white()[:, None]).astype(np.float32)
+    return np.maximum(planes @ matrix.T, np.float32(0))
+
+
+def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> NDArray[np.float32]:
+    """Light by way of the film; beyond the edges of the frame it is taken to go on as inside."""
+    if kernel is None:
+        return light
+    from daguerre.post.convolution import convolve
+
+    within = convolve(np.ones_like(light), kernel)
+    out = convolve(light, kernel)
+    out *= kernel.sum(axis=(0, 1), dtype=np.float64) / np.maximum(within, np.float32(1e-6))
+    return np.maximum(out, 0)
+
+
+def _rgb_from_layers(stock: Stock) -> NDArray[np.float64]:
+    """Linear Rec.709 from light of the layers, white from white, shape (3, C)."""
+    if len(stock.layers) == 1:
+        return np.ones((3, 1))
+    return np.asarray(rgb_from_xyz() @ np.linalg.inv(channels_from_xyz(stock)))
+
+
+def _pitch_um(frame: Frame) -> float:
+    pitch = frame.metadata.get("sensorPhotositePitch")
+    if pitch is None:
+        raise InputError("frame: sensorPhotositePitch: wanted the pitch in um, got none")
+    return float(np.mean(pitch))
+
+
+def _add_grain(density: NDArray[np.float32], stock: Stock, pitch: float, seed: int) -> None:
+    """Grains by chance: the variance of density is in proportion to it (``Stock.grain_area``)."""
+    height, width = density.shape[:2]
+    area = stock.grain_area()
+    radius = np.sqrt(area / np.pi) / pitch
+    scale = np.log10(np.e) * area * sharpness(float(radius)) / pitch**2
+    for k, layer in enumerate(stock.layers):
+        for row in range(0, height, _STRIPE):
+            rows = slice(row, min(row + _STRIPE, height))
+            plane = density[rows, :, k]
+            pattern = grain_pattern(0, row, width, len(plane), radius, seed, k)
+            above = np.maximum(plane - layer.curve.least, 0)
+            plane += np.sqrt(scale * above) * pattern
+            np.maximum(plane, 0, out=plane)

@@ -1,0 +1,95 @@
+"""Reads stock files: JSON of the schema ``daguerre-stock/0.1``; see docs/film-stocks.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.io.json_item import Item
+from daguerre.io.json_text import parse
+from daguerre.sensors import illuminants
+from daguerre.sensors.curve import rising
+
+from .curve import CharacteristicCurve
+from .stock import Halation, Layer, Stock
+
+SCHEMA = "daguerre-stock/0.1"
+MAX_BYTES = 16_000_000
+MEMBERS = (
+    *("schema", "name", "kind", "source", "note", "iso", "balance_k", "wavelengths_nm", "layers"),
+    *("granularity", "spread_um", "halation", "paper"),
+)
+
+
+def read(path: str | Path) -> Stock:
+    """Reads one stock.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > MAX_BYTES or not path.is_file():
+            raise InputError(f"{path}: stock file: wanted a file of at most {MAX_BYTES} bytes")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+    root = parse(data, str(path))
+    schema = root.need("schema")
+    if schema.value != SCHEMA:
+        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
+    for member in root.members():
+        if member.key not in MEMBERS:
+            member.fail(f"not known{suggest(str(member.key), MEMBERS)}")
+    try:
+        return _stock(root)
+    except DaguerreError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+
+
+def _stock(root: Item) -> Stock:
+    name, paper = root.need("name").text(), root.get("paper")
+    nm = _list(root.need("wavelengths_nm"))
+    return Stock(
+        name=name,
+        kind=root.need("kind").text(),
+        source=root.need("source").text(),
+        iso=root.need("iso").number(),
+        balance=root.number_of("balance_k", illuminants.D65_KELVIN),
+        wavelengths=rising(f"stock {name}: wavelengths_nm", nm),
+        layers=tuple(_layer(layer) for layer in root.need("layers").members()),
+        granularity=root.number_of("granularity", 0.0),
+        spread=root.number_of("spread_um", 0.0),
+        halation=_halation(root.get("halation")),
+        paper=None if paper is None else _curve(paper),
+    )
+
+
+def _layer(item: Item) -> Layer:
+    return Layer(str(item.key), _list(item.need("sensitivity")), _curve(item.need("curve")))
+
+
+def _curve(item: Item) -> CharacteristicCurve:
+    return CharacteristicCurve(
+        least=item.need("least").number(),
+        gamma=item.need("gamma").number(),
+        toe=item.need("toe").number(),
+        shoulder=item.need("shoulder").number(),
+        toe_bend=item.number_of("toe_bend", 0.2),
+        shoulder_bend=item.number_of("shoulder_bend", 0.3),
+    )
+
+
+def _halation(item: Item | None) -> Halation | None:
+    if item is None or item.value is None:
+        return None
+    share = tuple(part.number() for part in item.need("share"))
+    return Halation(item.need("base_mm").number(), share, item.number_of("index", 1.5))
+
+
+def _list(item: Item) -> Any:
+    import numpy as np
+
+    return np.array([element.number() for element in item])

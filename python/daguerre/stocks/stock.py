@@ -1,0 +1,198 @@
+"""A film stock: what its layers see, how dense light makes them, its spread and its grain."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.checks import number
+from daguerre.errors import InputError
+from daguerre.sensors import illuminants
+
+from .curve import CharacteristicCurve
+
+if TYPE_CHECKING:
+    from daguerre.frame import Frame
+
+    from .negative import Negative
+
+FloatArray = NDArray[np.float64]
+KINDS = ("negative", "reversal")
+#: RMS granularity is measured through a round hole of 48 um (ISO 10505), so far above base.
+HOLE_UM, GRAIN_DENSITY = 48.0, 1.0
+
+
+@dataclass(frozen=True)
+class Halation:
+    """Light that comes through the emulsion, is sent back behind it and exposes again.
+
+    Attributes:
+        base: Thickness of the film's base, mm.
+        index: Of the base.
+        share: Of the light on each layer that the emulsion lets through, scattered, and the backing
+            does not swallow; one number for each layer.
+    """
+
+    base: float
+    share: tuple[float, ...]
+    index: float = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """A layer of emulsion.
+
+    Attributes:
+        name: R, G, B, or Y of black-and-white film.
+        sensitivity: At the stock's wavelengths: response per watt, of any scale, shape (L,).
+        curve: Density by exposure.
+    """
+
+    name: str
+    sensitivity: FloatArray
+    curve: CharacteristicCurve
+
+
+@dataclass(frozen=True, eq=False)
+class Stock:
+    """A film stock.
+
+    Attributes:
+        name: By which it is loaded.
+        kind: ``negative`` or ``reversal``.
+        source: Where the numbers come from.
+        iso: Speed.
+        wavelengths: Of the sensitivities, nm, shape (L,).
+        layers: Three (R, G, B) or one (Y).
+        balance: Colour temperature of the light that it draws neutral, K.
+        granularity: RMS granularity x 1000: standard deviation of density behind a hole of 48 um,
+            1 above base.
+        spread: Standard deviation of light's way in the emulsion, um.
+        halation: None: a backing that swallows all.
+        paper: Of negatives: the curve of what they are printed on, x in log10 of its own exposure.
+    """
+
+    name: str
+    kind: str
+    source: str
+    iso: float
+    wavelengths: FloatArray
+    layers: tuple[Layer, ...]
+    balance: float = illuminants.D65_KELVIN
+    granularity: float = 0.0
+    spread: float = 0.0
+    halation: Halation | None = None
+    paper: CharacteristicCurve | None = None
+
+    def __post_init__(self) -> None:
+        _check(self)
+
+    def __repr__(self) -> str:
+        return f"<Stock {self.name}: {self.kind}, ISO {self.iso:g}>"
+
+    def with_(self, **changes: Any) -> Stock:
+        """A copy with other values, such as ``granularity``, ``balance`` or ``halation=None``."""
+        return replace(self, **changes)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the layers."""
+        return tuple(layer.name for layer in self.layers)
+
+    def sensitivity(self, nm: ArrayLike) -> FloatArray:
+        """What the layers see, as of ``Sensor.sensitivity``: D65 of Y = 1 is 1 in each, (C, L)."""
+        fine = illuminants.NM
+        rows, at = [], np.asarray(nm, np.float64)
+        for layer in self.layers:
+            seen = np.interp(fine, self.wavelengths, layer.sensitivity, left=0, right=0)
+            total = illuminants.integral(seen * illuminants.d65())
+            rows.append(np.interp(at, fine, seen) / total)
+        return np.stack(rows)
+
+    @property
+    def hash(self) -> str:
+        """Of what a frame's channels depend on."""
+        digest = hashlib.sha256(" ".join(self.channels).encode())
+        digest.update(np.round(self.sensitivity(illuminants.NM), 9).tobytes())
+        return digest.hexdigest()[:16]
+
+    def white(self) -> FloatArray:
+        """What the light of its balance is in channels that D65 has 1 in, shape (C,)."""
+        if self.balance == illuminants.D65_KELVIN:
+            return np.ones(len(self.layers))
+        light = illuminants.planck(self.balance)
+        rows = self.sensitivity(illuminants.NM) * light
+        return np.array([illuminants.integral(row) for row in rows])
+
+    def grain_area(self) -> float:
+        """Of a grain or cloud of dye, um2: what makes its granularity, if grains lie by chance.
+
+        Nutting's law has the mean density of N grains of area a on an area A as log10(e) N a / A;
+        their number's variance is its mean, so that of density is log10(e) a D / A (Siedentopf).
+        """
+        hole = math.pi * (HOLE_UM / 2) ** 2
+        return (self.granularity / 1000) ** 2 * hole / (math.log10(math.e) * GRAIN_DENSITY)
+
+    def expose(self, frame: Frame, *, ev: float = 0.0, seed: int = 0) -> Negative:
+        """The film after its bath.
+
+        Args:
+            frame: With exposure metadata.
+            ev: Light times 2^ev.
+            seed: Of the grain.
+
+        Raises:
+            InputError: The frame does not say how it was exposed.
+        """
+        from .negative import exposed
+
+        return exposed(self, frame, ev, seed)
+
+
+def _check(stock: Stock) -> None:
+    where = f"stock {stock.name}"
+    if stock.kind not in KINDS:
+        raise InputError(f"{where}: kind: wanted negative or reversal, got {stock.kind!r}")
+    if stock.channels not in (("R", "G", "B"), ("Y",)):
+        raise InputError(f"{where}: layers: wanted R, G, B or Y, got {', '.join(stock.channels)}")
+    number(stock.iso, f"{where}: iso", 0, 1e6, above=0, error=InputError)
+    number(stock.balance, f"{where}: balance", 1000, 25000, error=InputError)
+    number(stock.granularity, f"{where}: granularity", 0, 1000, error=InputError)
+    number(stock.spread, f"{where}: spread", 0, 1000, error=InputError)
+    for layer in stock.layers:
+        here = f"{where}: layer {layer.name}"
+        seen = np.asarray(layer.sensitivity)
+        if seen.shape != np.shape(stock.wavelengths):
+            raise InputError(
+                f"{here}: sensitivity: wanted {np.size(stock.wavelengths)} numbers, one for each "
+                f"wavelength, got {seen.size}"
+            )
+        if not (np.isfinite(seen).all() and (seen >= 0).all() and seen.any()):
+            raise InputError(f"{here}: sensitivity: wanted numbers of at least 0, and some above")
+        layer.curve.check(here)
+        if (layer.curve.gamma < 0) != (stock.kind == "reversal"):
+            wanted = "below 0" if stock.kind == "reversal" else "above 0"
+            raise InputError(f"{here}: gamma: of {stock.kind} film wanted {wanted}")
+    if stock.kind == "negative":
+        if stock.paper is None:
+            raise InputError(f"{where}: paper: wanted its curve; negatives are printed on it")
+        stock.paper.check(f"{where}: paper")
+    if stock.halation is not None:
+        _check_halation(stock.halation, len(stock.layers), f"{where}: halation")
+
+
+def _check_halation(halation: Halation, layers: int, where: str) -> None:
+    number(halation.base, f"{where}: base", 0, 10, above=0, error=InputError)
+    number(halation.index, f"{where}: index", 1, 4, above=1, error=InputError)
+    if len(halation.share) != layers:
+        raise InputError(
+            f"{where}: share: wanted {layers} numbers, one for each layer, got "
+            f"{len(halation.share)}"
+        )
+    for share in halation.share:
+        number(share, f"{where}: share", 0, 1, error=InputError)

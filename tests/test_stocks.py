@@ -1,0 +1,207 @@
+"""Film: speed, tone, granularity and halation are what the stock says; prints and scans."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from daguerre import stocks
+from daguerre.errors import InputError, UsageError
+from daguerre.frame import Frame
+from daguerre.post.convolution import convolve
+from daguerre.sensors import illuminants
+from daguerre.stocks import Stock
+from daguerre.stocks.curve import GREY
+from daguerre.stocks.library import FOLDER
+from daguerre.stocks.spread import halo, kernels, reflectance
+
+NAMES = stocks.names()
+
+
+def plain(stock: Stock) -> Stock:
+    return stock.with_(granularity=0.0, halation=None, spread=0.0)
+
+
+def even(stock: Stock, greys: Any, pitch: float = 6.0, shape: tuple[int, int] = (1, 1)) -> Frame:
+    """Patches of so many times middle grey at the stock's ISO, in the light of its balance."""
+    light = illuminants.d65()
+    if stock.balance != illuminants.D65_KELVIN:
+        light = illuminants.planck(stock.balance)
+    xyz = illuminants.observer().T @ light
+    values = np.atleast_1d(np.asarray(greys, np.float64)) * 10 / stock.iso
+    patches = np.repeat(np.tile(values, (shape[0], 1)), shape[1], axis=1)
+    picture = (patches[..., None] * xyz).astype(np.float32)
+    facts = {"luminance_exposure": 1.0, "sensorPhotositePitch": (pitch, pitch)}
+    return Frame(rgb=picture, xyz=picture, metadata=facts)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_speed_is_that_of_the_standards(name: str) -> None:
+    """ISO 6, ISO 5800 and ISO 2240: at which exposure density is so much above the least."""
+    stock = stocks.load(name)
+    for layer in stock.layers:
+        curve = layer.curve
+        if stock.kind == "reversal":
+            points = curve.exposure([curve.least + 0.2, curve.least + 2.0])
+            assert points.mean() == pytest.approx(1.0, abs=0.005)
+        else:
+            above, at = (0.1, 0.8) if len(stock.layers) == 1 else (0.15, math.sqrt(2))
+            assert curve.density(math.log10(at)) - curve.least == pytest.approx(above, abs=0.002)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_density_goes_one_way_and_comes_back(name: str) -> None:
+    for layer in stocks.load(name).layers:
+        x = np.linspace(layer.curve.toe, layer.curve.shoulder, 50)
+        density = layer.curve.density(x)
+        assert (np.diff(density) * layer.curve.gamma > 0).all()
+        np.testing.assert_allclose(layer.curve.exposure(density), x, atol=2e-3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_grey_in_the_light_of_the_film_is_neutral(name: str) -> None:
+    stock = plain(stocks.load(name))
+    negative = stock.expose(even(stock, [0.1, 0.5, 1.0, 3.0]))
+    for picture in (negative.positive(), negative.scan().rgb):
+        tint = np.ptp(picture, axis=2) / picture.mean(axis=2)
+        # XYZ of a lamp that is no daylight reach the layers by a fit.
+        assert tint.max() < (0.01 if stock.balance > 6000 else 0.35)
+    grey = negative.positive()[0, 2].mean()
+    if stock.kind == "negative" and stock.balance > 6000:
+        assert grey == pytest.approx(0.18, rel=0.01)
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if "tungsten" not in n])
+def test_a_scan_is_the_light_that_was(name: str) -> None:
+    stock = plain(stocks.load(name))
+    frame = even(stock, [0.1, 0.3, 1.0, 3.0])
+    scanned = stock.expose(frame).scan()
+    assert scanned.metadata["isoSpeed"] == stock.iso
+    wanted = np.array([0.1, 0.3, 1.0, 3.0]) * 10 / stock.iso
+    np.testing.assert_allclose(scanned.rgb[0, :, 1], wanted, rtol=0.02)
+
+
+@pytest.mark.parametrize("pitch", [4.0, 12.0])
+def test_granularity_is_measured_as_it_is_stated(pitch: float) -> None:
+    """Through a hole of 48 um, at 1 above base; and by Selwyn's law through others."""
+    stock = plain(stocks.load("generic-panchromatic-400")).with_(granularity=16.0)
+    curve = stock.layers[0].curve
+    grey = 10 ** (float(curve.exposure(curve.least + 1.0)) - GREY)
+    frame = even(stock, np.full(512, grey), pitch, (512, 1))
+    density = stock.expose(frame, seed=4).density[:, :, 0]
+    assert density.mean() - curve.least == pytest.approx(1.0, abs=0.01)
+    for hole in (48.0, 96.0):
+        at = np.arange(-int(hole / pitch), int(hole / pitch) + 1) * pitch
+        disc = (np.hypot(at[:, None], at) < hole / 2).astype(np.float32)
+        area = disc.sum() * pitch**2
+        through = convolve(density - density.mean(), disc / disc.sum())[40:-40, 40:-40]
+        wanted = 0.016 * math.sqrt(math.pi * 24**2 / area)
+        assert through.std() == pytest.approx(wanted, rel=0.08)
+
+
+def test_grain_depends_on_seed_and_place_alone() -> None:
+    stock = stocks.load("generic-colour-negative-400").with_(halation=None)
+    frame = even(stock, np.full(64, 1.0), 6.0, (300, 1))
+    first, again = stock.expose(frame, seed=1), stock.expose(frame, seed=1)
+    np.testing.assert_array_equal(first.density, again.density)
+    assert (stock.expose(frame, seed=2).density != first.density).any()
+    layers = first.density.reshape(-1, 3) - first.density.reshape(-1, 3).mean(axis=0)
+    correlation = np.corrcoef(layers.T)
+    assert np.abs(correlation - np.eye(3)).max() < 0.05
+
+
+def test_the_halo_is_a_ring_where_total_reflection_begins() -> None:
+    halation = stocks.Halation(base=0.125, share=(0.1,), index=1.5)
+    pitch = 5.0
+    kernel, share = halo(halation, pitch)
+    assert kernel.sum() == pytest.approx(1, abs=1e-5)
+    theta = np.linspace(0, np.pi / 2, 20001)
+    back = reflectance(np.cos(theta), 1.5) * 2 * np.sin(theta) * np.cos(theta)
+    assert share == pytest.approx(np.trapezoid(back, theta), rel=1e-3)
+    # Lambertian light from within glass of 1.5 leaves to 4 / 9 less Fresnel: some 60 % comes back.
+    assert 0.55 < share < 0.62
+    middle = len(kernel) // 2
+    profile = kernel[middle, middle:]
+    ring = 2 * 125 / math.sqrt(1.5**2 - 1) / pitch
+    assert int(np.argmax(profile)) == pytest.approx(ring, abs=1.5)
+    assert profile[int(0.6 * ring)] < 0.25 * profile.max()
+
+
+def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
+    stock = stocks.load("generic-tungsten-800-no-backing").with_(granularity=0.0)
+    frame = even(stock, np.full(161, 0.02), 5.0, (161, 1))
+    assert frame.xyz is not None
+    frame.xyz[80, 80] *= 3e6
+    picture = stock.expose(frame).positive()
+    ring = picture[80, 80 + 45]
+    far = picture[2, 2]
+    assert ring[0] > 3 * far[0]
+    assert ring[0] / far[0] > 1.5 * ring[2] / far[2]
+    kernel = kernels(stock, 5.0)
+    assert kernel is not None
+    sums = kernel.sum(axis=(0, 1), dtype=np.float64)
+    assert stock.halation is not None
+    np.testing.assert_allclose(sums - 1, 0.593 * np.array(stock.halation.share), rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"kind": "positive"}, "kind: wanted negative or reversal"),
+        ({"iso": -5}, "iso"),
+        ({"granularity": -1}, "granularity"),
+        ({"grain": 1}, "grain: not known"),
+        ({"paper": None}, "paper"),
+        ({"layers": {"R": {}}}, "sensitivity"),
+        ({"schema": "daguerre-stock/9"}, "wanted 'daguerre-stock/0.1'"),
+        ({"halation": {"base_mm": 0.1, "share": [0.1]}}, "share: wanted 3 numbers"),
+        ({"halation": {"base_mm": -1, "share": [0, 0, 0]}}, "base"),
+        ({"wavelengths_nm": [400, 390]}, "rise"),
+        ({"balance_k": 20}, "balance"),
+    ],
+)
+def test_bad_stock_files_name_the_field(
+    tmp_path: Path, change: dict[str, Any], message: str
+) -> None:
+    data = json.loads((FOLDER / "generic-colour-negative-400.json").read_text())
+    path = tmp_path / "bad.json"
+    path.write_text(json.dumps(data | change))
+    with pytest.raises(InputError, match=message) as caught:
+        stocks.load(path)
+    assert str(path) in str(caught.value)
+
+
+def test_wrong_numbers_in_layers_are_named(tmp_path: Path) -> None:
+    data = json.loads((FOLDER / "generic-reversal-100.json").read_text())
+    data["layers"]["G"]["curve"]["gamma"] = 0.6
+    path = tmp_path / "bad.json"
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match="layer G: gamma"):
+        stocks.load(path)
+    data["layers"]["G"]["curve"] |= {"gamma": -1.7, "toe": 9.0}
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match="layer G: shoulder"):
+        stocks.load(path)
+    data["layers"]["G"]["sensitivity"] = [0.1]
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match="wanted 18 numbers"):
+        stocks.load(path)
+
+
+def test_unknown_stocks_and_frames_without_exposure_are_one_line() -> None:
+    with pytest.raises(InputError, match="generic-reversal-100"):
+        stocks.load("generic-reversal")
+    stock = stocks.load("generic-reversal-100")
+    bare = Frame(rgb=np.ones((4, 4, 3), np.float32))
+    with pytest.raises(InputError, match="expTime"):
+        stock.expose(bare)
+    bare.metadata["luminance_exposure"] = 0.1
+    with pytest.raises(InputError, match="sensorPhotositePitch"):
+        stock.expose(bare)
+    with pytest.raises(UsageError, match="seed"):
+        stock.expose(even(stock, 1.0), seed=-1)
