@@ -56,9 +56,10 @@ class PngWriter:
         import OpenImageIO as oiio
 
         self._path, self._name, self._next = path, str(target or path), 0
-        self._output = oiio.ImageOutput.create(str(path))
-        if self._output is None:
+        output = oiio.ImageOutput.create(str(path))
+        if output is None:
             raise self._error(str(oiio.geterror()))
+        self._output = output
         spec = oiio.ImageSpec(width, height, 3, oiio.UINT8)
         spec.attribute("oiio:ColorSpace", "sRGB")
         spec.attribute("Software", f"daguerre {metadata.get('version', '')}".strip())
