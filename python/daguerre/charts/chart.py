@@ -153,7 +153,7 @@ class Chart:
         number(f_stop, "chart: f_stop", 1e-2, 1e9)
         glb = Glb("daguerre")
         for i, (rgb, (positions, indices)) in enumerate(self.meshes().items()):
-            normals = np.broadcast_to(np.float32([0, 0, 1]), positions.shape)
+            normals = np.broadcast_to(np.array([0, 0, 1], np.float32), positions.shape)
             shape = Shape(positions, normals, np.zeros((len(positions), 2), np.float32), indices)
             material = _shining(glb, rgb, luminance) if luminance is not None else _paint(glb, rgb)
             glb.add_node(f"color-{i}", mesh=glb.add_mesh(f"color-{i}", shape, material))

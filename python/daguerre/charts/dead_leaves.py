@@ -116,4 +116,4 @@ def _disc(x: float, y: float, r: float) -> NDArray[np.float64]:
     angle = 2 * np.pi * np.arange(corners) / corners
     share = 2 * np.pi / corners
     r *= np.sqrt(share / np.sin(share))
-    return np.c_[x + r * np.cos(angle), y + r * np.sin(angle)]
+    return np.asarray(np.c_[x + r * np.cos(angle), y + r * np.sin(angle)])

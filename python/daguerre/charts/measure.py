@@ -38,7 +38,7 @@ class EdgeResponse:
 
     def at(self, frequency: ArrayLike) -> FloatArray:
         """The response at frequencies (cycles per pixel), linear between."""
-        return np.asarray(np.interp(frequency, self.frequency, self.response))
+        return np.asarray(np.interp(np.asarray(frequency), self.frequency, self.response))
 
     @property
     def mtf50(self) -> float:
@@ -87,7 +87,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     n = len(slope)
     window = np.hamming(2 * n + 1)[1::2]
     spectrum = np.abs(np.fft.rfft(slope * window))
-    frequency = np.fft.rfftfreq(n, 1 / _FINER)
+    frequency = np.asarray(np.fft.rfftfreq(n, 1 / _FINER), np.float64)
     with np.errstate(invalid="ignore"):
         # A bin is the mean of what fell into it, a difference spans one bin: two quarter boxes.
         response = spectrum / spectrum[0] / np.sinc(frequency / _FINER) ** 2

@@ -9,10 +9,10 @@ over wavelength (Jakob and Hanika 2019). White is kept exactly.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from daguerre.colour import rgb_from_xyz
 
@@ -64,7 +64,14 @@ def _fitted(curves: FloatArray, light: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.solve(system, right)[:3].T)
 
 
-def channels_from_xyz(sensor: Sensor) -> FloatArray:
+class Seeing(Protocol):
+    """A sensor or a film stock: what sees light by wavelength."""
+
+    def sensitivity(self, nm: ArrayLike) -> FloatArray:
+        """As of ``Sensor``: D65 of Y = 1 is 1 in each channel, shape (C, L)."""
+
+
+def channels_from_xyz(sensor: Seeing) -> FloatArray:
     """Frame channels (D65 white is 1 in each) from XYZ (D65 white has Y = 1), shape (C, 3)."""
     curves = sensor.sensitivity(illuminants.NM) * illuminants.STEP
     return _fitted(curves, illuminants.d65())

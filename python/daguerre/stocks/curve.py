@@ -71,7 +71,7 @@ class CharacteristicCurve:
         x = np.linspace(self.toe - 3, self.shoulder + 3, 4096)
         d = self.density(x)
         order = slice(None) if self.gamma > 0 else slice(None, None, -1)
-        return np.asarray(np.interp(density, d[order], x[order]))
+        return np.asarray(np.interp(np.asarray(density), d[order], x[order]))
 
     @property
     def _start(self) -> float:
