@@ -23,6 +23,7 @@ void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_truth(nb::module_& m);
 void bind_develop_expose(nb::module_& m);
+void bind_develop_picture(nb::module_& m);
 void bind_post_warp(nb::module_& m);
 void bind_post_blur(nb::module_& m);
 void bind_post_grain(nb::module_& m);
@@ -54,6 +55,7 @@ NB_MODULE(_core, m) {
     bind_render(m);
     bind_truth(m);
     bind_develop_expose(m);
+    bind_develop_picture(m);
     bind_post_warp(m);
     bind_post_blur(m);
     bind_post_grain(m);

@@ -1,0 +1,62 @@
+"""Mosaics that developers of photographs know: Bayer, X-Trans and mono. Quad-Bayer is binned."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from daguerre.errors import InputError
+
+if TYPE_CHECKING:
+    from daguerre.raw import Raw
+    from daguerre.sensors import Sensor
+
+
+def is_mono(raw: Raw) -> bool:
+    """Whether it has no colours."""
+    return len(raw.sensor.channels) == 1
+
+
+def bayer_of(raw: Raw) -> Raw:
+    """A Quad-Bayer picture as cameras bin it; others as they are.
+
+    Four photosites of one colour become one of twice the pitch: their numbers are added, so
+    that nothing is lost, if 16 bits hold them.
+    """
+    if not raw.sensor.pattern.name.startswith("quad-"):
+        return raw
+    height, width = (side // 4 * 4 for side in raw.mosaic.shape)
+    if not height or not width:
+        raise InputError("raw: mosaic: wanted at least 4 x 4 photosites of a Quad-Bayer mosaic")
+    four = raw.mosaic[:height, :width].reshape(height // 2, 2, width // 2, 2)
+    numbers = four.sum(axis=(1, 3), dtype=np.uint32)
+    shift = max(raw.sensor.bit_depth + 2 - 16, 0)
+    clipped = raw.saturated[:height, :width].reshape(four.shape).any(axis=(1, 3))
+    return dataclasses.replace(
+        raw,
+        mosaic=(numbers >> shift).astype(np.uint16),
+        sensor=_binned_sensor(raw, shift),
+        black_level=4 * raw.black_level >> shift,
+        white_level=4 * raw.white_level >> shift,
+        gain=raw.gain / 2**shift,
+        clipped=clipped,
+        luminance_exposure=None,
+    )
+
+
+def _binned_sensor(raw: Raw, shift: int) -> Sensor:
+    """What takes such a picture: twice the pitch, and the noise of four readings."""
+    sensor = raw.sensor
+    columns, rows = sensor.resolution
+    return sensor.with_(
+        pattern=sensor.pattern.name.removeprefix("quad-"),
+        pixel_pitch=2 * sensor.pixel_pitch,
+        resolution=(max(columns // 2, 1), max(rows // 2, 1)),
+        bit_depth=min(sensor.bit_depth + 2, 16),
+        black_level=4 * sensor.black_level >> shift,
+        full_well=4 * sensor.full_well,
+        read_noise=tuple((iso, 2 * noise) for iso, noise in sensor.read_noise),
+        dual_gain=None,
+    )

@@ -1,0 +1,195 @@
+"""What development begins with: light of three channels in every pixel, from whatever there is.
+
+LibRaw demosaics, through rawpy, from a DNG in memory: adaptive homogeneity (Hirakawa and Parks
+2005) for Bayer mosaics, Markesteijn's method for X-Trans.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import UsageError, suggest
+from daguerre.sensors import illuminants
+from daguerre.sensors.sensor import GREY_LX_S
+
+from .binning import bayer_of, is_mono
+from .looks import GREY
+
+if TYPE_CHECKING:
+    from daguerre.frame import Frame
+    from daguerre.raw import Raw
+
+FloatArray = NDArray[np.float64]
+XY = tuple[float, float]
+#: LibRaw refuses smaller pictures, px each way.
+_LEAST, _LEAST_XTRANS = 32, 516
+#: LibRaw's names; "fast" and "best" are the ones to know.
+DEMOSAICS = ("best", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Light by pixel in three channels.
+
+    Attributes:
+        pixels: Numbers without black, uint16 or float32, shape (H, W, 3).
+        unit: Numbers of each channel for a value of 1, that of a developed white, shape (3,).
+        full: Numbers from which on a channel is saturated, shape (3,); infinite if never.
+        xyz_from: XYZ from values, for a white (x, y), shape (3, 3).
+        as_shot: The white that the picture was taken for.
+        metadata: Facts of the shot.
+    """
+
+    pixels: NDArray[Any]
+    unit: FloatArray
+    full: FloatArray
+    xyz_from: Callable[[XY], FloatArray]
+    as_shot: XY
+    metadata: Mapping[str, Any]
+
+
+def of_frame(frame: Frame) -> Channels:
+    """A frame's XYZ as a perfect sensor exposes it, at ISO 12232's brightness."""
+    from daguerre.exposure import luminance_exposure
+
+    facts = frame.metadata
+    iso = float(facts.get("isoSpeed") or 100)
+    unit = GREY_LX_S / GREY / iso / luminance_exposure(facts)
+    return Channels(
+        pixels=np.ascontiguousarray(_xyz(frame), np.float32),
+        unit=np.full(3, unit),
+        full=np.full(3, np.inf),
+        xyz_from=lambda white: np.eye(3),
+        as_shot=illuminants.white_xy(facts.get("white_balance")),
+        metadata={**facts, "isoSpeed": iso},
+    )
+
+
+def _xyz(frame: Frame) -> NDArray[np.float32]:
+    if frame.xyz is not None:
+        return frame.xyz
+    from daguerre.colour import rgb_from_xyz
+
+    return (frame.rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)).astype(np.float32)
+
+
+def of_raw(raw: Raw, demosaic: str = "best") -> Channels:
+    """A raw picture, demosaiced."""
+    raw = bayer_of(raw)
+    if is_mono(raw):
+        return _of_pixels(raw, _grey(raw), np.ones(3))
+    return _of_pixels(raw, *_demosaiced(raw, demosaic))
+
+
+def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:
+    """Means of DN above black in cells of the pattern, shape (h, w, C)."""
+    return _of_pixels(
+        raw, np.ascontiguousarray(np.broadcast_to(means, (*means.shape[:2], 3))), np.ones(3)
+    )
+
+
+def _of_pixels(raw: Raw, pixels: NDArray[Any], scale: FloatArray) -> Channels:
+    """Numbers that are DN above black times ``scale``."""
+    from daguerre.io.dng import shot_facts, value_dn
+
+    return Channels(
+        pixels=pixels,
+        unit=value_dn(raw) * scale,
+        full=(raw.white_level - raw.black_level) * scale,
+        xyz_from=_grey_matrix if is_mono(raw) else _inverse_matrix(raw),
+        as_shot=raw.white_balance,
+        metadata=shot_facts(raw),
+    )
+
+
+def _inverse_matrix(raw: Raw) -> Callable[[XY], FloatArray]:
+    return lambda white: np.linalg.inv(raw.sensor.colour_matrix(white))
+
+
+def _grey_matrix(white: XY) -> FloatArray:
+    """Of a mosaic without colours: the white's own."""
+    return np.asarray(np.diag(illuminants.xyz_of_xy(white)))
+
+
+def _grey(raw: Raw) -> NDArray[np.uint16]:
+    above = np.maximum(raw.mosaic, np.uint16(raw.black_level)) - np.uint16(raw.black_level)
+    return np.repeat(above[:, :, None], 3, axis=2)
+
+
+def _demosaiced(raw: Raw, name: str) -> tuple[NDArray[np.uint16], FloatArray]:
+    """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
+    import rawpy
+
+    from daguerre.io.dng import put_dng
+
+    file = io.BytesIO()
+    xtrans = raw.sensor.pattern.name == "xtrans"
+    put_dng(file, _large_enough(raw, _LEAST_XTRANS if xtrans else _LEAST), preview=False)
+    file.seek(0)
+    balance = 1 / np.clip(raw.neutral, 0.05, 1)
+    with rawpy.imread(file) as opened:
+        pixels = libraw_pixels(opened, name, balance, xtrans)
+    scale = libraw_scale(balance, raw.white_level - raw.black_level)
+    return np.ascontiguousarray(pixels[: raw.height, : raw.width]), scale
+
+
+def _large_enough(raw: Raw, least: int) -> Raw:
+    """At least so many px each way: the last cells of the pattern are repeated."""
+    if min(raw.mosaic.shape) >= least:
+        return raw
+    period = raw.sensor.pattern.cells.shape
+    rows, columns = (
+        _repeated(count, max(count, least), step)
+        for count, step in zip(raw.mosaic.shape, period, strict=True)
+    )
+    return dataclasses.replace(raw, mosaic=raw.mosaic[np.ix_(rows, columns)], clipped=None)
+
+
+def _repeated(count: int, least: int, period: int) -> NDArray[np.intp]:
+    """Places 0 .. count - 1, and then those of the same place in the pattern, from the end."""
+    at = np.arange(least)
+    last = count - 1 - (count - 1 - at) % period
+    return np.where(at < count, at, np.maximum(last, at % period))
+
+
+def libraw_scale(balance: FloatArray, span: float) -> FloatArray:
+    """LibRaw's numbers for each DN above black: black to white is 16 bits, the balance's top 1."""
+    return np.asarray(65535 / span * balance / balance.max())
+
+
+def libraw_pixels(opened: Any, name: str, balance: FloatArray, xtrans: bool) -> NDArray[np.uint16]:
+    """Balanced and demosaiced, linear, in the camera's own colours; nothing is cut off."""
+    import rawpy
+
+    pixels = opened.postprocess(
+        demosaic_algorithm=_algorithm(name, xtrans),
+        user_wb=[*balance, balance[1]],
+        output_color=rawpy.ColorSpace.raw,
+        output_bps=16,
+        gamma=(1, 1),
+        no_auto_bright=True,
+        adjust_maximum_thr=0.0,
+        highlight_mode=rawpy.HighlightMode.Ignore,
+        user_flip=0,
+    )
+    return np.asarray(pixels)
+
+
+def _algorithm(name: str, xtrans: bool) -> Any:
+    import rawpy
+
+    if name not in DEMOSAICS:
+        raise UsageError(
+            f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {name!r}"
+            f"{suggest(name, DEMOSAICS)}"
+        )
+    # LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
+    usual = {"best": "PPG", "fast": "LINEAR"} if xtrans else {"best": "AHD", "fast": "LINEAR"}
+    return rawpy.DemosaicAlgorithm[usual.get(name, name.upper())]

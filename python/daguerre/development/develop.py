@@ -1,0 +1,226 @@
+"""Development in its order: white balance, highlights, colours, tone, sharpening."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import develop_picture
+from daguerre._core import sharpen as sharpen_picture
+from daguerre.checks import number
+from daguerre.colour import rgb_from_xyz
+from daguerre.errors import UsageError, suggest
+from daguerre.io import icc
+from daguerre.sensors import illuminants
+from daguerre.sensors.fit import adaptation
+
+from .channels import XY, Channels, of_frame, of_raw
+from .looks import encode_table, look_of, saturation, tone_table
+from .picture import Picture
+from .white import white_of
+
+if TYPE_CHECKING:
+    from daguerre.frame import Frame
+    from daguerre.raw import Raw
+
+FloatArray = NDArray[np.float64]
+HIGHLIGHTS = ("clip", "blend", "reconstruct")
+#: Standard deviation of the Gaussian of the unsharp mask, px: as far as demosaicing softens.
+SHARPEN_RADIUS = 0.8
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How to develop; see ``develop``."""
+
+    wb: Any = None
+    look: str = "neutral"
+    exposure: float = 0.0
+    colour_space: str = "srgb"
+    sharpen: float = 0.0
+    grain: float = 0.0
+    highlights: str = "clip"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, value, known in (
+            ("colour_space", self.colour_space, tuple(icc.COLOUR_SPACES)),
+            ("highlights", self.highlights, HIGHLIGHTS),
+        ):
+            if value not in known:
+                raise UsageError(
+                    f"develop: {name}: wanted one of {', '.join(known)}, got {value!r}"
+                    f"{suggest(str(value), known)}"
+                )
+        number(self.exposure, "develop: exposure", -64, 64)
+        number(self.sharpen, "develop: sharpen", 0, 10)
+        number(self.grain, "develop: grain", 0, 1000)
+        if not self.view:
+            look_of(self.look)
+        elif self.colour_space == "rec2020":
+            raise UsageError("develop: colour_space: OCIO views are of srgb or p3, got 'rec2020'")
+
+    @property
+    def view(self) -> str:
+        """The OCIO view that makes the picture, or nothing."""
+        return self.look.removeprefix("ocio:") if self.look.startswith("ocio:") else ""
+
+
+def develop(
+    source: Raw | Frame | Channels,
+    *,
+    wb: Any = None,
+    look: str = "neutral",
+    exposure: float = 0.0,
+    colour_space: str = "srgb",
+    sharpen: float = 0.0,
+    grain: float = 0.0,
+    highlights: str = "clip",
+    demosaic: str = "best",
+    seed: int = 0,
+) -> Picture:
+    """Makes the picture of a raw one, or of a frame: without noise then, as of a perfect sensor.
+
+    Brightness is that of ISO 12232: a luminance exposure of 10 / ISO lux s is middle grey, 118 of
+    255 in sRGB. Colours that the colour space lacks are brought in toward the grey of the same
+    luminance.
+
+    Args:
+        source: What was recorded.
+        wb: The white that becomes neutral: "as-shot" (None), "auto", a temperature in K, or a
+            chromaticity (x, y).
+        look: ``neutral``: light in proportion, up to white; ``standard``, ``film``, ``filmic``:
+            curves with shoulder and toe; ``ocio:VIEW``: a view of OpenColorIO's ACES configuration
+            (extra ``color``).
+        exposure: EV brighter.
+        colour_space: ``srgb``, ``p3`` or ``rec2020``.
+        sharpen: Strength of an unsharp mask, 0 none, 0.5 much as a camera.
+        grain: Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` in
+            the metadata, or a raw picture.
+        highlights: ``clip``: saturated is white; ``blend``: what is bright keeps its differences
+            and loses colour; ``reconstruct``: a saturated channel is guessed from the others.
+        demosaic: ``best`` or ``fast``, or a method of LibRaw by name.
+        seed: Of the grain.
+
+    Raises:
+        UsageError: A wrong parameter.
+        InputError: A frame without exposure metadata; the message names the field.
+    """
+    recipe = Recipe(wb, look, exposure, colour_space, sharpen, grain, highlights, seed)
+    if not isinstance(source, Channels):
+        source = of_raw(source, demosaic) if hasattr(source, "mosaic") else of_frame(source)
+    white = white_of(source, recipe.wb)
+    if recipe.view or recipe.grain:
+        pixels = _by_light(source, white, recipe)
+    else:
+        pixels = _shown(source, white, recipe)
+    if recipe.sharpen:
+        sharpen_picture(pixels, _luminance("srgb").tolist(), recipe.sharpen, SHARPEN_RADIUS)
+    return Picture(pixels, colour_space, dict(source.metadata))
+
+
+def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
+    """Writes a raw picture: its numbers as ``.dng``, or developed; see ``Raw.save``."""
+    from daguerre.io.picture_files import ENDINGS, check_ending
+
+    files = {name: look.pop(name) for name in ("quality", "bits") if name in look}
+    if check_ending(path, (".dng", *ENDINGS)) != ".dng":
+        develop(raw, **look).save(path, **files)
+        return
+    from daguerre.io.dng import write_dng
+
+    if given := [*look, *files]:
+        raise UsageError(f"{Path(path)}: a DNG is not developed: {', '.join(given)} has no place")
+    write_dng(path, raw)
+
+
+def _balance(source: Channels, white: XY) -> FloatArray:
+    """Factors that make the white's numbers 1 in each channel."""
+    neutral = np.linalg.solve(source.xyz_from(white), illuminants.xyz_of_xy(white))
+    return 1 / (source.unit * np.maximum(neutral, 1e-6))
+
+
+def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
+    """Linear light of the colour space from balanced channels; three equal ones are grey."""
+    balanced = source.unit * _balance(source, white)
+    rgb = _space_from_709(space) @ rgb_from_xyz() @ adaptation(white, illuminants.D65_XY)
+    return np.asarray(rgb @ source.xyz_from(white) / balanced)
+
+
+def _space_from_709(space: str) -> FloatArray:
+    to, of = icc.COLOUR_SPACES[space], icc.COLOUR_SPACES["srgb"]
+    return np.asarray(np.linalg.solve(icc.xyz_from_rgb(to), icc.xyz_from_rgb(of)))
+
+
+def _luminance(space: str) -> FloatArray:
+    return icc.xyz_from_rgb(icc.COLOUR_SPACES[space])[1]
+
+
+def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
+    """All in one pass over the pixels."""
+    space, look = recipe.colour_space, look_of(recipe.look)
+    luminance, gain = _luminance(space), 2.0**recipe.exposure
+    balance = _balance(source, white)
+    matrix = gain * saturation(look.colour, luminance) @ _rgb_from_balanced(source, white, space)
+    full = float((source.full * balance).min()) * gain
+    return _pass(source, balance, matrix, recipe, tone_table(look, full), encode_table(space))
+
+
+def _pass(
+    source: Channels,
+    balance: FloatArray,
+    matrix: FloatArray,
+    recipe: Recipe,
+    tone: list[float] | None,
+    encode: list[float] | None,
+) -> NDArray[np.float32]:
+    out = np.empty(source.pixels.shape, np.float32)
+    luminance = _luminance(recipe.colour_space)
+    numbers = (balance.tolist(), source.full.tolist(), recipe.highlights, matrix.ravel().tolist())
+    develop_picture(source.pixels, out, *numbers, luminance.tolist(), tone, encode)
+    return out
+
+
+def _by_light(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
+    """In two passes, with scene light in between, where grain and OCIO work."""
+    gain = 2.0**recipe.exposure
+    balance = _balance(source, white)
+    matrix = gain * _rgb_from_balanced(source, white, "srgb")
+    light = _pass(source, balance, matrix, recipe, None, None)
+    if recipe.grain:
+        light = _with_grain(light, recipe, source)
+    if recipe.view:
+        from .ocio import view_of
+
+        return view_of(light, recipe.view, recipe.colour_space)
+    space, look = recipe.colour_space, look_of(recipe.look)
+    full = float((source.full * balance).min()) * gain
+    matrix = saturation(look.colour, _luminance(space)) @ _space_from_709(space)
+    grained = Channels(
+        light, np.ones(3), np.full(3, math.inf), source.xyz_from, white, source.metadata
+    )
+    tone = tone_table(look, full)
+    return _pass(grained, np.ones(3), matrix, recipe, tone, encode_table(space))
+
+
+def _with_grain(
+    light: NDArray[np.float32], recipe: Recipe, source: Channels
+) -> NDArray[np.float32]:
+    from daguerre.post.grain import grain
+
+    size = source.metadata.get("sensorOverallDimensions")
+    if size is None:
+        raise UsageError(
+            "develop: grain: wanted a frame that knows its sensor's size "
+            "(sensorOverallDimensions), got none"
+        )
+    sensor = tuple(float(value) for value in size)
+    # Colours outside of Rec.709 are negative here, and grain is of light.
+    positive = np.maximum(light, 0)
+    return grain(positive, size=recipe.grain, sensor=sensor, seed=recipe.seed)

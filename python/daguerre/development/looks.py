@@ -1,0 +1,98 @@
+"""Looks: tone curves from light to display, and how much colour they leave.
+
+One family: y = M x^c / (x^c + k), the sigmoid of a film's characteristic curve (and of many
+measured responses, Naka and Rushton 1966): a straight middle of slope c (1 - y / M) over log
+light, a toe and a shoulder. M and k are such that middle grey stays, as ISO 12232 has it, and that
+a stated light is white.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import curve_breakpoints
+from daguerre.errors import UsageError, suggest
+from daguerre.io import icc
+
+FloatArray = NDArray[np.float64]
+#: What ISO 12232 calls middle grey: the developed value of 10 / S lux s.
+GREY = 0.18
+
+
+@dataclass(frozen=True)
+class Look:
+    """A tone curve.
+
+    Attributes:
+        contrast: c of the sigmoid; None: light as it is, up to white.
+        white: Light that becomes white, where the sensor is not saturated before.
+        colour: How far colours stand from grey, against the scene's.
+        black: What no light becomes.
+    """
+
+    contrast: float | None = None
+    white: float = 1.0
+    colour: float = 1.0
+    black: float = 0.0
+
+    def curve(self, light: FloatArray, most: float) -> FloatArray:
+        """Display light; ``most``: the light at which the sensor is full."""
+        if self.contrast is None:
+            return np.minimum(light, 1.0)
+        # Of a white closer to grey no such curve exists.
+        white = max(min(self.white, most), 1.0)
+        c, top, grey = self.contrast, white**self.contrast, GREY**self.contrast
+        height = GREY * (top - grey) / (GREY * top - grey)
+        shape = height * light**c / (light**c + (height - 1) * top)
+        return np.asarray(np.minimum(np.hypot(shape, self.black), 1.0))
+
+
+LOOKS = {
+    "neutral": Look(),
+    "standard": Look(contrast=1.5, white=4.0, colour=1.1),
+    "film": Look(contrast=1.8, white=8.0, colour=0.95, black=0.004),
+    "filmic": Look(contrast=1.2, white=16.0),
+}
+
+
+def look_of(name: str) -> Look:
+    """A look by name.
+
+    Raises:
+        UsageError: There is none of that name.
+    """
+    if name not in LOOKS:
+        raise UsageError(
+            f"develop: look: wanted one of {', '.join(LOOKS)} or ocio:VIEW, got {name!r}"
+            f"{suggest(name, LOOKS)}"
+        )
+    return LOOKS[name]
+
+
+def tone_table(look: Look, most: float) -> list[float] | None:
+    """The curve at the core's breakpoints; None: none is needed."""
+    if look.contrast is None:
+        return None
+    values: list[float] = look.curve(_breakpoints(), most).tolist()
+    return values
+
+
+@cache
+def encode_table(space: str) -> list[float]:
+    """The curve of a colour space at the core's breakpoints."""
+    values: list[float] = np.minimum(icc.encoded(_breakpoints(), space), 1.0).tolist()
+    return values
+
+
+@cache
+def _breakpoints() -> FloatArray:
+    return np.array(curve_breakpoints(), np.float64)
+
+
+def saturation(amount: float, luminance: FloatArray) -> FloatArray:
+    """Colours at another distance from the grey of their luminance, shape (3, 3)."""
+    return np.asarray(amount * np.eye(3) + (1 - amount) * np.outer(np.ones(3), luminance))

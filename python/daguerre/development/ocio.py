@@ -1,0 +1,51 @@
+"""Views of OpenColorIO: how ACES shows scene-linear light (extra ``color``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import UsageError, suggest
+
+#: OpenColorIO's own configuration, of its newest release.
+CONFIG = "ocio://studio-config-latest"
+LINEAR = "Linear Rec.709 (sRGB)"
+DISPLAYS = {"srgb": "sRGB - Display", "p3": "Display P3 - Display"}
+
+
+def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArray[np.float32]:
+    """What a display of a colour space shows of light; ``light`` is changed in place.
+
+    Args:
+        light: Scene-linear Rec.709, shape (H, W, 3).
+        view: As the configuration names it, such as "ACES 2.0 - SDR 100 nits (Rec.709)".
+        space: ``srgb`` or ``p3``.
+
+    Raises:
+        UsageError: No such view; OpenColorIO is missing.
+    """
+    ocio = _module()
+    config = ocio.Config.CreateFromFile(CONFIG)
+    display = DISPLAYS[space]
+    known = list(config.getViews(display))
+    if view not in known:
+        raise UsageError(
+            f"develop: look: wanted ocio: and one of {', '.join(map(repr, known))}; "
+            f"got {view!r}{suggest(view, known)}"
+        )
+    transform = ocio.DisplayViewTransform(src=LINEAR, display=display, view=view)
+    light = np.ascontiguousarray(np.nan_to_num(light, copy=False), np.float32)
+    config.getProcessor(transform).getDefaultCPUProcessor().applyRGB(light)
+    return np.clip(light, 0, 1, out=light)
+
+
+def _module() -> Any:
+    try:
+        import PyOpenColorIO
+    except ImportError:
+        raise UsageError(
+            "develop: look: OCIO views need OpenColorIO: pip install 'daguerre[color]'"
+        ) from None
+    return PyOpenColorIO

@@ -1,0 +1,39 @@
+"""The small picture in a DNG, as a camera shows it on its back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .channels import of_cells
+
+if TYPE_CHECKING:
+    from daguerre.raw import Raw
+
+LONGEST = 512
+
+
+def preview_of(raw: Raw) -> NDArray[np.uint8]:
+    """A developed picture of at most 512 px, shape (h, w, 3); the mosaic is not quad's.
+
+    Of every so many photosites one cell of the pattern is looked at: quick, and rough.
+    """
+    from .develop import develop
+
+    return develop(of_cells(raw, cell_means(raw, LONGEST))).bytes8()
+
+
+def cell_means(raw: Raw, longest: int) -> NDArray[np.float32]:
+    """DN above black of each channel in cells of the pattern, shape (h, w, C)."""
+    cells = raw.sensor.pattern.cells
+    rows, columns = cells.shape
+    step = max(rows, columns) * -(-max(raw.mosaic.shape) // (max(rows, columns) * longest))
+    height, width = (max((side - max(rows, columns)) // step + 1, 1) for side in raw.mosaic.shape)
+    sums = np.zeros((height, width, len(raw.sensor.channels)), np.float32)
+    counts = np.bincount(cells.ravel(), minlength=sums.shape[2])
+    for (y, x), channel in np.ndenumerate(cells):
+        part = raw.mosaic[y::step, x::step][:height, :width]
+        sums[: part.shape[0], : part.shape[1], channel] += part
+    return sums / counts.astype(np.float32) - np.float32(raw.black_level)

@@ -1,0 +1,82 @@
+"""White balance: which white becomes neutral."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import UsageError
+from daguerre.sensors import illuminants
+
+from .channels import XY, Channels
+
+FloatArray = NDArray[np.float64]
+_BLOCK = 8  # px, of means that "auto" looks at: edges have colours that demosaicing made
+
+
+def white_of(source: Channels, wanted: Any) -> XY:
+    """Chromaticity of the white.
+
+    Args:
+        source: Of the picture.
+        wanted: None or "as-shot"; "auto"; K; (x, y); also as text, "5600", "0.34,0.35".
+
+    Raises:
+        UsageError: None of these.
+    """
+    if wanted is None or wanted == "as-shot":
+        return source.as_shot
+    if wanted == "auto":
+        return _average(source)
+    return illuminants.white_xy(_numbers(wanted), "develop: wb")
+
+
+def _numbers(wanted: Any) -> Any:
+    if not isinstance(wanted, str):
+        return wanted
+    try:
+        values = [float(part) for part in wanted.lower().removesuffix("k").split(",")]
+    except ValueError:
+        values = []
+    if len(values) not in (1, 2):
+        raise UsageError(
+            f"develop: wb: wanted as-shot, auto, a temperature in K such as 5600, or x,y such as "
+            f"0.3457,0.3585; got {wanted!r}"
+        )
+    return values[0] if len(values) == 1 else tuple(values)
+
+
+def _block_means(pixels: NDArray[Any]) -> FloatArray:
+    """Of blocks of the picture, or of its pixels if it is small, shape (N, 3)."""
+    height, width = pixels.shape[:2]
+    size = _BLOCK if min(height, width) >= _BLOCK else 1
+    rows, columns = height // size, width // size
+    blocks = pixels[: rows * size, : columns * size].reshape(rows, size, columns, size, 3)
+    means = blocks.mean(axis=(1, 3), dtype=np.float32)
+    return means.reshape(-1, 3).astype(np.float64)
+
+
+def _average(source: Channels) -> XY:
+    """The colour of the brighter part of what is not saturated: that is mostly white or grey.
+
+    The mean of the picture (grey world) and that of its top tenth (white patch) are both usual;
+    a power mean lies between them (Finlayson and Trezzi 2004, Shades of gray, power 6).
+    """
+    means = _block_means(source.pixels)
+    good = np.isfinite(means).all(axis=1) & (means < 0.95 * source.full).all(axis=1)
+    values = np.maximum(means[good] / source.unit, 0)
+    if not values.size or values.max() <= 0:
+        return source.as_shot
+    top = values.max()
+    mean = top * np.mean((values / top) ** 6, axis=0) ** (1 / 6)
+    white = source.as_shot
+    for _ in range(4):  # the matrix depends on the white that it is to find
+        xyz = source.xyz_from(white) @ mean
+        x, y = xyz[:2] / xyz.sum()
+        if not (0.15 < x < 0.65 and 0.15 < y < 0.65 and math.isfinite(x + y)):
+            return source.as_shot
+        white = (float(x), float(y))
+    return white

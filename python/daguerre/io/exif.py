@@ -1,0 +1,149 @@
+"""EXIF as a camera writes it: small rationals (1/125 as 1/125), lens and body by name.
+
+The block is a little TIFF file: a main directory and, from its tag 34665, the one of the exposure.
+It goes as it is into JPEG (APP1) and PNG (eXIf); TIFF and DNG have the same tags in their own
+directories. Tags, types and units: Exif 3.0 (CIPA DC-008-2023), 4.6.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import struct
+import time
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+BYTE, ASCII, SHORT, LONG, RATIONAL, UNDEFINED, SRATIONAL, DOUBLE = 1, 2, 3, 4, 5, 7, 10, 12
+#: Type and values of a tag; texts are str, everything else a tuple.
+Tags = dict[int, tuple[int, Any]]
+
+EXIF_DIRECTORY = 34665
+#: Width over height of the frame does not matter: equivalents are taken over diagonals.
+FULL_FRAME_DIAGONAL_MM = math.hypot(36, 24)
+_FORMATS = {BYTE: "B", SHORT: "H", LONG: "I", RATIONAL: "2I", UNDEFINED: "B", SRATIONAL: "2i"}
+_LIMIT = 2**31 - 1
+
+
+def rational(value: float) -> tuple[int, int]:
+    """The simplest fraction within a millionth: 0.008 is 1/125, also when it was a float32."""
+    for denominator in (10**power for power in range(1, 8)):
+        fraction = Fraction(value).limit_denominator(denominator)
+        if abs(fraction - Fraction(value)) <= abs(Fraction(value)) / 10**6:
+            break
+    if abs(fraction.numerator) > _LIMIT:
+        return (_LIMIT if value > 0 else -_LIMIT, 1)
+    return fraction.numerator, fraction.denominator
+
+
+def main_tags(metadata: Mapping[str, Any]) -> Tags:
+    """The tags of the main directory: who made the file, with what, and when."""
+    texts = {
+        271: metadata.get("cameraMake"),
+        272: metadata.get("cameraModel"),
+        305: f"daguerre {metadata.get('version', '')}".strip(),
+        306: date(metadata),
+    }
+    tags: Tags = {number: (ASCII, str(text)) for number, text in texts.items() if text}
+    tags[274] = (SHORT, (1,))  # upright
+    return tags
+
+
+def exposure_tags(metadata: Mapping[str, Any]) -> Tags:
+    """The tags of the exposure, those that ``metadata`` (names of OpenEXR) knows."""
+    tags: Tags = {36864: (UNDEFINED, tuple(b"0232"))}
+    numbers = {
+        33434: _number(metadata, "expTime"),
+        33437: _number(metadata, "aperture"),
+        37382: _number(metadata, "focus"),
+        37386: _number(metadata, "nominalFocalLength"),
+    }
+    tags |= {at: (RATIONAL, rational(value)) for at, value in numbers.items() if value}
+    if iso := _number(metadata, "isoSpeed"):
+        tags[34855] = (SHORT, (min(round(iso), 65535),))
+        tags[34864] = (SHORT, (1,))  # the standard output sensitivity of ISO 12232
+        tags[34865] = (LONG, (round(iso),))
+    if metadata.get("exposure_compensation") is not None:
+        tags[37380] = (SRATIONAL, rational(float(metadata["exposure_compensation"])))
+    tags |= _lens_tags(metadata)
+    tags[36867] = tags[36868] = (ASCII, date(metadata))
+    return dict(sorted(tags.items()))
+
+
+def _lens_tags(metadata: Mapping[str, Any]) -> Tags:
+    names = {42035: metadata.get("lensMake"), 42036: metadata.get("lensModel")}
+    tags: Tags = {number: (ASCII, str(name)) for number, name in names.items() if name}
+    focal, size = _number(metadata, "nominalFocalLength"), metadata.get("sensorOverallDimensions")
+    if focal and size is not None and len(size) == 2 and min(size) > 0:
+        scale = FULL_FRAME_DIAGONAL_MM / math.hypot(*map(float, size))
+        tags[41989] = (SHORT, (min(round(focal * scale), 65535),))
+    if metadata.get("lens_specification"):  # shortest and longest mm, fastest stop at each
+        four = [rational(float(value)) for value in metadata["lens_specification"]]
+        tags[42034] = (RATIONAL, tuple(part for pair in four for part in pair))
+    return tags
+
+
+def block(metadata: Mapping[str, Any], size: tuple[int, int], srgb: bool) -> bytes:
+    """A whole EXIF block.
+
+    Args:
+        metadata: Facts of the frame.
+        size: Width and height of the picture, px.
+        srgb: Whether its colours are sRGB; the standard has no number for others.
+    """
+    main, exposure = main_tags(metadata), exposure_tags(metadata)
+    exposure |= {40961: (SHORT, (1 if srgb else 65535,))}
+    exposure |= {40962: (LONG, (size[0],)), 40963: (LONG, (size[1],))}
+    main[EXIF_DIRECTORY] = (LONG, (0,))
+    start = 8 + len(directory(main, 8))
+    main[EXIF_DIRECTORY] = (LONG, (start,))
+    return struct.pack("<2sHI", b"II", 42, 8) + directory(main, 8) + directory(exposure, start)
+
+
+def directory(tags: Tags, offset: int) -> bytes:
+    """An image file directory (TIFF 6.0, section 2), little-endian, and the values it points to.
+
+    Args:
+        tags: By number.
+        offset: Where in the file it will begin, even.
+    """
+    entries, values = b"", b""
+    after = offset + 2 + 12 * len(tags) + 4
+    for number, (kind, value) in sorted(tags.items()):
+        data, count = _packed(kind, value)
+        if len(data) > 4:
+            place, data = struct.pack("<I", after + len(values)), data + b"\0" * (len(data) % 2)
+            values, data = values + data, place
+        entries += struct.pack("<HHI", number, kind, count) + data.ljust(4, b"\0")
+    return struct.pack("<H", len(tags)) + entries + struct.pack("<I", 0) + values
+
+
+def date(metadata: Mapping[str, Any]) -> str:
+    """When the picture was taken; without ``capDate`` now, or as SOURCE_DATE_EPOCH says.
+
+    The variable is the one of reproducible-builds.org: with it the same picture is the same file.
+    """
+    if metadata.get("capDate"):
+        return str(metadata["capDate"])
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    at = time.gmtime(int(epoch)) if epoch.isdigit() else time.localtime()
+    return time.strftime("%Y:%m:%d %H:%M:%S", at)
+
+
+def _packed(kind: int, value: Any) -> tuple[bytes, int]:
+    if kind == ASCII:
+        data = value.encode("utf-8") + b"\0"
+        return data, len(data)
+    each = _FORMATS[kind]
+    parts = len(each.lstrip("<")) if each[0] != "2" else 2
+    count = len(value) // parts
+    return struct.pack(f"<{len(value)}{each[-1]}", *value), count
+
+
+def _number(metadata: Mapping[str, Any], name: str) -> float | None:
+    """A fact that EXIF can hold: positive and finite."""
+    value = metadata.get(name)
+    if value is None or not math.isfinite(float(value)) or float(value) <= 0:
+        return None
+    return float(value)

@@ -1,0 +1,199 @@
+"""Developed pictures into files: JPEG, PNG, TIFF and EXR, with profile and EXIF.
+
+OpenImageIO codes JPEG and PNG, tifffile TIFF. The EXIF block is our own and put in afterwards:
+OpenImageIO writes 1/48 s as 20833/1000000.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import OutputError, UsageError, suggest
+
+from . import exif, icc
+from .atomic import atomic_path
+from .tiff import TiffImage, write_tiff
+
+ENDINGS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr")
+_PNG_START = 8 + 25  # signature and IHDR
+
+
+def check_ending(path: str | os.PathLike[str], known: tuple[str, ...] = ENDINGS) -> str:
+    """The ending of an output, in lower case.
+
+    Raises:
+        UsageError: Not one of ``known``.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in known:
+        wanted = ", ".join(known)
+        raise UsageError(
+            f"{path}: output format: wanted a name ending in {wanted}; got {suffix!r}"
+            f"{suggest(suffix, known)}"
+        )
+    return suffix
+
+
+def write_picture(
+    path: str | os.PathLike[str],
+    pixels: NDArray[np.float32],
+    space: str,
+    metadata: Mapping[str, Any],
+    *,
+    quality: int = 95,
+    bits: int | None = None,
+) -> None:
+    """Writes a developed picture, whole or not at all.
+
+    Args:
+        path: Its ending chooses the format; JPEG has 8 bits, TIFF 16 or 8, PNG 8 or 16, EXR linear
+            floats.
+        pixels: Encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
+        space: Name of ``icc.COLOUR_SPACES``.
+        metadata: Facts for EXIF, by the names of OpenEXR.
+        quality: Of JPEG, 1 to 100.
+        bits: Per channel; absent: 8, of TIFF 16.
+
+    Raises:
+        UsageError: Another ending, or bits that the format lacks.
+        OutputError: The file cannot be written.
+    """
+    suffix = check_ending(path)
+    if suffix == ".exr":
+        _write_linear(path, pixels, space, metadata)
+        return
+    bits = _bits(path, suffix, bits)
+    numbers = quantised(pixels, bits)
+    with atomic_path(path) as temp:
+        if suffix in (".tif", ".tiff"):
+            _write_tiff(temp, numbers, space, metadata)
+            return
+        _write_coded(temp, numbers, space, quality, str(path))
+        size = (pixels.shape[1], pixels.shape[0])
+        data = exif.block(metadata, size, srgb=space == "srgb")
+        add = _jpeg_with if suffix in (".jpg", ".jpeg") else _png_with
+        temp.write_bytes(add(temp.read_bytes(), data, space))
+
+
+def quantised(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
+    """0 .. 1 as whole numbers of 8 or 16 bits, rounded; in stripes, for little memory."""
+    top = np.float32(2**bits - 1)
+    out = np.empty(pixels.shape, np.uint8 if bits == 8 else np.uint16)
+    for row in range(0, len(pixels), 64):
+        part = np.nan_to_num(pixels[row : row + 64], nan=0.0)
+        out[row : row + 64] = np.clip(part, 0, 1) * top + np.float32(0.5)
+    return out
+
+
+def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
+    allowed = (8,) if suffix in (".jpg", ".jpeg") else (8, 16)
+    usual = 16 if suffix in (".tif", ".tiff") else 8
+    if bits is not None and bits not in allowed:
+        wanted = " or ".join(map(str, allowed))
+        raise UsageError(f"{path}: bits: wanted {wanted} for {suffix}, got {bits}")
+    return bits or usual
+
+
+def _write_coded(temp: Path, numbers: NDArray[Any], space: str, quality: int, path: str) -> None:
+    """JPEG or PNG by OpenImageIO, with the profile."""
+    import OpenImageIO as oiio
+
+    height, width, count = numbers.shape
+    kind = oiio.UINT8 if numbers.dtype == np.uint8 else oiio.UINT16
+    spec = oiio.ImageSpec(width, height, count, kind)
+    profile = np.frombuffer(icc.profile(space), np.uint8)
+    spec.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{len(profile)}]"), profile)
+    spec.attribute("Compression", f"jpeg:{quality}" if temp.suffix.lower()[1] == "j" else "zip:6")
+    if quality >= 90:
+        spec.attribute("jpeg:subsampling", "4:4:4")
+    output = oiio.ImageOutput.create(str(temp))
+    done = output is not None and output.open(str(temp), spec)
+    if not (done and output.write_image(numbers) and output.close()):
+        reason = str((output or oiio).geterror() or "unknown reason").replace(str(temp), path)
+        raise OutputError(f"{path}: cannot write: {reason}")
+
+
+def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
+    """A JPEG file with this EXIF block, in the place of one that it may have."""
+    head, at = data[:2], 2
+    while data[at + 1] != 0xDA:  # up to the start of the scan
+        end = at + 2 + int.from_bytes(data[at + 2 : at + 4], "big")
+        if not (data[at + 1] == 0xE1 and data[at + 4 : at + 8] == b"Exif"):
+            head += data[at:end]
+        at = end
+    segment = b"Exif\0\0" + block
+    # JFIF (APP0) stays first, as its standard wants it.
+    after = 4 + int.from_bytes(head[4:6], "big") if head[3] == 0xE0 else 2
+    app1 = b"\xff\xe1" + struct.pack(">H", len(segment) + 2) + segment
+    return head[:after] + app1 + head[after:] + data[at:]
+
+
+def _png_with(data: bytes, block: bytes, space: str) -> bytes:
+    """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
+    if not complete_png(data):
+        raise OutputError("PNG: the file is not complete; is the disk full?")
+    cicp = bytes([*icc.COLOUR_SPACES[space].cicp, 0, 1])
+    kept = b"".join(
+        chunk for kind, chunk in _png_chunks(data) if kind not in (b"eXIf", b"cICP", b"IHDR")
+    )
+    chunks = _png_chunk(b"cICP", cicp) + _png_chunk(b"eXIf", block)
+    return data[:_PNG_START] + chunks + kept
+
+
+def complete_png(data: bytes) -> bool:
+    """Whether every chunk has its checksum and the last one is IEND (PNG 3rd edition, 5.3)."""
+    chunks = _png_chunks(data)
+    good = all(zlib.crc32(chunk[4:-4]) == int.from_bytes(chunk[-4:], "big") for _, chunk in chunks)
+    end = 8 + sum(len(chunk) for _, chunk in chunks)
+    return good and bool(chunks) and chunks[-1][0] == b"IEND" and end == len(data)
+
+
+def _png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
+    chunks, at = [], 8
+    while at + 12 <= len(data):
+        end = at + 12 + int.from_bytes(data[at : at + 4], "big")
+        chunks.append((data[at + 4 : at + 8], data[at:end]))
+        at = end
+    return chunks
+
+
+def _png_chunk(kind: bytes, value: bytes) -> bytes:
+    return (
+        struct.pack(">I", len(value)) + kind + value + struct.pack(">I", zlib.crc32(kind + value))
+    )
+
+
+def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping[str, Any]) -> None:
+    tags = exif.main_tags(metadata)
+    tags[34675] = (exif.UNDEFINED, tuple(icc.profile(space)))
+    write_tiff(temp, [TiffImage(numbers, "rgb", tags)], exif.exposure_tags(metadata))
+
+
+def _write_linear(
+    path: str | os.PathLike[str],
+    pixels: NDArray[np.float32],
+    space: str,
+    metadata: Mapping[str, Any],
+) -> None:
+    """Linear light in the primaries of the space, with the frame's attributes."""
+    from daguerre.frame import Frame
+
+    from .exr import attributes, write_parts
+
+    linear = np.empty_like(pixels)
+    for row in range(0, len(pixels), 64):
+        linear[row : row + 64] = icc.decoded(pixels[row : row + 64], space)
+    header = attributes(metadata)
+    corners = (*icc.COLOUR_SPACES[space].primaries, icc.D65)
+    header["chromaticities"] = tuple(value for corner in corners for value in corner)
+    header["colorInteropID"] = {"srgb": "lin_rec709_scene"}.get(space, f"lin_{space}_scene")
+    frame = Frame(rgb=linear, metadata=dict(metadata))
+    write_parts(path, [("picture", header, {"RGB": linear})], frame)
