@@ -115,9 +115,10 @@ def _write_coded(temp: Path, numbers: NDArray[Any], space: str, quality: int, pa
     if quality >= 90:
         spec.attribute("jpeg:subsampling", "4:4:4")
     output = oiio.ImageOutput.create(str(temp))
-    done = output is not None and output.open(str(temp), spec)
-    if not (done and output.write_image(numbers) and output.close()):
-        reason = str((output or oiio).geterror() or "unknown reason").replace(str(temp), path)
+    if output is None:
+        raise OutputError(f"{path}: cannot write: {oiio.geterror()}")
+    if not (output.open(str(temp), spec) and output.write_image(numbers) and output.close()):
+        reason = str(output.geterror() or "unknown reason").replace(str(temp), path)
         raise OutputError(f"{path}: cannot write: {reason}")
 
 
