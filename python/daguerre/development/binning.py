@@ -41,7 +41,7 @@ def bayer_of(raw: Raw) -> Raw:
         black_level=4 * raw.black_level >> shift,
         white_level=4 * raw.white_level >> shift,
         gain=raw.gain / 2**shift,
-        clipped=clipped,
+        clipped=np.asarray(clipped, np.bool_),
         luminance_exposure=None,
     )
 

@@ -1,7 +1,7 @@
 """What development begins with: light of three channels in every pixel, from whatever there is.
 
 LibRaw demosaics, through rawpy, from a DNG in memory: adaptive homogeneity (Hirakawa and Parks
-2005) for Bayer mosaics, Markesteijn's method for X-Trans.
+2005) for Bayer mosaics, Markesteijn's method for X-Trans. Figures are in ``docs/developing.md``.
 """
 
 from __future__ import annotations
@@ -30,8 +30,11 @@ FloatArray = NDArray[np.float64]
 XY = tuple[float, float]
 #: LibRaw refuses smaller pictures, px each way.
 _LEAST, _LEAST_XTRANS = 32, 516
-#: LibRaw's names; "fast" and "best" are the ones to know.
-DEMOSAICS = ("best", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
+#: Three that are chosen by pattern, and LibRaw's own names.
+_BAYER_METHODS = {"best": "DHT", "good": "AHD", "fast": "LINEAR"}
+#: LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
+_XTRANS_METHODS = {"best": "DHT", "good": "PPG", "fast": "LINEAR"}
+DEMOSAICS = ("best", "good", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ def _xyz(frame: Frame) -> NDArray[np.float32]:
     return (frame.rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)).astype(np.float32)
 
 
-def of_raw(raw: Raw, demosaic: str = "best") -> Channels:
+def of_raw(raw: Raw, demosaic: str = "good") -> Channels:
     """A raw picture, demosaiced."""
     raw = bayer_of(raw)
     if is_mono(raw):
@@ -110,7 +113,7 @@ def _of_pixels(raw: Raw, pixels: NDArray[Any], scale: FloatArray) -> Channels:
 
 
 def _inverse_matrix(raw: Raw) -> Callable[[XY], FloatArray]:
-    return lambda white: np.linalg.inv(raw.sensor.colour_matrix(white))
+    return lambda white: np.asarray(np.linalg.inv(raw.sensor.colour_matrix(white)), np.float64)
 
 
 def _grey_matrix(white: XY) -> FloatArray:
@@ -190,6 +193,5 @@ def _algorithm(name: str, xtrans: bool) -> Any:
             f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {name!r}"
             f"{suggest(name, DEMOSAICS)}"
         )
-    # LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
-    usual = {"best": "PPG", "fast": "LINEAR"} if xtrans else {"best": "AHD", "fast": "LINEAR"}
-    return rawpy.DemosaicAlgorithm[usual.get(name, name.upper())]
+    chosen = _XTRANS_METHODS if xtrans else _BAYER_METHODS
+    return rawpy.DemosaicAlgorithm[chosen.get(name, name.upper())]

@@ -82,7 +82,7 @@ def develop(
     sharpen: float = 0.0,
     grain: float = 0.0,
     highlights: str = "clip",
-    demosaic: str = "best",
+    demosaic: str = "good",
     seed: int = 0,
 ) -> Picture:
     """Makes the picture of a raw one, or of a frame: without noise then, as of a perfect sensor.
@@ -105,7 +105,7 @@ def develop(
             the metadata, or a raw picture.
         highlights: ``clip``: saturated is white; ``blend``: what is bright keeps its differences
             and loses colour; ``reconstruct``: a saturated channel is guessed from the others.
-        demosaic: ``best`` or ``fast``, or a method of LibRaw by name.
+        demosaic: ``best``, ``good`` or ``fast``, or a method of LibRaw by name.
         seed: Of the grain.
 
     Raises:
@@ -113,8 +113,7 @@ def develop(
         InputError: A frame without exposure metadata; the message names the field.
     """
     recipe = Recipe(wb, look, exposure, colour_space, sharpen, grain, highlights, seed)
-    if not isinstance(source, Channels):
-        source = of_raw(source, demosaic) if hasattr(source, "mosaic") else of_frame(source)
+    source = _channels(source, demosaic)
     white = white_of(source, recipe.wb)
     if recipe.view or recipe.grain:
         pixels = _by_light(source, white, recipe)
@@ -123,6 +122,14 @@ def develop(
     if recipe.sharpen:
         sharpen_picture(pixels, _luminance("srgb").tolist(), recipe.sharpen, SHARPEN_RADIUS)
     return Picture(pixels, colour_space, dict(source.metadata))
+
+
+def _channels(source: Raw | Frame | Channels, demosaic: str) -> Channels:
+    from daguerre.raw import Raw
+
+    if isinstance(source, Channels):
+        return source
+    return of_raw(source, demosaic) if isinstance(source, Raw) else of_frame(source)
 
 
 def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
@@ -143,7 +150,7 @@ def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
 def _balance(source: Channels, white: XY) -> FloatArray:
     """Factors that make the white's numbers 1 in each channel."""
     neutral = np.linalg.solve(source.xyz_from(white), illuminants.xyz_of_xy(white))
-    return 1 / (source.unit * np.maximum(neutral, 1e-6))
+    return np.asarray(1 / (source.unit * np.maximum(neutral, 1e-6)))
 
 
 def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
@@ -159,7 +166,7 @@ def _space_from_709(space: str) -> FloatArray:
 
 
 def _luminance(space: str) -> FloatArray:
-    return icc.xyz_from_rgb(icc.COLOUR_SPACES[space])[1]
+    return np.asarray(icc.xyz_from_rgb(icc.COLOUR_SPACES[space])[1])
 
 
 def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:

@@ -36,4 +36,4 @@ def cell_means(raw: Raw, longest: int) -> NDArray[np.float32]:
     for (y, x), channel in np.ndenumerate(cells):
         part = raw.mosaic[y::step, x::step][:height, :width]
         sums[: part.shape[0], : part.shape[1], channel] += part
-    return sums / counts.astype(np.float32) - np.float32(raw.black_level)
+    return np.asarray(sums / counts - raw.black_level, np.float32)

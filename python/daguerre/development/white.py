@@ -56,7 +56,7 @@ def _block_means(pixels: NDArray[Any]) -> FloatArray:
     rows, columns = height // size, width // size
     blocks = pixels[: rows * size, : columns * size].reshape(rows, size, columns, size, 3)
     means = blocks.mean(axis=(1, 3), dtype=np.float32)
-    return means.reshape(-1, 3).astype(np.float64)
+    return np.asarray(means.reshape(-1, 3), np.float64)
 
 
 def _average(source: Channels) -> XY:
