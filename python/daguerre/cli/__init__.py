@@ -25,6 +25,8 @@ from .lenses import lenses
 from .merge import merge
 from .post import post
 from .render import render
+from .sensor import sensor
+from .sensors import sensors
 from .stocks import stocks
 from .version import version
 
@@ -40,7 +42,8 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (render, merge, post, info, lenses, lens, stocks, chart, version):
+commands = (render, merge, post, info, lenses, lens, sensors, sensor, stocks, chart, version)
+for command in commands:
     app.command(name=command.__name__)(command)
 
 

@@ -1,4 +1,4 @@
-"""Reads sensor files: JSON of the schema ``daguerre-sensor/0.1``; see docs/sensors.md."""
+"""Reads sensor files: JSON of the schema ``daguerre-sensor/0.1``; see docs/sensor-format.md."""
 
 from __future__ import annotations
 
