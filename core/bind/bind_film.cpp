@@ -22,10 +22,15 @@ auto plane(const dg::Film& film, std::vector<T> values) {
 }
 
 template <typename T>
-auto triples(const dg::Film& film, std::vector<T> values) {
+auto stacks(const dg::Film& film, std::vector<T> values, int each) {
     const auto& l = film.layout();
     return dg::bind::to_numpy(std::move(values),
-                              {std::size_t(l.height), std::size_t(l.width), std::size_t(3)});
+                              {std::size_t(l.height), std::size_t(l.width), std::size_t(each)});
+}
+
+template <typename T>
+auto triples(const dg::Film& film, std::vector<T> values) {
+    return stacks(film, std::move(values), 3);
 }
 
 std::vector<float> to_rgb(std::vector<float> values) {
@@ -46,6 +51,7 @@ auto next_colour(const Plane& plane, int reach) {
         {plane.shape(0), plane.shape(1)});
 }
 
+using Curves = nb::ndarray<const double, nb::shape<-1, 401>, nb::c_contig, nb::device::cpu>;
 using Words = nb::ndarray<const std::uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using WordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<3>>;
 
@@ -64,12 +70,18 @@ void bind_film(nb::module_& m) {
     nb::class_<Film>(m, "Film")
         .def("__init__",
              [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs,
-                bool splats, bool flare, int bands) {
-                 new (f) Film(
-                     FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare, bands});
+                bool splats, bool flare, int bands, int channels) {
+                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare, bands,
+                                         channels});
              },
              "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false,
-             "splats"_a = false, "flare"_a = false, "bands"_a = 0)
+             "splats"_a = false, "flare"_a = false, "bands"_a = 0,
+             "channels"_a = 0)
+        .def("set_responses",
+             [](Film& f, const Curves& curves) {
+                 f.set_responses(Responses(std::span(curves.data(), curves.size())));
+             },
+             "curves"_a, "What the channels see: (channels, 401) weights per nm, 380 to 780 nm.")
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
@@ -77,13 +89,11 @@ void bind_film(nb::module_& m) {
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
         .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
              "What ghosts brought to it.")
-        .def("mean_bands",
-             [](const Film& f) {
-                 const std::size_t height = f.layout().height, width = f.layout().width,
-                                   bands = f.layout().bands;
-                 return dg::bind::to_numpy(f.mean_bands(), {height, width, bands});
-             },
+        .def("mean_bands", [](const Film& f) { return stacks(f, f.mean_bands(), f.layout().bands); },
              "Mean radiance of each band, (H, W, bands).")
+        .def("mean_channels",
+             [](const Film& f) { return stacks(f, f.mean_channels(), f.layout().channels); },
+             "Mean of each of the sensor's channels, (H, W, channels).")
         .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
         .def("relative_variance",
              [](const Film& f, float dark) { return plane(f, f.relative_variance(dark)); }, "dark"_a)

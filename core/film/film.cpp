@@ -51,7 +51,18 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
                           std::to_string(layout.bands));
+    if (layout.channels < 0 || layout.channels > Responses::kMost)
+        throw input_error("film", "channels", "0 to " + std::to_string(Responses::kMost),
+                          std::to_string(layout.channels));
     bands_.resize(std::size_t(pixels) * layout.bands);
+    channels_.resize(std::size_t(pixels) * layout.channels);
+}
+
+void Film::set_responses(Responses responses) {
+    if (responses.count() != layout_.channels)
+        throw input_error("film", "responses", std::to_string(layout_.channels) + " channels",
+                          std::to_string(responses.count()));
+    responses_ = std::move(responses);
 }
 
 std::int64_t Film::find(int x, int y) const {
@@ -116,35 +127,50 @@ void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) const {
 
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance) {
-    if (bands_.empty()) return add(x, y, sample, wavelengths.to_xyz(radiance));
-    add_shared(x, y, sample, wavelengths, radiance);   // splats share the sums of bands
+    if (!has_spectra()) return add(x, y, sample, wavelengths.to_xyz(radiance));
+    if (!splats_.empty() || !flare_.empty())   // they share the sums of spectra
+        return add_shared(x, y, sample, wavelengths, radiance);
+    const std::int64_t i = find(x, y);
+    if (i >= 0) add_light(pixels_[i], i, sample, wavelengths, radiance);
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                       Spectrum radiance) {
     const std::int64_t i = find(x, y);
-    if (i >= 0) add_light(pixels_[i], i, sample, wavelengths, radiance);
+    if (i < 0) return;
+    const Lock lock(pixels_[i].lock);
+    add_light(pixels_[i], i, sample, wavelengths, radiance);
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                  Spectrum radiance, Layer layer) {
-    if (bands_.empty()) return splat(x, y, sample, wavelengths.to_xyz(radiance), layer);
+    if (!has_spectra()) return splat(x, y, sample, wavelengths.to_xyz(radiance), layer);
     const std::int64_t i = find(x, y);
-    if (i >= 0) add_light(sums_of(layer, i), i, sample, wavelengths, radiance);
+    if (i < 0) return;
+    const Lock lock(pixels_[i].lock);
+    add_light(sums_of(layer, i), i, sample, wavelengths, radiance);
 }
 
 void Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
                      const Wavelengths& wavelengths, Spectrum radiance) {
-    const Lock lock(pixels_[i].lock);
     if (!add_to(sums, wavelengths.to_xyz(radiance))) return mark_bad(pixels_[i], sample);
-    if (bands_.empty()) return;
+    if (layout_.bands) add_bands(&bands_[i * layout_.bands], wavelengths, radiance);
+    if (layout_.channels) add_channels(&channels_[i * layout_.channels], wavelengths, radiance);
+}
+
+void Film::add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const {
     const float per_nm = float(layout_.bands) / (kMaxWavelength - kMinWavelength);
     const Spectrum light = radiance * wavelengths.measure() * per_nm;
     for (int k = 0; k < kWavelengths; ++k) {
         const int band = int((wavelengths.nm[k] - kMinWavelength) * per_nm);
-        if (fits_film(light[k]))
-            bands_[i * layout_.bands + std::min(band, layout_.bands - 1)].add(light[k]);
+        if (fits_film(light[k])) bands[std::min(band, layout_.bands - 1)].add(light[k]);
     }
+}
+
+void Film::add_channels(ValueSum* channels, const Wavelengths& wavelengths, Spectrum radiance) const {
+    const Spectrum light = responses_.of(wavelengths, radiance);
+    for (int c = 0; c < layout_.channels; ++c)
+        if (fits_film(light[c])) channels[c].add(light[c]);
 }
 
 bool Film::add_to(Sums& sums, Vec3f xyz) const {
@@ -198,7 +224,8 @@ void Film::merge(const Film& other) {
                    std::to_string(l.offset_y) + ")" +
                    (l.aovs ? " with aovs" : " without aovs") +
                    (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "") +
-                   (l.bands ? ", " + std::to_string(l.bands) + " bands" : "");
+                   (l.bands ? ", " + std::to_string(l.bands) + " bands" : "") +
+                   (l.channels ? ", " + std::to_string(l.channels) + " channels" : "");
         };
         throw input_error("film", "merge", words(layout_), words(other.layout_));
     }
@@ -213,6 +240,7 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
     for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
+    for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];

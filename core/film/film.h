@@ -11,6 +11,7 @@
 
 #include "film/fixed_sum.h"
 #include "math/vec.h"
+#include "spectrum/responses.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -38,15 +39,23 @@ struct FilmLayout {
     bool splats = false;             // light paths may add to any pixel (Film::splat)
     bool flare = false;              // and so may ghosts
     int bands = 0;                   // of equal width over all wavelengths, kept beside XYZ
+    int channels = 0;                // of a sensor, likewise (Film::set_responses)
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
-/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band.
+/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band and channel.
 class Film {
   public:
-    /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, and bands is 0 .. kMostBands.
+    /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, bands is 0 .. kMostBands and
+    /// channels is 0 .. Responses::kMost.
     explicit Film(FilmLayout layout);
     const FilmLayout& layout() const { return layout_; }
+    /// What the channels are made of light by; to be set before a film with channels is drawn into. Throws
+    /// Error for another number of channels.
+    void set_responses(Responses responses);
+    const Responses& responses() const { return responses_; }
+    /// Whether wavelengths bring more than XYZ: bands or channels, for which all ways of adding share one sum.
+    bool has_spectra() const { return layout_.bands > 0 || layout_.channels > 0; }
 
     /// Adds one sample to a pixel (full-frame coordinates; outside the region: ignored).
     /// NaN, Inf or beyond kMaxFilmValue: the sample is counted as bad, and 0 is added.
@@ -66,10 +75,10 @@ class Film {
     /// which no mean is to be taken off; so they are sums of their own.
     enum class Layer { splats, flare };
     void splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats);
-    /// The same for pixels side by side within the region, of a film without bands.
+    /// The same for pixels side by side within the region, of a film without bands and channels.
     void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer);
-    /// What the wavelengths of a sample bring, to XYZ and to their bands: what the three above do with a
-    /// colour.
+    /// What the wavelengths of a sample bring, to XYZ, to their bands and to the channels: what the three
+    /// above do with a colour.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance);
     void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                     Spectrum radiance);
@@ -79,7 +88,8 @@ class Film {
     void prefetch(int x0, int x1, int y0, int y1, Layer layer) const;
 
     /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
-    /// layouts differ.
+    /// layouts differ. That channels are of the same sensor is the caller's word: films out of files have no
+    /// responses.
     void merge(const Film& other);
 
     /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height; 0 without
@@ -90,6 +100,8 @@ class Film {
     /// Mean radiance of each band, all that was added, size bands*width*height; D65 of luminance 1 has
     /// some 1 in each. Throws Error for a film without bands.
     std::vector<float> mean_bands() const;
+    /// Mean of each channel, all that was added, size channels*width*height. Throws Error for a film without.
+    std::vector<float> mean_channels() const;
     /// Variance of the mean of linear Rec.709 R, G, B (see film_read.cpp); 0 for less
     /// than two samples.
     std::vector<float> variance_rgb() const;
@@ -113,7 +125,8 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs", "splats", "flare" and "bands" if there are any, so many bytes per pixel.
+    /// "sums", and "aovs", "splats", "flare", "bands" and "channels" if there are any, so many bytes per pixel
+    /// (per band or channel).
     static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96, kBandBytes = 16;
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
@@ -145,9 +158,11 @@ class Film {
     Sums& sums_of(Layer layer, std::size_t i);
     /// To a pixel's own sums, or to those of its splats; false if the sample is bad.
     bool add_to(Sums& sums, Vec3f xyz) const;
-    /// To XYZ and bands, under the pixel's lock: with bands, splats and samples share their sums.
+    /// To XYZ, bands and channels. Splats and samples share the sums of those: under the pixel's lock.
     void add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance);
+    void add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const;
+    void add_channels(ValueSum* channels, const Wavelengths& wavelengths, Spectrum radiance) const;
     /// Of all that was added to the pixel of this index.
     Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
@@ -156,6 +171,8 @@ class Film {
     };
     Estimate estimate(std::size_t i) const;
     static void mark_bad(Pixel& pixel, std::uint32_t sample);
+    /// Sums of `each` values per pixel over the pixel's count.
+    std::vector<float> means(const std::vector<ValueSum>& sums, int each) const;
     const std::vector<AovPixel>& require_aovs() const;
 
     FilmLayout layout_;
@@ -163,10 +180,11 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
-    // Of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
+    // Of splats without spectra, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
-    std::vector<ValueSum> bands_;   // those of a pixel side by side
+    std::vector<ValueSum> bands_, channels_;   // those of a pixel side by side
+    Responses responses_;
 };
 
 }  // namespace dg

@@ -49,11 +49,20 @@ std::vector<float> Film::flare_xyz() const {
 
 std::vector<float> Film::mean_bands() const {
     if (bands_.empty()) throw Error("film: this film was made without bands");
+    return means(bands_, layout_.bands);
+}
+
+std::vector<float> Film::mean_channels() const {
+    if (channels_.empty()) throw Error("film: this film was made without channels of a sensor");
+    return means(channels_, layout_.channels);
+}
+
+std::vector<float> Film::means(const std::vector<ValueSum>& sums, int each) const {
     std::vector<float> mean;
-    mean.reserve(bands_.size());
-    for (std::size_t i = 0; i < bands_.size(); ++i) {
-        const std::uint32_t n = pixels_[i / layout_.bands].count;
-        mean.push_back(n ? float(bands_[i].value() / n) : 0.f);
+    mean.reserve(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const std::uint32_t n = pixels_[i / each].count;
+        mean.push_back(n ? float(sums[i].value() / n) : 0.f);
     }
     return mean;
 }

@@ -16,6 +16,7 @@ std::vector<std::string> Film::state_parts() const {
     if (layout_.splats) parts.push_back("splats");
     if (layout_.flare) parts.push_back("flare");
     if (layout_.bands) parts.push_back("bands");
+    if (layout_.channels) parts.push_back("channels");
     return parts;
 }
 
@@ -27,6 +28,7 @@ std::span<const std::byte> Film::state(const std::string& part) const {
     if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
     if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
     if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
+    if (part == "channels" && layout_.channels) return std::as_bytes(std::span(channels_));
     std::string known;
     for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
     throw input_error("film state", "part", known, "'" + part + "'");

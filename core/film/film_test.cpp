@@ -410,3 +410,70 @@ TEST_CASE("bands of a film are the same bits in any order") {
     forward.count(0, 0), backward.count(0, 0);
     CHECK(forward.mean_bands() == backward.mean_bands());
 }
+
+namespace {
+
+/// Two channels: 1 per nm everywhere, and half of it at 600 nm and beyond.
+Responses step_responses() {
+    std::vector<double> curves(2 * Responses::kNodes, 1.0);
+    for (int i = 0; i < Responses::kNodes; ++i) curves[Responses::kNodes + i] = i < 220 ? 0 : 0.5;
+    return Responses(std::span<const double>(curves));
+}
+
+}  // namespace
+
+TEST_CASE("channels hold light times response, whoever brings it") {
+    constexpr int kSamples = 1 << 16;
+    FilmLayout layout{.width = 2, .height = 1, .splats = true, .flare = true, .channels = 2};
+    Film film(layout), half(layout);
+    for (Film* f : {&film, &half}) f->set_responses(step_responses());
+    for (int i = 0; i < kSamples; ++i) {
+        Wavelengths w = Wavelengths::sample((i + 0.5f) / kSamples);
+        if (i % 2) w.end_secondary();
+        Film& to = i % 4 == 1 ? half : film;
+        to.add(0, 0, i, w, 3.f);
+        to.splat(0, 0, i, w, 1.f);
+        to.splat(0, 0, i, w, 2.f, Film::Layer::flare);
+        to.add_shared(1, 0, i, w, w.d65);
+        for (int x = 0; x < 2; ++x) to.count(x, 0);
+    }
+    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), std::numeric_limits<float>::quiet_NaN());
+    film.merge(half);
+    CHECK(film.bad_sample_count() == 1);
+    const std::vector<float> mean = film.mean_channels();
+    REQUIRE(mean.size() == 4);
+    CHECK(mean[0] == doctest::Approx(6 * 400).epsilon(1e-3));
+    CHECK(mean[1] == doctest::Approx(6 * 0.5 * 180.5).epsilon(5e-3));   // half a nm of the step's slope
+    CHECK(mean[3] < mean[2] / 2);
+    const std::vector<float> xyz = film.mean_xyz();
+    for (int i = 3; i < 6; ++i) CHECK(xyz[i] == doctest::Approx(xyz_from_rgb({1, 1, 1})[i - 3]).epsilon(1e-3));
+    Film again(layout);   // as out of a file: without responses
+    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part));
+    CHECK(again.mean_channels() == mean);
+    layout.channels = 3;
+    CHECK_THROWS_AS(film.merge(Film(layout)), Error);
+    CHECK_THROWS_AS(again.set_responses(Responses()), Error);
+    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .channels = 5}), Error);
+    CHECK_THROWS_AS(Film({.width = 2, .height = 1}).mean_channels(), Error);
+}
+
+TEST_CASE("channels beside bands, and XYZ beside both, are the same bits in any order and company") {
+    const auto draw = [](Film& film, int i) {
+        film.add(0, 0, i, Wavelengths::sample(float(hash_uniform(3, i))), std::exp(20 * float(hash_uniform(4, i))));
+    };
+    const auto film_with = [](int bands, int channels) {
+        Film film({.width = 1, .height = 1, .bands = bands, .channels = channels});
+        if (channels) film.set_responses(step_responses());
+        film.count(0, 0);
+        return film;
+    };
+    Film forward = film_with(5, 2), backward = film_with(5, 2), alone = film_with(0, 2), plain = film_with(0, 0);
+    for (int i = 0; i < 500; ++i) {
+        draw(forward, i), draw(backward, 499 - i), draw(alone, i), draw(plain, i);
+    }
+    CHECK(forward.mean_channels() == backward.mean_channels());
+    CHECK(forward.mean_channels() == alone.mean_channels());
+    CHECK(forward.mean_bands() == backward.mean_bands());
+    CHECK(forward.mean_xyz() == plain.mean_xyz());
+    CHECK(forward.variance_rgb() == plain.variance_rgb());
+}

@@ -120,7 +120,7 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
         for (int x = 0; x < width; ++x) columns[x].set(int(i), at_[i]->column(all.x0 + x));
         for (int y = 0; y < height; ++y) rows[y].set(int(i), at_[i]->row(all.y0 + y));
     }
-    if (last - first == 1 && landings_.size() > 1 && film.layout().bands == 0 && film_density_.even()) {
+    if (last - first == 1 && landings_.size() > 1 && !film.has_spectra() && film_density_.even()) {
         Spectrum own{0.f};
         own.set(int(first), light[int(first)]);
         return splat_color(film, wavelengths.to_xyz(own), sample, layer, *at_[first]);

@@ -97,6 +97,8 @@ class Renderer {
                    &settings.shutter),
           weight_(scene, camera, settings.sensor, density_, plan(), settings.technique,
                   settings.light_guide) {
+        if (film.responses().count() != film.layout().channels)
+            throw input_error("render", "film", "responses of its channels", "none");
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
         if (weight_.draws_light())
             light_.emplace(scene, camera, film, settings, density_, weight_, cone_);

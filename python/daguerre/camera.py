@@ -7,6 +7,7 @@ for angles.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from .motion import Composite, Dynamic, is_dynamic, moves
 if TYPE_CHECKING:
     from .lenses import Lens
     from .scatter import LensScatter
+    from .sensors import Sensor
     from .shutter import RollingShutter, ShutterCurve
 
 
@@ -49,6 +51,8 @@ MOVABLE = (
 Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
 
 
+#: mm; of a camera for which no other is said
+FULL_FRAME = (36.0, 24.0)
 #: ways to say the same, of which one may be given
 RIVALS = (
     ("f_stop", "aperture_diameter", "t_stop"),
@@ -77,6 +81,8 @@ class Camera:
         decenter: Elements that stand off the axis of a prescription, as lenses that were dropped
             have them: for each the indices of its first and last surface, millimetres along x and
             y, and degrees about x and y.
+        sensor: Name of the library, file, or ``Sensor``: the frame holds its channels, too, and
+            the sensor has its size unless another is given.
         sensor_size: Width and height, mm.
         sensor_fit: horizontal, vertical, auto or fill: which side of the sensor the picture spans.
         f_stop: Focal length / entrance pupil diameter; None: the file's, else 5.6, or the widest of
@@ -136,7 +142,8 @@ class Camera:
     focal_length: float | None = None
     zoom: float | None = None
     decenter: tuple[Decenter, ...] = ()
-    sensor_size: tuple[float, float] = (36.0, 24.0)
+    sensor: str | Path | Sensor | None = None
+    sensor_size: tuple[float, float] = FULL_FRAME
     sensor_fit: str = "horizontal"
     f_stop: float | None = None
     aperture_diameter: float | None = None
@@ -176,6 +183,10 @@ class Camera:
     motion: dict[str, Dynamic] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if self.sensor is not None and self.sensor_size is FULL_FRAME:
+            from .sensors import load
+
+            object.__setattr__(self, "sensor_size", load(self.sensor).size)
         found: dict[str, Dynamic] = {}
         for name, value in vars(self).items():
             if is_dynamic(value):
@@ -223,6 +234,8 @@ class Camera:
             replaced |= {"zoom": None, "decenter": (), "ripple": None}
         if changes.get("lens_model") not in (None, "polynomial"):
             replaced |= {"degree": None, "fit_tolerance": None}
+        if changes.get("sensor") is not None:
+            replaced["sensor_size"] = FULL_FRAME  # until the new one says
         for rivals in RIVALS:
             both = sorted(given & set(rivals))
             if len(both) > 1:

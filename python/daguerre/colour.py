@@ -6,6 +6,7 @@ basis of Mallett and Yuksel 2019 (``core/spectrum``).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -24,17 +25,22 @@ def rgb_from_xyz() -> FloatArray:
     return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3).tolist()]).T
 
 
+def xyz_of(rgb: NDArray[np.float32]) -> NDArray[np.float32]:
+    """CIE XYZ of linear Rec.709, shape (..., 3)."""
+    return np.asarray(rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32))
+
+
 def _tables(nm: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """At wavelengths: XYZ (L, 3) of unit radiance per nm, and radiances (L, 3) of RGB emitters."""
     rows = np.asarray(_core.colour_tables(np.asarray(nm, np.float64).tolist()))
-    fine = np.asarray(_core.colour_tables(_fine(1)[0].tolist()))
+    fine = np.asarray(_core.colour_tables(fine_wavelengths(1)[0].tolist()))
     step = (LAST_NM - FIRST_NM) / FINE
     luma = fine[:, 1].sum() * step
     white = (fine[:, 1] * fine[:, 3]).sum() * step / luma
     return rows[:, :3] / luma, rows[:, 3:4] / white * rows[:, 4:]
 
 
-def _fine(bands: int) -> FloatArray:
+def fine_wavelengths(bands: int) -> FloatArray:
     """Wavelengths of fine sums by band, nm, shape (bands, n)."""
     each = -(-FINE // bands)
     at = (np.arange(bands * each) + 0.5) / (bands * each)
@@ -61,22 +67,38 @@ def rgb_mixes(count: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def band_colours(bands: int) -> FloatArray:
-    """XYZ of unit mean radiance in each band of a film, shape (bands, 3).
+    """XYZ of unit mean radiance in each band of a film, shape (bands, 3)."""
+    return band_weights(bands, lambda nm: _tables(nm)[0])
+
+
+def band_weights(bands: int, seen_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """What an observer sees of unit mean radiance in each band of a film, shape (bands, K).
 
     As of D65 within each band, then changed as little as makes the three spectra of RGB emitters
-    exact, white among them: bands that no kernel touches give the picture that XYZ sums give, up
-    to spectra that are no such mixture.
+    exact, white among them: bands that no kernel touches give the picture that sums of the
+    observer's own give, up to spectra that are no such mixture.
+
+    Args:
+        bands: Of equal width over all wavelengths.
+        seen_at: The observer's curves at wavelengths (L,), nm, shape (L, K), per unit radiance and
+            nm.
     """
-    nm = _fine(bands)
-    seen, emitted = (table.reshape(*nm.shape, 3) for table in _tables(nm.ravel()))
+    nm = fine_wavelengths(bands)
+    seen = seen_at(nm.ravel()).reshape(*nm.shape, -1)
+    emitted = _tables(nm.ravel())[1].reshape(*nm.shape, 3)
     white = emitted.sum(axis=2)
     width = (LAST_NM - FIRST_NM) / bands
-    colours = width * np.einsum("bnk,bn->bk", seen, white) / white.sum(axis=1)[:, None]
+    weights = width * np.einsum("bnk,bn->bk", seen, white) / white.sum(axis=1)[:, None]
     means = emitted.mean(axis=1)  # of the three spectra, by band
     exact = np.einsum("bnk,bni->ik", seen, emitted) * (width / nm.shape[1])
-    freedom = colours.sum(axis=1)[:, None]  # where the eye sees most
-    change = np.linalg.lstsq(means.T @ (freedom * means), exact - means.T @ colours, rcond=None)[0]
-    return np.asarray(colours + freedom * (means @ change))
+    freedom = weights.sum(axis=1)[:, None]  # where the observer sees most
+    change = np.linalg.lstsq(means.T @ (freedom * means), exact - means.T @ weights, rcond=None)[0]
+    return np.asarray(weights + freedom * (means @ change))
+
+
+def unit_d65(nm: FloatArray) -> FloatArray:
+    """D65 of luminance 1 at wavelengths, in the film's units of radiance, shape (L,)."""
+    return np.asarray(_tables(nm)[1].sum(axis=1))
 
 
 def band_wavelengths(bands: int, each: int) -> FloatArray:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .colour import xyz_of
 from .errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ def check_available() -> None:
 
 def denoise(frame: Frame) -> Frame:
     """A copy of the frame with a clean ``rgb``; the other channels stay as they are.
+
+    It has no channels of a sensor and no bands: noisy ones beside a clean picture would be of no
+    use. A sensor is fitted from the colours.
 
     The denoiser wants colours of at least 0, so negative ones (outside Rec.709) become 0.
 
@@ -55,7 +59,8 @@ def denoise(frame: Frame) -> Frame:
     except (RuntimeError, OSError) as error:
         raise InputError(f"denoise: Open Image Denoise failed: {error}") from error
     metadata = {**frame.metadata, "denoised": f"pyoidn {version('pyoidn')}"}
-    return replace(frame, rgb=np.asarray(clean, np.float32), metadata=metadata)
+    rgb = np.asarray(clean, np.float32)
+    return replace(frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None, metadata=metadata)
 
 
 def _group(frame: Frame, name: str, parts: str) -> NDArray[np.float32] | None:

@@ -16,16 +16,15 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from .checks import number, numbers, short
-from .errors import InputError, UsageError
+from .checks import number, short
+from .errors import InputError
+from .sensors.illuminants import white_xy
 
 if TYPE_CHECKING:
     from .camera import Camera
 
 #: Of a pinhole, whose own opening has no size: the stop of the photographer's sunny 16, two wider.
 PINHOLE_F_STOP = 8.0
-#: Largest and smallest colour temperatures, K: CIE 015:2018 has daylight to 25000 K.
-KELVIN = (1667.0, 25000.0)
 
 
 def ideal_h0(f_number: float) -> float:
@@ -88,6 +87,7 @@ def exposure_metadata(camera: Camera, facts: Mapping[str, Any], shutter_s: float
     """
     time = shutter_s if camera.exposure_time is None else camera.exposure_time
     own, asked = facts.get("f_stop"), camera.exposure_f_stop
+    white = camera.white_balance
     light = facts["h0"] * time * camera.responsivity
     if own is not None and asked is not None:
         light *= (own / asked) ** 2
@@ -97,7 +97,8 @@ def exposure_metadata(camera: Camera, facts: Mapping[str, Any], shutter_s: float
         "h0": facts["h0"],
         "luminance_exposure": light if light > 0 else None,
         "exposure_compensation": camera.exposure_compensation or None,
-        "white_balance": camera.white_balance,
+        "white_balance": white,
+        "adoptedNeutral": None if white is None else white_xy(white),
     }
 
 
@@ -168,24 +169,5 @@ def check_exposure(camera: Camera) -> None:
             number(value, f"camera: {name}", above=0)
     number(camera.responsivity, "camera: responsivity", above=0)
     number(camera.exposure_compensation, "camera: exposure_compensation", -64, 64)
-    check_white(camera.white_balance, "camera: white_balance")
-
-
-def check_white(value: Any, where: str) -> None:
-    """A white: None, a colour temperature in K, or x and y.
-
-    Raises:
-        UsageError: None of these.
-    """
-    if value is None:
-        return
-    wanted = f"{KELVIN[0]:g} .. {KELVIN[1]:g} K, or x and y such as 0.3127, 0.3290"
-    if isinstance(value, tuple | list):
-        x, y = numbers(value, where, 2, wanted)
-        if not (0 < x < 1 and 0 < y < 1 and x + y <= 1):
-            raise UsageError(f"{where}: wanted {wanted}, got {short(value)}")
-        return
-    try:
-        number(value, where, *KELVIN)
-    except UsageError:
-        raise UsageError(f"{where}: wanted {wanted}, got {short(value)}") from None
+    if camera.white_balance is not None:
+        white_xy(camera.white_balance, "camera: white_balance")

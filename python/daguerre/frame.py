@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import MismatchError, UsageError, suggest
+from .errors import InputError, MismatchError, UsageError, suggest
 
 if TYPE_CHECKING:
     import os
@@ -305,13 +305,20 @@ def frame_of(
         planes = {name: film.aov(name) for name in AOV_NAMES}
         planes["object_id"] = film.object_ids()
         alpha = film.aov("alpha")
-    if waves and "bands" in film.state_parts():
+    parts, keep = film.state_parts(), bool(metadata.get("bands"))
+    if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .waves import developed, rgb_of
 
-        xyz = developed(film, metadata.get("pupils"))
+        made = developed(film, metadata.get("pupils"), keep=keep)
+        xyz, channels, bands = made.xyz, made.channels, made.bands
         rgb = rgb_of(xyz)
     else:
         xyz, rgb = film.mean_xyz(), film.mean_rgb()
+        channels = film.mean_channels() if "channels" in parts else None
+        bands = film.mean_bands() if keep and "bands" in parts else None
+    names = metadata.get("sensor_channels") or []
+    if channels is not None and channels.shape[2] != len(names):
+        raise InputError(f"sensor_channels: wanted {channels.shape[2]} names, got {names}")
     return Frame(
         rgb=rgb,
         xyz=xyz,
@@ -321,5 +328,7 @@ def frame_of(
         aovs=planes,
         metadata=metadata,
         bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
-        flare=film.flare_rgb() if "flare" in film.state_parts() else None,
+        flare=film.flare_rgb() if "flare" in parts else None,
+        channels=channels,
+        bands=bands,
     )

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import shutter
+from . import sensors, shutter
 from .adaptive import Round, check_noise, rounds
 from .build import build, content_hash
 from .camera import Camera
@@ -27,6 +27,7 @@ from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
 from .exposure import exposure_metadata
+from .film_channels import check_bands, responses, sensor_metadata
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
@@ -36,7 +37,7 @@ from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
 from .truth import GroundTruth, check_gt_time, focused
-from .waves import Diffraction, check_diffraction
+from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves
 
 Progress = Callable[[float], bool]
@@ -79,6 +80,8 @@ class Session:
             (``docs/scatter.md``): off, auto, or paths per sample index.
         diffraction: Light is a wave at the iris (``docs/diffraction.md``): True, or a
             ``Diffraction`` with the number of bands and zones.
+        bands: Bands of wavelengths that the frame keeps (``frame.bands``), of which any sensor's
+            channels can be made later; 0: none.
         technique: Who draws what both could find: both, or camera or light alone (to check one
             against the other).
 
@@ -110,6 +113,7 @@ class Session:
         scatter: str | float = "off",
         technique: str = "both",
         diffraction: bool | Diffraction = False,
+        bands: int = 0,
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -128,7 +132,8 @@ class Session:
             flare=flare_paths != 0,
             scatter=scatter_paths != 0,
         )
-        self.diffraction = check_diffraction(diffraction)
+        self.bands = check_bands(bands)
+        self.diffraction = with_bands(check_diffraction(diffraction), self.bands)
         if technique not in TECHNIQUES:
             raise UsageError(f"technique: wanted {', '.join(TECHNIQUES)}; got {short(technique)}")
         if not isinstance(scene, Scene):
@@ -142,6 +147,7 @@ class Session:
         self.warnings: list[str] = []  # what moves in a way that cannot be shown to its end
         self._core_scene = build(scene, self.interval, self.warnings)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
+        self.sensor = None if self.camera.sensor is None else sensors.load(self.camera.sensor)
         self._pupils = self._plan_waves()
         self.setup_seconds = time.perf_counter() - started
         self.notes = list(self._setup.notes)
@@ -200,6 +206,10 @@ class Session:
             self._identity |= {"flare_highlights": flare_highlights}
         if self._pupils is not None:
             self._identity["pupils"] = _hash_json(self._pupils)
+        if self.sensor is not None:
+            self._identity["sensor"] = self.sensor.hash
+        if self.bands:
+            self._identity["bands"] = self.bands
 
     def _plan(self) -> Plan:
         """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
@@ -234,13 +244,19 @@ class Session:
         if self.diffraction is None:
             return None
         camera = self.camera.at(0.5 * (self.interval[0] + self.interval[1]))
-        return plan_waves(self.diffraction, camera, self._setup, (self.width, self.height))
+        resolution = (self.width, self.height)
+        return plan_waves(self.diffraction, camera, self._setup, resolution, self.sensor)
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
         layers = (self.aovs, self.light_paths != OFF, self.flare > 0 or self.scatter > 0)
-        bands = self.diffraction.bands if self.diffraction is not None else 0
-        return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, bands=bands)
+        spectra = {"bands": self.diffraction.bands if self.diffraction is not None else self.bands}
+        if self.sensor is None:
+            return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, **spectra)
+        curves = responses(self.sensor)
+        film = _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, **spectra, channels=len(curves))
+        film.set_responses(curves)
+        return film
 
     def _whole_film(self) -> _core.Film:
         if self._torn:
@@ -439,6 +455,8 @@ class Session:
             "lens_scatter": self._scatters() if self.scatter else None,
             "diffraction": self.diffraction.words if self.diffraction else None,
             "pupils": self._pupils,
+            "bands": self.bands or None,
+            **sensor_metadata(self.sensor),
             "scene_hash": self.key["scene"],
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],

@@ -10,7 +10,7 @@ Fourier Optics, 3rd ed., section 6.4), and it is exact where either is small.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -19,14 +19,16 @@ from numpy.typing import NDArray
 from .checks import whole
 from .colour import band_colours, band_wavelengths
 from .errors import InputError, UsageError
+from .film_channels import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
     from .analysis.diffraction import Pupil
     from .camera import Camera
     from .camera_setup import CameraSetup
     from .lenses.focus import By
+    from .sensors import Sensor
 
-MOST_BANDS, MOST_ZONES = 64, 9
+MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
 ONE_ZONE, MANY_ZONES = 2049, 1025  # px across kernels at most
 DARK = 2e-4  # of the brightest band's colour: others have no kernels of their own
@@ -65,10 +67,19 @@ def check_diffraction(value: object) -> Diffraction | None:
     raise UsageError(f"diffraction: wanted True, False or a Diffraction, got {value!r:.80}")
 
 
+def with_bands(wanted: Diffraction | None, bands: int) -> Diffraction | None:
+    """Diffraction in the bands that the frame keeps (0: none)."""
+    return wanted if wanted is None or not bands else replace(wanted, bands=bands)
+
+
 def plan(
-    wanted: Diffraction, camera: Camera, setup: CameraSetup, resolution: tuple[int, int]
+    wanted: Diffraction,
+    camera: Camera,
+    setup: CameraSetup,
+    resolution: tuple[int, int],
+    sensor: Sensor | None = None,
 ) -> dict[str, Any]:
-    """Everything that the picture's kernels are made of, as JSON.
+    """Everything that the picture's kernels are made of, as JSON; and a sensor's weights of bands.
 
     Raises:
         UsageError: A pinhole, whose opening has no size.
@@ -78,6 +89,7 @@ def plan(
     return {
         "bands": wanted.bands,
         "pitch_mm": setup.frame_size[0] / resolution[0],
+        **({} if sensor is None else {"channels": weights_of_bands(sensor, wanted.bands).tolist()}),
         **to_json(_pupils(wanted, camera, setup)),
     }
 
@@ -115,12 +127,28 @@ def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[lis
     return zone_pupils(bench, setup.frame_size, wanted.zones, iris, center_mm=(-x, -y))
 
 
-def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float32]:
-    """XYZ of a film with bands, diffracted, shape (H, W, 3).
+@dataclass
+class Developed:
+    """A diffracted picture.
+
+    Attributes:
+        xyz: Shape (H, W, 3).
+        channels: Those of the plan's sensor, (H, W, C), if it has one.
+        bands: (H, W, bands), if they were to be kept.
+    """
+
+    xyz: NDArray[np.float32]
+    channels: NDArray[np.float32] | None = None
+    bands: NDArray[np.float32] | None = None
+
+
+def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) -> Developed:
+    """The picture of a film with bands, diffracted.
 
     Args:
         film: The core's.
         planned: From ``plan``.
+        keep: Whether the bands are wanted, too.
         threads: 0: all.
 
     Raises:
@@ -134,32 +162,43 @@ def developed(film: Any, planned: Any, *, threads: int = 0) -> NDArray[np.float3
         pupils, pitch = from_json(planned), float(planned["pitch_mm"])
         if not 1e-5 < pitch < 10 or planned["bands"] != bands.shape[2]:
             raise ValueError("pitch or bands")
+        sensor = np.asarray(planned.get("channels", ()), np.float32)
+        if sensor.size and (sensor.shape[:1] != bands.shape[2:] or not np.isfinite(sensor).all()):
+            raise ValueError("channels")
     except (ValueError, TypeError, KeyError) as error:
         raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
-    colours = band_colours(bands.shape[2]).astype(np.float32)
-    light = colours.sum(axis=1)
-    bright = np.flatnonzero(light > DARK * light.max())
+    sums = [(film.mean_xyz, band_colours(bands.shape[2]).astype(np.float32))]
+    if sensor.size:
+        sums.append((film.mean_channels, sensor))
+    light = np.sum([colours.sum(axis=1) for _, colours in sums], axis=0)
+    dark = light <= (-1 if keep else DARK * light.max())
+    bright = np.flatnonzero(~dark)
     if not len(bright):
-        return np.asarray(film.mean_xyz())
+        return Developed(*(np.asarray(mean()) for mean, _ in sums))
     nm = band_wavelengths(bands.shape[2], -(-LEAST_WAVELENGTHS // bands.shape[2]))[bright]
     kernels = _kernels(pupils, nm, pitch, _size(pupils, pitch, bands.shape[:2]), threads)
-    xyz = np.zeros((*bands.shape[:2], 3), np.float32)
+    pictures = [np.zeros((*bands.shape[:2], c.shape[1]), np.float32) for _, c in sums]
+    kept = np.empty_like(bands) if keep else None
     plane, made = (np.empty((*bands.shape[:2], 1), np.float32) for _ in range(2))
     for b, half in zip(bright, kernels, strict=True):
         plane[:] = bands[:, :, b, None]
         spread(plane, _whole(half), threads=threads, out=made)
-        _add(xyz, made, colours[b])
+        for picture, (_, colours) in zip(pictures, sums, strict=True):
+            _add(picture, made, colours[b])
+        if kept is not None:
+            kept[:, :, b] = made[:, :, 0]
     mean = _whole(np.tensordot(light[bright] / light[bright].sum(), kernels, 1))
     del kernels, half  # the loop's last one is a view of them all
-    rest = film.mean_xyz()  # a new array at each call
-    colours[light <= DARK * light.max()] = 0
-    for row, known in zip(rest, bands, strict=True):
-        row -= known @ colours  # what bands do not tell
-    for k in range(3):
-        plane[:] = rest[:, :, k, None]
-        spread(plane, mean, threads=threads, out=made)
-        _add(xyz, made, np.eye(3, dtype=np.float32)[k])
-    return xyz
+    for picture, (all_of, colours) in zip(pictures, sums, strict=True):
+        rest = all_of()  # a new array at each call
+        colours[dark] = 0
+        for row, known in zip(rest, bands, strict=True):
+            row -= known @ colours  # what bands do not tell
+        for k, unit in enumerate(np.eye(rest.shape[2], dtype=np.float32)):
+            plane[:] = rest[:, :, k, None]
+            spread(plane, mean, threads=threads, out=made)
+            _add(picture, made, unit)
+    return Developed(pictures[0], pictures[1] if sensor.size else None, kept)
 
 
 def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[np.float32]) -> None:

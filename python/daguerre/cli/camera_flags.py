@@ -215,8 +215,9 @@ class CameraFlags:
         Text,
         option(
             "--sensor",
-            metavar="WxH|" + "|".join(q.SENSORS),
-            help="Sensor size, mm [36x24].",
+            metavar="NAME|FILE|WxH|" + "|".join(q.SENSORS),
+            help="A sensor of the library (`daguerre sensors`) or a file: the picture has its "
+            "channels, too. Or a size, mm [36x24].",
             panel=_CAMERA,
         ),
     ] = None
@@ -309,7 +310,6 @@ class CameraFlags:
             "focus": ("focus_distance", "--focus", q.distance_m),
             "focus_at": ("focus_at", "--focus-at", lambda f, t: q.numbers(f, t, 2, "480,270")),
             "blade_rotation": ("blade_rotation", "--blade-rotation", q.angle_deg),
-            "sensor": ("sensor_size", "--sensor", q.sensor_mm),
             "shift": ("shift", "--shift", lambda f, t: q.numbers(f, t, 2, "0,8.5")),
             "ripple": ("ripple", "--ripple", lambda f, t: q.numbers(f, t, 2, "2,100")),
             "cover_glass": ("cover_glass", "--cover-glass", _cover_glass),
@@ -344,6 +344,8 @@ class CameraFlags:
         for name, parameter in plain.items():
             if getattr(self, name) is not None:
                 out[parameter] = getattr(self, name)
+        if self.sensor is not None:
+            out |= q.sensor("--sensor", self.sensor)
         if self.decenter:
             out["decenter"] = tuple(q.decenter("--decenter", text) for text in self.decenter)
         for name in ("aperture_image", "front_mask", "iris_mask"):

@@ -163,6 +163,16 @@ def render(
         int,
         option("--diffraction-bands", metavar="N", help="Of wavelengths [16].", panel=_SAMPLING),
     ] = 16,
+    bands: Annotated[
+        int,
+        option(
+            "--bands",
+            metavar="N",
+            help="Keep N bands of wavelengths (3 to 64), of which any sensor's channels can be "
+            "made later [0].",
+            panel=_OUTPUT,
+        ),
+    ] = 0,
     diffraction_zones: Annotated[
         int,
         option(
@@ -250,6 +260,14 @@ def render(
         settings["flare_highlights"] = highlights
     if wanted_scatter != 0:
         settings["scatter"] = "auto" if wanted_scatter is None else wanted_scatter
+    if bands:
+        from daguerre.film_channels import check_bands
+
+        settings["bands"] = check_bands(bands, "--bands")
+        if diffraction_bands not in (16, bands):
+            raise UsageError(
+                f"--bands {bands} and --diffraction-bands {diffraction_bands}: wanted one number"
+            )
     if diffraction:
         from daguerre.waves import Diffraction
 

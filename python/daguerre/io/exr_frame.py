@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.colour import rgb_from_xyz
+from daguerre.colour import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
 from daguerre.frame import Frame
 
@@ -53,7 +53,7 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
     samples = planes.pop("samples.Y", None)
     frame = Frame(
         rgb=rgb,
-        xyz=np.asarray(rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)),
+        xyz=xyz_of(rgb),
         alpha=planes.pop("A", np.empty((0, 0), np.float32)),
         variance=_group(planes, [f"variance.{c}" for c in "RGB"]),
         samples=None if samples is None else np.rint(samples).astype(np.uint32),

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, MismatchError
+from daguerre.film_channels import MOST_BANDS, MOST_CHANNELS
 from daguerre.frame import Frame, frame_of, set_film_state
-from daguerre.waves import MOST_BANDS
 
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
@@ -90,6 +90,8 @@ def film_of(one: Pass) -> Any:
     parts["aovs"] = _has_aovs(one.state)
     if "bands" in one.state:
         parts["bands"] = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
+    if "channels" in one.state:
+        parts["channels"] = min(one.state["channels"].shape[2] // BAND_WORDS, MOST_CHANNELS)
     film = Film(width, height, int(x0), int(y0), **parts)
     set_film_state(film, one.state, str(one.path))
     return film

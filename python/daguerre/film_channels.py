@@ -1,0 +1,91 @@
+"""Channels of a sensor on the film, and those that bands of wavelengths make afterwards.
+
+A frame's channel is the integral of radiance times the sensor's response, of which D65 of luminance
+1 makes 1 (``Sensor.sensitivity`` with other units of radiance). The film sums it sample by sample,
+as exactly as XYZ. Bands keep the mean radiance within each: any sensor's channels are weighted sums
+of them, right for the spectra that renders are made of, as far as these are even within a band.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import whole
+from .colour import FINE, FIRST_NM, LAST_NM, band_weights, fine_wavelengths, unit_d65
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from .sensors.sensor import Sensor
+
+FloatArray = NDArray[np.float64]
+LEAST_BANDS, MOST_BANDS = 3, 64
+MOST_CHANNELS = 4
+
+
+def check_bands(value: Any, where: str = "bands") -> int:
+    """A number of bands; 0: none."""
+    if value in (0, None):
+        return 0
+    return whole(value, where, LEAST_BANDS, MOST_BANDS, f"{LEAST_BANDS} .. {MOST_BANDS}")
+
+
+def responses(sensor: Sensor) -> FloatArray:
+    """What the film weighs light with: at 380, 381 .. 780 nm, per nm, shape (C, 401).
+
+    Raises:
+        InputError: The sensor has more channels than a film holds, or one that sees nothing.
+    """
+    if len(sensor.channels) > MOST_CHANNELS:
+        raise InputError(
+            f"sensor {sensor.name}: channels: wanted at most {MOST_CHANNELS}, "
+            f"got {len(sensor.channels)}"
+        )
+    nm = np.arange(FIRST_NM, LAST_NM + 1)
+    rows = sensor.efficiency(nm) * nm
+    fine = fine_wavelengths(1)[0]
+    white = unit_d65(fine) * ((LAST_NM - FIRST_NM) / FINE)
+    totals = np.array([np.interp(fine, nm, row) @ white for row in rows])
+    for name, total in zip(sensor.channels, totals, strict=True):
+        if not total > 0:
+            raise InputError(
+                f"sensor {sensor.name}: quantum_efficiency of {name}: wanted some between "
+                f"{FIRST_NM:g} and {LAST_NM:g} nm, got none"
+            )
+    return np.ascontiguousarray(rows / totals[:, None])
+
+
+def weights_of_bands(sensor: Sensor, bands: int) -> FloatArray:
+    """Channels of unit mean radiance in each band, shape (bands, C)."""
+    nm = np.arange(FIRST_NM, LAST_NM + 1)
+    rows = responses(sensor)
+    return band_weights(bands, lambda at: np.stack([np.interp(at, nm, r) for r in rows], axis=1))
+
+
+def channels_from_bands(bands: NDArray[np.float32], sensor: Sensor) -> NDArray[np.float32]:
+    """What a sensor sees of a frame's bands, as if it had been named before the render.
+
+    Args:
+        bands: Of a frame, shape (H, W, N).
+        sensor: Whose channels are wanted.
+
+    Returns:
+        Channels, shape (H, W, C): D65 of luminance 1 is 1 in each.
+    """
+    return np.asarray(bands @ weights_of_bands(sensor, bands.shape[2]).astype(np.float32))
+
+
+def sensor_metadata(sensor: Sensor | None) -> dict[str, Any]:
+    """Facts of a frame whose channels are those of a sensor."""
+    if sensor is None:
+        return {}
+    return {
+        "sensor": sensor.name,
+        "sensor_hash": sensor.hash,
+        "sensor_channels": list(sensor.channels),
+        "sensor_from": "channels",
+        "cameraMake": sensor.make,
+        "cameraModel": sensor.model,
+    }
