@@ -267,9 +267,7 @@ def test_what_no_film_holds() -> None:
         camera("nikkon")
     ends = np.array([380.0, 780.0])
     blind = BODY.with_(infrared_cut=sensors.Curve(ends, np.zeros(2)))
-    with pytest.raises(
-        InputError, match="quantum_efficiency of R: wanted some between 380 and 780"
-    ):
+    with pytest.raises(InputError, match="channel 0: wanted some sensitivity"):
         film_channels.responses(blind)
 
 

@@ -18,6 +18,7 @@ from .colour import FINE, FIRST_NM, LAST_NM, band_weights, fine_wavelengths, uni
 from .errors import InputError
 
 if TYPE_CHECKING:
+    from .sensors.fit import Seeing
     from .sensors.sensor import Sensor
 
 FloatArray = NDArray[np.float64]
@@ -32,39 +33,36 @@ def check_bands(value: Any, where: str = "bands") -> int:
     return whole(value, where, LEAST_BANDS, MOST_BANDS, f"{LEAST_BANDS} .. {MOST_BANDS}")
 
 
-def responses(sensor: Sensor) -> FloatArray:
+def responses(sensor: Seeing) -> FloatArray:
     """What the film weighs light with: at 380, 381 .. 780 nm, per nm, shape (C, 401).
 
     Raises:
-        InputError: The sensor has more channels than a film holds, or one that sees nothing.
+        InputError: There are more channels than a film holds, or one that sees nothing.
     """
-    if len(sensor.channels) > MOST_CHANNELS:
-        raise InputError(
-            f"sensor {sensor.name}: channels: wanted at most {MOST_CHANNELS}, "
-            f"got {len(sensor.channels)}"
-        )
     nm = np.arange(FIRST_NM, LAST_NM + 1)
-    rows = sensor.efficiency(nm) * nm
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rows = sensor.sensitivity(nm)
+    if len(rows) > MOST_CHANNELS:
+        raise InputError(f"sensor: channels: wanted at most {MOST_CHANNELS}, got {len(rows)}")
     fine = fine_wavelengths(1)[0]
     white = unit_d65(fine) * ((LAST_NM - FIRST_NM) / FINE)
     totals = np.array([np.interp(fine, nm, row) @ white for row in rows])
-    for name, total in zip(sensor.channels, totals, strict=True):
-        if not total > 0:
-            raise InputError(
-                f"sensor {sensor.name}: quantum_efficiency of {name}: wanted some between "
-                f"{FIRST_NM:g} and {LAST_NM:g} nm, got none"
-            )
+    if not (totals > 0).all():
+        raise InputError(
+            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: wanted some sensitivity between "
+            f"{FIRST_NM:g} and {LAST_NM:g} nm, got none"
+        )
     return np.ascontiguousarray(rows / totals[:, None])
 
 
-def weights_of_bands(sensor: Sensor, bands: int) -> FloatArray:
+def weights_of_bands(sensor: Seeing, bands: int) -> FloatArray:
     """Channels of unit mean radiance in each band, shape (bands, C)."""
     nm = np.arange(FIRST_NM, LAST_NM + 1)
     rows = responses(sensor)
     return band_weights(bands, lambda at: np.stack([np.interp(at, nm, r) for r in rows], axis=1))
 
 
-def channels_from_bands(bands: NDArray[np.float32], sensor: Sensor) -> NDArray[np.float32]:
+def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[np.float32]:
     """What a sensor sees of a frame's bands, as if it had been named before the render.
 
     Args:
