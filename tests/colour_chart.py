@@ -1,5 +1,6 @@
 """A colour chart of known reflectances before a sensor, and how far two colours look apart."""
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -52,6 +53,11 @@ def raw_of(sensor, surfaces, *, iso=None, ev=0.0, white=None):
         white_balance=illuminants.white_xy(white),
         metadata=facts,
     )
+
+
+def saved_large(raw, path):
+    """Writes it again and again side by side: LibRaw refuses small pictures of X-Trans."""
+    dataclasses.replace(raw, mosaic=np.tile(raw.mosaic, (6, 4)), clipped=None).save(path)
 
 
 def truth(surfaces, white=None):

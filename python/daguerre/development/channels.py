@@ -64,7 +64,8 @@ def of_frame(frame: Frame) -> Channels:
 
     facts = frame.metadata
     iso = float(facts.get("isoSpeed") or 100)
-    unit = GREY_LX_S / GREY / iso / luminance_exposure(facts)
+    gain = 2.0 ** float(facts.get("exposure_compensation") or 0)
+    unit = GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain)
     return Channels(
         pixels=np.ascontiguousarray(_xyz(frame), np.float32),
         unit=np.full(3, unit),
@@ -167,8 +168,13 @@ def libraw_scale(balance: FloatArray, span: float) -> FloatArray:
     return np.asarray(65535 / span * balance / balance.max())
 
 
-def libraw_pixels(opened: Any, name: str, balance: FloatArray, xtrans: bool) -> NDArray[np.uint16]:
-    """Balanced and demosaiced, linear, in the camera's own colours; nothing is cut off."""
+def libraw_pixels(
+    opened: Any, name: str, balance: FloatArray, xtrans: bool, turn: bool = False
+) -> NDArray[np.uint16]:
+    """Balanced and demosaiced, linear, in the camera's own colours; nothing is cut off.
+
+    ``turn``: upright, as the file says.
+    """
     import rawpy
 
     pixels = opened.postprocess(
@@ -180,7 +186,7 @@ def libraw_pixels(opened: Any, name: str, balance: FloatArray, xtrans: bool) -> 
         no_auto_bright=True,
         adjust_maximum_thr=0.0,
         highlight_mode=rawpy.HighlightMode.Ignore,
-        user_flip=0,
+        user_flip=None if turn else 0,
     )
     return np.asarray(pixels)
 

@@ -53,8 +53,8 @@ class Look:
 
 LOOKS = {
     "neutral": Look(),
-    "standard": Look(contrast=1.5, white=4.0, colour=1.1),
-    "film": Look(contrast=1.8, white=8.0, colour=0.95, black=0.004),
+    "standard": Look(contrast=1.5, white=4.0),
+    "film": Look(contrast=1.8, white=8.0, colour=0.9, black=0.004),
     "filmic": Look(contrast=1.2, white=16.0),
 }
 

@@ -31,10 +31,11 @@ def white_of(source: Channels, wanted: Any) -> XY:
         return source.as_shot
     if wanted == "auto":
         return _average(source)
-    return illuminants.white_xy(_numbers(wanted), "develop: wb")
+    return illuminants.white_xy(numbers_of(wanted), "develop: wb")
 
 
-def _numbers(wanted: Any) -> Any:
+def numbers_of(wanted: Any) -> Any:
+    """K or (x, y) of a text; what is none stays as it is."""
     if not isinstance(wanted, str):
         return wanted
     try:

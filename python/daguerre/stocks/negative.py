@@ -94,7 +94,7 @@ class Negative:
 
         # So bright that the white of the paper is the screen's.
         facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
-        facts["white_balance"] = None
+        facts["white_balance"] = facts["exposure_compensation"] = None
         return develop(Frame(rgb=self.positive(), metadata=facts), **look)
 
 

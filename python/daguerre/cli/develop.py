@@ -1,0 +1,208 @@
+"""``daguerre develop``: photographs of what was recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from daguerre.errors import UsageError
+
+from . import console
+from . import quantities as q
+from .flags import option
+
+if TYPE_CHECKING:
+    from daguerre.development import Picture
+    from daguerre.development.channels import Channels
+    from daguerre.frame import Frame
+    from daguerre.raw import Raw
+
+_SENSOR, _LOOK, _FILE = "The sensor (of IN.exr)", "The picture", "The file"
+
+
+def develop(
+    source: Annotated[
+        Path, typer.Argument(metavar="IN.exr|IN.dng", help="A frame, or a camera's raw file.")
+    ],
+    output: Annotated[
+        list[Path],
+        option("-o", "--output", metavar="OUT.jpg|png|tif|exr|dng", help="Repeatable."),
+    ],
+    sensor: Annotated[
+        str | None,
+        option(
+            "--sensor",
+            metavar="NAME|FILE",
+            help="That takes the picture, with its noise; else a perfect one.",
+            panel=_SENSOR,
+        ),
+    ] = None,
+    iso: Annotated[
+        str | None,
+        option("--iso", metavar="N", help="Sensitivity; the frame's, else 100.", panel=_SENSOR),
+    ] = None,
+    seed: Annotated[
+        int, option("--seed", metavar="N", help="Of noise and grain [0].", panel=_SENSOR)
+    ] = 0,
+    ev: Annotated[
+        str | None,
+        option(
+            "--ev",
+            metavar="EV",
+            help="More light: on the sensor, if --sensor takes the picture; else in development.",
+            panel=_LOOK,
+        ),
+    ] = None,
+    wb: Annotated[
+        str,
+        option(
+            "--wb",
+            metavar="as-shot|auto|K|X,Y",
+            help="The white that becomes neutral [as-shot].",
+            panel=_LOOK,
+        ),
+    ] = "as-shot",
+    look: Annotated[
+        str,
+        option(
+            "--look",
+            metavar="neutral|standard|film|filmic|ocio:VIEW",
+            help="Tone curve [neutral]; OCIO: extra `color`.",
+            panel=_LOOK,
+        ),
+    ] = "neutral",
+    highlights: Annotated[
+        str,
+        option(
+            "--highlights",
+            metavar="clip|blend|reconstruct",
+            help="Where channels are saturated [clip].",
+            panel=_LOOK,
+        ),
+    ] = "clip",
+    sharpen: Annotated[
+        float, option("--sharpen", metavar="X", help="Unsharp mask [0].", panel=_LOOK)
+    ] = 0.0,
+    grain: Annotated[
+        str, option("--grain", metavar="UM", help="Film's grains, diameter [0].", panel=_LOOK)
+    ] = "0",
+    demosaic: Annotated[
+        str,
+        option("--demosaic", metavar="best|good|fast", help="Or LibRaw's [good].", panel=_LOOK),
+    ] = "good",
+    colorspace: Annotated[
+        str,
+        option("--colorspace", metavar="srgb|p3|rec2020", help="Of the file [srgb].", panel=_FILE),
+    ] = "srgb",
+    quality: Annotated[
+        int, option("--quality", metavar="N", help="Of JPEG, 1 to 100 [95].", panel=_FILE)
+    ] = 95,
+    bits: Annotated[
+        int | None,
+        option("--bits", metavar="8|16", help="Of PNG [8] and TIFF [16].", panel=_FILE),
+    ] = None,
+    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+) -> int:
+    """Makes photographs of a frame or of a raw file."""
+    console.quiet = quiet
+    wanted = {
+        "wb": wb,
+        "look": look,
+        "highlights": highlights,
+        "sharpen": sharpen,
+        "grain": q.plain_number("--grain", grain, "a diameter in um such as 2"),
+        "colour_space": colorspace,
+        "seed": seed,
+    }
+    extra = 0.0 if ev is None else q.plain_number("--ev", ev, "an exposure in EV such as -0.5")
+    speed = None if iso is None else q.plain_number("--iso", iso, "a number such as 400")
+    _check(source, output, sensor, quality)
+    taken: Raw | Frame | Channels
+    if source.suffix.lower() == ".exr":
+        light = _frame(source)
+        taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
+    else:
+        taken = _shot(source, sensor, speed, demosaic)
+    raw_stage = hasattr(taken, "mosaic")
+    for path in output:
+        if path.suffix.lower() == ".dng":
+            _save_dng(path, taken, source)
+        else:
+            push = 0.0 if raw_stage else extra
+            _developed(taken, wanted, push, demosaic).save(path, quality=quality, bits=bits)
+        console.note(f"wrote {path}")
+    return 0
+
+
+def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
+    """What can be refused before anything is read."""
+    from daguerre.io.atomic import check_writable
+    from daguerre.io.picture_files import ENDINGS, check_ending
+
+    if not 1 <= quality <= 100:
+        raise UsageError(f"--quality: wanted 1 to 100, got {quality}")
+    for path in outputs:
+        check_ending(path, (*ENDINGS, ".dng"))
+        check_writable(path)
+        if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
+            raise UsageError(f"{path}: {source} is a raw file already; wanted a picture of it")
+
+
+def _frame(path: Path) -> Frame:
+    from daguerre.io.exr import read_frame
+
+    return read_frame(path)
+
+
+def _taken(
+    frame: Frame,
+    path: Path,
+    sensor: str | None,
+    iso: float | None,
+    *,
+    ev: float,
+    seed: int,
+    wb: str,
+) -> Raw | Frame:
+    """What a sensor makes of the frame; the frame itself without one."""
+    from daguerre.development.white import numbers_of
+    from daguerre.exposure import luminance_exposure
+
+    luminance_exposure(frame.metadata)  # complains of what is missing, before all else
+    if sensor is None and frame.metadata.get("sensor") is None:
+        if iso is not None:
+            if iso <= 0:
+                raise UsageError(f"--iso: wanted above 0, got {iso:g}")
+            frame.metadata["isoSpeed"] = iso
+        return frame
+    own = float(frame.metadata.get("exposure_compensation") or 0.0)
+    white = None if wb in ("as-shot", "auto") else numbers_of(wb)
+    raw = frame.expose(sensor, iso, seed=seed, ev=own + ev, white_balance=white)
+    for remark in raw.notes:
+        console.note(remark)
+    return raw
+
+
+def _shot(path: Path, sensor: str | None, iso: float | None, demosaic: str) -> Channels:
+    for flag, value in (("--sensor", sensor), ("--iso", iso)):
+        if value is not None:
+            raise UsageError(f"{flag}: {path} was taken with a sensor and ISO of its own")
+    from daguerre.io.camera_file import read_shot
+
+    return read_shot(path, demosaic)
+
+
+def _save_dng(path: Path, taken: Any, source: Path) -> None:
+    if not hasattr(taken, "mosaic"):
+        raise UsageError(
+            f"{path}: {source} has no raw stage: wanted --sensor NAME, which takes the picture"
+        )
+    taken.save(path)
+
+
+def _developed(taken: Any, wanted: dict[str, Any], push: float, demosaic: str) -> Picture:
+    from daguerre.development import develop as make
+
+    return make(taken, exposure=push, demosaic=demosaic, **wanted)
