@@ -18,8 +18,10 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+import photograph_page
 import word_page
 from numpy.typing import NDArray
+from photographs import SHEETS
 from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
 from words import WORDS
 
@@ -31,6 +33,7 @@ EXAMPLES = (
     ["motion.py"],
     ["lens_scenes.py"],
     ["imperfections.py"],
+    ["exposure.py"],
 )
 
 INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
@@ -57,6 +60,12 @@ ABOUT_WORDS = """## Imperfections
 
 Spherical aberration, coma, colour, astigmatism, distortion, vignetting, flares, bloom, halos and
 stars, each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
+"""
+
+ABOUT_PHOTOGRAPHS = """## Photographs
+
+What sensors and films make of the light: the exposure triangle, ISO 100 beside ISO 25600, raw files
+developed by Daguerre and by LibRaw, film: [a page of its own](exposure.md).
 """
 
 ABOUT_BLENDER = """## A lens that left
@@ -134,7 +143,9 @@ def main() -> None:
     every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
-    parser.add_argument("--only", action="append", choices=[p.name for p in [*every, *WORDS]])
+    parser.add_argument(
+        "--only", action="append", choices=[p.name for p in [*every, *WORDS, *SHEETS]]
+    )
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     if not given.page:
@@ -147,10 +158,15 @@ def main() -> None:
         for word in WORDS:
             if not given.only or word.name in given.only:
                 word_page.make(word, lambda command: run(command, None))
+        for sheet in SHEETS:
+            if not given.only or sheet.name in given.only:
+                photograph_page.make(sheet, lambda command: run(command, None))
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
+    page += [ABOUT_PHOTOGRAPHS]
     page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER, ABOUT_MOTION, *section(MOTION)]
     (HERE / "README.md").write_text("\n".join(page) + CREDITS)
     (HERE / "imperfections.md").write_text(word_page.page())
+    (HERE / "exposure.md").write_text(photograph_page.page())
 
 
 if __name__ == "__main__":

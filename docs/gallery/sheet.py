@@ -53,9 +53,20 @@ def compose(word: Word, folder: Path) -> NDArray[np.uint8]:
     rows = []
     for row in word.rows:
         window = _window(row, folder)
-        rows.append(_beside([_panel(p, folder, window, word.exposure) for p in row]))
-    wide = max(row.shape[1] for row in rows)
-    return np.concatenate([_padded(row, wide) for row in rows])
+        rows.append([_panel(p, folder, window, word.exposure) for p in row])
+    return grid(rows)
+
+
+def grid(rows: list[list[NDArray[np.uint8]]]) -> NDArray[np.uint8]:
+    """Rows of panels as one picture."""
+    lines = [_beside(row) for row in rows]
+    wide = max(line.shape[1] for line in lines)
+    return np.concatenate([_padded(line, wide) for line in lines])
+
+
+def captioned(pixels: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
+    """A picture under its caption."""
+    return np.concatenate([_written(caption, pixels.shape[1], STRIP, 11, PAPER), pixels])
 
 
 def _window(row: tuple[Panel, ...], folder: Path) -> Box:
@@ -72,8 +83,7 @@ def _panel(panel: Panel, folder: Path, window: Box, exposure: float) -> NDArray[
         planes, have = read(folder / f"{panel.file}.exr")
         image = cut(colours(planes, panel.layer), have, window)
         shown = dg.Frame(np.ascontiguousarray(exposure * image)).display("soft")
-    caption = _written(panel.caption, window[2], STRIP, 11, PAPER)
-    return np.concatenate([caption, shown])
+    return captioned(shown, panel.caption)
 
 
 def _beside(panels: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
