@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 from daguerre import stocks
+from daguerre.cli import main
 from daguerre.errors import InputError, UsageError
 from daguerre.frame import Frame
 from daguerre.post.convolution import convolve
@@ -205,3 +207,24 @@ def test_unknown_stocks_and_frames_without_exposure_are_one_line() -> None:
         stock.expose(bare)
     with pytest.raises(UsageError, match="seed"):
         stock.expose(even(stock, 1.0), seed=-1)
+
+
+def test_the_command_line_exposes_film(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    frame = even(stocks.load("generic-panchromatic-400"), np.full(24, 1.0), 37.0, (16, 1))
+    frame.save(tmp_path / "grey.exr")
+    source, out = str(tmp_path / "grey.exr"), str(tmp_path / "grey.png")
+    film = ["--stock", "generic-panchromatic-400"]
+    assert main(["develop", source, "-o", out, *film]) == 0
+    picture = np.asarray(oiio.ImageBuf(out).get_pixels(oiio.UINT8))
+    assert picture.mean() == pytest.approx(118, abs=3)  # 0.18 in sRGB
+    assert 0.3 < picture.std() < 10  # grain
+    for extra, message in (
+        (["--sensor", "ideal"], "--stock"),
+        (["--iso", "400"], "--stock"),
+        (["-o", str(tmp_path / "x.dng")], "film has no raw stage"),
+    ):
+        assert main(["develop", source, "-o", out, *film, *extra]) == 2
+        assert message in capsys.readouterr().err
+    assert main(["develop", source, "-o", out, "--stock", "generic"]) == 3
+    assert main(["stocks"]) == 0
+    assert "RMS granularity" in capsys.readouterr().out

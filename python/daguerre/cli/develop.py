@@ -39,6 +39,15 @@ def develop(
             panel=_SENSOR,
         ),
     ] = None,
+    stock: Annotated[
+        str | None,
+        option(
+            "--stock",
+            metavar="NAME|FILE",
+            help="Film that takes it instead, and is printed; see `daguerre stocks`.",
+            panel=_SENSOR,
+        ),
+    ] = None,
     iso: Annotated[
         str | None,
         option("--iso", metavar="N", help="Sensitivity; the frame's, else 100.", panel=_SENSOR),
@@ -119,18 +128,23 @@ def develop(
     extra = 0.0 if ev is None else q.plain_number("--ev", ev, "an exposure in EV such as -0.5")
     speed = None if iso is None else q.plain_number("--iso", iso, "a number such as 400")
     _check(source, output, sensor, quality)
+    if stock is not None:
+        _check_stock(source, output, sensor, iso)
     taken: Raw | Frame | Channels
     if source.suffix.lower() == ".exr":
         light = _frame(source)
-        taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
+        if stock is not None:
+            taken = _on_film(light, stock, extra, seed)
+        else:
+            taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
     else:
         taken = _shot(source, sensor, speed, demosaic)
-    raw_stage = hasattr(taken, "mosaic")
+    exposed = hasattr(taken, "mosaic") or stock is not None
     for path in output:
         if path.suffix.lower() == ".dng":
             _save_dng(path, taken, source)
         else:
-            push = 0.0 if raw_stage else extra
+            push = 0.0 if exposed else extra
             _developed(taken, wanted, push, demosaic).save(path, quality=quality, bits=bits)
         console.note(f"wrote {path}")
     return 0
@@ -148,6 +162,28 @@ def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) 
         check_writable(path)
         if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
             raise UsageError(f"{path}: {source} is a raw file already; wanted a picture of it")
+
+
+def _check_stock(source: Path, outputs: list[Path], sensor: str | None, iso: str | None) -> None:
+    """Film stands in the place of a sensor, and has a speed of its own."""
+    for flag, value in (("--sensor", sensor), ("--iso", iso)):
+        if value is not None:
+            raise UsageError(
+                f"--stock: wanted without {flag}: film has a speed of its own"
+            )
+    if source.suffix.lower() != ".exr":
+        raise UsageError(f"--stock: {source} was taken already; wanted a frame, .exr")
+    for path in outputs:
+        if path.suffix.lower() == ".dng":
+            raise UsageError(f"{path}: film has no raw stage; wanted another format")
+
+
+def _on_film(frame: Frame, stock: str, ev: float, seed: int) -> Frame:
+    """The print of film that was exposed."""
+    from daguerre.stocks import load
+
+    own = float(frame.metadata.get("exposure_compensation") or 0.0)
+    return load(stock).expose(frame, ev=own + ev, seed=seed).shown()
 
 
 def _frame(path: Path) -> Frame:

@@ -90,12 +90,16 @@ class Negative:
     def develop(self, **look: Any) -> Picture:
         """The print, or the slide, for a screen; see ``daguerre.development.develop``."""
         from daguerre.development import develop
+
+        return develop(self.shown(), **look)
+
+    def shown(self) -> Frame:
+        """The print, or the slide, as a frame: lit so that its white is developed to white."""
         from daguerre.frame import Frame
 
-        # So bright that the white of the paper is the screen's.
         facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
         facts["white_balance"] = facts["exposure_compensation"] = None
-        return develop(Frame(rgb=self.positive(), metadata=facts), **look)
+        return Frame(rgb=self.positive(), metadata=facts)
 
 
 def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
