@@ -89,6 +89,17 @@ def test_a_colour_chart_comes_back(name: str) -> None:
     assert errors.mean() < 2.1
 
 
+@pytest.mark.parametrize("name", [name for name in BODIES if "mono" not in name])
+@pytest.mark.parametrize(("kelvin", "error"), [(2856, 1e-3), (3500, 0.03)])
+def test_neutrals_of_lamps_are_those_of_their_spectra(
+    name: str, kelvin: float, error: float
+) -> None:
+    """At illuminant A the matrix is exact for white, between A and D65 it is near."""
+    sensor = load(name)
+    seen = sensor.white_electrons(illuminants.planck(kelvin))
+    assert sensor.neutral(kelvin) == pytest.approx(seen / seen.max(), abs=error)
+
+
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("stops", [0, 4])
 def test_every_body_exposes_grey(name: str, stops: int) -> None:

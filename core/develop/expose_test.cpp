@@ -116,6 +116,14 @@ TEST_CASE("expose: the well and the converter clip, and say so") {
     for (const auto s : e.saturated) CHECK(s == 1);
     e = even(shot, 1e30f, 8);
     CHECK(e.mosaic[0] == 1000);
+    e = even(shot, 1000);   // half of the photosites would hold more
+    int full = 0;
+    for (std::size_t i = 0; i < e.mosaic.size(); ++i) {
+        CHECK(e.mosaic[i] <= 1000);
+        CHECK(e.saturated[i] == (e.mosaic[i] == 1000));
+        full += e.saturated[i];
+    }
+    CHECK(full / 65536. == doctest::Approx(0.5).epsilon(0.04));
     shot.full_well = 1e6;
     shot.highest_dn = 255;
     e = even(shot, 5000);
