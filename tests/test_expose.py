@@ -219,6 +219,16 @@ def test_saturation_is_told_beside_the_picture() -> None:
     np.testing.assert_allclose(raw.exposure(), truth["exposure.Y"])
 
 
+def test_truth_travels_in_openexr(tmp_path) -> None:
+    frame = flat(0.5, (16, 16))
+    frame.aovs |= frame.exposure_truth("ideal", 200)
+    frame.save(tmp_path / "truth.exr")
+    back = dg.load_frame(tmp_path / "truth.exr")
+    assert back.aovs["exposure.Y"][8, 8] == pytest.approx(0.5)
+    assert back.aovs["saturated.G"].all()
+    assert not back.aovs["saturated.B"].any()
+
+
 def test_where_numbers_come_from_is_told() -> None:
     sensor = load("ideal")
     frame = flat(0.1)
@@ -321,3 +331,40 @@ def test_a_rendered_white_world_gives_the_number_of_iso_12232(lens: str) -> None
     assert raw.iso == iso
     green = raw.mosaic[raw.channel_map() == 1].mean()
     assert green / 65535 == pytest.approx(exposure * iso / 78, rel=0.005)
+
+
+def colours() -> dg.Scene:
+    """A sky of four blocks: white, and reddish, greenish and bluish."""
+    sky = np.array([[1, 1, 1], [1, 0.3, 0.2], [0.2, 1, 0.3], [0.2, 0.3, 1]], np.float32)
+    scene = dg.Scene()
+    scene.set_environment(np.repeat(np.tile(sky, (4, 1))[None], 8, axis=0))
+    return scene
+
+
+def test_channels_bands_and_xyz_of_a_render_agree() -> None:
+    """The film's own channels are the truth; bands come near, and the fit of XYZ less so."""
+    camera = dg.Camera(sensor="sony-a7r-ii", lens="pinhole", focal_length=24, shutter_time=0.1)
+    frame = dg.render(colours(), camera, resolution=(60, 40), spp=64, bands=24)
+    frame.metadata["luminance_exposure"] = 0.3
+    told = frame.expose()
+    assert told.sensor.name == "sony-a7r-ii"
+    assert told.metadata["sensor_from"] == "channels"
+    frame.metadata["sensor_hash"] = ""
+    by_bands = frame.expose()
+    assert by_bands.metadata["sensor_from"] == "bands"
+    assert any("made of its bands" in note for note in by_bands.notes)
+    frame.bands = None
+    by_xyz = frame.expose()
+    assert by_xyz.metadata["sensor_from"] == "xyz"
+    wanted = told.electrons()
+    for raw, error in ((by_bands, 0.004), (by_xyz, 0.01)):
+        for i in range(3):
+            of_channel = raw.channel_map() == i
+            total = raw.electrons()[of_channel].sum() / wanted[of_channel].sum()
+            assert total == pytest.approx(1, abs=error)
+
+
+def test_a_frame_whose_sensor_is_gone_asks_for_its_file() -> None:
+    frame = flat(0.1, sensor="mine")
+    with pytest.raises(dg.InputError, match=r"frame: sensor 'mine': .* wanted its file, as sensor"):
+        frame.expose()

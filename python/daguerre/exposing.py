@@ -79,7 +79,8 @@ def expose(
     if negative:
         share = negative / mosaic.size
         notes.append(f"light was below 0 at {share:.2%} of the photosites, and taken for none")
-    notes += [*_pitch_note(frame, body), *_noise_note(frame, body, light)]
+    notes += [*_source_note(frame, body, light), *_pitch_note(frame, body)]
+    notes += _noise_note(frame, body, light)
     return Raw(
         mosaic=mosaic,
         sensor=body,
@@ -98,7 +99,13 @@ def expose(
 
 def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
     """The one that is named, or the frame's, or the ideal one."""
-    return load(sensor if sensor is not None else frame.metadata.get("sensor") or "ideal")
+    if sensor is not None:
+        return load(sensor)
+    name = frame.metadata.get("sensor") or "ideal"
+    try:
+        return load(name)
+    except InputError as error:
+        raise InputError(f"frame: {error}; wanted its file, as sensor") from None
 
 
 def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]) -> float:
@@ -188,6 +195,15 @@ def _facts(
         "noise_seed": seed,
         "negative_photosites": negative,
     }
+
+
+def _source_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
+    if frame.channels is None or light.source == "channels":
+        return []
+    return [
+        f"the frame holds what {frame.metadata.get('sensor')} sees; that of {sensor.name} is made "
+        f"of its {'XYZ' if light.source == 'xyz' else light.source}"
+    ]
 
 
 def _pitch_note(frame: Frame, sensor: Sensor) -> list[str]:

@@ -168,9 +168,7 @@ def _check_stock(source: Path, outputs: list[Path], sensor: str | None, iso: str
     """Film stands in the place of a sensor, and has a speed of its own."""
     for flag, value in (("--sensor", sensor), ("--iso", iso)):
         if value is not None:
-            raise UsageError(
-                f"--stock: wanted without {flag}: film has a speed of its own"
-            )
+            raise UsageError(f"--stock: wanted without {flag}: film has a speed of its own")
     if source.suffix.lower() != ".exr":
         raise UsageError(f"--stock: {source} was taken already; wanted a frame, .exr")
     for path in outputs:
