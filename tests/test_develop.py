@@ -93,6 +93,13 @@ def test_half_the_exposure_is_half_the_light(source, shape):
     np.testing.assert_allclose(bright, one, atol=4e-4)
 
 
+def test_light_near_saturation_is_in_proportion():
+    """LibRaw would stretch such pictures to the highest number that they have."""
+    raw = raw_of("ideal", greys(0.7, 1.2))
+    got = patch_means(raw.develop(exposure=-1, highlights="reconstruct").linear(), 1, 2)
+    np.testing.assert_allclose(got[0, :, 1], [0.35, 0.6], rtol=2e-3)
+
+
 def test_white_balance_by_kelvin_chromaticity_and_eye():
     raw = raw_of("ideal", greys(0.2, 0.5, 0.8), white=2856)
     warm = patch_means(raw.develop(wb=6504).linear(), 1, 3)

@@ -68,14 +68,14 @@ def test_a_sensor_takes_the_picture_and_its_dng_is_the_same_picture(frame_file, 
 @pytest.mark.parametrize("white", [None, 2856])
 @pytest.mark.parametrize("pattern", ["bayer-rggb", "xtrans"])
 def test_files_of_cameras_have_their_colours(tmp_path, white, pattern):
-    raw = raw_of(load("ideal").with_(pattern=pattern), reflectances(), white=white)
+    raw = raw_of(load("nikon-d5100").with_(pattern=pattern), reflectances(), white=white)
     height, width = raw.mosaic.shape
     saved_large(raw, tmp_path / "x.dng")
     shot = read_shot(tmp_path / "x.dng")
     assert shot.as_shot == pytest.approx(raw.white_balance, abs=1e-3)
     assert shot.metadata["expTime"] == pytest.approx(1 / 125)
     got = patch_means(dg.development.develop(shot).linear()[:height, :width])
-    assert delta_e(lab(got), lab(truth(reflectances(), white).clip(0, 1))).mean() < 0.5
+    assert delta_e(lab(got), lab(truth(reflectances(), white).clip(0, 1))).mean() < 1.5
 
 
 def test_mono_files(tmp_path):

@@ -30,8 +30,8 @@ LIBRAW = {"use_camera_wb": True, "no_auto_bright": True, "gamma": (1, 1), "outpu
 
 
 def sensor_with(pattern, **changes):
-    """A sensor of 12 bits above a black level, with a mosaic."""
-    return load("ideal").with_(pattern=pattern, bit_depth=12, black_level=256, **changes)
+    """A camera's colours, in 12 bits above a black level, with a mosaic."""
+    return load("nikon-d5100").with_(pattern=pattern, bit_depth=12, black_level=256, **changes)
 
 
 def libraw_linear(path):
