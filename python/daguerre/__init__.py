@@ -18,7 +18,7 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import charts, distortion, lenses, polynomial, post, sensors, stocks
+    from . import charts, development, distortion, lenses, polynomial, post, sensors, stocks
     from .frame import Frame
     from .raw import Raw
     from .session import Session, iter_render, render
@@ -52,6 +52,7 @@ __all__ = [
     "UsageError",
     "__version__",
     "charts",
+    "development",
     "distortion",
     "iter_render",
     "keys",
@@ -77,8 +78,13 @@ _LAZY = {
 }
 
 
+_MODULES = (
+    "charts", "development", "distortion", "lenses", "polynomial", "post", "sensors", "stocks",
+)  # fmt: skip
+
+
 def __getattr__(name: str) -> Any:
-    if name in ("charts", "distortion", "lenses", "polynomial", "post", "sensors", "stocks"):
+    if name in _MODULES:
         return import_module("." + name, __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)
