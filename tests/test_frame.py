@@ -152,6 +152,36 @@ def test_soft_tone_keeps_the_dark_and_separates_highlights() -> None:
         made.display("sof")
 
 
+def test_colours_that_srgb_lacks_keep_their_luminance() -> None:
+    from daguerre.io.images import srgb_to_linear
+
+    laser = np.array([[[-0.3, 0.6, -0.05], [0.2, 0.1, 0.3], [-1, 0.1, 0.1]]], np.float32)
+    shown = srgb_to_linear(Frame(laser).display()[0] / np.float32(255))
+    luminance = np.array([0.2126, 0.7152, 0.0722])
+    assert shown[0] @ luminance == pytest.approx(laser[0, 0] @ luminance, abs=0.005)
+    assert shown[0].min() == 0
+    np.testing.assert_allclose(shown[1], laser[0, 1], atol=0.003)
+    assert shown[2].max() == 0  # no light to show
+
+
+def test_soft_tone_makes_bright_colours_white_and_not_blue() -> None:
+    rim = np.array([[[-5, 2, 30], [300, 30, 3], [0.5, 0.2, 0.1]]], np.float32)
+    shown = Frame(rim).display("soft")[0].astype(int)
+    assert shown[0].min() > 150
+    assert shown[1].min() > 230
+    np.testing.assert_array_equal(shown[2], Frame(rim).display()[0, 2])
+
+
+def test_png_says_the_exposure_as_a_camera_does(tmp_path: Path) -> None:
+    exifread = pytest.importorskip("exifread")
+    facts = {"expTime": float(np.float32(1 / 48)), "aperture": 2.8, "nominalFocalLength": 23.5}
+    Frame(np.ones((9, 9, 3), np.float32), metadata=facts).save(tmp_path / "a.png")
+    with (tmp_path / "a.png").open("rb") as file:
+        tags = exifread.process_file(file, details=False)
+    names = ("ExposureTime", "FNumber", "FocalLength")
+    assert [str(tags[f"EXIF {name}"]) for name in names] == ["1/48", "14/5", "47/2"]
+
+
 def test_other_formats_are_refused_by_name(tmp_path: Path) -> None:
     for name in ("a.jpg", "a", "a.exr.gz"):
         with pytest.raises(UsageError, match=r"wanted a name ending in \.exr or \.png"):

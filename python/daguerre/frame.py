@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png")
 _STRIPE = 64  # rows
+#: Of linear Rec.709 (ITU-R BT.709-6).
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 #: Auxiliary channels of a film, in the names of the files.
 AOV_NAMES = (
     "depth.Z",
@@ -110,8 +112,10 @@ class Frame:
 
         Args:
             tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
-                above 0.8, so that small bright lamps keep some shape. Neither changes ``rgb``.
-                ISO and exposure compensation belong to development, not to this.
+                above 0.8, so that small bright lamps keep some shape, and lets them get whiter
+                the brighter they are. Colours that sRGB lacks are brought in toward the grey of
+                the same luminance. Neither changes ``rgb``. ISO and exposure compensation belong
+                to development, not to this.
         """
         if tone not in TONES:
             raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
@@ -119,6 +123,7 @@ class Frame:
         for row in range(0, self.height, _STRIPE):  # little memory for what is in between
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
+            linear = _into_gamut(linear)
             if tone == "soft":
                 linear = _shoulder(linear)
             shown[rows] = np.rint(_srgb(linear) * 255)
@@ -261,12 +266,25 @@ def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
 def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:
     """Identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k), which joins smoothly.
 
-    Each channel by itself would shift hues, so the largest one sets the scale of its pixel.
+    Each channel by itself would shift hues, so the largest one sets the scale of its pixel. Colours
+    go to white with the light above 1, half way at 17.
     """
     peak = linear.max(axis=2, keepdims=True)
     above = np.maximum(peak, knee)
     rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
-    return np.asarray(linear * (rolled / above), np.float32)
+    over = np.maximum(peak - 1, 0)
+    white = over / (over + 16)
+    return np.asarray(rolled * (linear / above * (1 - white) + white * (peak > 0)), np.float32)
+
+
+def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Negative colours mixed with the grey of their luminance until they are none."""
+    low = linear.min(axis=2, keepdims=True)
+    if (low >= 0).all():
+        return linear
+    grey = np.maximum(linear @ _LUMINANCE, 0)[..., None]
+    share = np.where(low < 0, grey / np.maximum(grey - low, 1e-30), 1)
+    return np.asarray(np.maximum(grey + share * (linear - grey), 0), np.float32)
 
 
 def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:

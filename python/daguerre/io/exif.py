@@ -53,13 +53,7 @@ def main_tags(metadata: Mapping[str, Any]) -> Tags:
 def exposure_tags(metadata: Mapping[str, Any]) -> Tags:
     """The tags of the exposure, those that ``metadata`` (names of OpenEXR) knows."""
     tags: Tags = {36864: (UNDEFINED, tuple(b"0232"))}
-    numbers = {
-        33434: _number(metadata, "expTime"),
-        33437: _number(metadata, "aperture"),
-        37382: _number(metadata, "focus"),
-        37386: _number(metadata, "nominalFocalLength"),
-    }
-    tags |= {at: (RATIONAL, rational(value)) for at, value in numbers.items() if value}
+    tags |= {at: (RATIONAL, value) for at, value in rationals(metadata).items()}
     if iso := _number(metadata, "isoSpeed"):
         tags[34855] = (SHORT, (min(round(iso), 65535),))
         tags[34864] = (SHORT, (1,))  # the standard output sensitivity of ISO 12232
@@ -117,6 +111,32 @@ def directory(tags: Tags, offset: int) -> bytes:
             values, data = values + data, place
         entries += struct.pack("<HHI", number, kind, count) + data.ljust(4, b"\0")
     return struct.pack("<H", len(tags)) + entries + struct.pack("<I", 0) + values
+
+
+def with_rationals(block: bytes, values: Mapping[int, tuple[int, int]]) -> bytes:
+    """An EXIF block with other fractions in tags that it has.
+
+    OpenImageIO writes 1/48 s as 20833/1000000.
+    """
+    data = bytearray(block)
+    order = "<" if data[:2] == b"II" else ">"
+    directories = [struct.unpack_from(f"{order}I", data, 4)[0]]
+    for at in directories:
+        (count,) = struct.unpack_from(f"{order}H", data, at)
+        for entry in range(at + 2, at + 2 + 12 * count, 12):
+            number, kind, _, place = struct.unpack_from(f"{order}HHII", data, entry)
+            if number == EXIF_DIRECTORY:
+                directories.append(place)
+            elif number in values and kind == RATIONAL:
+                struct.pack_into(f"{order}2I", data, place, *values[number])
+    return bytes(data)
+
+
+def rationals(metadata: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
+    """Exposure time, f-number, distance and focal length, where known, by tag."""
+    names = {33434: "expTime", 33437: "aperture", 37382: "focus", 37386: "nominalFocalLength"}
+    known = {at: _number(metadata, name) for at, name in names.items()}
+    return {at: rational(value) for at, value in known.items() if value}
 
 
 def date(metadata: Mapping[str, Any]) -> str:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from daguerre.errors import OutputError
 
+from . import exif
 from .atomic import atomic_path
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ class PngWriter:
                 spec.attribute(name, value if isinstance(value, str) else float(value))
         if metadata.get("isoSpeed"):
             spec.attribute("Exif:PhotographicSensitivity", round(float(metadata["isoSpeed"])))
+        self._rationals = exif.rationals(metadata)
         self._check(self._output.open(str(path), spec))
 
     def write(self, pixels: NDArray[np.uint8]) -> None:
@@ -89,6 +91,8 @@ class PngWriter:
             OutputError: The disk is full, or gone.
         """
         self._check(self._output.close())
+        with self._path.open("r+b") as file:
+            _put_rationals(file, self._rationals)
         # libpng's writer need not notice a full disk, so what is there is read back.
         with self._path.open("rb") as file:
             if not _intact(file):
@@ -124,6 +128,19 @@ def _write(path: Path, frame: Frame, tone: str, target: str | os.PathLike[str]) 
     writer = PngWriter(path, frame.width, frame.height, frame.metadata, target=target)
     writer.write(pixels)
     writer.close()
+
+
+def _put_rationals(file: BinaryIO, values: Mapping[int, tuple[int, int]]) -> None:
+    """Exposure times and stops as a camera writes them; EXIF comes before the pixels."""
+    file.seek(8)
+    while len(head := file.read(8)) == 8 and head[4:] not in (b"IDAT", b"IEND"):
+        length, kind = int.from_bytes(head[:4], "big"), head[4:]
+        if kind == b"eXIf" and len(block := file.read(length)) == length:
+            block = exif.with_rationals(block, values)
+            file.seek(-length, 1)
+            file.write(block + zlib.crc32(kind + block).to_bytes(4, "big"))
+            return
+        file.seek(length + 4, 1)
 
 
 def _intact(file: BinaryIO) -> bool:
