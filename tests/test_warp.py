@@ -194,13 +194,6 @@ def test_the_axis_is_where_the_file_says(tmp_path):
         assert still[0] == pytest.approx(49.5 + 3 / pitch, abs=1.5)
 
 
-def test_vignetting_of_a_lens_wants_it_the_same_on_all_sides(tmp_path, capsys):
-    source = write(tmp_path / "in.exr", planes())
-    word = "vignetting:model=lens,lens=schneider-anamorphic-60mm,sensor=24.9x20.7"
-    assert dg.cli.main(["post", str(source), "-o", str(source), "--effect", word]) == 2
-    assert "vignetting: lens: wanted one that is the same on all sides" in capsys.readouterr().err
-
-
 def test_a_lens_bends_each_colour_its_own_way():
     image = np.ones((400, 600, 3), np.float32) * (np.arange(600) % 50 < 25)[None, :, None]
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"))

@@ -12,7 +12,7 @@ from .field import (
     lateral_colour,
     spherical_aberration,
 )
-from .illumination import pupil_outline, relative_illumination
+from .illumination import pupil_outline, relative_illumination, spectral_illumination
 from .mtf import diffraction_mtf, geometric_mtf, perfect_mtf
 from .pencils import Pencil, pencil
 from .psf import Psf, diffraction_psf, geometric_psf, point_spread, strehl_ratio
@@ -45,6 +45,7 @@ __all__ = [
     "relative_illumination",
     "seidel_sums",
     "set_up",
+    "spectral_illumination",
     "spherical_aberration",
     "spot",
     "strehl_ratio",

@@ -13,6 +13,9 @@ from .bench import Bench, FloatArray
 from .chief import chief_rays
 
 GRID = 96
+COARSE = 20  # rays across a pupil whose colour is looked at,
+CORNERS = 48  # and of its outline,
+CHANGE = 0.1  # whose radii change so little with wavelength
 DARK = 0.02  # of the axis's light: figures end there
 
 
@@ -58,7 +61,7 @@ def relative_illumination(
     """
     heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
     chief = chief_rays(bench, heights, wavelength_nm)
-    values = [_irradiance(bench, h, wavelength_nm, grid) for h in heights]
+    values = [_irradiance(bench, _along_y(h), wavelength_nm, grid) for h in heights]
     reach = bench.film_z - bench.order.exit_pupil.z
     return Illumination(
         heights,
@@ -68,11 +71,57 @@ def relative_illumination(
     )
 
 
+def spectral_illumination(
+    bench: Bench, film_mm: ArrayLike, wavelengths_nm: ArrayLike, *, grid: int = GRID
+) -> FloatArray:
+    """E / L of points anywhere on the film, by wavelength: vignetting and coatings.
+
+    A fine grid is traced at the design wavelength alone. Of the others it is known how much larger
+    the pupil's outline is, and the mean of what glass and coatings let through: both are smooth
+    where a grid's rays would come and go at the edge.
+
+    Args:
+        bench: The lens; it may be different on all sides.
+        film_mm: Film points, shape (N, 2), mm.
+        wavelengths_nm: Wavelengths, shape (L,), nm.
+        grid: Rays across the pupil.
+
+    Returns:
+        Shape (N, L); 0 where it is dark.
+    """
+    wavelengths = np.atleast_1d(np.asarray(wavelengths_nm, np.float64))
+    points = np.asarray(film_mm, np.float64).reshape(-1, 2)
+    return np.array([_by_wavelength(bench, point, wavelengths, grid) for point in points])
+
+
+def _by_wavelength(bench: Bench, film: FloatArray, nm: FloatArray, grid: int) -> FloatArray:
+    found = _lit_window(bench, film, DESIGN_WAVELENGTH_NM)
+    if found is None:
+        return np.zeros(len(nm))
+    low, high, seen = found
+    light = _through(bench, film, DESIGN_WAVELENGTH_NM, low, high, grid)
+    some = seen[:: max(len(seen) // COARSE**2, 1)]
+
+    def transmitted(w: float) -> float:
+        return float(_passes(bench, film, some, w, clip=False).sum())
+
+    middle, away = seen.mean(axis=0), _around(CORNERS)
+    far = np.full(CORNERS, float(np.linalg.norm(high - low)))
+    edge = _edge(bench, film, middle, away, 0 * far, far, DESIGN_WAVELENGTH_NM, 16)
+
+    def area(w: float) -> float:
+        near, wide = (1 - CHANGE) * edge, (1 + CHANGE) * edge
+        return _area(_edge(bench, film, middle, away, near, wide, w, 11))
+
+    each = np.array([transmitted(float(w)) * area(float(w)) for w in nm])
+    return np.asarray(light * each / (transmitted(DESIGN_WAVELENGTH_NM) * _area(edge)))
+
+
 def within_light(bench: Bench) -> Bench:
     """The bench with its field cut back to where DARK of the axis's light is left."""
 
     def light(height: float) -> float:
-        return _irradiance(bench, height, DESIGN_WAVELENGTH_NM, 24)
+        return _irradiance(bench, _along_y(height), DESIGN_WAVELENGTH_NM, 24)
 
     low, high = 0.0, bench.field_mm
     dark = DARK * light(0.0)
@@ -103,39 +152,72 @@ def pupil_outline(
         Direction cosines about the middle of the light, closed, shape (corners + 1, 2); of length 0
         if it is dark there.
     """
-    found = _lit_window(bench, height_mm, wavelength_nm)
+    film = _along_y(height_mm)
+    found = _lit_window(bench, film, wavelength_nm)
     if found is None:
         return np.zeros((0, 2))
     low, high, seen = found
     middle = seen.mean(axis=0)
-    around = 2 * np.pi * np.arange(corners) / corners
-    away = np.column_stack([np.cos(around), np.sin(around)])
-    inner, outer = np.zeros(corners), np.full(corners, float(np.linalg.norm(high - low)))
-    for _ in range(22):
-        between = 0.5 * (inner + outer)
-        lit = _passes(bench, height_mm, middle + between[:, None] * away, wavelength_nm) > 0
-        inner, outer = np.where(lit, between, inner), np.where(lit, outer, between)
+    away = _around(corners)
+    outer = np.full(corners, float(np.linalg.norm(high - low)))
+    inner = _edge(bench, film, middle, away, 0 * outer, outer, wavelength_nm, 22)
     edge = middle + inner[:, None] * away
     return np.concatenate([edge, edge[:1]])
 
 
-def _irradiance(bench: Bench, height: float, nm: float, grid: int) -> float:
-    found = _lit_window(bench, height, nm)
-    if found is None:
-        return 0.0
-    low, high, _ = found
+def _around(corners: int) -> FloatArray:
+    angle = 2 * np.pi * np.arange(corners) / corners
+    return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _edge(
+    bench: Bench,
+    film: FloatArray,
+    middle: FloatArray,
+    away: FloatArray,
+    inner: FloatArray,
+    outer: FloatArray,
+    nm: float,
+    steps: int,
+) -> FloatArray:
+    """How far the light reaches from its middle in each direction, between two bounds, (N,)."""
+    for _ in range(steps):
+        between = 0.5 * (inner + outer)
+        lit = _passes(bench, film, middle + between[:, None] * away, nm) > 0
+        inner, outer = np.where(lit, between, inner), np.where(lit, outer, between)
+    return inner
+
+
+def _area(radii: FloatArray) -> float:
+    """In an outline of equal angles, but for a factor."""
+    return float((radii**2).sum())
+
+
+def _along_y(height_mm: float) -> FloatArray:
+    return np.array([0.0, height_mm])
+
+
+def _irradiance(bench: Bench, film: FloatArray, nm: float, grid: int) -> float:
+    found = _lit_window(bench, film, nm)
+    return 0.0 if found is None else _through(bench, film, nm, found[0], found[1], grid)
+
+
+def _through(
+    bench: Bench, film: FloatArray, nm: float, low: FloatArray, high: FloatArray, grid: int
+) -> float:
+    """Area of the light in a window of direction cosines, times its transmittance."""
     cell = (high - low) / grid
-    u = (np.arange(grid) + 0.5)[:, None]
-    at = np.stack(np.meshgrid(*(low[k] + cell[k] * u[:, 0] for k in range(2))), -1)
-    return float(_passes(bench, height, at.reshape(-1, 2), nm).sum() * cell[0] * cell[1])
+    u = np.arange(grid) + 0.5
+    at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1)
+    return float(_passes(bench, film, at.reshape(-1, 2), nm).sum() * cell[0] * cell[1])
 
 
 def _lit_window(
-    bench: Bench, height: float, nm: float
+    bench: Bench, film: FloatArray, nm: float
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Bounds of the light in direction cosines, and a grid's directions within it."""
     reach = bench.film_z - bench.order.exit_pupil.z
-    middle = np.array([0.0, np.sin(np.arctan2(height, reach))])
+    middle = film / np.hypot(reach, np.hypot(*film)) * np.sign(reach)
     low, high = middle - 1.3 / bench.f_stop, middle + 1.3 / bench.f_stop
     seen = np.zeros((0, 2))
     for _ in range(4):
@@ -143,7 +225,7 @@ def _lit_window(
         cell = (high - low) / 48
         u = np.arange(48) + 0.5
         at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1).reshape(-1, 2)
-        seen = at[_passes(bench, height, at, nm) > 0]
+        seen = at[_passes(bench, film, at, nm) > 0]
         if not len(seen):
             return None
         new_low, new_high = seen.min(axis=0) - cell, seen.max(axis=0) + cell
@@ -154,11 +236,13 @@ def _lit_window(
     return low, high, seen
 
 
-def _passes(bench: Bench, height: float, cosines: FloatArray, nm: float) -> FloatArray:
+def _passes(
+    bench: Bench, film: FloatArray, cosines: FloatArray, nm: float, *, clip: bool = True
+) -> FloatArray:
     """Transmittance of rays from a film point under direction cosines, shape (N,)."""
     z2 = 1 - (cosines**2).sum(axis=1)
     # Cosines of the light, which runs toward the film: the ray runs back.
     directions = -np.column_stack([cosines * [1, 1], np.sqrt(np.maximum(z2, 1e-9))])
-    origins = np.broadcast_to([0.0, height, bench.film_z], directions.shape)
-    rays = bench.rays(origins, directions, nm, to_film=False)
+    origins = np.broadcast_to([*film, bench.film_z], directions.shape)
+    rays = bench.rays(origins, directions, nm, to_film=False, clip=clip)
     return np.where(rays.passed & (z2 > 0), rays.transmittance, 0.0)

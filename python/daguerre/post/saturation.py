@@ -8,12 +8,10 @@ import numpy as np
 
 from .array import on_array
 from .effect import Effect, Step, Values
+from .lens_light import LUMINANCE, Falloff
 from .parameter import Parameter
 from .picture import Band, Canvas, Image, Rows
-from .vignetting import Falloff, radial_polynomial, reciprocal
-
-#: Luminance of linear Rec.709, ITU-R BT.709-6.
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+from .vignetting import radial_polynomial, reciprocal
 
 
 class _Saturation(Step):
@@ -32,7 +30,7 @@ class _Saturation(Step):
             share, pale = reciprocal(share)
             self._pale += pale
         image = band.image.copy()
-        grey = (image[:, :, :3] @ LUMINANCE)[:, :, None]
+        grey = (image[:, :, :3] @ LUMINANCE.astype(np.float32))[:, :, None]
         image[:, :, :3] = grey + (image[:, :, :3] - grey) * share[:, :, None]
         return band.with_image(image)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,18 +12,22 @@ from daguerre.errors import UsageError
 
 from .array import on_array
 from .effect import Effect, Step, Values
+from .lens_light import Falloff, lens_light
 from .optics import FOCAL_LENGTH, LENS, SENSOR, bench, film_plane, focal_length_mm, offsets
 from .parameter import Parameter
 from .picture import Band, Canvas, Image, Rows
 
-Falloff = Callable[[Rows], NDArray[np.float32]]
-HEIGHTS = 33  # at which the light of a lens is measured
 DARK = 1e-4  # of the light on the axis: less cannot be undone
 
 
 def reciprocal(share: NDArray[np.float32]) -> tuple[NDArray[np.float32], int]:
-    """One over what is left; 0 where that is too little to undo, and the number of such pixels."""
-    lost = share < DARK
+    """One over what is left; 0 where that is too little to undo, and the number of such pixels.
+
+    ``share`` has shape (rows, W), or (rows, W, C): a pixel is lost with any of its channels.
+    """
+    lost = np.asarray(share < DARK)
+    if share.ndim == 3:
+        lost = np.asarray(lost.any(axis=2, keepdims=True))
     over = np.where(lost, 0, 1 / np.where(lost, 1, share)).astype(np.float32)
     return over, int(lost.sum())
 
@@ -39,11 +42,13 @@ class _Vignetting(Step):
 
     def apply(self, band: Band, rows: Rows) -> Band:
         factor = self._falloff(rows)
+        if factor.ndim == 2:
+            factor = factor[:, :, None]
         if self._inverse:
             factor, dark = reciprocal(factor)
             self._dark += dark
         image = band.image.copy()
-        image[:, :, : self._colours] *= factor[:, :, None]
+        image[:, :, : self._colours] *= factor
         return band.with_image(image)
 
     def remarks(self) -> list[str]:
@@ -74,25 +79,6 @@ def radial_polynomial(canvas: Canvas, k1: float, k2: float, k3: float) -> Fallof
     return falloff
 
 
-def _of_lens(canvas: Canvas, values: Values) -> Falloff:
-    """Light on the film relative to the axis, from exact rays through the whole pupil."""
-    from daguerre.analysis.illumination import relative_illumination
-
-    film, lens = film_plane(canvas, values), bench(values)
-    if not lens.lens.prescription.is_axially_symmetric:
-        raise UsageError(
-            f"vignetting: lens: wanted one that is the same on all sides, got {lens.lens.name}"
-        )
-    corner = 0.5 * math.hypot(*canvas.full_size) * film.pitch_mm
-    heights = np.linspace(0, corner, HEIGHTS)
-    light = relative_illumination(lens, heights).relative
-
-    def falloff(rows: Rows) -> NDArray[np.float32]:
-        return np.interp(film.radii(canvas, rows), heights, light).astype(np.float32)
-
-    return falloff
-
-
 def _make(canvas: Canvas, values: Values) -> Step:
     match values["model"]:
         case "natural":
@@ -102,7 +88,8 @@ def _make(canvas: Canvas, values: Values) -> Step:
         case _:
             if values["lens"] is None:
                 raise UsageError("vignetting: lens: wanted a name with model=lens, got nothing")
-            falloff = _of_lens(canvas, values)
+            film, lens = film_plane(canvas, values), bench(values)
+            falloff = lens_light(canvas, film, lens, colour=values["colour"])
     return _Vignetting(canvas, falloff, inverse=values["inverse"])
 
 
@@ -123,6 +110,7 @@ VIGNETTING = Effect(
         FOCAL_LENGTH,
         SENSOR,
         *LENS,
+        Parameter("colour", "of a lens: red, green and blue each", kind="flag", default=True),
         Parameter("inverse", "take it away", kind="flag", default=False),
     ),
     _make,
@@ -136,7 +124,7 @@ def vignette(image: Image, **parameters: Any) -> Image:
         image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
         **parameters: Those of the effect ``vignetting``: ``model`` (natural, polynomial, lens);
             ``focal_length`` (mm) and ``sensor`` (mm, mm); ``k1``, ``k2``, ``k3``; ``lens``,
-            ``focus`` (m), ``zoom`` (mm), ``f_stop``.
+            ``focus`` (m), ``zoom`` (mm), ``f_stop``, ``colour``.
     """
     return on_array(VIGNETTING, image, parameters)
 

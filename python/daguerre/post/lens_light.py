@@ -1,0 +1,128 @@
+"""What a lens of the library leaves of the light over a picture, by colour."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+
+from .optics import Plane, offsets
+from .picture import Canvas, Rows
+
+if TYPE_CHECKING:
+    from daguerre.analysis.bench import Bench
+
+FloatArray = NDArray[np.float64]
+#: What is left of the light: of some rows, shape (rows, W), or (rows, W, C) by channel.
+Falloff = Callable[[Rows], NDArray[np.float32]]
+
+HEIGHTS = 33  # at which the light of a lens is measured that is the same on all sides
+ACROSS, DOWN = 13, 9  # points of the frame at which that of others is,
+RAYS = 64  # and rays across the pupil of each
+WAVELENGTHS = 5
+#: Luminance of linear Rec.709, ITU-R BT.709-6.
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, colour: bool) -> Falloff:
+    """Light on the film relative to the axis, from exact rays through the whole pupil.
+
+    By colour, white on the axis stays white: each channel is what is left of white there. Pictures
+    without red, green and blue get its luminance.
+    """
+    mixes = _mixes(by_channel=colour and canvas.colours[:3] == ("R", "G", "B"))
+    if lens.lens.prescription.is_axially_symmetric:
+        return _around_axis(canvas, film, lens, mixes)
+    return _over_frame(canvas, film, lens, mixes)
+
+
+def _mixes(*, by_channel: bool) -> tuple[FloatArray, FloatArray]:
+    """Wavelengths (L,), nm, and what each brings to the channels of a white light, (L, C)."""
+    from daguerre.colour import rgb_mixes
+
+    nm, mixes = rgb_mixes(WAVELENGTHS)
+    white = mixes.sum(axis=2)
+    return nm, white if by_channel else (white @ LUMINANCE)[:, None]
+
+
+def _relative(
+    lens: Bench, film_mm: FloatArray, mixes: tuple[FloatArray, FloatArray], rays: int
+) -> NDArray[np.float32]:
+    """Light at film points (N, 2) against the axis, shape (N, C)."""
+    from daguerre.analysis.illumination import spectral_illumination
+
+    nm, white = mixes
+    points = np.vstack([np.zeros((1, 2)), film_mm])
+    light = spectral_illumination(lens, points, nm, grid=rays) @ white
+    if not (light[0] > 0).all():
+        raise InputError(f"{lens.lens.name}: vignetting: wanted light on the axis, got none")
+    return np.asarray(np.maximum(light[1:] / light[0], 0), np.float32)
+
+
+def _around_axis(
+    canvas: Canvas, film: Plane, lens: Bench, mixes: tuple[FloatArray, FloatArray]
+) -> Falloff:
+    """A function of the distance from the axis."""
+    ends = [film.radii(canvas, Rows(y, y + 1))[0, [0, -1]] for y in (0, canvas.height - 1)]
+    heights = np.linspace(0, float(np.max(ends)), HEIGHTS)
+    light = _relative(lens, np.column_stack([0 * heights, heights]), mixes, 96)
+
+    def falloff(rows: Rows) -> NDArray[np.float32]:
+        radii = film.radii(canvas, rows)
+        each = [np.interp(radii, heights, channel) for channel in light.T]
+        return np.stack(each, axis=2, dtype=np.float32, casting="same_kind")
+
+    return falloff
+
+
+def _over_frame(
+    canvas: Canvas, film: Plane, lens: Bench, mixes: tuple[FloatArray, FloatArray]
+) -> Falloff:
+    """A surface over points of the frame, from edge to edge."""
+    x, y = (
+        offset.ravel()[[0, -1]] * film.pitch_mm
+        for offset in offsets(canvas, Rows(0, canvas.height), film.centre)
+    )
+    # The picture stands upside down on the film, whose y is up: so turned twice.
+    points = np.meshgrid(-np.linspace(x[0], x[1], ACROSS), np.linspace(y[0], y[1], DOWN))
+    light = _relative(lens, np.stack(points, axis=-1).reshape(-1, 2), mixes, RAYS)
+    return Surface(light.reshape(DOWN, ACROSS, -1), canvas.width, canvas.height)
+
+
+class Surface:
+    """Cubics between nodes, the outer of which are the middles of the outer pixels.
+
+    Keys' cubic, a = -1/2, is exact for parabolas; it goes on as one beyond the nodes.
+    """
+
+    def __init__(self, nodes: NDArray[np.float32], width: int, height: int) -> None:
+        """Nodes have shape (rows, columns, C)."""
+        self._down = _cubic_weights(height, nodes.shape[0])
+        self._across = _cubic_weights(width, nodes.shape[1])
+        taller = _continued(nodes)
+        self._nodes = _continued(taller.swapaxes(0, 1)).swapaxes(0, 1)
+
+    def __call__(self, rows: Rows) -> NDArray[np.float32]:
+        """At pixels of rows, shape (rows, W, C); never below 0."""
+        lines = np.tensordot(self._down[rows.begin : rows.end], self._nodes, 1)
+        found = np.tensordot(lines, self._across, (1, 1)).swapaxes(1, 2)
+        return np.asarray(np.maximum(found, 0))
+
+
+def _continued(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """One more on either side, by the parabola through three."""
+    first = 3 * values[:1] - 3 * values[1:2] + values[2:3]
+    last = 3 * values[-1:] - 3 * values[-2:-1] + values[-3:-2]
+    return np.concatenate([first, values, last])
+
+
+def _cubic_weights(pixels: int, nodes: int) -> NDArray[np.float32]:
+    """Of nodes and one more on either side, for pixels between the outer, (pixels, nodes + 2)."""
+    at = np.linspace(0, nodes - 1, pixels)
+    d = np.abs(at[:, None] - np.arange(-1, nodes + 1))
+    near, far = (1.5 * d - 2.5) * d * d + 1, ((-0.5 * d + 2.5) * d - 4) * d + 2
+    return np.where(d < 1, near, np.where(d < 2, far, 0)).astype(np.float32)
