@@ -201,6 +201,28 @@ TEST_CASE("expose: the same bits on any number of threads, others by another see
     CHECK(even(shot, 100).mosaic != first);
 }
 
+TEST_CASE("expose: neighbours, and shots of two seeds, know nothing of each other") {
+    constexpr int kSize = 512;
+    Shot shot = plain();
+    shot.read_noise = 3;
+    shot.black_dn = 100;
+    const auto first = even(shot, 20, kSize).mosaic;
+    shot.seed = 1;
+    const auto second = even(shot, 20, kSize).mosaic;
+    const Moments m = moments(first);
+    double right = 0, below = 0, shots = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const int at = y * kSize + x;
+            const double here = first[at] - m.mean;
+            right += here * (first[y * kSize + (x + 1) % kSize] - m.mean);
+            below += here * (first[(y + 1) % kSize * kSize + x] - m.mean);
+            shots += here * (second[at] - m.mean);
+        }
+    for (const double sum : {right, below, shots})
+        CHECK(std::abs(sum / m.variance) < 4 * kSize);   // of so many products the deviation is kSize
+}
+
 TEST_CASE("expose: light below 0 is none, and counted; what is not finite is placed") {
     std::vector<float> picture(64, 100.f);
     picture[5] = -3;

@@ -73,7 +73,7 @@ def _light(sensor: Sensor, where: str) -> None:
 
 def _iso(sensor: Sensor, where: str) -> None:
     low, high = sensor.iso_range
-    _within(where, "iso_range: lowest", low, 0, 1e7, above=0)
+    _within(where, "iso_range: lowest", low, 0.01, 1e7)
     _within(where, "iso_range: highest", high, low, 1e7)
     _within(where, "base_iso", sensor.base_iso, low, high)
     if not sensor.read_noise:

@@ -85,7 +85,7 @@ def _sensor(root: Item) -> Sensor:
         prnu=root.number_of("prnu", 0.0),
         dsnu=root.number_of("dsnu_e", 0.0),
         hot_pixels=_hot_pixels(root.get("hot_pixels")),
-        black_level=root.need("black_level_dn").integer(),
+        black_level=root.need("black_level_dn").integer(0, 65535),
         bit_depth=root.need("bit_depth").integer(1, 16),
         iso_range=(low, high),
         base_iso=root.need("base_iso").number(),
