@@ -138,7 +138,10 @@ def test_the_page_of_a_sensor(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"sensor.{suffix}"
     assert main(["sensor", "sony-imx571-mono", "--plot", str(path)]) == 0
     heads = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
-    assert path.read_bytes().startswith(heads[suffix])
+    first = path.read_bytes()
+    assert first.startswith(heads[suffix])
+    assert main(["sensor", "sony-imx571-mono", "--plot", str(path)]) == 0
+    assert path.read_bytes() == first
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ def page(sensor: Sensor, kind: str) -> bytes:
         sensor: Any.
         kind: "svg", "png" or "pdf".
     """
+    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10, 7.2), layout="constrained")
@@ -30,7 +31,13 @@ def page(sensor: Sensor, kind: str) -> bytes:
     _signal_to_noise(axes[1, 0], sensor)
     figure.suptitle(f"{sensor.make} {sensor.model} ({sensor.name})")
     out = BytesIO()
-    figure.savefig(out, format=kind, dpi=120)
+    facts: dict[str, Any] = {"Title": sensor.name}
+    if kind == "svg":
+        facts["Date"] = None  # the same sensor, the same file
+    if kind == "pdf":
+        facts |= {"Creator": "daguerre", "CreationDate": None}
+    with rc_context({"svg.hashsalt": "daguerre"}):
+        figure.savefig(out, format=kind, dpi=120, metadata=facts)
     return out.getvalue()
 
 
