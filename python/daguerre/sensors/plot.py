@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
+
+from daguerre.analysis.sheet import saved
 
 from . import illuminants
 from .facts import isos, row, snr_db
@@ -30,15 +31,8 @@ def page(sensor: Sensor, kind: str) -> bytes:
     _by_iso(axes[0, 1], axes[1, 1], sensor)
     _signal_to_noise(axes[1, 0], sensor)
     figure.suptitle(f"{sensor.make} {sensor.model} ({sensor.name})")
-    out = BytesIO()
-    facts: dict[str, Any] = {"Title": sensor.name}
-    if kind == "svg":
-        facts["Date"] = None  # the same sensor, the same file
-    if kind == "pdf":
-        facts |= {"Creator": "daguerre", "CreationDate": None}
     with rc_context({"svg.hashsalt": "daguerre"}):
-        figure.savefig(out, format=kind, dpi=120, metadata=facts)
-    return out.getvalue()
+        return saved(figure, kind, sensor.name)
 
 
 def _efficiency(axes: Any, sensor: Sensor) -> None:

@@ -6,6 +6,7 @@ import dataclasses
 import hashlib
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -212,7 +213,13 @@ class Sensor:
         Args:
             white: Radiance at ``illuminants.NM``, of any scale; None is D65.
         """
-        light = illuminants.d65() if white is None else white
+        return self._of_d65.copy() if white is None else self._electrons_of(white)
+
+    @cached_property
+    def _of_d65(self) -> FloatArray:
+        return self._electrons_of(illuminants.d65())
+
+    def _electrons_of(self, light: FloatArray) -> FloatArray:
         photons = illuminants.photons_per_lux_s(light) * self.photosite_area
         curves = self.efficiency(illuminants.NM)
         return np.array([illuminants.integral(curve * photons) for curve in curves])
