@@ -112,7 +112,7 @@ WRONG = {
     "unknown command": (["rendr"], 2, "'render'"),
     "no output": (["render", "s.glb"], 2, "--output"),
     "no scene": (["render", "-o", "a.exr"], 2, "SCENE"),
-    "format": (["render", "s.glb", "-o", "a.jpg"], 2, ".exr or .png"),
+    "format": (["render", "s.glb", "-o", "a.gif"], 2, "ending in .exr, .png"),
     "no folder": (["render", "s.glb", "-o", "no/a.exr"], 5, "there is no folder"),
     "camera": (["render", "s.glb", "-o", "a.exr", "-c", "Camra"], 3, "did you mean 'Camera'"),
     "focus": (["render", "s.glb", "-o", "a.exr", "--focus", "2 parsec"], 2, "--focus"),
@@ -151,7 +151,7 @@ WRONG = {
     "same output twice": (["render", "s.glb", "-o", "a.exr", "-o", "./a.exr"], 2, "twice"),
     "merge nothing": (["merge", "-o", "a.exr"], 2, "PASS"),
     "merge missing": (["merge", "no.exr", "-o", "a.exr"], 3, "no.exr"),
-    "merge format": (["merge", "no.exr", "-o", "a.tif"], 2, ".exr or .png"),
+    "merge format": (["merge", "no.exr", "-o", "a.gif"], 2, "ending in .exr, .png"),
 }
 
 

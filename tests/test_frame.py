@@ -183,9 +183,11 @@ def test_png_says_the_exposure_as_a_camera_does(tmp_path: Path) -> None:
 
 
 def test_other_formats_are_refused_by_name(tmp_path: Path) -> None:
-    for name in ("a.jpg", "a", "a.exr.gz"):
-        with pytest.raises(UsageError, match=r"wanted a name ending in \.exr or \.png"):
+    for name in ("a.gif", "a", "a.exr.gz"):
+        with pytest.raises(UsageError, match=r"wanted a name ending in \.exr, .* or \.tiff"):
             frame().save(tmp_path / name)
+    with pytest.raises(UsageError, match=r"got '\.dng'; a raw file is made by frame\.expose"):
+        frame().save(tmp_path / "a.dng")
     assert not list(tmp_path.iterdir())
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .sensors.sensor import Sensor
 
 TONES = ("srgb", "soft")
-FORMATS = (".exr", ".png")
+FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
 #: Of linear Rec.709 (ITU-R BT.709-6).
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
@@ -117,38 +117,54 @@ class Frame:
                 the same luminance. Neither changes ``rgb``. ISO and exposure compensation belong
                 to development, not to this.
         """
+        shown = np.empty(self.rgb.shape, np.uint8)
+        for rows, encoded in self._stripes(tone):
+            shown[rows] = np.rint(encoded * 255)
+        return shown
+
+    def _encoded(self, tone: str) -> NDArray[np.float32]:
+        """As ``display``, 0 to 1."""
+        shown = np.empty(self.rgb.shape, np.float32)
+        for rows, encoded in self._stripes(tone):
+            shown[rows] = encoded
+        return shown
+
+    def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
+        """Rows of the picture for a screen: little memory for what is in between."""
         if tone not in TONES:
             raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
-        shown = np.empty(self.rgb.shape, np.uint8)
-        for row in range(0, self.height, _STRIPE):  # little memory for what is in between
+        for row in range(0, self.height, _STRIPE):
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
             linear = _into_gamut(linear)
-            if tone == "soft":
-                linear = _shoulder(linear)
-            shown[rows] = np.rint(_srgb(linear) * 255)
-        return shown
+            yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
     def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
         """Writes the frame, whole or not at all; the end of the name chooses the format.
 
         Args:
             path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
-                ``.png`` is the picture for the eye.
-            tone: For PNG; see :meth:`display`.
+                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. What an
+                exposure makes of it is ``expose``, and ``daguerre.development.develop``.
+            tone: For those; see :meth:`display`.
 
         Raises:
             UsageError: Another ending.
             OutputError: The file cannot be written.
         """
-        if check_format(path) == ".exr":
+        suffix = check_format(path)
+        if suffix == ".exr":
             from .io.exr import write_exr
 
             write_exr(path, self)
-        else:
+        elif suffix == ".png":
             from .io.png import write_png
 
             write_png(path, self, tone)
+        else:
+            from .development import Picture
+
+            Picture(self._encoded(tone), "srgb", self.metadata).save(path)
 
     def expose(
         self,
@@ -244,16 +260,20 @@ class Frame:
         return ", ".join(words)
 
 
-def check_format(path: str | os.PathLike[str]) -> str:
-    """The ending of an output, in lower case.
+def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> str:
+    """The ending of an output, in lower case; ``more``: what else can be written there.
 
     Raises:
         UsageError: Not one that can be written; the message lists those.
     """
     suffix = Path(path).suffix.lower()
-    if suffix not in FORMATS:
-        wanted = " or ".join(FORMATS)
-        raise UsageError(f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}")
+    known = (*FORMATS, *more)
+    if suffix not in known:
+        wanted = f"{', '.join(known[:-1])} or {known[-1]}"
+        hint = "; a raw file is made by frame.expose().save()" if suffix == ".dng" else ""
+        raise UsageError(
+            f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
+        )
     return suffix
 
 

@@ -253,11 +253,13 @@ class CameraFlags:
     ] = None
     iso: Annotated[
         float | None,
-        option("--iso", metavar="N", help="For metadata and development only.", panel=_CAMERA),
+        option(
+            "--iso", metavar="N", help="Sensitivity of developed pictures [100].", panel=_CAMERA
+        ),
     ] = None
     ev: Annotated[
         float | None,
-        option("--ev", metavar="EV", help="For metadata and development only.", panel=_CAMERA),
+        option("--ev", metavar="EV", help="Brighter by so much [0].", panel=_CAMERA),
     ] = None
     exposure_time: Annotated[
         Text,

@@ -61,7 +61,7 @@ class Job:
                 self._interrupted(reporter, save=signals.stops < 2)
                 return INTERRUPTED
             self._finish()
-            reporter.event("done", outputs=[str(p) for p in plan.outputs], samples=work.done())
+            reporter.event("done", outputs=[str(p) for p in plan.files], samples=work.done())
         return 0
 
     def _finish(self) -> None:
@@ -78,7 +78,7 @@ class Job:
         if count:
             console.warn(bad_samples(count, places))
         elapsed = time.monotonic() - self.loop.started
-        names = ", ".join(str(path) for path in self.plan.outputs)
+        names = ", ".join(str(path) for path in self.plan.files)
         console.note(f"wrote {names} ({self._samples()} samples per pixel, {elapsed:.1f} s)")
         self._name_noise(frame.metadata.get("noise"))
         if self.stats:
@@ -115,6 +115,7 @@ class Job:
 
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
         frame = self.session.with_truth(frame)
+        frame = self.plan.photograph.metered(frame, self.plan.outputs)
         keep = {
             name: plane
             for name, plane in frame.aovs.items()
@@ -125,12 +126,12 @@ class Job:
     def _write(self, frame: Frame, paths: list[Path]) -> None:
         from daguerre.io.passes import pass_of, write_pass
 
-        for path in paths:
-            if self.plan.is_pass and path.suffix.lower() == ".exr":
-                drawn = pass_of(self.session)
-                write_pass(path, frame, replace(drawn, metadata=frame.metadata))
-            else:
-                frame.save(path, tone=self.tone)
+        passes = [p for p in paths if self.plan.is_pass and p.suffix.lower() == ".exr"]
+        for path in passes:
+            drawn = pass_of(self.session)
+            write_pass(path, frame, replace(drawn, metadata=frame.metadata))
+        pictures = [path for path in paths if path not in passes]
+        self.plan.photograph.write(frame, pictures, self.tone)
 
     def _snapshot(self) -> None:
         paths = [p.with_suffix(f".snapshot{p.suffix}") for p in self.plan.outputs]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from daguerre.errors import UsageError, suggest
 
 from . import quantities as q
 from .frames import numbered
+from .photograph import Photograph
 
 DEFAULT_RESOLUTION = (960, 540)
 DEFAULT_SPP = 64
@@ -43,6 +44,7 @@ class Plan:
     denoise: bool
     interval_s: float
     gt_time: str | None = None
+    photograph: Photograph = field(default_factory=Photograph)
 
     def of_frame(self, frame: int) -> Plan:
         """The same for one frame of a sequence."""
@@ -64,6 +66,11 @@ class Plan:
     def motion(self) -> bool:
         """Whether motion in pixels is asked for."""
         return "motion" in self.aovs or "motion_back" in self.aovs
+
+    @property
+    def files(self) -> list[Path]:
+        """All that is written: of a bracket each exposure."""
+        return [file for path in self.outputs for file, _ in self.photograph.files(path)]
 
     @property
     def checkpoint(self) -> Path:
@@ -91,7 +98,7 @@ def make_plan(
     """
     from daguerre.frame import TONES, check_format
 
-    formats = [check_format(path) for path in output]
+    formats = [check_format(path, (".dng",)) for path in output]
     if tone not in TONES:
         raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}{suggest(tone, TONES)}")
     resolution = q.resolution("--res", res, DEFAULT_RESOLUTION) if res else DEFAULT_RESOLUTION
@@ -169,10 +176,10 @@ def check_outputs(plan: Plan) -> None:
     """Before hours are spent: can the files be written at all?"""
     from daguerre.io.atomic import check_writable
 
-    names = [path.resolve() for path in plan.outputs]
+    names = [path.resolve() for path in plan.files]
     if len(set(names)) < len(names):
         raise UsageError("-o: the same file is named twice")
     if plan.checkpoint.resolve() in names:
         raise UsageError(f"-o {plan.checkpoint}: this name is kept for the checkpoint")
-    for path in plan.outputs:
+    for path in plan.files:
         check_writable(path)

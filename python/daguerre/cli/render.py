@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,6 +17,7 @@ from . import console
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .frames import check_names, frame_numbers
+from .photograph import Photograph
 from .plan import Plan, check_outputs, make_plan
 from .scene_flags import SceneFlags
 from .shoot import Shoot, interrupted_early
@@ -34,7 +36,11 @@ def render(
     output: Annotated[
         list[Path],
         option(
-            "-o", "--output", metavar="FILE", help=".exr or .png; may be repeated.", panel=_OUTPUT
+            "-o",
+            "--output",
+            metavar="FILE",
+            help=".exr, .png, .jpg, .tif or .dng; may be repeated.",
+            panel=_OUTPUT,
         ),
     ],
     res: Annotated[
@@ -67,8 +73,41 @@ def render(
     ] = None,
     aovs: Annotated[bool, option("--aovs", help="All of them.", panel=_OUTPUT)] = False,
     tone: Annotated[
-        str, option("--tone", metavar="srgb|soft", help="Curve of a PNG [srgb].", panel=_OUTPUT)
+        str,
+        option(
+            "--tone",
+            metavar="srgb|soft",
+            help="Curve of a picture that is not developed: 1 is white [srgb].",
+            panel=_OUTPUT,
+        ),
     ] = "srgb",
+    exposure: Annotated[
+        str | None,
+        option(
+            "--exposure",
+            metavar="auto[:centre|spot|matrix]",
+            help="The ISO is metered as a camera does [centre].",
+            panel=_OUTPUT,
+        ),
+    ] = None,
+    bracket: Annotated[
+        str | None,
+        option(
+            "--bracket",
+            metavar="EV,EV,...",
+            help="A picture at each of these exposures, such as -2,0,2.",
+            panel=_OUTPUT,
+        ),
+    ] = None,
+    look: Annotated[
+        str | None,
+        option(
+            "--look",
+            metavar="NAME",
+            help="Of developed pictures: neutral, standard, film, filmic, ocio:VIEW [neutral].",
+            panel=_OUTPUT,
+        ),
+    ] = None,
     denoise: Annotated[
         bool, option("--denoise", help="Needs the extra `denoise`.", panel=_OUTPUT)
     ] = False,
@@ -233,6 +272,10 @@ def render(
     changes = camera_flags.changes() | shutter_flags.changes()
     if wanted_scatter == 0 and "scatter" in changes:
         raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
+    photograph = Photograph.of_flags(changes, exposure, bracket, look, seed)
+    if photograph.develops and tone != "srgb":
+        raise UsageError(f"--tone {tone}: these pictures are developed; wanted --look")
+    plan = replace(plan, photograph=photograph)
     plans: list[tuple[int | None, Plan]] = [(None, plan)]
     if numbers is not None:
         plans = [(n, plan.of_frame(n)) for n in numbers]

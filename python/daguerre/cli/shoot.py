@@ -52,7 +52,7 @@ class Shoot:
         as_json: bool,
     ) -> int:
         """Draws one frame into its files; the exit code."""
-        complete = all(path.exists() for path in plan.outputs) and not plan.checkpoint.exists()
+        complete = all(path.exists() for path in plan.files) and not plan.checkpoint.exists()
         if frame is not None and resume and complete:
             console.note(f"{plan.outputs[0]} is complete")
             return 0
@@ -70,7 +70,7 @@ class Shoot:
         session = self._session(frame, plan)
         facts = {
             "scene": str(self.scene_path),
-            "outputs": [str(path) for path in plan.outputs],
+            "outputs": [str(path) for path in plan.files],
             "resolution": list(plan.resolution),
             "crop": list(session.crop),
             "samples": list(plan.wanted),
@@ -106,6 +106,7 @@ class Shoot:
                 crop=plan.crop,
                 **self.settings,
             )
+        plan.photograph.check(session.metadata, plan.outputs)
         if first and not lit(scene):
             console.warn(
                 f"{self.scene_path}: nothing shines, so the picture will be black; --env lights it"
