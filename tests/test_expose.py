@@ -219,6 +219,21 @@ def test_saturation_is_told_beside_the_picture() -> None:
     np.testing.assert_allclose(raw.exposure(), truth["exposure.Y"])
 
 
+@pytest.mark.parametrize("pattern", [name for name in dg.sensors.PATTERNS if name != "mono"])
+@pytest.mark.parametrize("crosstalk", [0.0, 0.2])
+def test_each_photosite_of_a_pattern_sees_its_channel(pattern: str, crosstalk: float) -> None:
+    """And with crosstalk as much of the others as the sensor's own matrices say."""
+    sensor = load("sony-a7r-ii").with_(pattern=pattern, crosstalk=crosstalk)
+    frame = flat(0.3, (180, 180))
+    frame.channels = np.broadcast_to(np.array([1, 0.5, 0.25], np.float32), (180, 180, 3))
+    frame.metadata["sensor_hash"] = sensor.hash
+    raw = frame.expose(sensor, 100)
+    light = np.array([1, 0.5, 0.25]) * sensor.electrons_per_lux_s() * 0.3
+    inner, channel = raw.electrons()[6:-6, 6:-6], raw.channel_map()[6:-6, 6:-6]
+    means = [inner[channel == i].mean() for i in range(3)]
+    assert means == pytest.approx(sensor.mixing @ light, rel=5e-3)
+
+
 def test_truth_travels_in_openexr(tmp_path) -> None:
     frame = flat(0.5, (16, 16))
     frame.aovs |= frame.exposure_truth("ideal", 200)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.sensors import PATTERNS, Mosaic, illuminants, load
+from daguerre.sensors import PATTERNS, Curve, Mosaic, illuminants, load
 
 PLANCK_LIGHT = 6.62607015e-34 * 299792458.0
 
@@ -101,6 +101,22 @@ def test_patterns_have_the_shares_of_their_makers() -> None:
 def test_bad_values_are_named(change: dict[str, object], message: str) -> None:
     with pytest.raises(dg.DaguerreError, match=message):
         load("ideal").with_(**change)
+
+
+def test_filters_of_their_own_can_be_taken_off() -> None:
+    cut = Curve(np.array([600.0, 700.0]), np.array([1.0, 0.0]))
+    glass = Curve(np.array([380.0, 780.0]), np.array([0.9, 0.9]))
+    bare = load("ideal-mono").with_(fill_factor=0.5)
+    filtered = bare.with_(infrared_cut=cut, cover_glass=glass)
+    nm = np.array([500.0, 650.0, 750.0])
+    assert bare.efficiency(nm)[0] == pytest.approx([0.5, 0.5, 0.5])
+    assert filtered.efficiency(nm)[0] == pytest.approx([0.45, 0.225, 0])
+    assert filtered.with_(infrared_cut=None).efficiency(nm)[0] == pytest.approx([0.45] * 3)
+    assert filtered.hash != bare.hash
+    with pytest.raises(
+        dg.InputError, match=r"infrared_cut: transmittance: wanted 0 to 1, got 1\.2"
+    ):
+        bare.with_(infrared_cut=Curve(np.array([400.0, 700.0]), np.array([1.2, 0])))
 
 
 def test_iso_beyond_the_sensor_is_refused() -> None:
