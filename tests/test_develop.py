@@ -93,6 +93,13 @@ def test_half_the_exposure_is_half_the_light(source, shape):
     np.testing.assert_allclose(bright, one, atol=4e-4)
 
 
+@pytest.mark.parametrize("name", ["nikon-d5100", "fujifilm-x-t4", "sony-imx571-mono"])
+@pytest.mark.parametrize("demosaic", ["fast", "good", "best"])
+def test_even_light_is_even_up_to_the_border(name, demosaic):
+    values = raw_of(name, greys(0.18, 0.18)).develop(demosaic=demosaic).bytes8()
+    assert np.abs(values.astype(int) - 118).max() <= 1
+
+
 def test_light_near_saturation_is_in_proportion():
     """LibRaw would stretch such pictures to the highest number that they have."""
     raw = raw_of("ideal", greys(0.7, 1.2))

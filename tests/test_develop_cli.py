@@ -78,6 +78,12 @@ def test_files_of_cameras_have_their_colours(tmp_path, white, pattern):
     assert delta_e(lab(got), lab(truth(reflectances(), white).clip(0, 1))).mean() < 1.5
 
 
+def test_a_small_file_of_x_trans(tmp_path):
+    raw_of("fujifilm-x-t4", greys(0.18, 0.18)).save(tmp_path / "x.dng")
+    got = dg.development.develop(read_shot(tmp_path / "x.dng")).bytes8()
+    assert np.abs(got[2:-2, 2:-2].astype(int) - 118).max() <= 1
+
+
 def test_mono_files(tmp_path):
     raw = raw_of("ideal-mono", greys(0.18, 0.5))
     raw.save(tmp_path / "x.dng")

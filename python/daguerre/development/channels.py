@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 XY = tuple[float, float]
 #: LibRaw refuses smaller pictures, px each way.
-_LEAST, _LEAST_XTRANS = 32, 516
+_LEAST, LEAST_XTRANS = 32, 516
+#: Cells of X-Trans have 6 px.
+MARGIN_XTRANS = 6
 #: Three that are chosen by pattern, and LibRaw's own names.
 _BAYER_METHODS = {"best": "DHT", "good": "AHD", "fast": "LINEAR"}
 #: LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
@@ -135,32 +137,41 @@ def _demosaiced(raw: Raw, name: str) -> tuple[NDArray[np.uint16], FloatArray]:
 
     file = io.BytesIO()
     xtrans = raw.sensor.pattern.name == "xtrans"
-    put_dng(file, _large_enough(raw, _LEAST_XTRANS if xtrans else _LEAST), preview=False)
+    put_dng(file, _with_margin(raw) if xtrans else _large_enough(raw), preview=False)
     file.seek(0)
     balance = 1 / np.clip(raw.neutral, 0.05, 1)
     with rawpy.imread(file) as opened:
         pixels = libraw_pixels(opened, name, balance, xtrans)
     scale = libraw_scale(balance, raw.white_level - raw.black_level)
-    return np.ascontiguousarray(pixels[: raw.height, : raw.width]), scale
+    corner = MARGIN_XTRANS if xtrans else 0
+    rows, columns = (slice(corner, corner + count) for count in raw.mosaic.shape)
+    return np.ascontiguousarray(pixels[rows, columns]), scale
 
 
-def _large_enough(raw: Raw, least: int) -> Raw:
-    """At least so many px each way: the last cells of the pattern are repeated."""
-    if min(raw.mosaic.shape) >= least:
-        return raw
-    period = raw.sensor.pattern.cells.shape
+def _large_enough(raw: Raw) -> Raw:
+    return raw if min(raw.mosaic.shape) >= _LEAST else _extended(raw, 0, _LEAST)
+
+
+def _with_margin(raw: Raw) -> Raw:
+    """LibRaw leaves holes at the border of X-Trans, where a pixel's neighbours lack a colour."""
+    return _extended(raw, MARGIN_XTRANS, LEAST_XTRANS)
+
+
+def _extended(raw: Raw, margin: int, least: int) -> Raw:
+    """A margin all around, and at least so many px each way: cells of the pattern are repeated."""
     rows, columns = (
-        _repeated(count, max(count, least), step)
-        for count, step in zip(raw.mosaic.shape, period, strict=True)
+        _places(count, margin, least, period)
+        for count, period in zip(raw.mosaic.shape, raw.sensor.pattern.cells.shape, strict=True)
     )
     return dataclasses.replace(raw, mosaic=raw.mosaic[np.ix_(rows, columns)], clipped=None)
 
 
-def _repeated(count: int, least: int, period: int) -> NDArray[np.intp]:
-    """Places 0 .. count - 1, and then those of the same place in the pattern, from the end."""
-    at = np.arange(least)
+def _places(count: int, margin: int, least: int, period: int) -> NDArray[np.intp]:
+    """Places 0 .. count - 1, and around them the nearest ones of the same place in the pattern."""
+    at = np.arange(-margin, max(count + margin, least - margin))
     last = count - 1 - (count - 1 - at) % period
-    return np.where(at < count, at, np.maximum(last, at % period))
+    inside = np.where(at < 0, at % period, np.where(at < count, at, last))
+    return np.clip(inside, 0, count - 1)
 
 
 def libraw_scale(balance: FloatArray, span: float) -> FloatArray:

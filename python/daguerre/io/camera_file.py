@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.development.channels import XY, Channels, libraw_pixels
+from daguerre.development.channels import LEAST_XTRANS, XY, Channels, libraw_pixels
 from daguerre.errors import InputError
 from daguerre.sensors import illuminants
 
@@ -38,7 +38,8 @@ def read_shot(path: str | os.PathLike[str], demosaic: str = "good") -> Channels:
 
     Args:
         path: DNG, or what else LibRaw reads.
-        demosaic: As in ``daguerre.development.develop``.
+        demosaic: As in ``daguerre.development.develop``; of X-Trans below 516 px LibRaw knows only
+            the fast one.
 
     Raises:
         InputError: It is no such file, or nothing is known of its camera's colours.
@@ -68,6 +69,8 @@ def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: str) -> Cha
     matrix = _grey if grey else _camera_from_xyz(path, opened, tags)
     balance = 1 / np.clip(neutral, 0.05, 1)
     xtrans = not grey and opened.raw_pattern.shape == (6, 6)
+    if xtrans and min(opened.raw_image.shape) < LEAST_XTRANS:
+        demosaic = "fast"
     pixels = libraw_pixels(opened, demosaic, balance, xtrans, turn=True)
     white = 65535.0 * balance / balance.max()
     three = np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
