@@ -19,6 +19,7 @@ from .checks import array, frozen, given_up, matrix, optional_array, short, to_n
 from .checks import color as check_color
 from .checks import number as check_number
 from .errors import InputError, UsageError, suggest
+from .illuminance import scale_for
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
 from .motion import Composite, Dynamic, at, is_dynamic, moves
@@ -314,6 +315,7 @@ class Scene:
         color: Sequence[float] | Dynamic | None = None,
         scale: float | Dynamic = 1.0,
         rotation: float | Dynamic = 0.0,
+        lux: float | None = None,
     ) -> None:
         """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
 
@@ -324,7 +326,10 @@ class Scene:
             color: One linear colour for the whole sky.
             scale: cd/m2 of a value of 1.
             rotation: Degrees about +y.
+            lux: Illuminance on the ground, a horizontal plane that faces +y, instead of ``scale``.
         """
+        if lux is not None and not (isinstance(scale, int | float) and scale == 1):
+            raise UsageError("environment: wanted either scale or lux, got both")
         if (image is None) == (color is None):
             raise UsageError("environment: wanted either an image or a color")
         pixels = None
@@ -340,6 +345,10 @@ class Scene:
         now_scale = check_number(now.scale, "environment: scale", 0)
         now_rotation = check_number(now.rotation, "environment: rotation")
         self.environment = Environment(pixels, rgb, now_scale, now_rotation)
+        if lux is not None:
+            now_scale = scale_for(self.environment, lux)
+            self.environment = replace(self.environment, scale=now_scale)
+            given = replace(given, scale=now_scale)
         self.motion.environment = _motion_of(given)
 
     @staticmethod

@@ -35,6 +35,15 @@ class SceneFlags:
             "--env-scale", metavar="X", help="cd/m2 of a value of 1 in --env [1].", panel=_LIGHT
         ),
     ] = None
+    env_lux: Annotated[
+        Text,
+        option(
+            "--env-lux",
+            metavar="LUX",
+            help="Instead: illuminance by --env or --sky on the ground, a plane that faces up.",
+            panel=_LIGHT,
+        ),
+    ] = None
     env_rotation: Annotated[
         Text,
         option("--env-rotation", metavar="DEG", help="About the vertical, degrees.", panel=_LIGHT),
@@ -52,7 +61,7 @@ class SceneFlags:
         import daguerre
 
         time = q.time_s("--time", self.time) if self.time is not None else 0.0
-        environment = self._environment()
+        lux, environment = self._lux(), self._environment()
         scene = daguerre.load(
             path, time=time, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
         )
@@ -60,7 +69,32 @@ class SceneFlags:
             scene.set_environment(**environment)
         elif self.env_scale is not None or self.env_rotation is not None:
             self._change(scene)
+        if lux is not None:
+            self._light(scene, lux)
         return scene
+
+    def _lux(self) -> float | None:
+        from daguerre.errors import UsageError
+
+        if self.env_lux is None:
+            return None
+        if self.env_scale is not None:
+            raise UsageError("--env-scale and --env-lux: wanted one of them, got both")
+        lux = q.plain_number("--env-lux", self.env_lux, "an illuminance in lux such as 10000")
+        if lux < 0:
+            raise UsageError(f"--env-lux: wanted at least 0, got {self.env_lux!r}")
+        return lux
+
+    def _light(self, scene: Any, lux: float) -> None:
+        from dataclasses import replace
+
+        from daguerre.errors import UsageError
+        from daguerre.illuminance import scale_for
+
+        if scene.environment is None:
+            raise UsageError("--env-lux: the scene has no environment; give --env or --sky")
+        scale = scale_for(scene.environment, lux, "--env-lux")
+        scene.environment = replace(scene.environment, scale=scale)
 
     def _scale(self) -> float:
         import math
