@@ -229,3 +229,25 @@ def test_noise_goes_on_from_checkpoints_that_fit(capsys: pytest.CaptureFixture[s
     assert main(["merge", "a.checkpoint.exr", "-o", "b.exr"]) == 4
     assert main(["render", "s.glb", "-o", "a.exr", "--resume", *noise]) == 0
     assert pixels("a.exr")["samples.Y"].mean() > 16
+
+
+def test_truth_of_a_photograph_lies_beside_it() -> None:
+    """A sky of luminance 1 on a surface of 0.25: in lux s, and where that saturates."""
+    told = ["--aov", "exposure,saturated", "--sensor", "ideal", "--exposure-f-stop", "4"]
+    shot = [*told, "--exposure-time", "20", "--iso", "100", "--spp", "64"]
+    assert main(["render", "s.glb", "-o", "a.exr", "-o", "a.dng", *QUICK, *shot]) == 0
+    seen = pixels("a.exr")
+    luminance = seen["R"] * 0.2126 + seen["G"] * 0.7152 + seen["B"] * 0.0722
+    lux_s = math.pi / 4 / 4**2 * 20
+    np.testing.assert_allclose(seen["exposure.Y"], luminance * lux_s, rtol=0.02)
+    for name in "RGB":
+        assert not seen[f"saturated.{name}"].any()
+    longer = [*shot, "--exposure-time", "400"]
+    assert main(["render", "s.glb", "-o", "b.exr", *QUICK, *longer]) == 0
+    assert pixels("b.exr")["saturated.G"].all()
+
+
+def test_a_pass_is_not_exposed(capsys: pytest.CaptureFixture[str]) -> None:
+    flags = ["--samples", "0:1", "--spp", "2", "--aov", "depth,exposure"]
+    assert main(["render", "s.glb", "-o", "a.exr", *QUICK, *flags]) == 2
+    assert "a pass is not exposed; wanted no --aov exposure" in capsys.readouterr().err

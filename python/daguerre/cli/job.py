@@ -116,6 +116,9 @@ class Job:
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
         frame = self.session.with_truth(frame)
         frame = self.plan.photograph.metered(frame, self.plan.outputs)
+        if self.plan.exposed:
+            truth = frame.exposure_truth(self.plan.photograph.sensor)
+            frame = replace(frame, aovs=frame.aovs | truth)
         keep = {
             name: plane
             for name, plane in frame.aovs.items()

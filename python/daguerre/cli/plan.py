@@ -26,6 +26,8 @@ AOVS = {
 }
 #: the same that only ground truth has; they are not among "all"
 TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back")}
+#: what photographs are measured against: light of the exposure, in lux s, and where it saturates
+EXPOSED = ("exposure", "saturated")
 #: groups that every EXR has, so asking for them changes nothing
 ALWAYS = ("variance", "samples")
 
@@ -66,6 +68,11 @@ class Plan:
     def motion(self) -> bool:
         """Whether motion in pixels is asked for."""
         return "motion" in self.aovs or "motion_back" in self.aovs
+
+    @property
+    def exposed(self) -> bool:
+        """Whether truth about the exposure is asked for."""
+        return any(name in self.aovs for name in EXPOSED)
 
     @property
     def files(self) -> list[Path]:
@@ -115,6 +122,9 @@ def make_plan(
         raise UsageError(
             "--samples and --denoise: denoise after merging, `daguerre merge --denoise`"
         )
+    groups = _aov_groups(aov, all_aovs)
+    if samples and (found := [name for name in EXPOSED if name in groups]):
+        raise UsageError(f"--samples: a pass is not exposed; wanted no --aov {','.join(found)}")
     if denoise:
         from daguerre.denoise import check_available
 
@@ -126,7 +136,7 @@ def make_plan(
         wanted,
         noise,
         samples is not None,
-        _aov_groups(aov, all_aovs),
+        groups,
         denoise,
         q.time_s("--checkpoint", checkpoint),
     )
@@ -162,10 +172,10 @@ def _aov_groups(names: list[str], everything: bool) -> list[str]:
     for name in (part.strip() for text in names for part in text.split(",")):
         if name == "all":
             groups |= set(AOVS.values())
-        elif name in AOVS or name in TRUTH:
+        elif name in AOVS or name in TRUTH or name in EXPOSED:
             groups.add(AOVS.get(name, name))
         elif name not in ALWAYS:
-            known = [*AOVS, *TRUTH, *ALWAYS, "all"]
+            known = [*AOVS, *TRUTH, *EXPOSED, *ALWAYS, "all"]
             raise UsageError(
                 f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
             )

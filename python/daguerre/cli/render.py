@@ -57,7 +57,8 @@ def render(
             "--aov",
             metavar="LIST",
             help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
-            "distance,material_id,motion,motion_back of ground truth.",
+            "distance,material_id,motion,motion_back of ground truth; exposure,saturated of a "
+            "photograph.",
             panel=_OUTPUT,
         ),
     ] = None,

@@ -107,6 +107,10 @@ class Shoot:
                 **self.settings,
             )
         plan.photograph.check(session.metadata, plan.outputs)
+        if plan.exposed:
+            from daguerre.exposure import luminance_exposure
+
+            luminance_exposure(session.metadata)  # or an error that names what is missing
         if first and not lit(scene):
             console.warn(
                 f"{self.scene_path}: nothing shines, so the picture will be black; --env lights it"
