@@ -28,6 +28,7 @@ from .tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
 if TYPE_CHECKING:
     from daguerre.raw import Raw
 
+MAKE = "Daguerre"
 #: Numbers of EXIF's light sources, in DNG's order: incandescent first.
 _LAMP_A, _LAMP_D65 = 17, 21
 
@@ -52,7 +53,7 @@ def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
 def put_dng(target: Path | IO[bytes], raw: Raw, *, preview: bool = True) -> None:
     """The same into a file that exists, or a stream; ``preview``: with the small picture."""
     facts = shot_facts(raw)
-    about = exif.main_tags(facts) | photograph_tags(raw)
+    about = exif.main_tags(facts | body_facts(raw)) | photograph_tags(raw)
     mosaic = mosaic_tags(raw)
     photometric = LINEAR_RAW if is_mono(raw) else CFA
     exposure = exif.exposure_tags(facts)
@@ -76,13 +77,22 @@ def shot_facts(raw: Raw) -> dict[str, Any]:
     )
 
 
+def body_facts(raw: Raw) -> dict[str, str]:
+    """Make and model in a DNG: not the real camera's.
+
+    Developers would take their own profile of that camera, and cut off the border that it has.
+    """
+    body = f"{raw.sensor.make} {raw.sensor.model}".strip()
+    return {"cameraMake": MAKE, "cameraModel": body.removeprefix(f"{MAKE} ")}
+
+
 def photograph_tags(raw: Raw) -> Tags:
     """Colours and brightness: matrices for lamp light and daylight, the neutral, the exposure."""
     sensor = raw.sensor
     tags: Tags = {
         50706: (exif.BYTE, (1, 4, 0, 0)),
         50707: (exif.BYTE, (1, 3, 0, 0)),
-        50708: (exif.ASCII, f"{sensor.make} {sensor.model}".strip()),
+        50708: (exif.ASCII, " ".join(body_facts(raw).values())),
         50730: (exif.SRATIONAL, exif.rational(baseline_exposure(raw))),
         50734: (exif.RATIONAL, (1, 1)),
         50735: (exif.ASCII, str(sensor.serial)),

@@ -72,6 +72,9 @@ def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags
                 software=False,
             )
     _append_exposure(target, exposure)
+    if len(images) == 2:  # a LONG as DNG has it; tifffile writes the type IFD
+        place, child = _entry(target, _first_directory(target), _CHILDREN)
+        _set_entry(target, place, (_CHILDREN, exif.LONG, 1, child))
     if images[-1].grey_raw:  # tifffile wants three samples of it
         at = _first_directory(target)
         if len(images) > 1:
