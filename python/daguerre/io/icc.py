@@ -31,6 +31,7 @@ class ColourSpace:
         primaries: Of red, green and blue, x and y.
         curve: (g, a, b, c, d): linear = (a v + b)^g from d on, c v below.
         cicp: Colour primaries and transfer characteristics by ITU-T H.273.
+        interop: Of the primaries in the Color Interop Forum's names of linear spaces.
     """
 
     name: str
@@ -38,25 +39,22 @@ class ColourSpace:
     primaries: tuple[tuple[float, float], ...]
     curve: tuple[float, float, float, float, float]
     cicp: tuple[int, int]
+    interop: str
 
 
 # IEC 61966-2-1; ITU-R BT.2020-2, table 4, turned around: E' = a E^0.45 - (a - 1).
 _SRGB = (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
 _A, _B = 1.09929682680944, 0.018053968510807
 _BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
+_P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
 _P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white D65
+_P2020 = ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))  # ITU-R BT.2020-2, table 3
 COLOUR_SPACES = {
     space.name: space
     for space in (
-        ColourSpace("srgb", "sRGB", ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06)), _SRGB, (1, 13)),
-        ColourSpace("p3", "Display P3", _P3, _SRGB, (12, 13)),
-        ColourSpace(
-            "rec2020",
-            "Rec.2020",
-            ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046)),
-            _BT2020,
-            (9, 14),
-        ),
+        ColourSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
+        ColourSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
+        ColourSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
     )
 }
 

@@ -195,6 +195,6 @@ def _write_linear(
     header = attributes(metadata)
     corners = (*icc.COLOUR_SPACES[space].primaries, icc.D65)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
-    header["colorInteropID"] = {"srgb": "lin_rec709_scene"}.get(space, f"lin_{space}_scene")
+    header["colorInteropID"] = f"lin_{icc.COLOUR_SPACES[space].interop}_scene"
     frame = Frame(rgb=linear, metadata=dict(metadata))
     write_parts(path, [("picture", header, {"RGB": linear})], frame)
