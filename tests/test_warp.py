@@ -171,7 +171,9 @@ def test_an_anamorphic_lens_bends_files_and_straightens_them(tmp_path, capsys):
     for one, other, inverse in ((source, bent, 0), (bent, back, 1)):
         word = f"distortion:{SQUEEZED},inverse={inverse}"
         assert dg.cli.main(["post", str(one), "-o", str(other), "--effect", word]) == 0
-    assert "motion.U: moved with their pixels, not turned" in capsys.readouterr().err
+    assert (
+        "motion.U: moved with their pixels, not turned: a motion has two" in capsys.readouterr().err
+    )
     first, middle, last = (read(path)[0]["G"] for path in (source, bent, back))
     inner = np.s_[10:-10, 12:-12]
     assert np.abs(middle - first)[inner].max() > 0.05

@@ -16,6 +16,7 @@ using Array = nb::ndarray<const T, Shape..., nb::c_contig, nb::device::cpu>;
 using Nodes = Array<float, nb::shape<-1, -1, 2>>;
 using Exact = Array<std::int32_t, nb::ndim<2>>;
 using ExactCells = Array<float, nb::shape<-1, 16, 16, 2>>;
+using Points = Array<double, nb::shape<-1, 2>>;
 using Image = Array<float, nb::ndim<3>>;
 using Plane = Array<std::uint32_t, nb::ndim<2>>;
 
@@ -94,7 +95,19 @@ void bind_post_warp(nb::module_& m) {
                     {std::size_t(end - begin), std::size_t(width), 2});
             },
             "width"_a, "begin"_a, "end"_a,
-            "Of all pixels of some rows, (rows, width, 2), px.");
+            "Of all pixels of some rows, (rows, width, 2), px.")
+        .def(
+            "displacements_at",
+            [](const BoundMap& m, const Points& points) {
+                std::vector<float> out;
+                {
+                    nb::gil_scoped_release unlocked;
+                    out = m.map.displacements_at(values_of(points));
+                }
+                return dg::bind::to_numpy(std::move(out), {points.shape(0), 2});
+            },
+            "points"_a,
+            "At points (N, 2), pixels by index, (N, 2), px; NaN where nodes do not tell.");
     m.def("remap", &remap, "image"_a, "first"_a, "height"_a, "maps"_a, "map_of"_a,
           "begin"_a, "end"_a, "filter"_a, "antialias"_a,
           "Rows [begin, end) of a picture seen through maps, and how many pixels no map "

@@ -1,7 +1,10 @@
 #include "post/source_map.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "math/error.h"
@@ -40,6 +43,23 @@ void between(const SourceMap& map, int column, int row, int axis, float* out,
     }
 }
 
+/// Both coordinates at a point, in cells; NaN where nodes do not tell.
+void at_point(const SourceMap& map, double x, double y, float* out) {
+    out[0] = out[1] = NAN;
+    if (!(x >= 0 && y >= 0 && x < map.columns && y < map.rows)) return;
+    const int column = int(x), row = int(y);
+    if (map.exact[std::size_t(row) * map.columns + column] >= 0) return;
+    const std::size_t line = 2 * std::size_t(map.columns + 3);
+    for (int axis = 0; axis < 2; ++axis) {
+        const float* n = map.nodes.data() + row * line + 2 * std::size_t(column) + axis;
+        float across[4];
+        for (int j = 0; j < 4; ++j, n += line)
+            across[j] = value(cubic(n[0], n[2], n[4], n[6]), float(x - column));
+        out[axis] = value(cubic(across[0], across[1], across[2], across[3]),
+                          float(y - row));
+    }
+}
+
 }  // namespace
 
 void SourceMap::check() const {
@@ -73,6 +93,18 @@ std::vector<float> SourceMap::displacements(int width, int begin, int end) const
                     to[0] = cell.dx[y - y0][x - x0], to[1] = cell.dy[y - y0][x - x0];
                 }
         }
+    return out;
+}
+
+std::vector<float> SourceMap::displacements_at(std::span<const double> points) const {
+    std::vector<float> out(points.size());
+    constexpr std::size_t kPart = 4096;
+    const std::size_t parts = (points.size() / 2 + kPart - 1) / kPart;
+    oneapi::tbb::parallel_for(std::size_t(0), parts, [&](std::size_t part) {
+        const std::size_t end = std::min(2 * kPart * (part + 1), points.size());
+        for (std::size_t k = 2 * kPart * part; k < end; k += 2)
+            at_point(*this, points[k] / kCell, (points[k + 1] - top) / kCell, &out[k]);
+    });
     return out;
 }
 

@@ -30,6 +30,10 @@ struct SourceMap {
     /// apart.
     void read_cell(int column, int row, float* dx, float* dy, int stride) const;
 
+    /// At any points x, y (pixels by index), point by point, by the cubics between nodes;
+    /// NaN outside of the cells, and where a cell is exact.
+    std::vector<float> displacements_at(std::span<const double> points) const;
+
     /// Of all pixels of rows [begin, end) of a picture so wide: x and y, pixel by pixel.
     std::vector<float> displacements(int width, int begin, int end) const;
 };

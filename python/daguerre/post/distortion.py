@@ -18,7 +18,8 @@ from .effect import Effect, Step, Values
 from .optics import FOCAL_LENGTH, LENS, SENSOR, axis, bench, film_plane, focal_length_mm
 from .parameter import Parameter
 from .picture import Canvas, Image
-from .warp import FILTER, FloatArray, PointMap, Warp, WarpStep
+from .warp import FloatArray, PointMap, Warp
+from .warp_step import FILTER, WarpStep, how
 
 #: Wavelengths that stand for the red, green and blue of linear Rec.709 under D65: their means of
 #: 1 / wavelength^2, which dispersion follows to first order (Cauchy). Colours that are as broad as
@@ -117,7 +118,10 @@ def _make(canvas: Canvas, values: Values) -> Step:
         from .stmap import write_stmap
 
         write_stmap(values["stmap"], warps[len(warps) // 2], canvas)
-    return WarpStep(canvas, warps, filter=values["filter"], antialias=values["antialias"])
+    forward = point_map(
+        given[len(given) // 2], focal, centre, scale=values["scale"], inverse=not values["inverse"]
+    )
+    return WarpStep(canvas, warps, forward=forward, **how(values))
 
 
 def camera(

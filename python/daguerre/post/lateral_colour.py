@@ -20,7 +20,8 @@ from .effect import Effect, Step, Values
 from .optics import LENS, SENSOR, axis
 from .parameter import Parameter
 from .picture import Canvas, Image
-from .warp import FILTER, Warp, WarpStep
+from .warp import Warp
+from .warp_step import FILTER, WarpStep, how
 
 MAX_RADIUS = 2.0  # half diagonals
 
@@ -76,9 +77,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
         for m in models
     )
     same = Warp.of(canvas, lambda points: points)
-    return WarpStep(
-        canvas, [red, same, blue], filter=values["filter"], antialias=values["antialias"]
-    )
+    return WarpStep(canvas, [red, same, blue], forward=lambda points: points, **how(values))
 
 
 def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], tuple[float, float]]:

@@ -25,7 +25,8 @@ from .effect import Effect, Step, Values
 from .parameter import REQUIRED, Parameter
 from .picture import Canvas, Image, Rows
 from .tiles import BLOCK
-from .warp import CELL, FILTER, Warp, WarpStep
+from .warp import CELL, Warp
+from .warp_step import FILTER, WarpStep, how
 
 
 class _FileStep(WarpStep):
@@ -79,7 +80,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
     if reader.full_size != canvas.full_size:
         wanted, got = ("{} x {}".format(*size) for size in (canvas.full_size, reader.full_size))
         raise InputError(f"{reader.path}: display window: wanted {wanted} pixels, got {got}")
-    return _FileStep(canvas, reader, filter=values["filter"], antialias=values["antialias"])
+    return _FileStep(canvas, reader, **how(values))
 
 
 STMAP = Effect(

@@ -1,4 +1,4 @@
-"""Pictures through maps: where the light of each pixel lies in the source.
+"""Where the light of each pixel lies in the source of a picture.
 
 A map is a function of points, px of the display window. It is asked at nodes 16 px apart, and at
 every pixel of the cells where a cubic between nodes would be off by more than TOLERANCE; the core
@@ -16,12 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre._core import SourceMap, remap, remap_nearest
+from daguerre._core import SourceMap
 
-from .channels import BACK, USUAL
-from .effect import Step
-from .parameter import Parameter
-from .picture import Band, Canvas, Rows
+from .picture import Canvas, Rows
 
 FloatArray = NDArray[np.float64]
 PointMap = Callable[[FloatArray], FloatArray]  # (N, 2) -> (N, 2), px; NaN: nothing is there
@@ -30,13 +27,6 @@ CELL = 16
 TOLERANCE = 1e-4  # px
 CHUNK = 2048  # cells whose pixels are computed at a time
 MARGIN = 8  # rows that filters read around a point
-
-FILTER = (
-    Parameter(
-        "filter", "between pixels", kind="choice", default="cubic", choices=("cubic", "linear")
-    ),
-    Parameter("antialias", "average where the map shrinks", kind="flag", default=True),
-)
 
 
 @dataclass(frozen=True)
@@ -64,7 +54,7 @@ class Warp:
         x = (np.arange(columns + 3) - 1.0) * CELL
         y = (np.arange(rows + 3) - 1.0) * CELL
         points = np.stack(np.meshgrid(x, y), axis=2)
-        nodes = _displacements(points, canvas, place)
+        nodes = displacements(points, canvas, place)
         bad = _bad_cells(nodes)
         exact = np.full((rows, columns), -1, np.int32)
         exact[bad] = np.arange(bad.sum())
@@ -73,7 +63,7 @@ class Warp:
         inside = np.stack(np.meshgrid(np.arange(CELL), np.arange(CELL)), axis=2)
         for k in range(0, len(corners), CHUNK):
             points = corners[k : k + CHUNK, None, None, :] + inside
-            cells[k : k + CHUNK] = _displacements(points, canvas, place)
+            cells[k : k + CHUNK] = displacements(points, canvas, place)
         return cls(nodes.astype(np.float32), exact, cells, canvas.height)
 
     @classmethod
@@ -136,75 +126,8 @@ class Warp:
         return np.maximum(low - MARGIN, 0), np.minimum(high + MARGIN, self.height - 1)
 
 
-class WarpStep(Step):
-    """Each pixel takes its light from elsewhere; what is no colour, from the nearest pixel there.
-
-    Args:
-        canvas: The picture.
-        warps: One for all channels, or one each for red, green and blue.
-        filter: cubic or linear.
-        antialias: Whether to average where a map shrinks.
-    """
-
-    def __init__(
-        self, canvas: Canvas, warps: Sequence[Warp], *, filter: str, antialias: bool
-    ) -> None:
-        self._height, self._warps = canvas.height, list(warps)
-        self._filter, self._antialias = filter, antialias
-        middle = len(self._warps) // 2
-        count = len(canvas.colours)
-        self._map_of = [middle] * count
-        if len(self._warps) == 3 and count >= 3:
-            self._map_of[:3] = [0, 1, 2]
-        self._undefined = 0
-        moving = {name.lower() for role in ("motion.u", "motion.v") for name in USUAL[role]}
-        moving |= {name.lower() for name in BACK}
-        self._motion = [name for name in canvas.planes if name.lower() in moving]
-
-    def warps(self, rows: Rows) -> Sequence[Warp]:
-        """The maps for some rows."""
-        return self._warps
-
-    def reads(self, rows: Rows) -> Rows:
-        """Where the maps lead."""
-        parts = [warp.reads(rows) for warp in self.warps(rows)]
-        return Rows(min(p.begin for p in parts), max(p.end for p in parts))
-
-    def apply(self, band: Band, rows: Rows) -> Band:
-        """All channels, so that they stay one above the other."""
-        warps = self.warps(rows)
-        maps, middle = [warp.core for warp in warps], warps[len(warps) // 2].core
-        image, undefined = remap(
-            band.image, band.rows.begin, self._height, maps, self._map_of, *rows,
-            self._filter, self._antialias,
-        )  # fmt: skip
-        self._undefined += undefined
-        planes = {name: self._nearest(p, band, rows, middle) for name, p in band.planes.items()}
-        return Band(rows, image, planes)
-
-    def _nearest(self, plane: NDArray[Any], band: Band, rows: Rows, core: Any) -> NDArray[Any]:
-        words = plane.astype(np.float32) if plane.dtype == np.float16 else plane
-        bits = np.ascontiguousarray(words).view(np.uint32)
-        moved = remap_nearest(bits, band.rows.begin, self._height, core, *rows)
-        return np.asarray(moved.view(words.dtype).astype(plane.dtype, copy=False))
-
-    def remarks(self) -> list[str]:
-        """Where a model had no answer, and what a map does not turn."""
-        said = []
-        if self._undefined:
-            said.append(
-                f"{self._undefined} pixels, for which the model has no answer, were set to 0"
-            )
-        if self._motion:
-            said.append(
-                f"{', '.join(self._motion)}: moved with their pixels, not turned: they still say "
-                "the motion in the picture before"
-            )
-        return said
-
-
-def _displacements(points: NDArray[Any], canvas: Canvas, place: PointMap) -> FloatArray:
-    """Of pixels by index: the middle of pixel 0 is at corner + 0.5 of the display window."""
+def displacements(points: NDArray[Any], canvas: Canvas, place: PointMap) -> FloatArray:
+    """By a map, px, of pixels by index; the middle of the first is at corner + 0.5."""
     flat = points.reshape(-1, 2) + (np.array(canvas.corner) + 0.5)
     return np.asarray((place(flat) - flat).reshape(points.shape))
 
