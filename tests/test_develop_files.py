@@ -109,6 +109,21 @@ def test_exr_is_linear_in_its_primaries(tmp_path):
         assert part.header["isoSpeed"] == 6400
 
 
+def test_binned_pictures_are_whole_and_crops_keep_their_place(tmp_path):
+    import OpenEXR
+
+    for facts, wanted in (
+        ({"resolution": (128, 64)}, ((0, 0), (63, 31))),  # twice the picture's
+        ({"resolution": (128, 64), "crop": (10, 20, 74, 52)}, ((10, 20), (73, 51))),
+    ):
+        Picture(picture().pixels, "srgb", FACTS | facts).save(tmp_path / "x.exr")
+        with OpenEXR.File(str(tmp_path / "x.exr")) as file:
+            window = file.parts[0].header["dataWindow"]
+            whole = file.parts[0].header["displayWindow"]
+        assert tuple(map(tuple, window)) == wanted
+        assert tuple(whole[1]) == ((127, 63) if "crop" in facts else (63, 31))
+
+
 def test_simple_fractions():
     for value, wanted in [
         (1 / 125, (1, 125)),

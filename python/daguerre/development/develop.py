@@ -120,7 +120,7 @@ def develop(
     else:
         pixels = _shown(source, white, recipe)
     if recipe.sharpen:
-        sharpen_picture(pixels, _luminance("srgb").tolist(), recipe.sharpen, SHARPEN_RADIUS)
+        sharpen_picture(pixels, _luminance(colour_space).tolist(), recipe.sharpen, SHARPEN_RADIUS)
     return Picture(pixels, colour_space, dict(source.metadata))
 
 

@@ -178,6 +178,15 @@ def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping
     write_tiff(temp, [TiffImage(numbers, "rgb", tags)], exif.exposure_tags(metadata))
 
 
+def _of_size(metadata: Mapping[str, Any], width: int, height: int) -> dict[str, Any]:
+    """The facts without the place in a whole that a picture of another size no longer has."""
+    size, crop = metadata.get("resolution"), metadata.get("crop")
+    x0, y0, x1, y1 = crop or (0, 0, *(size or (width, height)))
+    if (x1 - x0, y1 - y0) == (width, height):
+        return dict(metadata)
+    return {key: value for key, value in metadata.items() if key not in ("resolution", "crop")}
+
+
 def _write_linear(
     path: str | os.PathLike[str],
     pixels: NDArray[np.float32],
@@ -196,5 +205,5 @@ def _write_linear(
     corners = (*icc.COLOUR_SPACES[space].primaries, icc.D65)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
     header["colorInteropID"] = f"lin_{icc.COLOUR_SPACES[space].interop}_scene"
-    frame = Frame(rgb=linear, metadata=dict(metadata))
+    frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
     write_parts(path, [("picture", header, {"RGB": linear})], frame)
