@@ -100,6 +100,22 @@ def test_even_light_is_even_up_to_the_border(name, demosaic):
     assert np.abs(values.astype(int) - 118).max() <= 1
 
 
+def test_colour_noise_goes_and_brightness_stays():
+    flat = dg.Frame(rgb=np.full((96, 96, 3), 0.05, np.float32), metadata=dict(METADATA))
+    flat.metadata["luminance_exposure"] = 10 / 0.18 / 6400
+    raw = flat.expose("sony-a7r-ii", iso=6400, seed=1)
+    one, other = (raw.develop(colour_noise=passes).linear() for passes in (0, 4))
+    colours = [(light - light.mean(axis=2, keepdims=True)).std() for light in (one, other)]
+    assert colours[1] < 0.6 * colours[0]
+    assert other.mean() == pytest.approx(one.mean(), rel=0.03)
+
+
+@pytest.mark.parametrize("source", ["picture.jpg", None, np.ones((4, 4, 3))])
+def test_sources_that_are_none(source):
+    with pytest.raises(dg.UsageError, match="source: wanted a raw picture or a frame"):
+        develop(source)
+
+
 def test_light_near_saturation_is_in_proportion():
     """LibRaw would stretch such pictures to the highest number that they have."""
     raw = raw_of("ideal", greys(0.7, 1.2))
@@ -211,6 +227,7 @@ def test_an_ocio_view():
         ({"highlights": "keep"}, "highlights: wanted one of clip"),
         ({"exposure": float("nan")}, "exposure"),
         ({"sharpen": -1}, "sharpen"),
+        ({"colour_noise": 1.5}, "colour_noise"),
         ({"grain": -1}, "grain"),
         ({"demosaic": "amaze"}, "demosaic: wanted one of best"),
     ],

@@ -101,6 +101,15 @@ def develop(
         str,
         option("--demosaic", metavar="best|good|fast", help="Or LibRaw's [good].", panel=_LOOK),
     ] = "good",
+    colour_noise: Annotated[
+        int,
+        option(
+            "--colour-noise",
+            metavar="N",
+            help="Passes of a median over colours' differences, of raw pictures [0].",
+            panel=_LOOK,
+        ),
+    ] = 0,
     colorspace: Annotated[
         str,
         option("--colorspace", metavar="srgb|p3|rec2020", help="Of the file [srgb].", panel=_FILE),
@@ -124,6 +133,8 @@ def develop(
         "grain": q.plain_number("--grain", grain, "a diameter in um such as 2"),
         "colour_space": colorspace,
         "seed": seed,
+        "demosaic": demosaic,
+        "colour_noise": colour_noise,
     }
     extra = 0.0 if ev is None else q.plain_number("--ev", ev, "an exposure in EV such as -0.5")
     speed = None if iso is None else q.plain_number("--iso", iso, "a number such as 400")
@@ -138,14 +149,16 @@ def develop(
         else:
             taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
     else:
-        taken = _shot(source, sensor, speed, demosaic)
+        taken = _shot(source, sensor, speed, demosaic, colour_noise)
     exposed = hasattr(taken, "mosaic") or stock is not None
+    wanted |= {"exposure": 0.0 if exposed else extra}
+    picture: Picture | None = None
     for path in output:
         if path.suffix.lower() == ".dng":
             _save_dng(path, taken, source)
         else:
-            push = 0.0 if exposed else extra
-            _developed(taken, wanted, push, demosaic).save(path, quality=quality, bits=bits)
+            picture = picture or _developed(taken, wanted)
+            picture.save(path, quality=quality, bits=bits)
         console.note(f"wrote {path}")
     return 0
 
@@ -219,13 +232,17 @@ def _taken(
     return raw
 
 
-def _shot(path: Path, sensor: str | None, iso: float | None, demosaic: str) -> Channels:
+def _shot(
+    path: Path, sensor: str | None, iso: float | None, demosaic: str, colour_noise: int
+) -> Channels:
     for flag, value in (("--sensor", sensor), ("--iso", iso)):
         if value is not None:
             raise UsageError(f"{flag}: {path} was taken with a sensor and ISO of its own")
     from daguerre.io.camera_file import read_shot
 
-    return read_shot(path, demosaic)
+    if not 0 <= colour_noise <= 20:
+        raise UsageError(f"--colour-noise: wanted 0 to 20, got {colour_noise}")
+    return read_shot(path, demosaic, colour_noise)
 
 
 def _save_dng(path: Path, taken: Any, source: Path) -> None:
@@ -236,7 +253,7 @@ def _save_dng(path: Path, taken: Any, source: Path) -> None:
     taken.save(path)
 
 
-def _developed(taken: Any, wanted: dict[str, Any], push: float, demosaic: str) -> Picture:
+def _developed(taken: Any, wanted: dict[str, Any]) -> Picture:
     from daguerre.development import develop as make
 
-    return make(taken, exposure=push, demosaic=demosaic, **wanted)
+    return make(taken, **wanted)

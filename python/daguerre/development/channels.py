@@ -86,12 +86,12 @@ def _xyz(frame: Frame) -> NDArray[np.float32]:
     return (frame.rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)).astype(np.float32)
 
 
-def of_raw(raw: Raw, demosaic: str = "good") -> Channels:
-    """A raw picture, demosaiced."""
+def of_raw(raw: Raw, demosaic: str = "good", colour_noise: int = 0) -> Channels:
+    """A raw picture, demosaiced; ``colour_noise``: passes of a median over colours' differences."""
     raw = bayer_of(raw)
     if is_mono(raw):
         return _of_pixels(raw, _grey(raw), np.ones(3))
-    return _of_pixels(raw, *_demosaiced(raw, demosaic))
+    return _of_pixels(raw, *_demosaiced(raw, demosaic, colour_noise))
 
 
 def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:
@@ -129,7 +129,7 @@ def _grey(raw: Raw) -> NDArray[np.uint16]:
     return np.repeat(above[:, :, None], 3, axis=2)
 
 
-def _demosaiced(raw: Raw, name: str) -> tuple[NDArray[np.uint16], FloatArray]:
+def _demosaiced(raw: Raw, name: str, colour_noise: int) -> tuple[NDArray[np.uint16], FloatArray]:
     """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
     import rawpy
 
@@ -141,7 +141,7 @@ def _demosaiced(raw: Raw, name: str) -> tuple[NDArray[np.uint16], FloatArray]:
     file.seek(0)
     balance = 1 / np.clip(raw.neutral, 0.05, 1)
     with rawpy.imread(file) as opened:
-        pixels = libraw_pixels(opened, name, balance, xtrans)
+        pixels = libraw_pixels(opened, name, balance, xtrans, median=colour_noise)
     scale = libraw_scale(balance, raw.white_level - raw.black_level)
     corner = MARGIN_XTRANS if xtrans else 0
     rows, columns = (slice(corner, corner + count) for count in raw.mosaic.shape)
@@ -180,11 +180,11 @@ def libraw_scale(balance: FloatArray, span: float) -> FloatArray:
 
 
 def libraw_pixels(
-    opened: Any, name: str, balance: FloatArray, xtrans: bool, turn: bool = False
+    opened: Any, name: str, balance: FloatArray, xtrans: bool, turn: bool = False, median: int = 0
 ) -> NDArray[np.uint16]:
     """Balanced and demosaiced, linear, in the camera's own colours; nothing is cut off.
 
-    ``turn``: upright, as the file says.
+    ``turn``: upright, as the file says; ``median``: passes over the differences of colours.
     """
     import rawpy
 
@@ -198,6 +198,7 @@ def libraw_pixels(
         adjust_maximum_thr=0.0,
         highlight_mode=rawpy.HighlightMode.Ignore,
         user_flip=None if turn else 0,
+        median_filter_passes=median,
     )
     return np.asarray(pixels)
 

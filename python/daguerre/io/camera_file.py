@@ -33,13 +33,16 @@ _FACTS = {
 }
 
 
-def read_shot(path: str | os.PathLike[str], demosaic: str = "good") -> Channels:
+def read_shot(
+    path: str | os.PathLike[str], demosaic: str = "good", colour_noise: int = 0
+) -> Channels:
     """A camera's raw file, demosaiced, with its own colours.
 
     Args:
         path: DNG, or what else LibRaw reads.
         demosaic: As in ``daguerre.development.develop``; of X-Trans below 516 px LibRaw knows only
             the fast one.
+        colour_noise: Likewise.
 
     Raises:
         InputError: It is no such file, or nothing is known of its camera's colours.
@@ -51,14 +54,16 @@ def read_shot(path: str | os.PathLike[str], demosaic: str = "good") -> Channels:
     tags = _tags(path)
     try:
         with rawpy.imread(str(path)) as opened:
-            return _shot(path, opened, tags, demosaic)
+            return _shot(path, opened, tags, demosaic, colour_noise)
     except rawpy.LibRawError as error:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
         raise InputError(f"{path}: not a raw file that can be read: {reason}") from None
 
 
-def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: str) -> Channels:
+def _shot(
+    path: Any, opened: Any, tags: Mapping[str, Any], demosaic: str, colour_noise: int
+) -> Channels:
     grey = opened.num_colors == 1
     if not grey and (opened.num_colors != 3 or opened.raw_pattern is None):
         raise InputError(
@@ -71,7 +76,7 @@ def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: str) -> Cha
     xtrans = not grey and opened.raw_pattern.shape == (6, 6)
     if xtrans and min(opened.raw_image.shape) < LEAST_XTRANS:
         demosaic = "fast"
-    pixels = libraw_pixels(opened, demosaic, balance, xtrans, turn=True)
+    pixels = libraw_pixels(opened, demosaic, balance, xtrans, turn=True, median=colour_noise)
     white = 65535.0 * balance / balance.max()
     three = np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
     return Channels(
