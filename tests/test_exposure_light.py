@@ -26,6 +26,8 @@ def test_an_even_sky_has_pi_times_its_luminance() -> None:
     scene = dg.Scene()
     scene.set_environment(color=(2, 2, 2), scale=50)
     assert illuminance(scene.environment) == pytest.approx(math.pi * 100)
+    scene.set_environment(color=(0, 1, 0))  # Rec.709's green has 0.7152 of white's luminance
+    assert illuminance(scene.environment) == pytest.approx(math.pi * 0.7152, rel=1e-3)
     for height in (1, 2, 3, 64, 515):
         scene.set_environment(np.full((height, 2 * height, 3), 2, np.float32), scale=50)
         assert illuminance(scene.environment) == pytest.approx(math.pi * 100)

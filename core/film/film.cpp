@@ -56,6 +56,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
                           std::to_string(layout.channels));
     bands_.resize(std::size_t(pixels) * layout.bands);
     channels_.resize(std::size_t(pixels) * layout.channels);
+    if (layout.splats || layout.flare) channel_splats_.resize(channels_.size());
 }
 
 void Film::set_responses(Responses responses) {
@@ -100,13 +101,18 @@ void Film::splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer) {
     if (find(x, y) >= 0) splat_row(x, y, sample, std::span(&xyz, 1), layer);
 }
 
-void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer) {
+void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer,
+                     std::span<const Spectrum> channels) {
     const std::int64_t first = find(x, y);
     DG_CHECK(first, >=, 0);
     Sums* const sums = &sums_of(layer, first + xyz.size() - 1) - (xyz.size() - 1);
-    const Lock lock(row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]);
+    const Lock lock(row_lock(y));
     for (std::size_t k = 0; k < xyz.size(); ++k) {
-        if (xyz[k] == Vec3f{0, 0, 0} || add_to(sums[k], xyz[k])) continue;
+        if (xyz[k] == Vec3f{0, 0, 0} && channels.empty()) continue;
+        if (add_to(sums[k], xyz[k])) {
+            if (!channels.empty()) add_channels(channel_splats_, first + k, channels[k]);
+            continue;
+        }
         const Lock pixel(pixels_[first + k].lock);
         mark_bad(pixels_[first + k], sample);
     }
@@ -127,11 +133,11 @@ void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) const {
 
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance) {
-    if (!has_spectra()) return add(x, y, sample, wavelengths.to_xyz(radiance));
-    if (!splats_.empty() || !flare_.empty())   // they share the sums of spectra
+    if (layout_.bands && (layout_.splats || layout_.flare))   // they share the sums of bands
         return add_shared(x, y, sample, wavelengths, radiance);
     const std::int64_t i = find(x, y);
-    if (i >= 0) add_light(pixels_[i], i, sample, wavelengths, radiance);
+    if (i >= 0 && add_light(pixels_[i], i, sample, wavelengths, radiance) && layout_.channels)
+        add_channels(channels_, i, responses_.of(wavelengths, radiance));
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -139,23 +145,36 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const Lock lock(pixels_[i].lock);
-    add_light(pixels_[i], i, sample, wavelengths, radiance);
+    if (add_light(pixels_[i], i, sample, wavelengths, radiance) && layout_.channels)
+        add_channels(channels_, i, responses_.of(wavelengths, radiance));
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                  Spectrum radiance, Layer layer) {
-    if (!has_spectra()) return splat(x, y, sample, wavelengths.to_xyz(radiance), layer);
     const std::int64_t i = find(x, y);
     if (i < 0) return;
-    const Lock lock(pixels_[i].lock);
-    add_light(sums_of(layer, i), i, sample, wavelengths, radiance);
+    const Spectrum channels = layout_.channels ? responses_.of(wavelengths, radiance) : Spectrum();
+    if (!layout_.bands) {
+        const Vec3f xyz = wavelengths.to_xyz(radiance);
+        const std::span<const Spectrum> values(&channels, layout_.channels ? 1 : 0);
+        return splat_row(x, y, sample, std::span(&xyz, 1), layer, values);
+    }
+    {
+        const Lock lock(pixels_[i].lock);
+        if (!add_light(sums_of(layer, i), i, sample, wavelengths, radiance)) return;
+    }
+    const Lock lock(row_lock(y));
+    add_channels(channel_splats_, i, channels);
 }
 
-void Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
+bool Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
                      const Wavelengths& wavelengths, Spectrum radiance) {
-    if (!add_to(sums, wavelengths.to_xyz(radiance))) return mark_bad(pixels_[i], sample);
+    if (!add_to(sums, wavelengths.to_xyz(radiance))) {
+        mark_bad(pixels_[i], sample);
+        return false;
+    }
     if (layout_.bands) add_bands(&bands_[i * layout_.bands], wavelengths, radiance);
-    if (layout_.channels) add_channels(&channels_[i * layout_.channels], wavelengths, radiance);
+    return true;
 }
 
 void Film::add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const {
@@ -167,10 +186,9 @@ void Film::add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum r
     }
 }
 
-void Film::add_channels(ValueSum* channels, const Wavelengths& wavelengths, Spectrum radiance) const {
-    const Spectrum light = responses_.of(wavelengths, radiance);
+void Film::add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum values) const {
     for (int c = 0; c < layout_.channels; ++c)
-        if (fits_film(light[c])) channels[c].add(light[c]);
+        if (fits_film(values[c])) channels[i * layout_.channels + c].add(values[c]);
 }
 
 bool Film::add_to(Sums& sums, Vec3f xyz) const {
@@ -241,6 +259,8 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);
+    for (std::size_t i = 0; i < channel_splats_.size(); ++i)
+        channel_splats_[i].add(other.channel_splats_[i]);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];

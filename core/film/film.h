@@ -43,7 +43,8 @@ struct FilmLayout {
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
-/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band and channel.
+/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band, 16 with each
+/// channel and as much again if there are splats or flare.
 class Film {
   public:
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, bands is 0 .. kMostBands and
@@ -54,8 +55,6 @@ class Film {
     /// Error for another number of channels.
     void set_responses(Responses responses);
     const Responses& responses() const { return responses_; }
-    /// Whether wavelengths bring more than XYZ: bands or channels, for which all ways of adding share one sum.
-    bool has_spectra() const { return layout_.bands > 0 || layout_.channels > 0; }
 
     /// Adds one sample to a pixel (full-frame coordinates; outside the region: ignored).
     /// NaN, Inf or beyond kMaxFilmValue: the sample is counted as bad, and 0 is added.
@@ -75,8 +74,10 @@ class Film {
     /// which no mean is to be taken off; so they are sums of their own.
     enum class Layer { splats, flare };
     void splat(int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats);
-    /// The same for pixels side by side within the region, of a film without bands and channels.
-    void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer);
+    /// The same for pixels side by side within the region, of a film without bands; with channels as many of
+    /// their values.
+    void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer,
+                   std::span<const Spectrum> channels = {});
     /// What the wavelengths of a sample bring, to XYZ, to their bands and to the channels: what the three
     /// above do with a colour.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance);
@@ -125,8 +126,8 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs", "splats", "flare", "bands" and "channels" if there are any, so many bytes per pixel
-    /// (per band or channel).
+    /// "sums", and "aovs", "splats", "flare", "bands", "channels" and "channel_splats" if there are any, so many
+    /// bytes per pixel (per band or channel).
     static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96, kBandBytes = 16;
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
@@ -158,11 +159,13 @@ class Film {
     Sums& sums_of(Layer layer, std::size_t i);
     /// To a pixel's own sums, or to those of its splats; false if the sample is bad.
     bool add_to(Sums& sums, Vec3f xyz) const;
-    /// To XYZ, bands and channels. Splats and samples share the sums of those: under the pixel's lock.
-    void add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
+    /// To XYZ and bands. Splats and samples share the sums of bands: under the pixel's lock. False if bad.
+    bool add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance);
     void add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const;
-    void add_channels(ValueSum* channels, const Wavelengths& wavelengths, Spectrum radiance) const;
+    void add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum values) const;
+    /// Of a row of the region; for splats without bands, and for the channels of all splats.
+    std::uint32_t& row_lock(int y) { return row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]; }
     /// Of all that was added to the pixel of this index.
     Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
@@ -180,10 +183,10 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
-    // Of splats without spectra, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
+    // Of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
-    std::vector<ValueSum> bands_, channels_;   // those of a pixel side by side
+    std::vector<ValueSum> bands_, channels_, channel_splats_;   // those of a pixel side by side
     Responses responses_;
 };
 

@@ -54,7 +54,10 @@ std::vector<float> Film::mean_bands() const {
 
 std::vector<float> Film::mean_channels() const {
     if (channels_.empty()) throw Error("film: this film was made without channels of a sensor");
-    return means(channels_, layout_.channels);
+    if (channel_splats_.empty()) return means(channels_, layout_.channels);
+    std::vector<ValueSum> all = channels_;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].add(channel_splats_[i]);
+    return means(all, layout_.channels);
 }
 
 std::vector<float> Film::means(const std::vector<ValueSum>& sums, int each) const {

@@ -17,6 +17,7 @@ std::vector<std::string> Film::state_parts() const {
     if (layout_.flare) parts.push_back("flare");
     if (layout_.bands) parts.push_back("bands");
     if (layout_.channels) parts.push_back("channels");
+    if (!channel_splats_.empty()) parts.push_back("channel_splats");
     return parts;
 }
 
@@ -29,6 +30,8 @@ std::span<const std::byte> Film::state(const std::string& part) const {
     if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
     if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
     if (part == "channels" && layout_.channels) return std::as_bytes(std::span(channels_));
+    if (part == "channel_splats" && !channel_splats_.empty())
+        return std::as_bytes(std::span(channel_splats_));
     std::string known;
     for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
     throw input_error("film state", "part", known, "'" + part + "'");

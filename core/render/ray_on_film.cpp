@@ -97,14 +97,22 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
 }
 
 /// What one wavelength brings by itself: the colour is the same in all pixels.
-void RayOnFilm::splat_color(Film& film, Vec3f xyz, std::uint32_t sample, Film::Layer layer,
-                            const Footprint& at) const {
+void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
+                            Film::Layer layer, const Footprint& at) const {
     const Footprint::Box box = at.box();
+    const std::size_t width = std::size_t(box.x1 - box.x0);
+    const Vec3f xyz = wavelengths.to_xyz(light);
+    const bool seen = film.layout().channels > 0;
+    const Spectrum sensor = seen ? film.responses().of(wavelengths, light) : Spectrum();
     std::array<Vec3f, kWidestBox> row;
+    std::array<Spectrum, kWidestBox> channels;
     for (int y = box.y0; y < box.y1; ++y) {
         const Vec3f in_row = xyz * at.row(y);
         for (int x = box.x0; x < box.x1; ++x) row[x - box.x0] = in_row * at.column(x);
-        film.splat_row(box.x0, y, sample, std::span(row.data(), std::size_t(box.x1 - box.x0)), layer);
+        for (int x = box.x0; seen && x < box.x1; ++x)
+            channels[x - box.x0] = sensor * (at.row(y) * at.column(x));
+        film.splat_row(box.x0, y, sample, std::span(row.data(), width), layer,
+                       std::span(channels.data(), seen ? width : 0));
     }
 }
 
@@ -120,10 +128,10 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
         for (int x = 0; x < width; ++x) columns[x].set(int(i), at_[i]->column(all.x0 + x));
         for (int y = 0; y < height; ++y) rows[y].set(int(i), at_[i]->row(all.y0 + y));
     }
-    if (last - first == 1 && landings_.size() > 1 && !film.has_spectra() && film_density_.even()) {
+    if (last - first == 1 && landings_.size() > 1 && film.layout().bands == 0 && film_density_.even()) {
         Spectrum own{0.f};
         own.set(int(first), light[int(first)]);
-        return splat_color(film, wavelengths.to_xyz(own), sample, layer, *at_[first]);
+        return splat_color(film, own, wavelengths, sample, layer, *at_[first]);
     }
     for (int y = 0; y < height; ++y) {
         if (landings_.size() == 1) rows[y] = Spectrum(rows[y][0]);

@@ -44,8 +44,8 @@ class RayOnFilm {
     Spectrum response() const;
     void splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
                    std::uint32_t sample, Film::Layer layer) const;
-    void splat_color(Film& film, Vec3f xyz, std::uint32_t sample, Film::Layer layer,
-                     const Footprint& at) const;
+    void splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
+                     Film::Layer layer, const Footprint& at) const;
     void splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
                    Film::Layer layer, std::size_t first, std::size_t last) const;
     Footprint::Box box(std::size_t first, std::size_t last) const;

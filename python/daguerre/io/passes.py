@@ -8,7 +8,8 @@ which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has thos
 channels in the same way, and parts ``splats`` and ``flare`` what light paths
 (``daguerre.light_paths``) and ghosts (``daguerre.flare``) brought, if any were drawn; a part
 ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among the facts
-(``daguerre.waves``), or those that the frame keeps; a part ``channels`` has those of its sensor.
+(``daguerre.waves``), or those that the frame keeps; parts ``channels`` and ``channel_splats`` have
+those of its sensor.
 The sums are integers, so adding them in any order gives the same bits.
 The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
 ``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
 ROUND = "round"
-STATE_PARTS = (SUMS, "aovs", "splats", "flare", "bands", "channels", ROUND)
+STATE_PARTS = (SUMS, "aovs", "splats", "flare", "bands", "channels", "channel_splats", ROUND)
 ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
