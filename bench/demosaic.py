@@ -19,7 +19,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from daguerre.development.channels import libraw_pixels
+from daguerre.development.channels import Demosaic
 from daguerre.io import icc
 from daguerre.io.tiff import CFA, TiffImage, write_tiff
 
@@ -115,7 +115,7 @@ def libraw(mosaic: Mosaic, name: str) -> Mosaic:
     file.seek(0)
     balance = np.ones(3)
     with rawpy.imread(file) as opened:
-        pixels = libraw_pixels(opened, name, balance, xtrans=False)
+        pixels = Demosaic(name).run(opened, balance, xtrans=False, turn=False)
     return pixels
 
 

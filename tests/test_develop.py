@@ -148,6 +148,15 @@ def test_overexposed_white_is_white_and_not_magenta():
         assert np.ptp(got, axis=2).max() < 0.02
 
 
+def test_edges_of_overexposed_lamps_have_no_colour():
+    raw = raw_of("sony-a7r-ii", greys(1.0, 1.0, 1.0, 1.0).repeat(4, axis=0))
+    x = np.arange(raw.width) - raw.width / 2
+    lamp = 0.02 + 8 / (1 + np.exp((np.hypot(x, x[:, None]) - 30) / 1.5))
+    numbers = (raw.mosaic - 1.0 * raw.black_level) * lamp + raw.black_level
+    raw.mosaic = np.minimum(numbers, raw.white_level).astype(np.uint16)
+    assert np.ptp(raw.develop().linear(), axis=2).max() < 0.15
+
+
 def test_colours_that_a_screen_lacks_keep_luminance_and_hue():
     laser = np.array([-0.3, 0.6, -0.05])  # a green that no screen has
     got = develop(frame(laser)).linear()[0, 0]

@@ -149,7 +149,7 @@ def develop(
         else:
             taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
     else:
-        taken = _shot(source, sensor, speed, demosaic, colour_noise)
+        taken = _shot(source, sensor, speed, wanted)
     exposed = hasattr(taken, "mosaic") or stock is not None
     wanted |= {"exposure": 0.0 if exposed else extra}
     picture: Picture | None = None
@@ -232,17 +232,17 @@ def _taken(
     return raw
 
 
-def _shot(
-    path: Path, sensor: str | None, iso: float | None, demosaic: str, colour_noise: int
-) -> Channels:
+def _shot(path: Path, sensor: str | None, iso: float | None, wanted: dict[str, Any]) -> Channels:
     for flag, value in (("--sensor", sensor), ("--iso", iso)):
         if value is not None:
             raise UsageError(f"{flag}: {path} was taken with a sensor and ISO of its own")
+    from daguerre.development.channels import Demosaic
     from daguerre.io.camera_file import read_shot
 
-    if not 0 <= colour_noise <= 20:
-        raise UsageError(f"--colour-noise: wanted 0 to 20, got {colour_noise}")
-    return read_shot(path, demosaic, colour_noise)
+    passes, clip = wanted["colour_noise"], wanted["highlights"] == "clip"
+    if not 0 <= passes <= 20:
+        raise UsageError(f"--colour-noise: wanted 0 to 20, got {passes}")
+    return read_shot(path, Demosaic(wanted["demosaic"], passes, clip))
 
 
 def _save_dng(path: Path, taken: Any, source: Path) -> None:

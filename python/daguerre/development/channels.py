@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 XY = tuple[float, float]
+_TOP = 65535.0
 #: LibRaw refuses smaller pictures, px each way.
 _LEAST, LEAST_XTRANS = 32, 516
 #: Cells of X-Trans have 6 px.
@@ -37,6 +38,67 @@ _BAYER_METHODS = {"best": "DHT", "good": "AHD", "fast": "LINEAR"}
 #: LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
 _XTRANS_METHODS = {"best": "DHT", "good": "PPG", "fast": "LINEAR"}
 DEMOSAICS = ("best", "good", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
+
+
+@dataclass(frozen=True)
+class Demosaic:
+    """How LibRaw makes three channels of a mosaic.
+
+    Attributes:
+        method: Of ``DEMOSAICS``.
+        colour_noise: Passes of a median over the differences of colours.
+        clip: Whether the channels end where the first one is full, before anything is interpolated:
+            else the edges of highlights get colours, and nothing is lost.
+    """
+
+    method: str = "good"
+    colour_noise: int = 0
+    clip: bool = False
+
+    def scale(self, balance: FloatArray, span: float) -> FloatArray:
+        """LibRaw's numbers for each DN above black; ``span``: DN from black to white."""
+        one = balance.min() if self.clip else balance.max()
+        return np.asarray(_TOP / span * balance / one)
+
+    def run(self, opened: Any, balance: FloatArray, xtrans: bool, turn: bool) -> NDArray[np.uint16]:
+        """Numbers (H, W, 3), balanced, linear, in the camera's own colours.
+
+        Args:
+            opened: rawpy's.
+            balance: Factors of the channels.
+            xtrans: Whether the mosaic is of that kind.
+            turn: Upright, as the file says.
+        """
+        import rawpy
+
+        mode = rawpy.HighlightMode
+        pixels = opened.postprocess(
+            demosaic_algorithm=self._algorithm(xtrans),
+            user_wb=[*balance, balance[1]],
+            output_color=rawpy.ColorSpace.raw,
+            output_bps=16,
+            gamma=(1, 1),
+            no_auto_bright=True,
+            adjust_maximum_thr=0.0,
+            highlight_mode=mode.Clip if self.clip else mode.Ignore,
+            user_flip=None if turn else 0,
+            median_filter_passes=self.colour_noise,
+        )
+        return np.asarray(pixels)
+
+    def _algorithm(self, xtrans: bool) -> Any:
+        import rawpy
+
+        if self.method not in DEMOSAICS:
+            raise UsageError(
+                f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {self.method!r}"
+                f"{suggest(self.method, DEMOSAICS)}"
+            )
+        chosen = _XTRANS_METHODS if xtrans else _BAYER_METHODS
+        return rawpy.DemosaicAlgorithm[chosen.get(self.method, self.method.upper())]
+
+
+USUAL = Demosaic()
 
 
 @dataclass(frozen=True)
@@ -86,12 +148,12 @@ def _xyz(frame: Frame) -> NDArray[np.float32]:
     return (frame.rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)).astype(np.float32)
 
 
-def of_raw(raw: Raw, demosaic: str = "good", colour_noise: int = 0) -> Channels:
-    """A raw picture, demosaiced; ``colour_noise``: passes of a median over colours' differences."""
+def of_raw(raw: Raw, demosaic: Demosaic = USUAL) -> Channels:
+    """A raw picture, demosaiced."""
     raw = bayer_of(raw)
     if is_mono(raw):
         return _of_pixels(raw, _grey(raw), np.ones(3))
-    return _of_pixels(raw, *_demosaiced(raw, demosaic, colour_noise))
+    return _of_pixels(raw, *_demosaiced(raw, demosaic))
 
 
 def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:
@@ -108,7 +170,7 @@ def _of_pixels(raw: Raw, pixels: NDArray[Any], scale: FloatArray) -> Channels:
     return Channels(
         pixels=pixels,
         unit=value_dn(raw) * scale,
-        full=(raw.white_level - raw.black_level) * scale,
+        full=np.minimum((raw.white_level - raw.black_level) * scale, _TOP),
         xyz_from=_grey_matrix if is_mono(raw) else _inverse_matrix(raw),
         as_shot=raw.white_balance,
         metadata=shot_facts(raw),
@@ -129,7 +191,7 @@ def _grey(raw: Raw) -> NDArray[np.uint16]:
     return np.repeat(above[:, :, None], 3, axis=2)
 
 
-def _demosaiced(raw: Raw, name: str, colour_noise: int) -> tuple[NDArray[np.uint16], FloatArray]:
+def _demosaiced(raw: Raw, demosaic: Demosaic) -> tuple[NDArray[np.uint16], FloatArray]:
     """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
     import rawpy
 
@@ -141,8 +203,8 @@ def _demosaiced(raw: Raw, name: str, colour_noise: int) -> tuple[NDArray[np.uint
     file.seek(0)
     balance = 1 / np.clip(raw.neutral, 0.05, 1)
     with rawpy.imread(file) as opened:
-        pixels = libraw_pixels(opened, name, balance, xtrans, median=colour_noise)
-    scale = libraw_scale(balance, raw.white_level - raw.black_level)
+        pixels = demosaic.run(opened, balance, xtrans, turn=False)
+    scale = demosaic.scale(balance, raw.white_level - raw.black_level)
     corner = MARGIN_XTRANS if xtrans else 0
     rows, columns = (slice(corner, corner + count) for count in raw.mosaic.shape)
     return np.ascontiguousarray(pixels[rows, columns]), scale
@@ -172,44 +234,3 @@ def _places(count: int, margin: int, least: int, period: int) -> NDArray[np.intp
     last = count - 1 - (count - 1 - at) % period
     inside = np.where(at < 0, at % period, np.where(at < count, at, last))
     return np.clip(inside, 0, count - 1)
-
-
-def libraw_scale(balance: FloatArray, span: float) -> FloatArray:
-    """LibRaw's numbers for each DN above black: black to white is 16 bits, the balance's top 1."""
-    return np.asarray(65535 / span * balance / balance.max())
-
-
-def libraw_pixels(
-    opened: Any, name: str, balance: FloatArray, xtrans: bool, turn: bool = False, median: int = 0
-) -> NDArray[np.uint16]:
-    """Balanced and demosaiced, linear, in the camera's own colours; nothing is cut off.
-
-    ``turn``: upright, as the file says; ``median``: passes over the differences of colours.
-    """
-    import rawpy
-
-    pixels = opened.postprocess(
-        demosaic_algorithm=_algorithm(name, xtrans),
-        user_wb=[*balance, balance[1]],
-        output_color=rawpy.ColorSpace.raw,
-        output_bps=16,
-        gamma=(1, 1),
-        no_auto_bright=True,
-        adjust_maximum_thr=0.0,
-        highlight_mode=rawpy.HighlightMode.Ignore,
-        user_flip=None if turn else 0,
-        median_filter_passes=median,
-    )
-    return np.asarray(pixels)
-
-
-def _algorithm(name: str, xtrans: bool) -> Any:
-    import rawpy
-
-    if name not in DEMOSAICS:
-        raise UsageError(
-            f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {name!r}"
-            f"{suggest(name, DEMOSAICS)}"
-        )
-    chosen = _XTRANS_METHODS if xtrans else _BAYER_METHODS
-    return rawpy.DemosaicAlgorithm[chosen.get(name, name.upper())]

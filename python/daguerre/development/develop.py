@@ -20,7 +20,7 @@ from daguerre.io import icc
 from daguerre.sensors import illuminants
 from daguerre.sensors.fit import adaptation
 
-from .channels import XY, Channels, of_frame, of_raw
+from .channels import XY, Channels, Demosaic, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
 from .picture import Picture
 from .white import white_of
@@ -120,7 +120,7 @@ def develop(
     recipe = Recipe(
         wb, look, exposure, colour_space, sharpen, grain, highlights, seed, colour_noise
     )
-    source = _channels(source, demosaic, colour_noise)
+    source = _channels(source, Demosaic(demosaic, colour_noise, clip=highlights == "clip"))
     white = white_of(source, recipe.wb)
     if recipe.view or recipe.grain:
         pixels = _by_light(source, white, recipe)
@@ -131,12 +131,12 @@ def develop(
     return Picture(pixels, colour_space, dict(source.metadata))
 
 
-def _channels(source: Any, demosaic: str, colour_noise: int) -> Channels:
+def _channels(source: Any, demosaic: Demosaic) -> Channels:
     from daguerre.frame import Frame
     from daguerre.raw import Raw
 
     if isinstance(source, Raw):
-        return of_raw(source, demosaic, colour_noise)
+        return of_raw(source, demosaic)
     if isinstance(source, Channels):
         return source
     if isinstance(source, Frame):

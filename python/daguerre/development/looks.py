@@ -54,7 +54,7 @@ class Look:
 LOOKS = {
     "neutral": Look(),
     "standard": Look(contrast=1.5, white=4.0),
-    "film": Look(contrast=1.8, white=8.0, colour=0.9, black=0.004),
+    "film": Look(contrast=1.6, white=8.0, colour=0.9, black=0.0015),
     "filmic": Look(contrast=1.2, white=16.0),
 }
 

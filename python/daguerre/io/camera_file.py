@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.development.channels import LEAST_XTRANS, XY, Channels, libraw_pixels
+from daguerre.development.channels import LEAST_XTRANS, USUAL, XY, Channels, Demosaic
 from daguerre.errors import InputError
 from daguerre.sensors import illuminants
 
@@ -33,16 +34,12 @@ _FACTS = {
 }
 
 
-def read_shot(
-    path: str | os.PathLike[str], demosaic: str = "good", colour_noise: int = 0
-) -> Channels:
+def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Channels:
     """A camera's raw file, demosaiced, with its own colours.
 
     Args:
         path: DNG, or what else LibRaw reads.
-        demosaic: As in ``daguerre.development.develop``; of X-Trans below 516 px LibRaw knows only
-            the fast one.
-        colour_noise: Likewise.
+        demosaic: How; of X-Trans below 516 px LibRaw knows only the fast method.
 
     Raises:
         InputError: It is no such file, or nothing is known of its camera's colours.
@@ -54,16 +51,14 @@ def read_shot(
     tags = _tags(path)
     try:
         with rawpy.imread(str(path)) as opened:
-            return _shot(path, opened, tags, demosaic, colour_noise)
+            return _shot(path, opened, tags, demosaic)
     except rawpy.LibRawError as error:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
         raise InputError(f"{path}: not a raw file that can be read: {reason}") from None
 
 
-def _shot(
-    path: Any, opened: Any, tags: Mapping[str, Any], demosaic: str, colour_noise: int
-) -> Channels:
+def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:
     grey = opened.num_colors == 1
     if not grey and (opened.num_colors != 3 or opened.raw_pattern is None):
         raise InputError(
@@ -75,14 +70,14 @@ def _shot(
     balance = 1 / np.clip(neutral, 0.05, 1)
     xtrans = not grey and opened.raw_pattern.shape == (6, 6)
     if xtrans and min(opened.raw_image.shape) < LEAST_XTRANS:
-        demosaic = "fast"
-    pixels = libraw_pixels(opened, demosaic, balance, xtrans, turn=True, median=colour_noise)
-    white = 65535.0 * balance / balance.max()
+        demosaic = replace(demosaic, method="fast")
+    pixels = demosaic.run(opened, balance, xtrans, turn=True)
+    white = demosaic.scale(balance, 1.0)
     three = np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
     return Channels(
         pixels=np.ascontiguousarray(three),
         unit=white / 2.0 ** _number(tags.get("BaselineExposure"), 0.0),
-        full=white,
+        full=np.minimum(white, 65535.0),
         xyz_from=lambda white: np.asarray(np.linalg.inv(matrix(white)), np.float64),
         as_shot=illuminants.D65_XY if grey else _white(neutral, matrix),
         metadata=_facts(tags),
