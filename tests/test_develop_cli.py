@@ -145,3 +145,24 @@ def test_files_that_are_no_raw_files(tmp_path, capsys):
     assert "--iso" in capsys.readouterr().err
     assert run(tmp_path / "x.dng", "-o", tmp_path / "y.dng") == 2
     assert "raw file already" in capsys.readouterr().err
+
+
+def test_broken_files_are_refused_or_read(tmp_path):
+    """Nothing but our own errors, whatever bytes of the directories are changed."""
+    raw_of("nikon-d5100", greys(0.18, 0.5)).save(tmp_path / "x.dng")
+    whole, rng = (tmp_path / "x.dng").read_bytes(), np.random.default_rng(1)
+    files = [whole[:length] for length in (0, 8, 100, 700, len(whole) - 900)]
+    for _ in range(30):
+        broken = bytearray(whole)
+        for place in rng.integers(0, 900, 4):
+            broken[place if rng.random() < 0.7 else -place - 1] = rng.integers(256)
+        files.append(bytes(broken))
+    refused = 0
+    for data in files:
+        (tmp_path / "y.dng").write_bytes(data)
+        try:
+            dg.development.develop(read_shot(tmp_path / "y.dng"))
+        except dg.DaguerreError as error:
+            assert "y.dng" in str(error)
+            refused += 1
+    assert refused >= 4

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -100,7 +102,7 @@ def _grey(white: XY) -> FloatArray:
 def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
     """A DNG's two matrices, between them by reciprocal temperature; else LibRaw's for daylight."""
     known = [
-        (_ILLUMINANTS.get(int(tags.get(f"CalibrationIlluminant{k}", 21)), 6504.0), table)
+        (_ILLUMINANTS.get(int(_number(tags.get(f"CalibrationIlluminant{k}"), 21)), 6504.0), table)
         for k in (1, 2)
         if (table := _matrix(tags.get(f"ColorMatrix{k}"))) is not None
     ]
@@ -138,22 +140,32 @@ def _white(neutral: FloatArray, matrix: Matrix) -> XY:
 
 
 def _matrix(value: Any) -> FloatArray | None:
-    if value is None or len(value) != 18:
+    """Of 9 rationals; None: it is none, or no matrix that can be turned around."""
+    if not isinstance(value, tuple | list) or len(value) != 18:
         return None
-    return np.asarray(np.reshape(value[::2], (3, 3)) / np.reshape(value[1::2], (3, 3)), np.float64)
+    with np.errstate(all="ignore"):
+        pairs = np.reshape(np.asarray(value, np.float64), (9, 2))
+        table = (pairs[:, 0] / pairs[:, 1]).reshape(3, 3)
+    usable = np.isfinite(table).all() and np.linalg.cond(table) < 1e4
+    return table if usable else None
 
 
 def _tags(path: str | os.PathLike[str]) -> dict[str, Any]:
     """What the first directory and that of the exposure say; nothing of files that are no TIFF."""
     import tifffile
 
+    log = logging.getLogger("tifffile")  # what is wrong with a file, LibRaw says, and once
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
     try:
         with tifffile.TiffFile(path) as file:
             first: Any = file.pages[0]
             found = {tag.name: tag.value for tag in first.tags}
-    except (tifffile.TiffFileError, ValueError, KeyError, IndexError, OSError):
+            return found | dict(found.get("ExifTag") or {})
+    except Exception:  # broken files bring out whatever there is
         return {}
-    return found | dict(found.get("ExifTag") or {})
+    finally:
+        log.setLevel(level)
 
 
 def _facts(tags: Mapping[str, Any]) -> dict[str, Any]:
@@ -174,7 +186,8 @@ def _number(value: Any, default: float) -> float:
     """A number, or a rational as a pair; a tuple of more counts by its first."""
     try:
         if isinstance(value, tuple | list):
-            return float(value[0]) / float(value[1]) if len(value) == 2 else float(value[0])
-        return float(value)
+            value = float(value[0]) / float(value[1]) if len(value) == 2 else value[0]
+        number = float(value)
+        return number if math.isfinite(number) else default
     except (TypeError, ValueError, ZeroDivisionError, IndexError):
         return default
