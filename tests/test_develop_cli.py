@@ -157,12 +157,12 @@ def test_broken_files_are_refused_or_read(tmp_path):
         for place in rng.integers(0, 900, 4):
             broken[place if rng.random() < 0.7 else -place - 1] = rng.integers(256)
         files.append(bytes(broken))
-    refused = 0
+    said = []
     for data in files:
         (tmp_path / "y.dng").write_bytes(data)
         try:
             dg.development.develop(read_shot(tmp_path / "y.dng"))
         except dg.DaguerreError as error:
-            assert "y.dng" in str(error)
-            refused += 1
-    assert refused >= 4
+            said.append(str(error))
+    assert len(said) >= 4
+    assert all("y.dng" in words for words in said)
