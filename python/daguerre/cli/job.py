@@ -114,6 +114,8 @@ class Job:
             from daguerre.denoise import denoise
 
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
+            if self.plan.photograph.sensor is not None:
+                console.note("denoised: the sensor's channels are fitted from the clean colours")
         frame = self.session.with_truth(frame)
         frame = self.plan.photograph.metered(frame, self.plan.outputs)
         if self.plan.exposed:
