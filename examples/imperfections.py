@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes six scenes for the imperfections of lenses: wheel, fair, strings, wall, trees, dusk.
+"""Makes scenes for the imperfections of lenses: wheel, chart, fair, strings, wall, trees, dusk.
 
     python examples/imperfections.py [-o FOLDER] [--only NAME]     (default: out/imperfections)
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from kit.command import write_scenes
 
-SCENES = ("wheel", "fair", "strings", "wall", "trees", "dusk")
+SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk")
 
 if __name__ == "__main__":
     write_scenes("imperfections", SCENES, __doc__ or "")

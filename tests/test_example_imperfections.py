@@ -31,7 +31,7 @@ from words import WEAK, WORDS  # noqa: E402
 import axial_colour  # noqa: E402
 import polynomial_ghosts  # noqa: E402
 
-SCENES = ("wheel", "fair", "strings", "wall", "trees", "dusk")
+SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk")
 COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in panel.commands]
 
 

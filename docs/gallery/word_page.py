@@ -22,7 +22,7 @@ INTRODUCTION = """# Imperfections, three ways
 
 One sheet of pictures per word of the list that lectures on cameras have: spherical aberration,
 coma, chromatic aberration, astigmatism, radial distortion, vignetting, lens flares, bloom, halos
-and stars. From left to right:
+and stars; and one of field curvature. From left to right:
 
 - **traced**: exact rays through every surface of a lens;
 - **polynomial**: polynomials that were fitted to those rays ([polynomial.md](../polynomial.md));

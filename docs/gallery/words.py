@@ -5,7 +5,9 @@ from __future__ import annotations
 from ways import OUT, Panel, Ways, Word, post, render
 
 DARK = "--max-depth 1"
-STRINGS, WHEEL, FAIR = (f"{OUT}/{name}.glb" for name in ("strings", "wheel", "fair"))
+STRINGS, WHEEL, CHART, FAIR = (
+    f"{OUT}/{name}.glb" for name in ("strings", "wheel", "chart", "fair")
+)
 WALL, TREES, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "dusk"))
 NOKTON = "voigtlander-nokton-50mm-f1.5"
 PANCOLAR = "zeiss-jena-pancolar-50mm-f2"
@@ -150,6 +152,48 @@ table. It is the one aberration that is easily taken away: `lateral-colour:...,i
         ).panels(),
     ),
     fringes=True,
+)
+
+_BOARD = f"--res 1080x720 --crop 520,1000,200,520 {DARK} --spp 64"
+CURVATURE = Word(
+    "field_curvature",
+    "Field curvature",
+    """\
+A lens draws a flat chart on a bowl, and film is flat. Few lenses have that alone: a Canon 50 mm
+f/0.95 that is stopped down to f/2 comes near. Its sagittal and tangential foci are within 0.04 mm
+of each other, and 13 mm off the axis both lie 0.31 mm before those on it. The middle of the frame
+is near the left edge of these pictures, the edge 15 mm away at their right. Focused at the chart,
+2.2 m, the middle is sharp, and stars far from it have grey hearts; at 2.65 m it is the other way
+round. No focus has both. 2D does this well, as all of the chart is at one distance; it has not the
+tint of the glass, which is a little green, hence the 5 % of light.
+
+| rms radius of a point's image, um | on the axis | 4 mm | 8 mm | 11 mm | 13 mm | 15 mm |
+|---|---|---|---|---|---|---|
+| focused at 2.2 m | 4 | 9 | 25 | 36 | 38 | 30 |
+| 2.3 m | 11 | 8 | 17 | 27 | 28 | 21 |
+| 2.4 m | 20 | 14 | 11 | 18 | 19 | 13 |
+| 2.5 m | 28 | 22 | 10 | 11 | 11 | 9 |
+| 2.6 m | 35 | 29 | 14 | 8 | 5 | 11 |
+| 2.7 m | 42 | 35 | 20 | 10 | 7 | 16 |""",
+    tuple(
+        Ways(
+            f"field_curvature_{what}",
+            CHART,
+            f"--lens {CANON} --focus {focus}",
+            "--f-stop 2",
+            _BOARD,
+            (
+                f"distortion:model=lens,lens={CANON},focus={focus}m,scale=0.9,sensor=36x24",
+                f"lens-psf:lens={CANON},f_stop=2,focus=2.2m,defocus={defocus},zones=9,waves=0,"
+                "sensor=36x24",
+                f"vignetting:model=lens,lens={CANON},f_stop=2,focus={focus}m,sensor=36x24",
+            ),
+            wide=wide(f"--res 1080x720 --crop 460,1080,160,560 {DARK} --spp 48"),
+            more="--light-paths off",
+            note=f", {what} in focus",
+        ).panels()
+        for what, focus, defocus in (("middle", 2.2, 0), ("edge", 2.65, -0.2133))
+    ),
 )
 
 _RIM = f"--sensor 30x30 --res 420x420 {DARK} --spp 20"
@@ -451,5 +495,5 @@ lens, so it is an effect of the darkroom only.""",
     exposure=3.0,
 )
 
-WORDS = [SPHERICAL, COMA, AXIAL, LATERAL, ASTIGMATISM, CYLINDER, DISTORTION, VIGNETTING]
-WORDS += [FLARES, STARS, BLOOM, HALOS]
+WORDS = [SPHERICAL, COMA, AXIAL, LATERAL, CURVATURE, ASTIGMATISM, CYLINDER, DISTORTION]
+WORDS += [VIGNETTING, FLARES, STARS, BLOOM, HALOS]
