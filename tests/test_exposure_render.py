@@ -149,6 +149,13 @@ def test_the_meter_stays_within_the_sensor(capsys: pytest.CaptureFixture[str]) -
     assert "EV too dark" in told
 
 
+def test_a_black_picture_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "--res", "8x8", "--spp", "1"]
+    assert main(["render", "s.glb", "-o", "a.png", *words, "--exposure", "auto"]) == 0
+    assert "wanted some light to meter, got black; exposed as set" in capsys.readouterr().err
+    assert linear("a.png") == 0
+
+
 def test_a_bracket_is_three_times(capsys: pytest.CaptureFixture[str]) -> None:
     assert render("a.tif", "a.dng", "a.exr", bracket="-2,0,1", sensor="ideal") == 0
     names = {path.name for path in Path().iterdir()} - {"s.glb"}

@@ -191,11 +191,12 @@ def test_adaptive_rounds_bring_channels() -> None:
     np.testing.assert_allclose(frame.channels[..., 1], frame.xyz[..., 1], rtol=1e-4, atol=1e-5)
 
 
-def test_ghosts_land_in_channels() -> None:
+@pytest.mark.parametrize("of", ["flare", "scatter"])
+def test_ghosts_and_scatter_land_in_channels(of: str) -> None:
     """Nothing else shines on the film here."""
-    options: dict[str, Any] = {"light_paths": "off", "flare": 2000.0, "max_depth": 1}
-    eye = test_flare.camera(f_stop=11.0, sensor_size=(1.8, 1.2)).with_(sensor=OBSERVER)
-    one = Session(test_flare.sunny(), eye.with_(sensor_size=(1.8, 1.2)), resolution=SIZE, **options)
+    options: dict[str, Any] = {"light_paths": "off", of: 2000.0, "max_depth": 1}
+    eye = test_flare.camera(f_stop=11.0).with_(sensor=OBSERVER, sensor_size=(1.8, 1.2))
+    one = Session(test_flare.sunny(), eye, resolution=SIZE, **options)
     one.draw(0, 2)
     frame = one.frame()
     assert frame.flare is not None

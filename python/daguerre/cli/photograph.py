@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daguerre.errors import UsageError
+from daguerre.errors import DaguerreError, UsageError
 
 from . import console
 from . import quantities as q
@@ -128,12 +128,16 @@ class Photograph:
             console.note("bracketed by time: motion blur is that of 0 EV")
 
     def metered(self, frame: Frame, paths: list[Path]) -> Frame:
-        """The frame with the ISO that is set, or that the meter chooses; says which."""
+        """The frame with the ISO that the meter chooses, if it is to; says which."""
         if not any(self.exposes(path) for path in paths) or self.meters is None:
             return frame
         from daguerre.metering import meter
 
-        read = meter(frame, self.meters, at=self.focus_at)
+        try:
+            read = meter(frame, self.meters, at=self.focus_at)
+        except DaguerreError as error:  # black, say: no reason to lose what was drawn
+            console.warn(f"--exposure auto: {error}; exposed as set")
+            return frame
         wanted = read.iso * 2.0**self.ev
         low, high = (1.0, 1e7) if self.sensor is None else self.sensor.iso_range
         iso = float(round(min(max(wanted, low), high), 0 if wanted > 50 else 2))
