@@ -163,4 +163,6 @@ def test_wrong_endings_and_bits(tmp_path):
         picture().save(tmp_path / "x.gif")
     with pytest.raises(dg.UsageError, match=r"bits: wanted 8 for \.jpg"):
         picture().save(tmp_path / "x.jpg", bits=16)
+    with pytest.raises(dg.UsageError, match="quality: wanted 1"):
+        picture().save(tmp_path / "x.jpg", quality=0)
     assert not list(tmp_path.iterdir())

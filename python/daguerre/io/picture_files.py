@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import whole
 from daguerre.errors import OutputError, UsageError, suggest
 
 from . import exif, icc
@@ -63,10 +64,11 @@ def write_picture(
         bits: Per channel; absent: 8, of TIFF 16.
 
     Raises:
-        UsageError: Another ending, or bits that the format lacks.
+        UsageError: Another ending, a quality beyond 1 to 100, or bits that the format lacks.
         OutputError: The file cannot be written.
     """
     suffix = check_ending(path)
+    whole(quality, f"{path}: quality", 1, 100)
     if suffix == ".exr":
         _write_linear(path, pixels, space, metadata)
         return
