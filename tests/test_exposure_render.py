@@ -149,6 +149,17 @@ def test_the_meter_stays_within_the_sensor(capsys: pytest.CaptureFixture[str]) -
     assert "EV too dark" in told
 
 
+def test_a_sensor_that_lacks_iso_100_is_exposed_at_its_own() -> None:
+    """And with a meter that finds no light, too."""
+    slow = dg.sensors.load("sony-imx571-mono")
+    assert slow.iso_range[0] > 100
+    assert render("a.jpg", sensor="sony-imx571-mono", iso="") == 0
+    assert exif("a.jpg")["EXIF ISOSpeedRatings"] == f"{slow.base_iso:.0f}"
+    words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "--res", "8x8", "--spp", "1"]
+    more = ["--sensor", "sony-imx571-mono", "--exposure", "auto", "--quiet"]
+    assert main(["render", "s.glb", "-o", "b.dng", *words, *more]) == 0
+
+
 def test_a_black_picture_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "--res", "8x8", "--spp", "1"]
     assert main(["render", "s.glb", "-o", "a.png", *words, "--exposure", "auto"]) == 0

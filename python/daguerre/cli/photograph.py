@@ -151,7 +151,7 @@ class Photograph:
                 f"--exposure auto: ISO {wanted:.3g} is beyond {low:g} .. {high:g}: the picture is "
                 f"{_stops(wanted, iso)}"
             )
-        facts = {**frame.metadata, "isoSpeed": iso}
+        facts = {**frame.metadata, "isoSpeed": iso, "metering": read.mode}
         facts.pop("exposure_compensation", None)  # the ISO has it
         return replace(frame, metadata=facts)
 
@@ -177,7 +177,8 @@ class Photograph:
         looks: dict[str, Any] = {} if self.look is None else {"look": self.look}
         raw = None
         if self.sensor is not None or any(_is_raw(file) for file in files):
-            iso = frame.metadata.get("isoSpeed")
+            chosen = self.iso is not None or "metering" in frame.metadata
+            iso = frame.metadata.get("isoSpeed") if chosen else None  # the sensor has its own
             raw = frame.expose(self.sensor, iso, seed=self.seed)
             for text in raw.notes if tell else ():
                 console.note(text)
