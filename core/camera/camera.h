@@ -10,6 +10,7 @@
 
 #include "camera/exact.h"
 #include "camera/pinhole.h"
+#include "camera/projection.h"
 #include "camera/thick.h"
 #include "camera/thin.h"
 #include "geometry/ray.h"
@@ -18,7 +19,7 @@
 
 namespace dg {
 
-using LensKind = std::variant<Pinhole, ThinLens, ThickLens, ExactLens>;
+using LensKind = std::variant<Pinhole, ThinLens, ThickLens, ExactLens, Projection>;
 
 /// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Ideal
 /// lenses change evenly from one to the next; of thick and exact ones each sample takes the nearest in time.

@@ -71,6 +71,7 @@ ChiefRays::ChiefRays(const LensKind& kind) {
         if (const auto* thin = std::get_if<ThinLens>(&kind))
             film_distance_mm_ = thin->film_distance_mm;
         if (const auto* thick = std::get_if<ThickLens>(&kind)) thick_ = *thick;
+        if (const auto* projection = std::get_if<Projection>(&kind)) projection_ = *projection;
         return;
     }
     if (!lens->is_axial()) {
@@ -119,6 +120,7 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
 
 ChiefRay ChiefRays::at(Vec2d film_mm) const {
     if (thick_) return {{0, 0, thick_->pupil_offset_m()}, thick_->chief_direction(film_mm)};
+    if (projection_) return {{}, projection_->chief_direction(film_mm).value_or(Vec3d{0, 0, 0})};
     if (grid_) {
         const ChiefGrid::Line line = grid_->at(film_mm);
         return {line.foot + line.direction * line.start, line.direction};
@@ -167,6 +169,7 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
 
 std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
     if (thick_) return thick_->film_point({p.x, p.y, p.z - w * thick_->pupil_offset_m()});
+    if (projection_) return projection_->film_point(p);
     if (grid_) return grid_->film_point(p, w);
     if (film_distance_mm_ > 0) {
         if (!(p.z < 0)) return std::nullopt;

@@ -28,7 +28,8 @@ class ChiefRays {
     explicit ChiefRays(const LensKind& lens);
 
     /// Of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
-    /// are continued linearly in the film radius, for points that leave the frame.
+    /// are continued linearly in the film radius, for points that leave the frame. Where a
+    /// projection has no direction it is 0.
     ChiefRay at(Vec2d film_mm) const;
 
     /// The film point (mm, upright) whose chief ray meets a point of the camera frame;
@@ -51,6 +52,7 @@ class ChiefRays {
 
     double film_distance_mm_ = 0;    // of a pinhole or a thin lens, else 0
     std::optional<ThickLens> thick_;
+    std::optional<Projection> projection_;
     std::optional<ChiefGrid> grid_;  // of an exact lens that is not the same on all sides
     std::vector<Meridional> table_;  // of an exact one, by film radius
     double step_mm_ = 0;

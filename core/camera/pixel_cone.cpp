@@ -9,6 +9,9 @@ namespace {
 /// View direction of a film point on +x.
 Vec3d chief(const ExactLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
 Vec3d chief(const ThickLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
+Vec3d chief(const Projection& lens, double x_mm) {
+    return lens.chief_direction({x_mm, 0}).value_or(Vec3d{0, 0, 0});
+}
 template <typename Ideal>
 Vec3d chief(const Ideal& lens, double x_mm) {
     return normalize(Vec3d{x_mm, 0, -lens.film_distance_mm});
@@ -16,6 +19,19 @@ Vec3d chief(const Ideal& lens, double x_mm) {
 
 /// Solid angle per mm^2 of film (its root), mean over the directions at a radius: of lenses that are not the
 /// same on all sides.
+double mean_angle_per_mm(const Projection& lens, double radius_mm, double) {
+    constexpr int kTurns = 16;
+    double sum = 0;
+    int lit = 0;
+    for (int i = 0; i < kTurns; ++i) {
+        const double a = 2 * kPiD * (i + 0.5) / kTurns;
+        const Vec2d out{radius_mm * std::cos(a), radius_mm * std::sin(a)};
+        const double area = lens.solid_angle(lens.principal_mm + out);
+        if (area > 0) sum += std::sqrt(area), ++lit;
+    }
+    return lit ? sum / lit : 0;
+}
+
 double mean_angle_per_mm(const ExactLens& lens, double radius_mm, double step_mm) {
     constexpr int kTurns = 8;
     double sum = 0;
@@ -50,11 +66,18 @@ PixelCone::PixelCone(const Camera& camera, const Sensor& sensor) {
     const double radius = largest_radius(sensor), step = radius / kSteps;
     const double pitch = std::sqrt(sensor.width_mm / sensor.width * sensor.height_mm / sensor.height);
     steps_per_mm_ = float(1 / step);
-    if (const auto* lens = std::get_if<ExactLens>(&camera.lens); lens && !lens->is_axial()) {
+    const auto by_turns = [&](const auto& lens) {
         for (int i = 0; i <= kSteps; ++i) {
-            const double angle = mean_angle_per_mm(*lens, i * step, 0.5 * step);
+            const double angle = mean_angle_per_mm(lens, i * step, 0.5 * step);
             angles_[i] = angle > 0 || i == 0 ? float(pitch * angle) : angles_[i - 1];
         }
+    };
+    if (const auto* lens = std::get_if<ExactLens>(&camera.lens); lens && !lens->is_axial()) {
+        by_turns(*lens);
+        return;
+    }
+    if (const auto* lens = std::get_if<Projection>(&camera.lens)) {
+        by_turns(*lens);
         return;
     }
     std::array<double, kSteps + 1> a;

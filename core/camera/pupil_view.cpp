@@ -4,6 +4,7 @@
 
 #include "camera/pupil_shape.h"
 #include "camera/tilt.h"
+#include "math/warp.h"
 
 namespace dg {
 namespace {
@@ -29,9 +30,19 @@ std::optional<Line> line_through(Vec3d p, double w, Vec3d q, Vec3d axis, double 
     return Line{direction, per_m2 / cosine * (w == 0 ? 1 : d2)};
 }
 
-std::optional<Sample> sample_hole(Vec3d p, double w) {
+/// Points so near, in radii of the iris, see no lens: they lie within it.
+constexpr double kNear = 4;
+
+/// The radius of the disc across the way to a point through which all its rays come that pass an iris of
+/// that radius: the iris is turned a little against it, by angles of about radius / distance.
+double bound_of(double radius, Vec3d p, double w) {
+    const double angle = w == 0 ? 0 : radius / length(p);
+    return kRim * radius * (1 + 4 * angle * angle);
+}
+
+std::optional<Sample> sample_hole(Vec3d p, double w, bool all_around) {
     const double d2 = length_squared(p);
-    if (!(p.z < 0)) return std::nullopt;
+    if (!(all_around ? d2 > 0 : p.z < 0)) return std::nullopt;
     return Sample{{}, to_float(p * (1 / std::sqrt(d2))), w == 0 ? 1.f : float(d2)};
 }
 
@@ -57,13 +68,30 @@ PupilView::Kind PupilView::view_of(const LensKind& kind) {
     }
     if (const auto* lens = std::get_if<ExactLens>(&kind))
         return std::make_shared<const PupilShape>(*lens);
+    if (const auto* lens = std::get_if<Projection>(&kind)) {
+        const bool wide = lens->model.is_wide();
+        if (!(lens->aperture_radius_mm > 0)) return Hole{wide};
+        return Turning{1e-3 * lens->aperture_radius_mm * lens->iris.outer_radius(), wide};
+    }
     return Hole{};
 }
 
 PupilView::PupilView(const LensKind& lens) : kind_(view_of(lens)) {}
 
 std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
-    if (std::holds_alternative<Hole>(kind_)) return sample_hole(p, w);
+    if (const auto* hole = std::get_if<Hole>(&kind_)) return sample_hole(p, w, hole->all_around);
+    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+        const double far = length(p);
+        if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return std::nullopt;
+        const Vec3d axis = p / far;
+        const AcrossDirection across(axis);
+        const double radius = bound_of(iris->radius, p, w);
+        const Vec2f disk = warp_disk(u);
+        const Vec3d q = radius * (disk.x * across.x + disk.y * across.y);
+        const auto line = line_through(p, w, q, axis, 1 / (kPiD * radius * radius));
+        if (!line) return std::nullopt;
+        return Sample{to_float(q), to_float(line->direction), float(line->pdf)};
+    }
     if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
         return (*shape)->sample(p, w, u);
     const Disc& disc = std::get<Disc>(kind_);
@@ -80,9 +108,20 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
 }
 
 float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
-    if (std::holds_alternative<Hole>(kind_)) {
-        const auto drawn = sample_hole(p, w);
+    if (const auto* hole = std::get_if<Hole>(&kind_)) {
+        const auto drawn = sample_hole(p, w, hole->all_around);
         return drawn ? drawn->pdf : 0;
+    }
+    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+        const double far = length(p);
+        if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return 0;
+        const Vec3d axis = p / far, d = to_double(ray.direction), from = to_double(ray.origin);
+        if (!(dot(d, axis) > 0)) return 0;
+        const Vec3d q = from - d * (dot(from, axis) / dot(d, axis));
+        const double radius = bound_of(iris->radius, p, w);
+        if (!(length(q) <= radius)) return 0;
+        const auto line = line_through(p, w, q, axis, 1 / (kPiD * radius * radius));
+        return line ? float(line->pdf) : 0;
     }
     if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
         return (*shape)->pdf(p, w, ray);

@@ -7,7 +7,7 @@
 // point, so camera and light can weigh one ray alike. What passes is not the region's
 // affair: reproject() (camera.h) traces the ray. No ray depends on a wavelength.
 //
-// Pinholes are a lens of measure one. Thin lens: its iris; thick: the iris's image, the
+// Pinholes and projections without an iris are a lens of measure one. Thin lens: its iris; thick: the iris's image, the
 // entrance pupil. Exact: what camera rays of all wavelengths leave at the entrance pupil,
 // iris fully open (pupil_shape.h).
 #pragma once
@@ -41,7 +41,14 @@ class PupilView {
 
   private:
     friend class PupilViewOverTime;
-    struct Hole {};
+    struct Hole {
+        bool all_around = false;   // what lies beside it and behind is seen, too
+    };
+    /// An iris that faces each chief ray, within a ball of that radius (m) about the origin.
+    struct Turning {
+        double radius;
+        bool all_around;
+    };
     /// A flat iris. Rays start on the plane z = start of its frame.
     struct Disc {
         Affine3d frame;  // camera from iris, m
@@ -50,7 +57,7 @@ class PupilView {
         double start;
         std::shared_ptr<const Iris> iris;
     };
-    using Kind = std::variant<Hole, Disc, std::shared_ptr<const PupilShape>>;
+    using Kind = std::variant<Hole, Turning, Disc, std::shared_ptr<const PupilShape>>;
     explicit PupilView(Kind kind) : kind_(std::move(kind)) {}
     static Kind view_of(const LensKind& lens);
     static Disc disc_of(const ThinLens::Numbers& numbers,

@@ -53,6 +53,32 @@ inline Camera still(LensKind lens) {
     return {Motion{}, std::move(lens)};
 }
 
+/// All light goes through one point.
+inline bool is_hole(const LensKind& lens) {
+    const auto* projection = std::get_if<Projection>(&lens);
+    return std::holds_alternative<Pinhole>(lens) || (projection && projection->aperture_radius_mm == 0);
+}
+
+inline std::vector<ViewCase> projection_cases() {
+    using Kind = ProjectionModel::Kind;
+    const Iris pentagon = Iris::polygon(5, 20, 0.3);
+    const ProjectionModel phone(Kind::opencv, {-0.21, 0.09, 0.002, -0.003, -0.02, 0.01, 0, 0, 0.004, 0, -0.003, 0,
+                                               0.02, -0.03});
+    const ProjectionModel fisheye(Kind::kannala_brandt, {-0.02, 0.004, -0.001, 0.0002});
+    const ProjectionModel sphere(Kind::double_sphere, {-0.2, 0.58});
+    std::vector<ViewPoint> around = usual_points();
+    around.push_back({{1.5, 0.4, -0.2}, 1, 0.02});
+    around.push_back({{-0.9, 0.5, 0.3}, 0, 0.01});
+    std::vector<ViewCase> cases;
+    cases.push_back({"projection, hole", still(Projection{phone, {30, 31}, {0.5, -0.3}}), usual_points()});
+    cases.push_back({"fisheye, hole", still(Projection{fisheye, {11, 11}, {0.2, 0}}), around});
+    cases.push_back({"projection, iris", still(Projection{phone, {30, 31}, {0.5, -0.3}, 5, 2}), usual_points(), 0.7f});
+    cases.push_back({"fisheye, iris", still(Projection{fisheye, {11, 11.5}, {0.2, 0}, 3, 1.5}), around});
+    cases.push_back(
+        {"double sphere, pentagon", still(Projection{sphere, {9, 9}, {}, 4, HUGE_VAL, pentagon}), around});
+    return cases;
+}
+
 inline std::vector<ViewCase> ideal_cases() {
     const Iris pentagon = Iris::polygon(5, 20, 0.3);
     std::vector<ViewCase> cases;
@@ -82,6 +108,7 @@ inline std::vector<ViewCase> ideal_cases() {
         {0.3f, 0.7f},
         {ThickLens(check_lens(true, 0.5), s).in_the_body_of(tilted), tilted}};
     cases.push_back({"thick, moving", focusing, usual_points()});
+    for (ViewCase& c : projection_cases()) cases.push_back(std::move(c));
     return cases;
 }
 

@@ -25,12 +25,14 @@ class View {
     float time_at(Vec2d px) const { return float(settings_.shutter.opens_at(px)); }
     Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
 
-    Ray ray(Vec2d px) const {
+    /// Nothing where the camera sees nothing.
+    std::optional<Ray> ray(Vec2d px) const {
         Ray ray;
         ray.time = time_at(px);
         const Vec2d film = settings_.sensor.mm_from_px(px) + shift(ray.time);
         const ChiefRay chief = chief_.with_lens(
             ray.time, [&](const ChiefRays& lens) { return lens.at(film); });
+        if (chief.direction == Vec3d{0, 0, 0}) return std::nullopt;
         const Affine3d world = pose(ray.time);
         ray.origin = to_float(world.point(chief.origin));
         ray.direction = to_float(normalize(world.vector(chief.direction)));
@@ -146,11 +148,12 @@ Truth see(const TruthFrame& frame, const FilmLayout& region,
                 std::vector<std::uint32_t>(n)};
     const View view(frame, settings);
     for_each_pixel(region, settings, [&](std::size_t i) {
-        const Ray ray = view.ray(centre(region, i));
-        const auto hit = frame.scene.first_hit(ray);
+        const std::optional<Ray> ray = view.ray(centre(region, i));
+        if (!ray) return;
+        const auto hit = frame.scene.first_hit(*ray);
         truth.seen[i] = {hit.value_or(RawHit{}), hit.has_value(),
-                         frame.scene.sky_from_world(ray.direction, ray.time)};
-        if (hit) note_surface(truth, i, frame.scene, ray, *hit, view.pose(ray.time));
+                         frame.scene.sky_from_world(ray->direction, ray->time)};
+        if (hit) note_surface(truth, i, frame.scene, *ray, *hit, view.pose(ray->time));
     });
     return truth;
 }

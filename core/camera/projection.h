@@ -1,0 +1,47 @@
+// projection.h -- a camera that is known by its calibration, or by the formula of its picture, and not by its
+// glass: every ray is drawn through the model, none is bent afterwards.
+//
+// With an iris it has depth of field. The iris faces each chief ray, as the entrance pupils of fisheyes turn
+// toward the side; so a field beyond 90 degrees has one, too. What is in focus lies on the plane across the
+// axis at focus_distance_m, or, of models that see to the side and behind, on the sphere of that radius.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "camera/camera_sample.h"
+#include "camera/projection_model.h"
+#include "optics/stop.h"
+
+namespace dg {
+
+struct Projection {
+    ProjectionModel model{};
+    Vec2d focal_mm{50, 50};            // across and up
+    Vec2d principal_mm{0, 0};          // where the axis meets the film, upright
+    double aperture_radius_mm = 0;     // of the round iris; 0: all is sharp
+    double focus_distance_m = 1;       // infinity is allowed
+    Iris iris = {};                    // shape of unit radius
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
+
+    /// Unit, camera frame; nothing where the model sees nothing.
+    std::optional<Vec3d> chief_direction(Vec2d film_mm) const;
+    std::optional<Vec2d> film_point(Vec3d direction) const;
+    /// Of the scene per mm2 of film.
+    double solid_angle(Vec2d film_mm) const;
+
+  private:
+    Vec2d model_point(Vec2d film_mm) const;
+    Reprojection reproject_hole(const CameraRay& ray) const;
+    Reprojection reproject_iris(const CameraRay& ray) const;
+    std::optional<Vec3d> in_focus(Vec3d from, Vec3d direction) const;
+};
+
+/// Axes across a direction that turn with it from straight ahead (-z) without a jump but straight behind.
+struct AcrossDirection {
+    Vec3d x, y;
+    explicit AcrossDirection(Vec3d unit);
+};
+
+}  // namespace dg

@@ -1,0 +1,366 @@
+#include "camera/projection_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+using Kind = ProjectionModel::Kind;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kNewton = 40;
+constexpr double kExact = 1e-14;   // relative, of points
+constexpr int kFoldSteps = 4096;
+
+double square(double x) {
+    return x * x;
+}
+
+/// Half of the field that a unified model can look back into (Usenko et al. 2018, equations 34 and 43).
+double widest(double alpha) {
+    return alpha <= 0.5 ? alpha / (1 - alpha) : (1 - alpha) / alpha;
+}
+
+using Matrix = std::array<double, 9>;
+
+Vec3d times(const Matrix& m, Vec3d v) {
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+            m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+    Matrix c{};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            for (int k = 0; k < 3; ++k) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
+    return c;
+}
+
+/// Of the plane of a tilted sensor: turned by the angles, then seen from the lens again (OpenCV's tauX, tauY).
+Matrix tilt_matrix(double x, double y) {
+    const double cx = std::cos(x), sx = std::sin(x), cy = std::cos(y), sy = std::sin(y);
+    const Matrix about_x{1, 0, 0, 0, cx, sx, 0, -sx, cx}, about_y{cy, 0, -sy, 0, 1, 0, sy, 0, cy};
+    const Matrix r = product(about_y, about_x);
+    return product({r[8], 0, -r[2], 0, r[8], -r[5], 0, 0, 1}, r);
+}
+
+Matrix inverse(const Matrix& m) {
+    const auto minor = [&](int a, int b, int c, int d) { return m[a] * m[d] - m[b] * m[c]; };
+    const double det = m[0] * minor(4, 5, 7, 8) - m[1] * minor(3, 5, 6, 8) + m[2] * minor(3, 4, 6, 7);
+    Matrix out{minor(4, 5, 7, 8), -minor(1, 2, 7, 8), minor(1, 2, 4, 5), -minor(3, 5, 6, 8), minor(0, 2, 6, 8),
+               -minor(0, 2, 3, 5), minor(3, 4, 6, 7), -minor(0, 1, 6, 7), minor(0, 1, 3, 4)};
+    for (double& x : out) x /= det;
+    return out;
+}
+
+Vec2d seen(Vec3d v) {
+    return {v.x / v.z, v.y / v.z};
+}
+
+/// Faces of the cube by where they stand in the row: the axis that they look along, and those across.
+struct Face {
+    Vec3d ahead, right, down;
+};
+constexpr Face kFaces[6] = {
+    {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},  {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
+    {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}},
+};
+
+Vec2d on_cube(Vec3d d) {
+    const double a[3] = {std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+    const int axis = a[0] >= a[1] && a[0] >= a[2] ? 0 : a[1] >= a[2] ? 1 : 2;
+    const int face = 2 * axis + ((axis == 0 ? d.x : axis == 1 ? d.y : d.z) < 0);
+    const Face& f = kFaces[face];
+    const double scale = 0.5 / dot(d, f.ahead);
+    return {face - 2.5 + scale * dot(d, f.right), scale * dot(d, f.down)};
+}
+
+std::optional<Vec3d> from_cube(Vec2d p) {
+    if (!(std::abs(p.x) < 3 && std::abs(p.y) <= 0.5)) return std::nullopt;
+    const int face = std::clamp(int(std::floor(p.x + 3)), 0, 5);
+    const Face& f = kFaces[face];
+    return normalize(f.ahead + 2 * (p.x - (face - 2.5)) * f.right + 2 * p.y * f.down);
+}
+
+}  // namespace
+
+ProjectionModel::ProjectionModel(Kind kind, std::array<double, kMost> parameters)
+    : kind_(kind), k_(parameters), largest_angle_(kPiD), largest_radius_(kInfinity),
+      ideal_end_(kInfinity) {
+    for (const double x : k_)
+        if (!std::isfinite(x)) throw input_error("projection", "parameters", "finite numbers", "others");
+    const auto within = [&](int i, const char* name, double low, double high) {
+        if (!(k_[i] >= low && k_[i] <= high))
+            throw input_error("projection", name, std::to_string(low) + " .. " + std::to_string(high),
+                              std::to_string(k_[i]));
+    };
+    switch (kind_) {
+    case Kind::opencv:
+        std::copy_n(k_.begin(), 8, radial_.begin());
+        within(12, "tilt_x", -1.5, 1.5), within(13, "tilt_y", -1.5, 1.5);
+        tilts_ = k_[12] != 0 || k_[13] != 0;
+        tilt_ = tilt_matrix(k_[12], k_[13]);
+        untilt_ = inverse(tilt_);
+        break;
+    case Kind::omni:
+        within(0, "xi", 0, 100);
+        radial_ = {k_[1], k_[2], k_[3], k_[4], 0, 0, 0, 0};
+        break;
+    case Kind::double_sphere: within(0, "xi", -1, 100), within(1, "alpha", 0, 1); break;
+    case Kind::eucm: within(0, "alpha", 0, 1), within(1, "beta", 1e-6, 1e6); break;
+    case Kind::fov: within(0, "w", 1e-6, kPiD); break;
+    default: break;
+    }
+    find_fold();
+}
+
+bool ProjectionModel::is_wide() const {
+    switch (kind_) {
+    case Kind::rectilinear: case Kind::opencv: case Kind::fov: return false;
+    default: return true;
+    }
+}
+
+/// Where a radial model turns back upon itself, or ends.
+void ProjectionModel::find_fold() {
+    switch (kind_) {
+    case Kind::rectilinear: largest_angle_ = kPiD / 2; return;
+    case Kind::orthographic: largest_angle_ = kPiD / 2, largest_radius_ = 1; return;
+    case Kind::equidistant: largest_radius_ = kPiD; return;
+    case Kind::equisolid: largest_radius_ = 2; return;
+    case Kind::fov: largest_angle_ = kPiD / 2, largest_radius_ = kPiD / 2 / k_[0]; return;
+    case Kind::kannala_brandt: {
+        for (int i = 1; i <= kFoldSteps; ++i) {
+            const double t = kPiD * i / kFoldSteps, t2 = t * t;
+            const double slope =
+                1 + t2 * (3 * k_[0] + t2 * (5 * k_[1] + t2 * (7 * k_[2] + t2 * 9 * k_[3])));
+            if (slope > 0) continue;
+            largest_angle_ = kPiD * (i - 1) / kFoldSteps;
+            break;
+        }
+        largest_radius_ = radius_of(largest_angle_);
+        return;
+    }
+    case Kind::opencv:
+    case Kind::omni: {
+        // The ideal radius beyond which the distorted one falls; an omni model's ideal points end at its own.
+        double last = kInfinity;
+        for (int i = 1; i <= 4 * kFoldSteps; ++i) {
+            const double r = std::exp(-6 + 12.0 * i / (4 * kFoldSteps));   // 0.0025 to 400 focal lengths
+            if (radial_slope(r) > 0) continue;
+            last = std::exp(-6 + 12.0 * (i - 1) / (4 * kFoldSteps));
+            break;
+        }
+        ideal_end_ = last;
+        largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
+        largest_radius_ = last < kInfinity ? bent({last, 0}).x : kInfinity;
+        return;
+    }
+    default: return;
+    }
+}
+
+/// How fast the distorted radius grows with the ideal one, by the radial terms alone.
+double ProjectionModel::radial_slope(double r) const {
+    const double r2 = r * r, r4 = r2 * r2, r6 = r4 * r2;
+    const double a = 1 + radial_[0] * r2 + radial_[1] * r4 + radial_[4] * r6;
+    const double b = 1 + radial_[5] * r2 + radial_[6] * r4 + radial_[7] * r6;
+    const double da = 2 * radial_[0] * r2 + 4 * radial_[1] * r4 + 6 * radial_[4] * r6;   // r times a'
+    const double db = 2 * radial_[5] * r2 + 4 * radial_[6] * r4 + 6 * radial_[7] * r6;
+    if (!(b > 0)) return -1;
+    return (a + da) / b - a * db / (b * b);
+}
+
+double ProjectionModel::radius_of(double angle) const {
+    switch (kind_) {
+    case Kind::rectilinear: return std::tan(angle);
+    case Kind::equidistant: return angle;
+    case Kind::equisolid: return 2 * std::sin(0.5 * angle);
+    case Kind::stereographic: return 2 * std::tan(0.5 * angle);
+    case Kind::orthographic: return std::sin(angle);
+    case Kind::fov: return std::atan(2 * std::tan(angle) * std::tan(0.5 * k_[0])) / k_[0];
+    default: {
+        const double t2 = angle * angle;
+        return angle * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * k_[3]))));
+    }
+    }
+}
+
+std::optional<double> ProjectionModel::angle_of(double r) const {
+    switch (kind_) {
+    case Kind::rectilinear: return std::atan(r);
+    case Kind::equidistant: return r <= kPiD ? std::optional(r) : std::nullopt;
+    case Kind::equisolid: return r <= 2 ? std::optional(2 * std::asin(0.5 * r)) : std::nullopt;
+    case Kind::stereographic: return 2 * std::atan(0.5 * r);
+    case Kind::orthographic: return r <= 1 ? std::optional(std::asin(r)) : std::nullopt;
+    case Kind::fov:
+        if (!(r * k_[0] < kPiD / 2)) return std::nullopt;
+        return std::atan(std::tan(r * k_[0]) / (2 * std::tan(0.5 * k_[0])));
+    default: break;
+    }
+    if (r > largest_radius_) return std::nullopt;
+    // Newton within a bracket: the radius grows with the angle up to the fold.
+    double low = 0, high = largest_angle_, t = std::min(r, high);
+    for (int i = 0; i < kNewton; ++i) {
+        const double miss = radius_of(t) - r;
+        if (std::abs(miss) <= kExact * std::max(r, 1e-3)) break;
+        (miss > 0 ? high : low) = t;
+        const double t2 = t * t;
+        const double slope = 1 + t2 * (3 * k_[0] + t2 * (5 * k_[1] + t2 * (7 * k_[2] + t2 * 9 * k_[3])));
+        const double next = t - miss / slope;
+        t = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return t;
+}
+
+Vec2d ProjectionModel::tilted(Vec2d p) const {
+    return seen(times(tilt_, {p.x, p.y, 1}));
+}
+
+Vec2d ProjectionModel::untilted(Vec2d p) const {
+    return seen(times(untilt_, {p.x, p.y, 1}));
+}
+
+/// Radial, tangential and thin prism terms, wherever they lead.
+Vec2d ProjectionModel::bent(Vec2d u) const {
+    const double r2 = u.x * u.x + u.y * u.y, r4 = r2 * r2, r6 = r4 * r2;
+    const double radial = (1 + radial_[0] * r2 + radial_[1] * r4 + radial_[4] * r6) /
+                          (1 + radial_[5] * r2 + radial_[6] * r4 + radial_[7] * r6);
+    const double p1 = radial_[2], p2 = radial_[3], xy = 2 * u.x * u.y;
+    Vec2d d{u.x * radial + p1 * xy + p2 * (r2 + 2 * u.x * u.x),
+            u.y * radial + p1 * (r2 + 2 * u.y * u.y) + p2 * xy};
+    if (kind_ == Kind::opencv) d.x += k_[8] * r2 + k_[9] * r4, d.y += k_[10] * r2 + k_[11] * r4;
+    return d;
+}
+
+std::optional<Vec2d> ProjectionModel::distorted(Vec2d u) const {
+    if (!(length(u) <= ideal_end_)) return std::nullopt;
+    const Vec2d d = bent(u);
+    return tilts_ ? tilted(d) : d;
+}
+
+/// By Newton's method on both coordinates; what it finds must lie before the fold.
+std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
+    const Vec2d goal = tilts_ ? untilted(p) : p;
+    Vec2d u = goal;
+    if (length(u) > ideal_end_) u = u * (0.9 * ideal_end_ / length(u));
+    const double size = std::max(length(goal), 1e-3);
+    for (int i = 0; i < kNewton; ++i) {
+        const Vec2d miss = bent(u) - goal;
+        if (length(miss) <= kExact * size) break;
+        const double h = 1e-7 * std::max(length(u), 1e-2);
+        const Vec2d x = (bent({u.x + h, u.y}) - bent({u.x - h, u.y})) * (0.5 / h);
+        const Vec2d y = (bent({u.x, u.y + h}) - bent({u.x, u.y - h})) * (0.5 / h);
+        const double det = x.x * y.y - x.y * y.x;
+        if (det == 0) return std::nullopt;
+        Vec2d step{(y.y * miss.x - y.x * miss.y) / det, (x.x * miss.y - x.y * miss.x) / det};
+        const double longest = 0.5 * std::max(length(u), 0.1);
+        if (length(step) > longest) step = step * (longest / length(step));
+        u = u - step;
+        if (length(u) > ideal_end_) u = u * (0.999999 * ideal_end_ / length(u));
+    }
+    const Vec2d miss = bent(u) - goal;
+    if (!(length(miss) <= 1e-10 * size) || !(length(u) <= ideal_end_)) return std::nullopt;
+    return u;
+}
+
+std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
+    const double norm = length(d);
+    if (!(norm > 0)) return std::nullopt;
+    switch (kind_) {
+    case Kind::equirectangular:
+        return Vec2d{std::atan2(d.x, d.z), std::asin(std::clamp(d.y / norm, -1.0, 1.0))};
+    case Kind::cube: return on_cube(d);
+    case Kind::opencv: return d.z > 0 ? distorted(seen(d)) : std::nullopt;
+    case Kind::omni: {
+        const double z = d.z + k_[0] * norm;
+        // Beyond this angle two directions share a point (Mei and Rives 2007: xi > 1), or none has one.
+        const double back = k_[0] <= 1 ? -k_[0] : -1 / k_[0];
+        if (!(z > 0 && d.z > back * norm)) return std::nullopt;
+        return distorted({d.x / z, d.y / z});
+    }
+    case Kind::double_sphere: {
+        const double xi = k_[0], alpha = k_[1], w1 = widest(alpha);
+        const double w2 = (w1 + xi) / std::sqrt(2 * w1 * xi + xi * xi + 1);
+        if (!(d.z > -w2 * norm)) return std::nullopt;
+        const double z = xi * norm + d.z, d2 = std::hypot(std::hypot(d.x, d.y), z);
+        const double scale = alpha * d2 + (1 - alpha) * z;
+        return scale > 0 ? std::optional(Vec2d{d.x / scale, d.y / scale}) : std::nullopt;
+    }
+    case Kind::eucm: {
+        const double alpha = k_[0], beta = k_[1];
+        const double rho = std::sqrt(beta * (d.x * d.x + d.y * d.y) + d.z * d.z);
+        if (!(d.z > -widest(alpha) * rho)) return std::nullopt;
+        const double scale = alpha * rho + (1 - alpha) * d.z;
+        return scale > 0 ? std::optional(Vec2d{d.x / scale, d.y / scale}) : std::nullopt;
+    }
+    default: break;
+    }
+    const double across = std::hypot(d.x, d.y), angle = std::atan2(across, d.z);
+    if (!(angle <= largest_angle_) || (kind_ == Kind::rectilinear && !(d.z > 0))) return std::nullopt;
+    if (across == 0) return Vec2d{0, 0};
+    const double scale = radius_of(angle) / across;
+    return Vec2d{d.x * scale, d.y * scale};
+}
+
+std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
+    switch (kind_) {
+    case Kind::equirectangular: {
+        if (!(std::abs(p.x) <= kPiD && std::abs(p.y) <= kPiD / 2)) return std::nullopt;
+        const double c = std::cos(p.y);
+        return Vec3d{c * std::sin(p.x), std::sin(p.y), c * std::cos(p.x)};
+    }
+    case Kind::cube: return from_cube(p);
+    case Kind::opencv: {
+        const auto u = undistorted(p);
+        return u ? std::optional(normalize(Vec3d{u->x, u->y, 1})) : std::nullopt;
+    }
+    case Kind::omni: {
+        const auto u = undistorted(p);
+        if (!u) return std::nullopt;
+        const double xi = k_[0], r2 = u->x * u->x + u->y * u->y, inside = 1 + (1 - xi * xi) * r2;
+        if (!(inside >= 0)) return std::nullopt;
+        const double scale = (xi + std::sqrt(inside)) / (r2 + 1);
+        return normalize(Vec3d{scale * u->x, scale * u->y, scale - xi});
+    }
+    case Kind::double_sphere: {
+        const double xi = k_[0], alpha = k_[1], r2 = p.x * p.x + p.y * p.y;
+        const double inside = 1 - (2 * alpha - 1) * r2;
+        if (!(inside >= 0)) return std::nullopt;
+        const double z = (1 - alpha * alpha * r2) / (alpha * std::sqrt(inside) + 1 - alpha);
+        const double other = z * z + (1 - xi * xi) * r2;
+        if (!(other >= 0)) return std::nullopt;
+        const double scale = (z * xi + std::sqrt(other)) / (z * z + r2);
+        return normalize(Vec3d{scale * p.x, scale * p.y, scale * z - xi});
+    }
+    case Kind::eucm: {
+        const double alpha = k_[0], beta = k_[1], r2 = p.x * p.x + p.y * p.y;
+        const double inside = 1 - (2 * alpha - 1) * beta * r2;
+        if (!(inside >= 0)) return std::nullopt;
+        const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(inside) + 1 - alpha);
+        return normalize(Vec3d{p.x, p.y, z});
+    }
+    default: break;
+    }
+    const double r = length(p);
+    const auto angle = angle_of(r);
+    if (!angle) return std::nullopt;
+    if (r == 0) return Vec3d{0, 0, 1};
+    const double across = std::sin(*angle) / r;
+    return Vec3d{p.x * across, p.y * across, std::cos(*angle)};
+}
+
+double ProjectionModel::solid_angle(Vec2d p) const {
+    const double h = 1e-5;
+    const auto a = unproject({p.x - h, p.y}), b = unproject({p.x + h, p.y}), c = unproject({p.x, p.y - h}),
+               d = unproject({p.x, p.y + h});
+    if (!(a && b && c && d)) return 0;
+    return length(cross(*b - *a, *d - *c)) / square(2 * h);
+}
+
+}  // namespace dg

@@ -1,0 +1,189 @@
+#include "camera/projection.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "math/error.h"
+
+using namespace dg;
+using Kind = ProjectionModel::Kind;
+
+namespace {
+
+struct Case {
+    const char* name;
+    ProjectionModel model;
+    double far;   // of directions from the axis, radians
+};
+
+std::vector<Case> cases() {
+    return {{"rectilinear", ProjectionModel(Kind::rectilinear), 1.4},
+            {"equidistant", ProjectionModel(Kind::equidistant), 3.1},
+            {"equisolid", ProjectionModel(Kind::equisolid), 3.1},
+            {"stereographic", ProjectionModel(Kind::stereographic), 2.9},
+            {"orthographic", ProjectionModel(Kind::orthographic), 1.5},
+            {"equirectangular", ProjectionModel(Kind::equirectangular), 3.1},
+            {"cube", ProjectionModel(Kind::cube), 3.1},
+            {"opencv", ProjectionModel(Kind::opencv, {-0.28, 0.07, 1e-3, -2e-3, 0.01}), 0.8},
+            {"rational", ProjectionModel(Kind::opencv, {0.8, -0.3, 1e-3, 2e-3, 0.02, 1.1, -0.1, 0.05}), 0.9},
+            {"tilted", ProjectionModel(Kind::opencv, {-0.1, 0.02, 0, 0, 0, 0, 0, 0, 0.01, 0, -0.01, 0, 0.1, -0.2}), 0.8},
+            {"kannala_brandt", ProjectionModel(Kind::kannala_brandt, {-0.01, 0.004, -0.003, 5e-4}), 1.7},
+            {"double_sphere", ProjectionModel(Kind::double_sphere, {-0.18, 0.59}), 1.7},
+            {"double_sphere, xi > 0", ProjectionModel(Kind::double_sphere, {0.3, 0.4}), 1.9},
+            {"eucm", ProjectionModel(Kind::eucm, {0.62, 1.1}), 1.7},
+            {"omni", ProjectionModel(Kind::omni, {1.2, -0.2, 0.05, 1e-3, -1e-3}), 1.6},
+            {"ucm", ProjectionModel(Kind::omni, {0.8}), 1.9},
+            {"fov", ProjectionModel(Kind::fov, {0.93}), 1.3}};
+}
+
+/// At an angle from the axis, turned about it.
+Vec3d direction(double angle, double turn) {
+    return {std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle)};
+}
+
+}  // namespace
+
+TEST_CASE("a direction comes back from its point, and a point from its direction") {
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        double worst = 0;
+        int seen = 0;
+        for (int i = 0; i <= 60; ++i)
+            for (int j = 0; j < 24; ++j) {
+                const Vec3d d = direction(c.far * i / 60, 0.13 + j * 2 * kPiD / 24);
+                const auto p = c.model.project(3.7 * d);
+                if (!p) continue;
+                const auto back = c.model.unproject(*p);
+                REQUIRE(back.has_value());
+                ++seen;
+                worst = std::max({worst, length(*back - d), std::abs(length(*back) - 1)});
+                const auto again = c.model.project(*back);
+                REQUIRE(again.has_value());
+                worst = std::max(worst, length(*again - *p));
+            }
+        CHECK(seen >= 61 * 24 * 9 / 10);
+        CHECK(worst < 1e-9);
+    }
+}
+
+TEST_CASE("solid angle is the area of the sphere that a piece of the picture covers") {
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        for (double angle : {0.1, 0.4, 0.7}) {
+            const auto p = c.model.project(direction(angle, 0.6));
+            REQUIRE(p.has_value());
+            const double h = 1e-3;
+            const auto a = c.model.unproject(*p), b = c.model.unproject({p->x + h, p->y}),
+                       d = c.model.unproject({p->x, p->y + h});
+            REQUIRE((a && b && d));
+            const double area = length(cross(*b - *a, *d - *a)) / (h * h);
+            CHECK(c.model.solid_angle(*p) == doctest::Approx(area).epsilon(5e-3));
+        }
+    }
+}
+
+TEST_CASE("closed forms of fisheyes and panoramas") {
+    const double t = 1.1;
+    const auto radius = [&](Kind kind) { return ProjectionModel(kind).project(direction(t, 0))->x; };
+    CHECK(radius(Kind::rectilinear) == doctest::Approx(std::tan(t)));
+    CHECK(radius(Kind::equidistant) == doctest::Approx(t));
+    CHECK(radius(Kind::equisolid) == doctest::Approx(2 * std::sin(t / 2)));
+    CHECK(radius(Kind::stereographic) == doctest::Approx(2 * std::tan(t / 2)));
+    CHECK(radius(Kind::orthographic) == doctest::Approx(std::sin(t)));
+    const auto right = ProjectionModel(Kind::equirectangular).project({1, 0, 0});
+    CHECK(right->x == doctest::Approx(kPiD / 2));
+    const auto below = ProjectionModel(Kind::equirectangular).project({0, 1, 1});
+    CHECK(below->y == doctest::Approx(kPiD / 4));
+    const ProjectionModel cube(Kind::cube);
+    CHECK(cube.project({0, 0, 1})->x == doctest::Approx(1.5));      // ahead: the fifth
+    CHECK(cube.project({1, 0, 0})->x == doctest::Approx(-2.5));     // right: the first
+    CHECK(cube.project({0.2, 0.1, 1})->x == doctest::Approx(1.6));
+    CHECK(cube.project({0.2, 0.1, 1})->y == doctest::Approx(0.05));
+}
+
+TEST_CASE("beyond its fold, or behind it, a model sees nothing") {
+    const ProjectionModel barrel(Kind::opencv, {-0.3});
+    const double fold = 1 / std::sqrt(0.9);   // 1 - 3 * 0.3 r^2 = 0
+    CHECK(std::tan(barrel.largest_angle()) == doctest::Approx(fold).epsilon(2e-3));
+    CHECK(barrel.project(direction(std::atan(0.98 * fold), 0.3)).has_value());
+    CHECK_FALSE(barrel.project(direction(std::atan(1.02 * fold), 0.3)).has_value());
+    const double last = fold * (1 - 0.3 * fold * fold);
+    CHECK(barrel.unproject({0.99 * last, 0}).has_value());
+    CHECK_FALSE(barrel.unproject({1.01 * last, 0}).has_value());
+    CHECK_FALSE(barrel.project({0, 0, -1}).has_value());
+    const ProjectionModel fisheye(Kind::kannala_brandt, {-0.1});
+    const double turn = std::sqrt(1 / 0.3);
+    CHECK(fisheye.largest_angle() == doctest::Approx(turn).epsilon(1e-3));
+    CHECK_FALSE(fisheye.project(direction(turn + 0.01, 0)).has_value());
+    CHECK_FALSE(fisheye.unproject({turn, 0}).has_value());
+    CHECK_FALSE(ProjectionModel(Kind::equisolid).unproject({2.01, 0}).has_value());
+    CHECK_FALSE(ProjectionModel(Kind::double_sphere, {0.2, 0.7}).unproject({3, 0}).has_value());
+    CHECK_FALSE(ProjectionModel(Kind::rectilinear).project({1, 0, 0}).has_value());
+    CHECK_FALSE(ProjectionModel(Kind::cube).unproject({3.2, 0}).has_value());
+}
+
+TEST_CASE("parameters that make no model are named") {
+    const auto message = [](Kind kind, std::array<double, 14> k) {
+        try {
+            ProjectionModel(kind, k);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    CHECK(message(Kind::double_sphere, {0, 1.5}).find("alpha") != std::string::npos);
+    CHECK(message(Kind::eucm, {0.5, -1}).find("beta") != std::string::npos);
+    CHECK(message(Kind::fov, {0}).find("w:") != std::string::npos);
+    CHECK(message(Kind::opencv, {NAN}).find("finite") != std::string::npos);
+}
+
+TEST_CASE("drawn rays come back to their film point with their weight") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> u(0, 1);
+    for (const double aperture : {0.0, 4.0})
+        for (const double focus : {0.5, 3.0, double(HUGE_VAL)})
+            for (const Case& c : cases()) {
+                CAPTURE(c.name);
+                CAPTURE(aperture);
+                CAPTURE(focus);
+                Projection lens{c.model, {10, 10.3}, {0.4, -0.2}, aperture, focus, Iris::polygon(6, 10, 0.2)};
+                std::vector<CameraSample> samples(200);
+                for (CameraSample& s : samples)
+                    s = {{24 * u(random) - 12, 16 * u(random) - 8}, {u(random), u(random)}, 0.5f, 550, 0.8f};
+                std::vector<CameraRay> rays(samples.size());
+                std::vector<Reprojection> back(samples.size());
+                lens.generate(samples, rays);
+                lens.reproject(rays, back);
+                int seen = 0, near = 0;
+                for (std::size_t i = 0; i < rays.size(); ++i) {
+                    if (!(rays[i].weight > 0)) continue;
+                    ++seen;
+                    const Vec2f off = back[i].film_mm - samples[i].film_mm;
+                    near += back[i].transmittance > 0 && length(off) < 2e-3f &&
+                            std::abs(back[i].aim_weight * back[i].transmittance / rays[i].weight - 1) < 1e-4f;
+                }
+                CHECK(seen > 20);
+                CHECK(near >= seen - 2);   // at the rim of the iris, or of a face of the cube
+            }
+}
+
+TEST_CASE("what is in focus is met by all rays of a film point") {
+    const ProjectionModel fisheye(Kind::equidistant), phone(Kind::opencv, {-0.2, 0.05});
+    for (const auto& [model, film] : {std::pair{fisheye, Vec2f{16, 4}}, std::pair{phone, Vec2f{5, -4}}}) {
+        const Projection lens{model, {10, 10}, {}, 5, 2};
+        std::vector<CameraSample> samples;
+        for (float a = 0.05f; a < 1; a += 0.1f)
+            for (float b = 0.05f; b < 1; b += 0.1f) samples.push_back({film, {a, b}, 0.5f, 550});
+        std::vector<CameraRay> rays(samples.size());
+        lens.generate(samples, rays);
+        const Vec3d chief = *lens.chief_direction({film.x, film.y});
+        const Vec3d point = chief * (model.is_wide() ? 2 : 2 / -chief.z);
+        for (const CameraRay& r : rays) {
+            const Vec3d to = point - to_double(r.ray.origin);
+            CHECK(length(cross(normalize(to), to_double(r.ray.direction))) < 1e-6);
+            CHECK(std::abs(dot(to_double(r.ray.origin), chief)) < 1e-7);   // the iris faces it
+        }
+    }
+}
