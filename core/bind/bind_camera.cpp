@@ -200,6 +200,16 @@ void bind_camera(nb::module_& m) {
                         return Camera{world, lens};
                     },
                     "world_from_camera"_a, "lens"_a)
+        .def_static("projection",
+                    [](const Motion& world, const ProjectionModel& model, const std::array<double, 2>& focal_mm,
+                       const std::array<double, 2>& principal_mm, double aperture_radius_mm, double focus_distance_m,
+                       const Iris& iris) {
+                        return Camera{world, Projection{model, {focal_mm[0], focal_mm[1]},
+                                                        {principal_mm[0], principal_mm[1]}, aperture_radius_mm,
+                                                        focus_distance_m, iris}};
+                    },
+                    "world_from_camera"_a, "model"_a, "focal_mm"_a, "principal_mm"_a, "aperture_radius_mm"_a,
+                    "focus_distance_m"_a, "iris"_a)
         .def("change_lens", &change_lens, "times"_a, "cameras"_a,
              "The lens at some moments (fractions of the interval) is that of these cameras.")
         .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,

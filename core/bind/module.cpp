@@ -16,6 +16,7 @@ void bind_lens_fit(nb::module_& m);
 void bind_ghosts(nb::module_& m);
 void bind_scatter(nb::module_& m);
 void bind_scene(nb::module_& m);
+void bind_projection(nb::module_& m);
 void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
 void bind_spectrum(nb::module_& m);
@@ -48,6 +49,7 @@ NB_MODULE(_core, m) {
     bind_ghosts(m);
     bind_scatter(m);
     bind_scene(m);
+    bind_projection(m);
     bind_camera(m);
     bind_shutter(m);
     bind_spectrum(m);

@@ -14,7 +14,7 @@ using Kind = ProjectionModel::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kNewton = 40;
-constexpr double kExact = 1e-14;   // relative, of points
+constexpr double kExact = 1e-13;   // relative, of points
 constexpr int kFoldSteps = 4096;
 
 double square(double x) {
@@ -158,7 +158,7 @@ void ProjectionModel::find_fold() {
         }
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
-        largest_radius_ = last < kInfinity ? bent({last, 0}).x : kInfinity;
+        largest_radius_ = last < kInfinity ? bent({last, 0}).point.x : kInfinity;
         return;
     }
     default: return;
@@ -226,21 +226,29 @@ Vec2d ProjectionModel::untilted(Vec2d p) const {
     return seen(times(untilt_, {p.x, p.y, 1}));
 }
 
-/// Radial, tangential and thin prism terms, wherever they lead.
-Vec2d ProjectionModel::bent(Vec2d u) const {
-    const double r2 = u.x * u.x + u.y * u.y, r4 = r2 * r2, r6 = r4 * r2;
-    const double radial = (1 + radial_[0] * r2 + radial_[1] * r4 + radial_[4] * r6) /
-                          (1 + radial_[5] * r2 + radial_[6] * r4 + radial_[7] * r6);
-    const double p1 = radial_[2], p2 = radial_[3], xy = 2 * u.x * u.y;
-    Vec2d d{u.x * radial + p1 * xy + p2 * (r2 + 2 * u.x * u.x),
-            u.y * radial + p1 * (r2 + 2 * u.y * u.y) + p2 * xy};
-    if (kind_ == Kind::opencv) d.x += k_[8] * r2 + k_[9] * r4, d.y += k_[10] * r2 + k_[11] * r4;
-    return d;
+/// Radial, tangential and thin prism terms, wherever they lead, and how they change with x and with y.
+ProjectionModel::Bent ProjectionModel::bent(Vec2d u) const {
+    const double r2 = u.x * u.x + u.y * u.y, xy = 2 * u.x * u.y;
+    const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = radial_;
+    const double a = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)), b = 1 / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+    const double da = k1 + r2 * (2 * k2 + r2 * 3 * k3), db = k4 + r2 * (2 * k5 + r2 * 3 * k6);
+    const double radial = a * b, slope = 2 * (da - radial * db) * b;   // of r^2, twice
+    const double across = 0.5 * xy * slope;
+    Bent out{{u.x * radial + p1 * xy + p2 * (r2 + 2 * u.x * u.x), u.y * radial + p1 * (r2 + 2 * u.y * u.y) + p2 * xy},
+             {radial + u.x * u.x * slope + 2 * p1 * u.y + 6 * p2 * u.x, across + 2 * (p1 * u.x + p2 * u.y)},
+             {across + 2 * (p1 * u.x + p2 * u.y), radial + u.y * u.y * slope + 6 * p1 * u.y + 2 * p2 * u.x}};
+    if (kind_ != Kind::opencv) return out;
+    const Vec2d once{k_[8], k_[10]}, twice{k_[9], k_[11]};   // s1 s3, s2 s4
+    out.point = out.point + r2 * (once + r2 * twice);
+    const Vec2d prism = 2 * (once + 2 * r2 * twice);
+    out.by_x = out.by_x + u.x * prism;
+    out.by_y = out.by_y + u.y * prism;
+    return out;
 }
 
 std::optional<Vec2d> ProjectionModel::distorted(Vec2d u) const {
     if (!(length(u) <= ideal_end_)) return std::nullopt;
-    const Vec2d d = bent(u);
+    const Vec2d d = bent(u).point;
     return tilts_ ? tilted(d) : d;
 }
 
@@ -251,22 +259,21 @@ std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
     if (length(u) > ideal_end_) u = u * (0.9 * ideal_end_ / length(u));
     const double size = std::max(length(goal), 1e-3);
     for (int i = 0; i < kNewton; ++i) {
-        const Vec2d miss = bent(u) - goal;
-        if (length(miss) <= kExact * size) break;
-        const double h = 1e-7 * std::max(length(u), 1e-2);
-        const Vec2d x = (bent({u.x + h, u.y}) - bent({u.x - h, u.y})) * (0.5 / h);
-        const Vec2d y = (bent({u.x, u.y + h}) - bent({u.x, u.y - h})) * (0.5 / h);
-        const double det = x.x * y.y - x.y * y.x;
+        const Bent here = bent(u);
+        const Vec2d miss = here.point - goal;
+        const double det = here.by_x.x * here.by_y.y - here.by_x.y * here.by_y.x;
+        if (length(miss) <= kExact * size) return det > 0 ? std::optional(u) : std::nullopt;
         if (det == 0) return std::nullopt;
-        Vec2d step{(y.y * miss.x - y.x * miss.y) / det, (x.x * miss.y - x.y * miss.x) / det};
-        const double longest = 0.5 * std::max(length(u), 0.1);
-        if (length(step) > longest) step = step * (longest / length(step));
+        Vec2d step{(here.by_y.y * miss.x - here.by_y.x * miss.y) / det,
+                   (here.by_x.x * miss.y - here.by_x.y * miss.x) / det};
+        const double long_step = length(step), longest = 0.5 * std::max(length(u), 0.1);
+        if (long_step > longest) step = step * (longest / long_step);
         u = u - step;
         if (length(u) > ideal_end_) u = u * (0.999999 * ideal_end_ / length(u));
     }
-    const Vec2d miss = bent(u) - goal;
-    if (!(length(miss) <= 1e-10 * size) || !(length(u) <= ideal_end_)) return std::nullopt;
-    return u;
+    const Bent here = bent(u);   // as near as rounding lets it come, or nowhere
+    const bool upright = here.by_x.x * here.by_y.y > here.by_x.y * here.by_y.x;
+    return upright && length(here.point - goal) <= 1e-10 * size ? std::optional(u) : std::nullopt;
 }
 
 std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {

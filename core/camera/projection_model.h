@@ -53,7 +53,10 @@ struct ProjectionModel {
     std::optional<double> angle_of(double radius) const;
     std::optional<Vec2d> distorted(Vec2d ideal) const;     // of opencv and omni
     std::optional<Vec2d> undistorted(Vec2d point) const;
-    Vec2d bent(Vec2d ideal) const;
+    struct Bent {
+        Vec2d point, by_x, by_y;
+    };
+    Bent bent(Vec2d ideal) const;
     double radial_slope(double radius) const;
     void find_fold();
     Vec2d tilted(Vec2d point) const;

@@ -13,6 +13,7 @@ from .errors import DaguerreError, InputError, MismatchError, OutputError, Usage
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
 from .motion import Keys, Spin, keys, spin
+from .projection import Projection
 from .scatter import LensScatter
 from .scene import Scene
 from .shutter import RollingShutter
@@ -41,6 +42,7 @@ __all__ = [
     "MismatchError",
     "OutputError",
     "PointLight",
+    "Projection",
     "Raw",
     "RollingShutter",
     "Scene",

@@ -18,6 +18,7 @@ from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
     from .lenses import Lens
+    from .projection import Projection
     from .scatter import LensScatter
     from .sensors import Sensor
     from .shutter import RollingShutter, ShutterCurve
@@ -73,6 +74,8 @@ class Camera:
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
         lens_model: exact, polynomial, thick, thin or pinhole; None: exact if a prescription is
             named.
+        projection: Instead of a lens: a calibration, or the formula of a fisheye or a panorama. It
+            takes f_stop (none: all is sharp) and focus; the width of ``sensor_size`` counts.
         degree: Of a polynomial lens, odd, 1 to 13; None: 7.
         fit_tolerance: RMS error (px) of a polynomial lens on the film, above which the exact lens
             takes its place; None: 0.5.
@@ -137,6 +140,7 @@ class Camera:
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     lens: str | Lens | None = None
     lens_model: str | None = None
+    projection: Projection | None = None
     degree: int | None = None
     fit_tolerance: float | None = None
     focal_length: float | None = None

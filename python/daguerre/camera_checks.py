@@ -32,7 +32,9 @@ def check_surfaces(model: str, where: str) -> None:
 
 
 def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
-    """The prescription, if any, and which of ``MODELS``."""
+    """The prescription, if any, and which of ``MODELS``, or ``projection``."""
+    if camera.projection is not None:
+        return None, _projection(camera)
     model = camera.lens_model
     if model is not None and model not in MODELS:
         raise UsageError(
@@ -52,6 +54,21 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
         return None, model or kind
     lens = camera.lens if isinstance(camera.lens, lenses.Lens) else lenses.load(camera.lens)
     return lens, model or "exact"
+
+
+def _projection(camera: Camera) -> str:
+    """A calibration stands in the place of a lens."""
+    from .projection import Projection
+
+    if not isinstance(camera.projection, Projection):
+        raise UsageError(f"camera: projection: wanted a Projection, got {short(camera.projection)}")
+    for name in ("lens", "lens_model", "focal_length", "t_stop", "aperture_diameter"):
+        if getattr(camera, name) is not None:
+            raise UsageError(f"camera: projection: wanted without {name}, got both")
+    if any(camera.tilt) or camera.natural_vignetting:
+        name = "tilt" if any(camera.tilt) else "natural_vignetting"
+        raise UsageError(f"camera: projection: wanted without {name}, got both")
+    return "projection"
 
 
 def check(camera: Camera, model: str, *, prescription: bool) -> None:

@@ -26,6 +26,7 @@ from .errors import InputError, UsageError
 from .exposure import exposure_facts, exposure_notes, lens_h0
 from .focusing import Focus, ideal_direction
 from .lens_motion import LensMotion
+from .projection import Projection, check_resolution
 from .scene import Scene
 
 DEFAULT_FOCAL_LENGTH = 50.0
@@ -76,6 +77,9 @@ def set_up(
     moving = camera  # what is said of a camera is said of mid-shutter
     camera = moving.at(0.5 * (begin + end))
     size = frame_size(camera, resolution)
+    if camera.projection is not None:
+        check_resolution(camera.projection, resolution)
+        size = (camera.sensor_size[0], camera.sensor_size[0] * resolution[1] / resolution[0])
     check(camera, model, prescription=lens is not None)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
@@ -97,6 +101,11 @@ def set_up(
     if any(camera.tilt) and model != "pinhole":
         setup.notes.append(tilt.note(camera.tilt, setup.facts["focal_length_mm"]))
     changing = set(facts.get("motion", {})) - {"transform"}
+    if model == "projection" and changing:
+        raise UsageError(
+            f"camera: {min(changing)}: a projection's own numbers wanted to stay while the shutter "
+            "is open (its place may change)"
+        )
     if changing:
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
         behind = 1e-3 * setup.facts.get("entrance_pupil_offset_mm", 0.0) / tilt.cosine(camera.tilt)
@@ -144,10 +153,47 @@ def _set_up_lens(
         real = camera_prescription.set_up(camera, lens, model, setup.frame_size, pose, focus)
         setup.core, setup.pinhole_focal_length = real.core, real.pinhole_focal_length
         setup.facts |= real.facts
+    elif camera.projection is not None:
+        _set_up_projection(setup, camera, camera.projection, pose, focus)
     elif model == "pinhole":
         _set_up_pinhole(setup, camera, pose)
     else:
         _set_up_thin(setup, camera, pose, focus)
+
+
+def _set_up_projection(
+    setup: CameraSetup, camera: Camera, projection: Projection, pose: _core.Motion, focus: Focus
+) -> None:
+    film = projection.film(setup.frame_size[0])
+    focal = math.sqrt(film["focal_mm"][0] * film["focal_mm"][1])
+    radius = 0.0 if camera.f_stop is None else focal / camera.f_stop / 2
+
+    def direction(x: float, y: float) -> NDArray[np.float64]:
+        (fx, fy), (cx, cy) = film["focal_mm"], film["principal_mm"]
+        seen = projection.core.unproject(np.array([[(x - cx) / fx, (cy - y) / fy]]))[0]
+        if not np.isfinite(seen).all():
+            raise UsageError("camera: focus_at: the projection sees nothing there")
+        return np.asarray(seen * (1, -1, -1))
+
+    if projection.is_wide:  # what is sharp lies on a sphere
+        focus.sharp_at = lambda point: float(np.linalg.norm(point))
+    distance = focus.distance(direction) if radius > 0 else math.inf
+    setup.core = _core.Camera.projection(
+        pose, projection.core, *film.values(), radius, distance, iris_of(camera)
+    )
+    setup.pinhole_focal_length = focal
+    setup.facts |= {
+        "lens": "projection",
+        "focal_length_mm": focal,
+        "projection": projection.facts(),
+    }
+    if radius > 0:
+        setup.facts |= {
+            "f_stop": camera.f_stop,
+            "aperture_diameter_mm": 2 * radius,
+            "focus_distance_m": distance,
+            **iris_facts(camera),
+        }
 
 
 def _set_up_pinhole(setup: CameraSetup, camera: Camera, pose: _core.Motion) -> None:
