@@ -152,6 +152,16 @@ def test_the_same_picture_is_the_same_file(tmp_path, monkeypatch):
         assert a.read_bytes() == b.read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("zoom", "wanted"), [(None, (35, 1, 35, 1)), ((70.0, 200.0), (70, 1, 200, 1))]
+)
+def test_real_lenses_say_their_focal_lengths(zoom, wanted):
+    lens = {"lens_sha256": "x", "focal_length_mm": 35.0, "zoom_range_mm": zoom}
+    tags = exif.exposure_tags({"camera": lens})
+    assert tags[42034][1] == (*wanted, 0, 0, 0, 0)  # 0/0: not known
+    assert 42034 not in exif.exposure_tags({"camera": {"focal_length_mm": 50.0}})
+
+
 def test_unknown_facts_are_left_out():
     odd = {"expTime": 0.0, "aperture": float("inf"), "isoSpeed": None, "focus": float("nan")}
     tags = exif.exposure_tags(odd)

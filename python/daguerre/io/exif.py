@@ -72,10 +72,21 @@ def _lens_tags(metadata: Mapping[str, Any]) -> Tags:
     if focal and size is not None and len(size) == 2 and min(size) > 0:
         scale = FULL_FRAME_DIAGONAL_MM / math.hypot(*map(float, size))
         tags[41989] = (SHORT, (min(round(focal * scale), 65535),))
-    if metadata.get("lens_specification"):  # shortest and longest mm, fastest stop at each
-        four = [rational(float(value)) for value in metadata["lens_specification"]]
-        tags[42034] = (RATIONAL, tuple(part for pair in four for part in pair))
+    if span := _focal_lengths(metadata.get("camera")):
+        shortest, longest = (rational(round(focal, 1)) for focal in span)
+        # Its fastest stops are not known: a prescription has the stop that it is used at.
+        tags[42034] = (RATIONAL, (*shortest, *longest, 0, 0, 0, 0))
     return tags
+
+
+def _focal_lengths(camera: Any) -> tuple[float, float] | None:
+    """Shortest and longest of a real lens, mm."""
+    if not isinstance(camera, Mapping) or not camera.get("lens_sha256"):
+        return None
+    if zoom := camera.get("zoom_range_mm"):
+        return float(zoom[0]), float(zoom[1])
+    focal = _number(camera, "focal_length_mm")
+    return None if focal is None else (focal, focal)
 
 
 def block(metadata: Mapping[str, Any], size: tuple[int, int], srgb: bool) -> bytes:
