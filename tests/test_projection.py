@@ -1,4 +1,4 @@
-"""Calibrated cameras: OpenCV's own functions as oracle, and pictures that are drawn through the model."""
+"""Calibrated cameras: OpenCV's own functions as oracle, and pictures drawn through the model."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_omni_alike() -> None:
     xi, k = 1.1, np.array([-0.2, 0.05, 1e-3, -2e-3])
     model = Projection("omni", SIZE, FOCAL, PRINCIPAL, (xi, *k))
     rng = np.random.default_rng(2)
-    points = rng.standard_normal((500, 3)) + [0, 0, 1.5]
+    points = rng.standard_normal((500, 3)) + np.array([0, 0, 1.5])
     unit = points / np.linalg.norm(points, axis=1, keepdims=True)
     flat = unit[:, :2] / (unit[:, 2:] + xi)
     wanted = cv2.projectPoints(np.c_[flat, np.ones(500)], *STILL, MATRIX, k)[0].reshape(-1, 2)

@@ -1,7 +1,7 @@
 """Cameras that are known by a calibration, or by the formula of their picture, and not by glass.
 
-Numbers are those of calibration files: focal lengths and principal point in pixels, **pixel centres at
-integers** as OpenCV has them (the middle of the upper left pixel is (0, 0)), y down.
+Numbers are those of calibration files: focal lengths and principal point in pixels, **pixel centres
+at integers** as OpenCV has them (the middle of the upper left pixel is (0, 0)), y down.
 """
 
 from __future__ import annotations
