@@ -117,6 +117,22 @@ def test_exposure_changes_no_picture() -> None:
     assert np.array_equal(plain.rgb, split.rgb)
 
 
+@pytest.mark.parametrize("lens", ["thin", "pinhole"])
+def test_passes_and_checkpoints_go_on_with_another_exposure(lens: str) -> None:
+    def key(**changes: object) -> dict:
+        camera = dg.Camera(lens=lens, focus_distance=2.0, shutter_time=0.02).with_(**changes)
+        one = dg.Session(scenes.lamp_room(), camera, resolution=SIZE, light_paths="off")
+        return one.key
+
+    plain = key()
+    for changes in ({"iso": 800.0}, {"exposure_time": 1.0}, {"exposure_f_stop": 16.0},
+                    {"exposure_compensation": -1.0}, {"responsivity": 2.0},
+                    {"white_balance": 3200.0}):  # fmt: skip
+        assert key(**changes) == plain, changes
+    assert key(shutter_time=0.01) != plain
+    assert lens == "pinhole" or key(f_stop=4.0) != plain
+
+
 BAD = [
     ({}, "expTime: wanted the exposure time in s, got none"),
     ({"expTime": 0.01}, "aperture: wanted an f-number, got none"),

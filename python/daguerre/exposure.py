@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 #: Of a pinhole, whose own opening has no size: the stop of the photographer's sunny 16, two wider.
 PINHOLE_F_STOP = 8.0
+#: Of a camera's facts; h0 follows from the others, of a pinhole from its stop of exposure.
+_EXPOSURE_FACTS = (
+    *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
+    *("white_balance", "h0"),
+)
 
 
 def ideal_h0(f_number: float) -> float:
@@ -57,6 +62,11 @@ def exposure_facts(camera: Camera) -> dict[str, Any]:
     usual = {"exposure_time": None, "exposure_f_stop": None, "responsivity": 1.0}
     given = {name: getattr(camera, name) for name in usual}
     return {name: value for name, value in given.items() if value != usual[name]}
+
+
+def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a camera's facts makes the light of a frame: the rest changes none of its bits."""
+    return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
 
 
 def exposure_notes(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -> list[str]:

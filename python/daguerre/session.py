@@ -26,7 +26,7 @@ from .camera_checks import check_surfaces
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
-from .exposure import exposure_metadata
+from .exposure import exposure_metadata, without_exposure
 from .film_channels import check_bands, responses, sensor_metadata
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
@@ -406,7 +406,7 @@ class Session:
         """What passes must share to be added: hashes of scene, camera, settings, and the build."""
         return {
             "scene": content_hash(self.scene, self.interval),
-            "camera": _hash_json(self._setup.facts),
+            "camera": _hash_json(without_exposure(self._setup.facts)),
             "settings": _hash_json(self._identity),
             "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
             f"{self._core_scene.intersector}",
