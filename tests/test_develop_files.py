@@ -1,5 +1,6 @@
 """Files of developed pictures: numbers, profiles and EXIF, read by others."""
 
+import errno
 import io
 from fractions import Fraction
 
@@ -8,6 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.development import Picture
+from daguerre.errors import OutputError
 from daguerre.io import exif, icc
 
 exifread = pytest.importorskip("exifread")
@@ -176,3 +178,19 @@ def test_wrong_endings_and_bits(tmp_path):
     with pytest.raises(dg.UsageError, match="quality: wanted 1"):
         picture().save(tmp_path / "x.jpg", quality=0)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".png", ".tif"])
+def test_a_full_disk_is_one_error(tmp_path, monkeypatch, suffix):
+    """JPEG and PNG are coded in memory: at a full disk libjpeg ends the whole process."""
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("pathlib.Path.write_bytes", full)
+    monkeypatch.setattr("daguerre.io.picture_files.write_tiff", full)
+    path = tmp_path / f"picture{suffix}"
+    with pytest.raises(OutputError, match="cannot write: No space left") as caught:
+        picture().save(path)
+    assert str(path) in str(caught.value)
+    assert list(tmp_path.iterdir()) == []

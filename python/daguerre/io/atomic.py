@@ -30,8 +30,8 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         with _os_errors(path):
             _create(temp)
-        yield temp
-        with _os_errors(path):
+        with _os_errors(path):  # what the block itself could not write
+            yield temp
             _sync(temp)
             temp.replace(path)
             _sync(path.parent)

@@ -78,11 +78,10 @@ def write_picture(
         if suffix in (".tif", ".tiff"):
             _write_tiff(temp, numbers, space, metadata)
             return
-        _write_coded(temp, numbers, space, quality, str(path))
         size = (pixels.shape[1], pixels.shape[0])
         data = exif.block(metadata, size, srgb=space == "srgb")
         add = _jpeg_with if suffix in (".jpg", ".jpeg") else _png_with
-        temp.write_bytes(add(temp.read_bytes(), data, space))
+        temp.write_bytes(add(_coded(suffix, numbers, space, quality, str(path)), data, space))
 
 
 def quantised(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
@@ -104,8 +103,11 @@ def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
     return bits or usual
 
 
-def _write_coded(temp: Path, numbers: NDArray[Any], space: str, quality: int, path: str) -> None:
-    """JPEG or PNG by OpenImageIO, with the profile."""
+def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: str) -> bytes:
+    """JPEG or PNG by OpenImageIO, with the profile.
+
+    In memory: at a full disk libjpeg ends the whole process.
+    """
     import OpenImageIO as oiio
 
     height, width, count = numbers.shape
@@ -113,15 +115,19 @@ def _write_coded(temp: Path, numbers: NDArray[Any], space: str, quality: int, pa
     spec = oiio.ImageSpec(width, height, count, kind)
     profile = np.frombuffer(icc.profile(space), np.uint8)
     spec.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{len(profile)}]"), profile)
-    spec.attribute("Compression", f"jpeg:{quality}" if temp.suffix.lower()[1] == "j" else "zip:6")
+    spec.attribute("Compression", f"jpeg:{quality}" if suffix[1] == "j" else "zip:6")
     if quality >= 90:
         spec.attribute("jpeg:subsampling", "4:4:4")
-    output = oiio.ImageOutput.create(str(temp))
+    output = oiio.ImageOutput.create(f"memory{suffix}")
     if output is None:
         raise OutputError(f"{path}: cannot write: {oiio.geterror()}")
-    if not (output.open(str(temp), spec) and output.write_image(numbers) and output.close()):
-        reason = str(output.geterror() or "unknown reason").replace(str(temp), path)
-        raise OutputError(f"{path}: cannot write: {reason}")
+    with os.fdopen(os.memfd_create("picture"), "w+b") as memory:
+        name = f"/proc/self/fd/{memory.fileno()}"
+        if not (output.open(name, spec) and output.write_image(numbers) and output.close()):
+            reason = str(output.geterror() or "unknown reason").replace(name, path)
+            raise OutputError(f"{path}: cannot write: {reason}")
+        memory.seek(0)
+        return memory.read()
 
 
 def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
