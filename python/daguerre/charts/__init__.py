@@ -6,14 +6,17 @@ See ``docs/charts.md``.
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from typing import Any
 
 from daguerre.checks import number
 from daguerre.errors import UsageError, suggest
 
-from . import colour, dead_leaves, siemens_star, slanted_edge, step_wedge
+from . import boards, colour, dead_leaves, siemens_star, slanted_edge, step_wedge
+from .boards import object_points
 from .chart import Chart, Patch
 from .measure import EdgeResponse, edge_response, means, places, star_modulation, texture_response
+from .poses import poses
 
 __all__ = [
     "KINDS",
@@ -23,13 +26,18 @@ __all__ = [
     "edge_response",
     "make",
     "means",
+    "object_points",
     "places",
+    "poses",
     "star_modulation",
     "texture_response",
 ]
 
 #: By name: a function that makes it; its parameters are the chart's.
-KINDS = {
+KINDS: dict[str, Callable[..., Chart]] = {
+    "apriltag": boards.apriltag,
+    "charuco": boards.charuco,
+    "checkerboard": boards.checkerboard,
     "colour": colour.make,
     "dead-leaves": dead_leaves.make,
     "siemens-star": siemens_star.make,
