@@ -94,7 +94,7 @@ def test_half_the_exposure_is_half_the_light(source, shape):
 
 
 @pytest.mark.parametrize("name", ["nikon-d5100", "fujifilm-x-t4", "sony-imx571-mono"])
-@pytest.mark.parametrize("demosaic", ["fast", "good", "best"])
+@pytest.mark.parametrize("demosaic", ["fast", "good", "best", "vng"])
 def test_even_light_is_even_up_to_the_border(name, demosaic):
     values = raw_of(name, greys(0.18, 0.18)).develop(demosaic=demosaic).bytes8()
     assert np.abs(values.astype(int) - 118).max() <= 1
@@ -244,6 +244,16 @@ def test_an_ocio_view():
 def test_wrong_parameters_are_named(wrong, named):
     with pytest.raises(dg.UsageError, match=named):
         raw_of("ideal", greys(0.18)).develop(**wrong)
+
+
+def test_light_that_is_no_number_is_refused_and_infinite_light_is_white():
+    light = frame([[1.0] * 3, [np.inf] * 3])
+    assert develop(light).bytes8()[0, 1].tolist() == [255, 255, 255]
+    light.rgb[0, 1, 2] = np.nan
+    if light.xyz is not None:
+        light.xyz[0, 1, 2] = np.nan
+    with pytest.raises(dg.InputError, match=r"got others in 1 pixels, the first at \(1, 0\)"):
+        develop(light)
 
 
 @pytest.mark.parametrize("field", ["expTime", "aperture", "luminance_exposure"])

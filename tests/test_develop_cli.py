@@ -96,6 +96,7 @@ def test_mono_files(tmp_path):
     [
         (["-o", "x.dng"], 2, "no raw stage: wanted --sensor NAME"),
         (["-o", "x.gif"], 2, "wanted a name ending in"),
+        (["-o", "in.exr"], 2, "wanted another file than the one that is developed"),
         (["-o", "x.jpg", "--sensor", "ideel"], 3, "ideal"),
         (["-o", "x.jpg", "--sensor", "ideal", "--iso", "1e9"], 2, "iso: wanted"),
         (["-o", "x.jpg", "--iso", "-5"], 2, "--iso"),
@@ -123,6 +124,8 @@ def test_what_it_refuses(frame_file, tmp_path, monkeypatch, capsys, words, code,
         ({"expTime": -0.01}, "expTime"),
         ({"luminance_exposure": float("nan")}, "luminance_exposure"),
         ({"aperture": None, "luminance_exposure": None}, "aperture"),
+        ({"isoSpeed": float("nan")}, "isoSpeed"),
+        ({"isoSpeed": -100.0}, "isoSpeed"),
     ],
 )
 def test_frames_of_unknown_exposure(tmp_path, capsys, facts, named):

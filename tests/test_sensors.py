@@ -92,6 +92,7 @@ def test_patterns_have_the_shares_of_their_makers() -> None:
         ({"quantum_efficiency": np.ones((2, 401))}, "wanted a curve for each of R, G, B, got 2"),
         ({"quantum_efficiency": np.ones((3, 7))}, "wanted 401 numbers, .* got 7"),
         ({"wavelengths": np.zeros(401)}, "wavelengths: wanted at least two .* that rise"),
+        ({"quantum_efficiency": np.full((3, 401), 0.5)}, "wanted curves of R, G, B that differ"),
         ({"read_noise": ((400, 2), (100, 3))}, "read_noise: iso: wanted a number above 400"),
         ({"iso_range": (400, 100)}, "iso_range: highest"),
         ({"black_level": 65535}, "black_level"),

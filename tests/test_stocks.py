@@ -165,6 +165,7 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
         ({"halation": {"base_mm": -1, "share": [0, 0, 0]}}, "base"),
         ({"wavelengths_nm": [400, 390]}, "rise"),
         ({"balance_k": 20}, "balance"),
+        ({"wavelengths_nm": list(range(800, 980, 10))}, "see light between 380 and 780 nm"),
     ],
 )
 def test_bad_stock_files_name_the_field(
@@ -189,7 +190,11 @@ def test_wrong_numbers_in_layers_are_named(tmp_path: Path) -> None:
     path.write_text(json.dumps(data))
     with pytest.raises(InputError, match="layer G: shoulder"):
         stocks.load(path)
-    data["layers"]["G"]["sensitivity"] = [0.1]
+    data["layers"]["G"] = data["layers"]["R"]
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match="each another than the others"):
+        stocks.load(path)
+    data["layers"]["G"] = data["layers"]["R"] | {"sensitivity": [0.1]}
     path.write_text(json.dumps(data))
     with pytest.raises(InputError, match="wanted 18 numbers"):
         stocks.load(path)
@@ -207,6 +212,9 @@ def test_unknown_stocks_and_frames_without_exposure_are_one_line() -> None:
         stock.expose(bare)
     with pytest.raises(UsageError, match="seed"):
         stock.expose(even(stock, 1.0), seed=-1)
+    for light in (np.nan, np.inf):
+        with pytest.raises(InputError, match=r"got others in 1 pixels, the first at \(1, 0\)"):
+            stock.expose(even(stock, [1.0, light]))
 
 
 def test_the_command_line_exposes_film(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

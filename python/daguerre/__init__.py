@@ -19,7 +19,18 @@ from .scene import Scene
 from .shutter import RollingShutter
 
 if TYPE_CHECKING:
-    from . import charts, development, distortion, lenses, polynomial, post, sensors, stocks
+    from . import (
+        charts,
+        development,
+        distortion,
+        exposure,
+        lenses,
+        metering,
+        polynomial,
+        post,
+        sensors,
+        stocks,
+    )
     from .frame import Frame
     from .raw import Raw
     from .session import Session, iter_render, render
@@ -56,11 +67,13 @@ __all__ = [
     "charts",
     "development",
     "distortion",
+    "exposure",
     "iter_render",
     "keys",
     "lenses",
     "load",
     "load_frame",
+    "metering",
     "polynomial",
     "post",
     "render",
@@ -81,7 +94,8 @@ _LAZY = {
 
 
 _MODULES = (
-    "charts", "development", "distortion", "lenses", "polynomial", "post", "sensors", "stocks",
+    "charts", "development", "distortion", "exposure", "lenses", "metering", "polynomial", "post",
+    "sensors", "stocks",
 )  # fmt: skip
 
 

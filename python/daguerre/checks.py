@@ -174,3 +174,27 @@ def short(value: Any, length: int = 60) -> str:
     """The value as text that fits into a message."""
     text = " ".join(repr(value).split())
     return text if len(text) <= length else text[: length - 3] + "..."
+
+
+def plain_light(pixels: NDArray[Any], where: str, *, infinite: bool = False) -> None:
+    """Refuses pictures with NaN, and infinite light unless it is of use.
+
+    Args:
+        pixels: Shape (H, W, C).
+        where: For messages.
+        infinite: Whether that may be.
+
+    Raises:
+        InputError: The message names the first pixel, (x, y).
+    """
+    if pixels.size == 0 or math.isfinite(pixels.min() + (0 if infinite else pixels.max())):
+        return
+    bad = (np.isnan(pixels) if infinite else ~np.isfinite(pixels)).any(axis=2)
+    places = np.argwhere(bad)
+    if not len(places):
+        return
+    y, x = (int(i) for i in places[0])
+    raise InputError(
+        f"{where}: wanted finite numbers, got others in {len(places)} pixels, the first at "
+        f"({x}, {y})"
+    )

@@ -19,7 +19,7 @@ import daguerre._core as _core
 from .checks import number, whole
 from .colour import rgb_from_xyz
 from .errors import InputError, UsageError
-from .exposure import luminance_exposure
+from .exposure import frame_iso, luminance_exposure
 from .frame import Frame
 from .raw import Raw
 from .sensors import illuminants
@@ -113,10 +113,10 @@ def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]
     if iso is not None:
         sensor.check_iso(iso)
         return float(iso)
-    camera = frame.metadata.get("isoSpeed")
+    camera = frame_iso(frame.metadata)
     low, high = sensor.iso_range
-    if camera is not None and low <= float(camera) <= high:
-        return float(camera)
+    if camera is not None and low <= camera <= high:
+        return camera
     if camera is not None:
         notes.append(f"ISO {camera:g} is beyond {sensor.name}: exposed at {sensor.base_iso:g}")
     return float(sensor.base_iso)
@@ -164,7 +164,9 @@ def _plain(planes: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _shot(sensor: Sensor, light: Light, iso: float, dark: tuple[float, float]) -> Any:
-    shot = _core.Shot(np.ascontiguousarray(light.electrons, np.float32), sensor.pattern.cells)
+    with np.errstate(over="ignore"):  # infinite electrons are refused with the light
+        electrons = np.ascontiguousarray(light.electrons, np.float32)
+    shot = _core.Shot(electrons, sensor.pattern.cells)
     shot.low_pass_px = sensor.low_pass / sensor.pixel_pitch
     shot.crosstalk = sensor.crosstalk
     shot.prnu, shot.dsnu = sensor.prnu, sensor.dsnu

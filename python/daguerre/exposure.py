@@ -142,6 +142,15 @@ def luminance_exposure(metadata: Mapping[str, Any]) -> float:
     return ideal_h0(stop) * time
 
 
+def frame_iso(metadata: Mapping[str, Any]) -> float | None:
+    """The ISO that a frame was set to; None: it says nothing.
+
+    Raises:
+        InputError: ``isoSpeed`` is negative, zero or no number.
+    """
+    return _positive(metadata, "isoSpeed", "an ISO")
+
+
 def _positive(metadata: Mapping[str, Any], name: str, what: str) -> float | None:
     value = metadata.get(name)
     if value is None:

@@ -172,6 +172,8 @@ def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) 
         raise UsageError(f"--quality: wanted 1 to 100, got {quality}")
     for path in outputs:
         check_ending(path, (*ENDINGS, ".dng"))
+        if path.exists() and source.exists() and path.samefile(source):
+            raise UsageError(f"{path}: wanted another file than the one that is developed")
         check_writable(path)
         if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
             raise UsageError(f"{path}: {source} is a raw file already; wanted a picture of it")

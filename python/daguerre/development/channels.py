@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import plain_light
 from daguerre.errors import UsageError, suggest
 from daguerre.sensors import illuminants
 from daguerre.sensors.sensor import GREY_LX_S
@@ -124,14 +125,16 @@ class Channels:
 
 def of_frame(frame: Frame) -> Channels:
     """A frame's XYZ as a perfect sensor exposes it, at ISO 12232's brightness."""
-    from daguerre.exposure import luminance_exposure
+    from daguerre.exposure import frame_iso, luminance_exposure
 
     facts = frame.metadata
-    iso = float(facts.get("isoSpeed") or 100)
+    iso = frame_iso(facts) or 100.0
     gain = 2.0 ** float(facts.get("exposure_compensation") or 0)
     unit = GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain)
+    pixels = np.ascontiguousarray(_xyz(frame), np.float32)
+    plain_light(pixels, "frame", infinite=True)  # what is infinite is white
     return Channels(
-        pixels=np.ascontiguousarray(_xyz(frame), np.float32),
+        pixels=pixels,
         unit=np.full(3, unit),
         full=np.full(3, np.inf),
         xyz_from=lambda white: np.eye(3),
@@ -145,7 +148,9 @@ def _xyz(frame: Frame) -> NDArray[np.float32]:
         return frame.xyz
     from daguerre.colour import rgb_from_xyz
 
-    return (frame.rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)).astype(np.float32)
+    matrix = np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)
+    with np.errstate(invalid="ignore"):  # infinite light
+        return np.asarray(frame.rgb @ matrix, np.float32)
 
 
 def of_raw(raw: Raw, demosaic: Demosaic = USUAL) -> Channels:

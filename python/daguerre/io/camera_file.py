@@ -49,7 +49,8 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
     import rawpy
 
     if not Path(path).is_file():
-        raise InputError(f"{path}: wanted a raw file, got no such file")
+        got = "a folder" if Path(path).is_dir() else "no such file"
+        raise InputError(f"{path}: wanted a raw file, got {got}")
     tags = _tags(path)
     try:
         with rawpy.imread(str(path)) as opened:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
-from daguerre.checks import number, whole
+from daguerre.checks import number, plain_light, whole
 from daguerre.colour import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.exposure import luminance_exposure
@@ -110,7 +110,9 @@ def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
     facts["exposure_compensation"] = ev or None
     unit = luminance_exposure(frame.metadata) * 2.0**ev * stock.iso
     pitch = _pitch_um(frame)
-    light = _spread(layers_of(stock, frame), kernels(stock, pitch))
+    seen = layers_of(stock, frame)
+    plain_light(seen, "frame")
+    light = _spread(seen, kernels(stock, pitch))
     light *= np.float32(unit)
     np.log10(np.maximum(light, _DARKEST), out=light)
     for k, layer in enumerate(stock.layers):
@@ -138,7 +140,8 @@ def layers_of(stock: Stock, frame: Frame) -> NDArray[np.float32]:
     else:
         planes, matrix = frame.rgb, channels_from_xyz(stock) @ np.linalg.inv(rgb_from_xyz())
     matrix = (matrix / stock.white()[:, None]).astype(np.float32)
-    return np.maximum(planes @ matrix.T, np.float32(0))
+    with np.errstate(invalid="ignore"):  # light that is no number is refused later
+        return np.maximum(planes @ matrix.T, np.float32(0))
 
 
 def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> NDArray[np.float32]:

@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import number
 from daguerre.errors import InputError
 from daguerre.sensors import illuminants
+from daguerre.sensors.checking import tells_colours
+from daguerre.sensors.curve import rising
 
 from .curve import CharacteristicCurve
 
@@ -164,6 +166,7 @@ def _check(stock: Stock) -> None:
     number(stock.balance, f"{where}: balance", 1000, 25000, error=InputError)
     number(stock.granularity, f"{where}: granularity", 0, 1000, error=InputError)
     number(stock.spread, f"{where}: spread", 0, 1000, error=InputError)
+    nm = rising(f"{where}: wavelengths", stock.wavelengths)
     for layer in stock.layers:
         here = f"{where}: layer {layer.name}"
         seen = np.asarray(layer.sensitivity)
@@ -178,6 +181,11 @@ def _check(stock: Stock) -> None:
         if (layer.curve.gamma < 0) != (stock.kind == "reversal"):
             wanted = "below 0" if stock.kind == "reversal" else "above 0"
             raise InputError(f"{here}: gamma: of {stock.kind} film wanted {wanted}")
+    if not tells_colours(np.array([layer.sensitivity for layer in stock.layers]), nm):
+        raise InputError(
+            f"{where}: sensitivity: wanted layers that see light between 380 and 780 nm, each "
+            "another than the others"
+        )
     if stock.kind == "negative":
         if stock.paper is None:
             raise InputError(f"{where}: paper: wanted its curve; negatives are printed on it")
