@@ -171,6 +171,13 @@ def test_a_chart_on_disk_is_the_chart(tmp_path: Any, flags: list[str]) -> None:
     np.testing.assert_allclose(seen, wanted, rtol=0.02)
 
 
+def test_the_list_says_what_parameters_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["chart", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines.count("    width: m [0.9]") == len(charts.KINDS)
+    assert not [line for line in lines if line.startswith("    ") and ":  [" in line]
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

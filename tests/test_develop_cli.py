@@ -6,6 +6,7 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.io.camera_file import read_shot
+from daguerre.io.dng import size_note
 from daguerre.sensors import load
 
 from .colour_chart import delta_e, greys, lab, patch_means, raw_of, reflectances, saved_large, truth
@@ -84,6 +85,36 @@ def test_a_small_file_of_x_trans(tmp_path):
     assert np.abs(got[2:-2, 2:-2].astype(int) - 118).max() <= 1
 
 
+@pytest.mark.parametrize(
+    ("sensor", "size", "opens"),
+    [
+        ("ideal", 22, True),
+        ("ideal", 21, False),
+        ("fujifilm-x-t4", 516, True),
+        ("fujifilm-x-t4", 510, False),
+    ],
+)
+def test_files_that_libraw_refuses_are_told(tmp_path, sensor, size, opens):
+    import rawpy
+
+    rgb = np.full((size, size, 3), 0.1, np.float32)
+    raw = dg.Frame(rgb=rgb, metadata=dict(FACTS)).expose(sensor)
+    raw.save(tmp_path / "x.dng")
+    try:
+        with rawpy.imread(str(tmp_path / "x.dng")) as shot:
+            shot.postprocess()
+            opened = True
+    except rawpy.LibRawError:
+        opened = False
+    assert opened == opens
+    assert (size_note(raw) is None) == opens
+
+
+def test_a_small_dng_is_told(frame_file, tmp_path, capsys):
+    assert run(frame_file, "-o", tmp_path / "x.dng", "--sensor", "fujifilm-x-t4") == 0
+    assert "LibRaw develops X-Trans from 516 x 516 px" in capsys.readouterr().err
+
+
 def test_mono_files(tmp_path):
     raw = raw_of("ideal-mono", greys(0.18, 0.5))
     raw.save(tmp_path / "x.dng")
@@ -135,7 +166,7 @@ def test_frames_of_unknown_exposure(tmp_path, capsys, facts, named):
     rgb = np.ones((4, 4, 3), np.float32)
     dg.Frame(rgb=rgb, metadata=metadata).save(tmp_path / "in.exr")
     assert run(tmp_path / "in.exr", "-o", tmp_path / "x.jpg") == 3
-    assert f"{named}: wanted" in capsys.readouterr().err
+    assert f"in.exr: {named}: wanted" in capsys.readouterr().err
 
 
 def test_files_that_are_no_raw_files(tmp_path, capsys):

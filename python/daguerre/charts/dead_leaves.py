@@ -32,8 +32,8 @@ def make(
     Args:
         width: m.
         seed: Of the places, sizes and greys.
-        smallest: Radius over the chart's height.
-        largest: The same.
+        smallest: Smallest radius over the chart's height.
+        largest: Largest radius over it.
         contrast: Half the range of light over its mean.
     """
     whole(seed, "chart: seed", 0, 2**63)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -46,7 +47,7 @@ def chart(
         for known, make in charts.KINDS.items():
             print(f"{known}: {(inspect.getdoc(make) or '').splitlines()[0]}")
             for p in inspect.signature(make).parameters.values():
-                print(f"    {p.name} [{p.default}]")
+                print(f"    {p.name}: {_about(make, p.name)} [{p.default}]")
         return 0
     if name is None or output is None:
         raise UsageError("chart: wanted NAME -o FILE.glb (see `daguerre chart --list`)")
@@ -59,6 +60,15 @@ def chart(
     )
     console.note(f"wrote {output} and {output.with_suffix('.json').name}")
     return 0
+
+
+def _about(make: Callable[..., Any], parameter: str) -> str:
+    """What its docstring says, with the unit."""
+    for line in (inspect.getdoc(make) or "").splitlines():
+        name, colon, text = line.strip().partition(": ")
+        if colon and name == parameter:
+            return text.rstrip(".")
+    return ""
 
 
 def _parameters(words: list[str]) -> dict[str, Any]:

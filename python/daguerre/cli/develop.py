@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError
 
 from . import console
 from . import quantities as q
@@ -141,26 +143,38 @@ def develop(
     _check(source, output, sensor, quality)
     if stock is not None:
         _check_stock(source, output, sensor, iso)
-    taken: Raw | Frame | Channels
-    if source.suffix.lower() == ".exr":
-        light = _frame(source)
-        if stock is not None:
-            taken = _on_film(light, stock, extra, seed)
+    with _named(source):
+        taken: Raw | Frame | Channels
+        if source.suffix.lower() == ".exr":
+            light = _frame(source)
+            if stock is not None:
+                taken = _on_film(light, stock, extra, seed)
+            else:
+                taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
         else:
-            taken = _taken(light, source, sensor, speed, ev=extra, seed=seed, wb=wb)
-    else:
-        taken = _shot(source, sensor, speed, wanted)
-    exposed = hasattr(taken, "mosaic") or stock is not None
-    wanted |= {"exposure": 0.0 if exposed else extra}
-    picture: Picture | None = None
-    for path in output:
-        if path.suffix.lower() == ".dng":
-            _save_dng(path, taken, source)
-        else:
-            picture = picture or _developed(taken, wanted)
-            picture.save(path, quality=quality, bits=bits)
-        console.note(f"wrote {path}")
+            taken = _shot(source, sensor, speed, wanted)
+        exposed = hasattr(taken, "mosaic") or stock is not None
+        wanted |= {"exposure": 0.0 if exposed else extra}
+        picture: Picture | None = None
+        for path in output:
+            if path.suffix.lower() == ".dng":
+                _save_dng(path, taken, source)
+            else:
+                picture = picture or _developed(taken, wanted)
+                picture.save(path, quality=quality, bits=bits)
+            console.note(f"wrote {path}")
     return 0
+
+
+@contextmanager
+def _named(source: Path) -> Iterator[None]:
+    """Errors of a frame say from which file it is."""
+    try:
+        yield
+    except InputError as error:
+        if not str(error).startswith("frame: "):
+            raise
+        raise InputError(f"{source}: {str(error).removeprefix('frame: ')}") from None
 
 
 def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
@@ -252,7 +266,11 @@ def _save_dng(path: Path, taken: Any, source: Path) -> None:
         raise UsageError(
             f"{path}: {source} has no raw stage: wanted --sensor NAME, which takes the picture"
         )
+    from daguerre.io.dng import size_note
+
     taken.save(path)
+    if remark := size_note(taken):
+        console.note(f"{path}: {remark}")
 
 
 def _developed(taken: Any, wanted: dict[str, Any]) -> Picture:

@@ -171,6 +171,7 @@ class Photograph:
         """One exposure into its files."""
         from daguerre.development import develop
         from daguerre.exposure import with_exposure
+        from daguerre.io.dng import size_note
 
         if offset:
             frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
@@ -185,6 +186,8 @@ class Photograph:
         for file in files:
             if raw is not None and _is_raw(file):
                 raw.save(file)
+                if tell and (text := size_note(raw)):
+                    console.note(f"{file}: {text}")
             elif raw is not None and self.sensor is not None:
                 develop(raw, **looks).save(file)
             else:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.development.binning import bayer_of, is_mono
+from daguerre.development.channels import LEAST_XTRANS
 from daguerre.development.looks import GREY
 from daguerre.sensors import illuminants
 from daguerre.sensors.sensor import GREY_LX_S
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from daguerre.raw import Raw
 
 MAKE = "Daguerre"
+#: LibRaw takes smaller pictures for no raw file, px each way.
+LEAST_OPENED = 22
 #: Numbers of EXIF's light sources, in DNG's order: incandescent first.
 _LAMP_A, _LAMP_D65 = 17, 21
 
@@ -48,6 +51,20 @@ def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
     """
     with atomic_path(path) as temp:
         put_dng(temp, bayer_of(raw))
+
+
+def size_note(raw: Raw) -> str | None:
+    """For pictures that are too small for LibRaw, and all that is built on it; None: large enough.
+
+    It opens none below 22 px, and its methods for X-Trans work in tiles of 512 px.
+    """
+    xtrans = raw.sensor.pattern.name == "xtrans"
+    least = LEAST_XTRANS if xtrans else LEAST_OPENED
+    height, width = raw.mosaic.shape
+    if min(height, width) >= least:
+        return None
+    what = "develops X-Trans" if xtrans else "opens DNG"
+    return f"LibRaw {what} from {least} x {least} px: other programs may refuse {width} x {height}"
 
 
 def put_dng(target: Path | IO[bytes], raw: Raw, *, preview: bool = True) -> None:
