@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 OUT = "out/gallery"
 GAUSS = "--lens double-gauss-50mm-f2"
-BODY = "nikon-d5100"
+BODY = "sony-a7r-ii"
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Sheet:
 def _night() -> Sheet:
     scene = (
         f"daguerre render out/night_table.glb {GAUSS} --f-stop 2 --ev 1.5 --res 600x400 "
-        f"--spp 512 --denoise --sensor {BODY}"
+        f"--spp 128 --denoise --sensor {BODY}"
     )
     shots, settings = [], (("100", "1"), ("25600", "1/250"))
     for iso, time in settings:
@@ -89,8 +89,8 @@ def _night() -> Sheet:
 
 def _triangle() -> Sheet:
     scene = (
-        f"daguerre render out/exposure/pinwheels.glb --sky 38,40,46 --time 0.3 {GAUSS} "
-        f"--res 420x280 --spp 256 --denoise --sensor {BODY}"
+        f"daguerre render out/exposure/pinwheels.glb --sky 57,60,69 --time 0.3 {GAUSS} "
+        f"--res 420x280 --spp 128 --denoise --sensor {BODY}"
     )
     middle = {"f-stop": "4", "shutter": "1/125", "iso": "1600"}
     sides = {
@@ -120,7 +120,7 @@ def _film() -> Sheet:
         ("generic-panchromatic-400", "black and white"),
         ("generic-tungsten-800-no-backing", "tungsten negative without its backing"),
     )
-    ev = {"400": "-0.5", "100": "1.5", "800": "-1.5"}
+    ev = {"400": "-2", "100": "0", "800": "-3"}
     photographs = []
     for name, title in stocks:
         iso = next(word for word in name.split("-") if word.isdigit())
