@@ -1,6 +1,6 @@
 """Three pinwheels before a fence, near, farther and far; they turn twice a second, from 0 s to 2 s.
 
-There is no light in it: give it a sky, such as `--sky 57,60,69` (cd/m2, a quarter of an hour after sunset).
+There is no light in it: give it a sky, such as `--sky 57,60,69` (cd/m2, some time after sunset).
 """
 
 from __future__ import annotations

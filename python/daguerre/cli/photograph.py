@@ -186,8 +186,8 @@ class Photograph:
         for file in files:
             if raw is not None and _is_raw(file):
                 raw.save(file)
-                if tell and (text := size_note(raw)):
-                    console.note(f"{file}: {text}")
+                if tell and (remark := size_note(raw)):
+                    console.note(f"{file}: {remark}")
             elif raw is not None and self.sensor is not None:
                 develop(raw, **looks).save(file)
             else:
