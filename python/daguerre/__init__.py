@@ -20,6 +20,7 @@ from .shutter import RollingShutter
 
 if TYPE_CHECKING:
     from . import (
+        calibration,
         charts,
         development,
         distortion,
@@ -64,6 +65,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "calibration",
     "charts",
     "development",
     "distortion",
@@ -94,8 +96,8 @@ _LAZY = {
 
 
 _MODULES = (
-    "charts", "development", "distortion", "exposure", "lenses", "metering", "polynomial", "post",
-    "sensors", "stocks",
+    "calibration", "charts", "development", "distortion", "exposure", "lenses", "metering",
+    "polynomial", "post", "sensors", "stocks",
 )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from .errors import UsageError, suggest
 from .motion import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
+    from .calibration.source import Source
     from .lenses import Lens
     from .projection import Projection
     from .scatter import LensScatter
@@ -203,6 +204,84 @@ class Camera:
         for name, value in found.items():
             object.__setattr__(self, name, value.at(0.0))
         object.__setattr__(self, "motion", {**self.motion, **found})
+
+    @classmethod
+    def from_opencv(
+        cls,
+        calibration: Source,
+        *,
+        model: str | None = None,
+        size: tuple[int, int] | None = None,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+    ) -> Camera:
+        """A camera as OpenCV calibrated it.
+
+        Args:
+            calibration: YAML or JSON by ``cv::FileStorage``, or a dict of the same names.
+            model: opencv or fisheye; None: as the file says, else opencv.
+            size: Of the calibrated picture, px, if the file does not say it.
+            camera: Gives all that a calibration does not say.
+            pixel_pitch: um; the size of blur depends on it.
+
+        Raises:
+            InputError: The calibration cannot be used; the message names the place.
+        """
+        from .calibration import read_opencv
+
+        found = read_opencv(calibration, model=model, size=size)
+        return found.camera(camera, pixel_pitch)
+
+    @classmethod
+    def from_ros(
+        cls,
+        calibration: Source,
+        *,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+    ) -> Camera:
+        """A camera by its ROS ``camera_info``: the raw picture, in its place of a stereo rig.
+
+        Args: as of :meth:`from_opencv`; ``camera`` stands where the rig's first, rectified, does.
+        """
+        from .calibration import read_ros
+
+        return read_ros(calibration).camera(camera, pixel_pitch)
+
+    @classmethod
+    def from_kalibr(
+        cls,
+        calibration: Source,
+        name: str | None = None,
+        *,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+    ) -> Camera:
+        """A camera of Kalibr's chain, ``cam0`` or of another name.
+
+        Args: as of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
+        """
+        from .calibration import read
+
+        found = read(calibration, name, format="kalibr")
+        return found.camera(camera, pixel_pitch)
+
+    @classmethod
+    def from_opentrackio(
+        cls,
+        calibration: Source,
+        *,
+        size: tuple[int, int] | None = None,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+    ) -> Camera:
+        """A tracked camera: lens, f-stop, focus and pose of an OpenTrackIO sample.
+
+        Args: as of :meth:`from_opencv`.
+        """
+        from .calibration import read_opentrackio
+
+        return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
 
     def at(self, time: float) -> Camera:
         """The camera as it is at a time in s; nothing in it moves."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import console
-from . import quantities as q
+from .calibration_flags import CalibrationFlags
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .scene_flags import SceneFlags
@@ -20,10 +20,16 @@ if TYPE_CHECKING:
     from daguerre.info import Facts
 
 
-@with_flags(camera_flags=CameraFlags, shutter_flags=ShutterFlags, scene_flags=SceneFlags)
+@with_flags(
+    camera_flags=CameraFlags,
+    calibration_flags=CalibrationFlags,
+    shutter_flags=ShutterFlags,
+    scene_flags=SceneFlags,
+)
 def info(
     scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
     camera_flags: CameraFlags,
+    calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     res: Annotated[
@@ -39,11 +45,14 @@ def info(
     from daguerre.build import build
     from daguerre.camera import Camera
 
-    resolution = q.resolution("--res", res, (960, 540)) if res else (960, 540)
+    resolution = calibration_flags.resolution(res, (960, 540))
     changes = camera_flags.changes() | shutter_flags.changes()
+    calibration_flags.check(changes)
     scene = scene_flags.load(scene_path)
     names = [camera_flags.camera] if camera_flags.camera else list(scene.cameras)
-    cameras: dict[str, Camera] = {name: scene.camera(name).with_(**changes) for name in names}
+    cameras: dict[str, Camera] = {
+        name: calibration_flags.camera(scene.camera(name), changes) for name in names
+    }
     content = facts_of.scene_facts(scene)
     core_scene = None
     if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):

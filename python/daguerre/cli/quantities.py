@@ -50,6 +50,12 @@ def length_mm(flag: str, text: str) -> float:
     return _quantity(flag, text, LENGTHS, "mm", "a length such as 50, 50mm, 5cm or 2in") * 1e3
 
 
+def pitch_um(flag: str, text: str) -> float:
+    """A pixel pitch in um; without a unit it is um."""
+    wanted = "a pixel pitch such as 3.45, 3.45um or 0.00345mm"
+    return _finite(flag, text, _quantity(flag, text, LENGTHS, "um", wanted)) * 1e6
+
+
 def distance_m(flag: str, text: str) -> float:
     """A distance in m; without a unit it is m. ``inf`` is allowed."""
     return _quantity(flag, text, LENGTHS, "m", "a distance such as 2.5, 250cm, 8ft or inf")

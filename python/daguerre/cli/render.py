@@ -14,11 +14,12 @@ from daguerre.flare import check_highlights, check_used
 from daguerre.light_paths import check_light_paths, check_paths
 
 from . import console
+from .calibration_flags import CalibrationFlags
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .frames import check_names, frame_numbers
 from .photograph import Photograph
-from .plan import Plan, check_outputs, make_plan
+from .plan import DEFAULT_RESOLUTION, Plan, check_outputs, make_plan
 from .scene_flags import SceneFlags
 from .shoot import Shoot, interrupted_early
 from .shutter_flags import ShutterFlags
@@ -27,10 +28,16 @@ _OUTPUT = "Output"
 _SAMPLING = "Sampling"
 
 
-@with_flags(camera_flags=CameraFlags, shutter_flags=ShutterFlags, scene_flags=SceneFlags)
+@with_flags(
+    camera_flags=CameraFlags,
+    calibration_flags=CalibrationFlags,
+    shutter_flags=ShutterFlags,
+    scene_flags=SceneFlags,
+)
 def render(
     scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
     camera_flags: CameraFlags,
+    calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     output: Annotated[
@@ -254,6 +261,8 @@ def render(
     """
     console.quiet = quiet
     sampling = (spp, samples, noise)
+    width, height = calibration_flags.resolution(res, DEFAULT_RESOLUTION)
+    res = f"{width}x{height}"
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
     plan = plan.with_truth(gt_time)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
@@ -271,6 +280,7 @@ def render(
         scatter=wanted_scatter != 0,
     )
     changes = camera_flags.changes() | shutter_flags.changes()
+    calibration_flags.check(changes)
     if wanted_scatter == 0 and "scatter" in changes:
         raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
     photograph = Photograph.of_flags(changes, exposure, bracket, look, seed)
@@ -318,7 +328,10 @@ def render(
         settings["diffraction"] = Diffraction(diffraction_bands, diffraction_zones)
     elif (diffraction_bands, diffraction_zones) != (16, 1):
         raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
-    shoot = Shoot(scene, scene_path, camera_flags.camera, changes, settings, tone, stats)
+    shoot = Shoot(
+        *(scene, scene_path, camera_flags.camera, changes, settings, tone, stats),
+        calibration=calibration_flags,
+    )
     if dry_run:
         return shoot.describe(*plans[0])
     for i, (frame, one) in enumerate(plans):

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import console
+from .calibration_flags import CalibrationFlags
 from .job import INTERRUPTED, Job, core_errors
 
 if TYPE_CHECKING:
+    from daguerre.camera import Camera
     from daguerre.scene import Scene
     from daguerre.session import Session
 
@@ -30,6 +32,7 @@ class Shoot:
         settings: Of the session.
         tone: Curve of a PNG.
         stats: Print counts and times.
+        calibration: What stands in the place of a lens.
     """
 
     scene: Scene
@@ -39,6 +42,7 @@ class Shoot:
     settings: dict[str, Any]
     tone: str
     stats: bool
+    calibration: CalibrationFlags = field(default_factory=CalibrationFlags)
     _warned: bool = False
 
     def draw(
@@ -82,15 +86,19 @@ class Shoot:
         print(json.dumps(without_infinity(facts), indent=2, default=jsonable))
         return 0
 
+    def _camera(self, scene: Scene) -> Camera:
+        camera: Camera = self.calibration.camera(scene.camera(self.camera), self.changes)
+        return camera
+
     def _session(self, frame: int | None, plan: Plan) -> Session:
         from daguerre.info import camera_warnings, lit
         from daguerre.session import Session
 
         scene = self.scene
-        camera = scene.camera(self.camera).with_(**self.changes)
+        camera = self._camera(scene)
         if frame:
             scene = scene.at(scene.time + frame / camera.fps)
-            camera = scene.camera(self.camera).with_(**self.changes)
+            camera = self._camera(scene)
         first, self._warned = not self._warned, True  # warnings come once, not for every frame
         if first:
             for warning in camera_warnings(camera):
@@ -117,7 +125,8 @@ class Shoot:
             )
         for text in session.warnings:
             console.warn(f"{self.scene_path}: {text}")
-        for text in session.notes:
+        calibrated = self.calibration.notes(camera) if first else []
+        for text in (*calibrated, *session.notes):
             console.note(text)
         return session
 

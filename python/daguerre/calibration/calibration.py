@@ -1,0 +1,124 @@
+"""A calibration: how a camera sees, where it stands in its rig, and what else its file said."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera import Camera
+from daguerre.checks import number
+from daguerre.errors import InputError, UsageError
+from daguerre.motion import is_dynamic
+from daguerre.projection import Projection
+
+FloatArray = NDArray[np.float64]
+#: Between the camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z behind).
+FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
+#: Of a lens; a projection stands in its place.
+OF_LENSES: dict[str, Any] = {
+    **dict.fromkeys(("lens", "lens_model", "degree", "fit_tolerance", "focal_length", "zoom")),
+    **dict.fromkeys(("aperture_diameter", "t_stop", "front_mask", "iris_mask", "ripple")),
+    **{"decenter": (), "tilt": (0.0, 0.0), "natural_vignetting": False},
+}
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """One camera of a file.
+
+    Attributes:
+        projection: The model and its numbers.
+        name: Of the camera, if it has one.
+        rig_from_camera: Where the camera stands, seen from the rig's first camera; shape (4, 4), m.
+            Both frames as Daguerre's cameras have them: x right, y up, looking along -z.
+        pixel_pitch: um; None where the file does not say.
+        settings: Parameters of ``Camera`` that the file says, such as ``f_stop``.
+        notes: What a reader should know, a sentence each.
+    """
+
+    projection: Projection
+    name: str = ""
+    rig_from_camera: FloatArray = field(default_factory=lambda: np.eye(4))
+    pixel_pitch: float | None = None
+    settings: dict[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def camera(self, camera: Camera | None = None, pixel_pitch: float | None = None) -> Camera:
+        """A camera that sees so.
+
+        Args:
+            camera: Gives all that a calibration does not say, and the place of the rig's first
+                camera; its lens goes. None: one at the origin.
+            pixel_pitch: um; it makes the film as large as the calibrated sensor, on which the size
+                of blur depends. None: the file's, else the camera's ``sensor_size``.
+        """
+        given = Camera() if camera is None else camera
+        pitch = self.pixel_pitch if pixel_pitch is None else pixel_pitch
+        changes: dict[str, Any] = {**OF_LENSES, "projection": self.projection, **self.settings}
+        if pitch is not None:
+            number(pitch, "camera: pixel_pitch", 0.01, 1e4)
+            changes["sensor_size"] = tuple(side * pitch * 1e-3 for side in self.projection.size)
+        if not np.array_equal(self.rig_from_camera, np.eye(4)):
+            if is_dynamic(given.motion.get("transform")):
+                raise UsageError(
+                    f"camera: {self.name or 'a camera of a rig'} stands beside the rig's first "
+                    "camera: wanted a transform that stays, got one over time"
+                )
+            changes.setdefault("transform", given.transform @ self.rig_from_camera)
+        return given.with_(**changes)
+
+
+def projection(where: str, *values: Any) -> Projection:
+    """Checked: as a file says it, and valid all over its picture.
+
+    Args:
+        where: File, and place in it.
+        values: As ``Projection`` takes them.
+
+    Raises:
+        InputError: They make no model, or one that folds within its picture.
+    """
+    try:
+        made = Projection(*values)
+    except UsageError as error:
+        raise InputError(f"{where}: {error}") from None
+    check_field(made, where)
+    return made
+
+
+def check_field(made: Projection, where: str) -> None:
+    """A lens images nothing twice: where its polynomial turns back, numbers are wrong.
+
+    Fisheyes may leave the corners dark, so of theirs the nearest edge counts.
+
+    Raises:
+        InputError: The model ends within the picture.
+    """
+    (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
+    fold = made.core.largest_radius * math.sqrt(fx * fy)
+    if made.model == "opencv" and not np.isfinite(made.unproject(_border(width, height))).all():
+        reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
+        what = "farthest corner"
+    elif made.model == "kannala_brandt" and made.largest_angle < 179.9:
+        reach, what = min(x, y, width - 1 - x, height - 1 - y), "nearest edge"
+        if fold >= reach:
+            return
+    else:
+        return
+    raise InputError(
+        f"{where}: {made.model}: the radial polynomial folds at {fold:.4g} px from the principal "
+        f"point ({made.largest_angle:.4g} degrees): wanted it to rise up to the {what} of the "
+        f"picture, {reach:.4g} px"
+    )
+
+
+def _border(width: int, height: int) -> FloatArray:
+    """Pixels around the picture, shape (N, 2)."""
+    across, along = np.linspace(0, width - 1, 65), np.linspace(0, height - 1, 65)
+    sides = [(across, np.full(65, end)) for end in (0, height - 1)]
+    sides += [(np.full(65, end), along) for end in (0, width - 1)]
+    return np.concatenate([np.stack(side, axis=-1) for side in sides])

@@ -1,0 +1,151 @@
+"""Kalibr's camera chains: several cameras, each of which stands by the one before it.
+
+The conventions are OpenCV's. ``T_cn_cnm1`` takes points of the camera before into this one's frame,
+so a camera stands, seen from the first, at the inverse of the product of them all.
+
+Source: Kalibr's wiki, "YAML formats" and "Supported models".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.io.json_item import Item
+from daguerre.projection import Projection
+
+from .calibration import FLIP, Calibration, FloatArray, projection
+from .source import Source, choice, load, rigid, row
+
+#: camera_model -> how many of its own parameters come before fu fv pu pv.
+CAMERAS = {"pinhole": 0, "omni": 1, "ds": 2, "eucm": 2}
+#: distortion_model -> how many coefficients.
+DISTORTIONS = {"radtan": 4, "equidistant": 4, "equi": 4, "fov": 1, "none": 0}
+#: (camera_model, distortion_model) -> our model.
+MODELS = {
+    ("pinhole", "radtan"): "opencv",
+    ("pinhole", "equidistant"): "kannala_brandt",
+    ("pinhole", "fov"): "fov",
+    ("pinhole", "none"): "rectilinear",
+    ("omni", "radtan"): "omni",
+    ("omni", "none"): "omni",
+    ("ds", "none"): "double_sphere",
+    ("eucm", "none"): "eucm",
+}
+
+
+def read_kalibr(source: Source) -> dict[str, Calibration]:
+    """All cameras of a chain: cam0, cam1, ...
+
+    Args:
+        source: YAML (``camchain.yaml``), or the same as a dict.
+
+    Raises:
+        InputError: The file cannot be used; the message names the place.
+    """
+    root = load(source)
+    names = sorted(
+        (item.key for item in root.members() if str(item.key).removeprefix("cam").isdigit()),
+        key=lambda name: int(str(name).removeprefix("cam")),
+    )
+    if [str(name) for name in names] != [f"cam{i}" for i in range(len(names))] or not names:
+        root.fail(f"wanted cameras cam0, cam1, ..., got {', '.join(map(str, names)) or 'none'}")
+    found, camera_from_first = {}, np.eye(4)
+    for i, name in enumerate(map(str, names)):
+        item = root.need(name)
+        if i > 0:
+            camera_from_first = rigid(item.need("T_cn_cnm1")) @ camera_from_first
+        if (imu := item.get("T_cam_imu")) is not None:
+            rigid(imu)
+        stands = FLIP @ np.linalg.inv(camera_from_first) @ FLIP
+        found[name] = Calibration(_projection(item), name, stands if i else np.eye(4))
+    return found
+
+
+def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
+    """One of a chain; without a name the first.
+
+    Raises:
+        UsageError: There is none of that name; the nearest is suggested.
+    """
+    wanted = next(iter(cameras)) if name is None else name
+    if wanted not in cameras:
+        known = ", ".join(cameras)
+        raise UsageError(f"{where}: wanted {known}; got {wanted!r}{suggest(wanted, cameras)}")
+    return cameras[wanted]
+
+
+def _projection(item: Item) -> Projection:
+    camera = choice(item.need("camera_model"), CAMERAS)
+    named = item.need("distortion_model")
+    distortion = choice(named, DISTORTIONS)
+    distortion = "equidistant" if distortion == "equi" else distortion
+    if (camera, distortion) not in MODELS:
+        fits = " or ".join(two for one, two in MODELS if one == camera)
+        named.fail(f"wanted {fits} with camera_model {camera}, got {distortion}")
+    count = DISTORTIONS[distortion]
+    values = item.get("distortion_coeffs")
+    own = CAMERAS[camera]
+    numbers = row(item.need("intrinsics"), (own + 4,))
+    (fu, fv, pu, pv), first = numbers[own:], numbers[:own]
+    if min(fu, fv) <= 0:
+        item.need("intrinsics").fail(f"wanted focal lengths above 0, got {fu:g}, {fv:g}")
+    bent = () if values is None and count == 0 else row(item.need("distortion_coeffs"), (count,))
+    width, height = (e.integer(1, 65536) for e in _pair(item.need("resolution")))
+    model = MODELS[camera, distortion]
+    where = f"{item.file}: {item.path}"
+    return projection(where, model, (width, height), (fu, fv), (pu, pv), (*first, *bent))
+
+
+def _pair(item: Item) -> list[Item]:
+    sides = list(item)
+    if len(sides) != 2:
+        item.fail(f"wrong shape: wanted width and height, px, got {len(sides)} numbers")
+    return sides
+
+
+def write_kalibr(calibrations: Sequence[Calibration]) -> str:
+    """A chain of these cameras, in order; the first must stand where its rig does."""
+    lines: list[str] = []
+    before: FloatArray = np.eye(4)  # camera from first
+    for i, one in enumerate(calibrations):
+        camera, distortion, numbers, bent = _named(one.projection)
+        lines += [f"cam{i}:", f"  camera_model: {camera}", f"  intrinsics: {numbers}"]
+        lines += [f"  distortion_model: {distortion}", f"  distortion_coeffs: {bent}"]
+        lines += [f"  resolution: {list(one.projection.size)}", f"  rostopic: /cam{i}/image_raw"]
+        now = np.asarray(np.linalg.inv(FLIP @ one.rig_from_camera @ FLIP), np.float64)
+        if i == 0 and not np.allclose(now, np.eye(4), atol=1e-12):
+            raise InputError("calibration: Kalibr: wanted a first camera that stands at the rig's")
+        if i > 0:
+            lines += ["  T_cn_cnm1:", *_rows(now @ np.linalg.inv(before))]
+        before = now
+    return "\n".join(lines) + "\n"
+
+
+def _rows(matrix: FloatArray) -> list[str]:
+    return [f"  - {[float(value) for value in line]}" for line in matrix]
+
+
+def _named(made: Projection) -> tuple[str, str, list[float], list[float]]:
+    """Kalibr's two names, its intrinsics and its coefficients."""
+    values = list(made.parameters)
+    tail = [*made.focal, *made.center]
+    if made.model == "opencv" and not any(values[4:]):
+        return "pinhole", "radtan", tail, [*values[:4], *[0.0] * (4 - len(values))]
+    if made.model == "kannala_brandt":
+        return "pinhole", "equidistant", tail, [*values, *[0.0] * (4 - len(values))]
+    if made.model == "omni":
+        bent = [*values[1:], *[0.0] * (5 - len(values))]
+        plain = not any(bent)
+        return "omni", "none" if plain else "radtan", [values[0], *tail], [] if plain else bent
+    short = {"double_sphere": "ds", "eucm": "eucm"}
+    if made.model in short:
+        return short[made.model], "none", [*values, *tail], []
+    if made.model in ("fov", "rectilinear"):
+        return "pinhole", "fov" if values else "none", tail, values
+    raise InputError(
+        "calibration: Kalibr: wanted rectilinear, opencv with k1 k2 p1 p2 alone, kannala_brandt, "
+        f"omni, double_sphere, eucm or fov; got {made.model} with {len(values)} parameters"
+    )

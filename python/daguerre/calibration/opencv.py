@@ -1,0 +1,144 @@
+"""Calibrations as OpenCV's ``FileStorage`` has them: YAML and JSON.
+
+The names are those of OpenCV's calibration sample, and the ones that people write by hand. Pixel
+centres are at integers; the distortion maps ideal points to those of the picture; p1 belongs to y.
+
+Source: OpenCV 5, samples/cpp/tutorial_code/calib3d/camera_calibration, and ``cv::calibrateCamera``
+and ``cv::fisheye::calibrate`` for the order of the coefficients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.io.json_item import Item
+from daguerre.projection import Projection
+
+from .calibration import Calibration, projection
+from .source import Source, camera_matrix, choice, first, load, needed, row
+
+MATRICES = ("camera_matrix", "cameraMatrix", "K", "mtx", "M1")
+COEFFICIENTS = (
+    *("distortion_coefficients", "dist_coeffs", "dist_coeff", "distCoeffs", "distortion_coeffs"),
+    *("D", "dist", "D1"),
+)
+SIZES = ("image_size", "imageSize", "img_size", "resolution", "size")
+#: How many coefficients there may be.
+COUNTS = (0, 4, 5, 8, 12, 14)
+#: A file's own word for its model -> ours.
+MODELS = {
+    **dict.fromkeys(("opencv", "pinhole", "plumb_bob", "radtan", "rational_polynomial"), "opencv"),
+    **dict.fromkeys(("fisheye", "equidistant", "kannala_brandt"), "kannala_brandt"),
+}
+
+
+def read_opencv(
+    source: Source, *, model: str | None = None, size: tuple[int, int] | None = None
+) -> Calibration:
+    """A calibration by OpenCV.
+
+    Args:
+        source: YAML or JSON by ``cv::FileStorage``, or the same as a dict.
+        model: opencv or fisheye; None: as the file says, else opencv.
+        size: Of the picture, px, if the file does not say it.
+
+    Raises:
+        InputError: The file cannot be used; the message names the place.
+        UsageError: No such model.
+    """
+    if model is not None and model not in MODELS:
+        raise UsageError(
+            f"calibration: model: wanted opencv or fisheye, got {model!r}{suggest(model, MODELS)}"
+        )
+    root = load(source)
+    where = root.file
+    focal, principal = camera_matrix(needed(root, "a camera matrix", *MATRICES))
+    kind = MODELS[model] if model else _model(root)
+    found = first(root, *COEFFICIENTS)
+    values: tuple[float, ...] = ()
+    if found is not None:
+        values = row(found, (0, 4) if kind == "kannala_brandt" else COUNTS)
+    if not values and kind == "opencv":
+        kind = "rectilinear"
+    made = projection(where, kind, size or _size(root), focal, principal, values)
+    name = root.get("camera_name")
+    return Calibration(made, "" if name is None else name.text())
+
+
+def _model(root: Item) -> str:
+    """As the file says it: in words, or by a flag of OpenCV's sample."""
+    named = first(root, "distortion_model", "camera_model")
+    if named is not None:
+        return MODELS[choice(named, MODELS)]
+    flag = first(root, "fisheye_model", "fisheye")
+    return "kannala_brandt" if flag is not None and flag.value in (1, True) else "opencv"
+
+
+def _size(root: Item) -> tuple[int, int]:
+    width, height = first(root, "image_width", "width"), first(root, "image_height", "height")
+    if width is not None and height is not None:
+        return width.integer(1, 65536), height.integer(1, 65536)
+    both = first(root, *SIZES)
+    if both is None:
+        root.fail(
+            "missing: wanted the size of the picture (image_width and image_height), got none; "
+            "size=(W, H) gives it"
+        )
+    across, down = row(both, (2,))
+    if not (1 <= across == int(across) and 1 <= down == int(down)):
+        both.fail(f"wanted two whole numbers of pixels, got {across:g}, {down:g}")
+    return int(across), int(down)
+
+
+def coefficients(made: Projection, counts: Sequence[int]) -> tuple[float, ...]:
+    """Of a model that OpenCV has, filled up with zeros.
+
+    Args:
+        made: opencv, rectilinear or kannala_brandt.
+        counts: Allowed lengths, rising.
+    """
+    if made.model not in ("opencv", "rectilinear", "kannala_brandt"):
+        raise InputError(
+            f"calibration: OpenCV and ROS have the models opencv and kannala_brandt, got "
+            f"{made.model}"
+        )
+    used = list(made.parameters)
+    while used and used[-1] == 0:
+        used.pop()
+    count = next((count for count in counts if count >= len(used)), None)
+    if count is None:
+        raise InputError(
+            f"calibration: wanted at most {counts[-1]} coefficients in this format, got {len(used)}"
+        )
+    return (*used, *[0.0] * (count - len(used)))
+
+
+def matrix_of(made: Projection) -> list[float]:
+    """The camera matrix, row by row."""
+    (fx, fy), (cx, cy) = made.focal, made.center
+    return [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]
+
+
+def write_opencv(calibration: Calibration) -> str:
+    """YAML that ``cv::FileStorage`` of all versions reads."""
+    made = calibration.projection
+    fisheye = made.model == "kannala_brandt"
+    values = coefficients(made, (4,) if fisheye else (5, 8, 12, 14))
+    width, height = made.size
+    lines = ["%YAML:1.0", "---", f"image_width: {width}", f"image_height: {height}"]
+    lines += [f"fisheye_model: {int(fisheye)}"]
+    lines += _matrix("camera_matrix", 3, 3, matrix_of(made))
+    lines += _matrix("distortion_coefficients", 1, len(values), values)
+    return "\n".join(lines) + "\n"
+
+
+def _matrix(name: str, rows: int, columns: int, values: Sequence[float]) -> list[str]:
+    data = ", ".join(repr(float(value)) for value in values)
+    return [
+        f"{name}: !!opencv-matrix",
+        f"   rows: {rows}",
+        f"   cols: {columns}",
+        "   dt: d",
+        f"   data: [ {data} ]",
+    ]

@@ -1,0 +1,221 @@
+"""OpenTrackIO samples (SMPTE RIS OSVP): a camera as it is tracked on a stage, one moment of it.
+
+Lengths of the lens are mm, distances m. OpenLensIO's coefficients belong to points of the sensor in
+mm from the centre, y down; in its list they alternate: of the numerator and of the denominator of
+the rational polynomial. Which way they map is in the name of the model: ``Brown-Conrady D-U`` takes
+points of the picture to ideal ones, which is what a list without a name means; ``U-D`` is OpenCV's
+way, and is what we write. Of D-U the inverse is fitted.
+
+Offsets are from the middle of the sensor, which in calibrations' pixels lies at (W - 1) / 2.
+
+SMPTE's note on OpenCV differs in two places, where OpenLensIO's own equations are followed: it has
+the middle at W / 2, half a pixel off, and tangential terms p / F^2, though a term in mm of squares
+of mm is p / F of the term in focal lengths.
+
+Sources: OpenLensIO 1.0.1, equations 4 and 17; the schema of OpenTrackIO 1.0 for units, axes and the
+order of rotations; "Conversion of OpenCV to OpenTrackIO (OpenLensIO) lens calibration parameters".
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from daguerre.errors import InputError
+from daguerre.io.json_item import Item
+
+from .calibration import Calibration, FloatArray, projection
+from .inverse import Rational, fit_inverse
+from .source import Source, choice, load
+
+DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED = "Brown-Conrady D-U", "Brown-Conrady U-D"
+#: World of OpenTrackIO (x right, y ahead, z up) as Daguerre has it (y up, z toward the viewer).
+UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+#: Largest error of a fitted inverse, px: radial ones are far below, large tangential ones above.
+TOLERANCE = 0.1
+
+
+def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> Calibration:
+    """The camera of a sample.
+
+    Args:
+        source: JSON, or the same as a dict.
+        size: Of the picture, px, if the sample has no ``activeSensorResolution``.
+
+    Raises:
+        InputError: The file cannot be used; the message names the place.
+    """
+    root = load(source)
+    lens = root.need("lens")
+    still = root.need("static").need("camera")
+    sensor = still.need("activeSensorPhysicalDimensions")
+    film = sensor.need("width").number(above=0), sensor.need("height").number(above=0)
+    pixels = size or _resolution(still)
+    named = "pinholeFocalLength" if lens.get("focalLength") is None else "focalLength"
+    focal = lens.need(named).number(above=0)
+    scale = pixels[0] / film[0], pixels[1] / film[1]  # px per mm
+    offset = _offset(lens, "projectionOffset")
+    moved = lens.get("distortionOffset")
+    if moved is not None and any(_offset(lens, "distortionOffset")):
+        moved.fail("wanted distortion about the projection's centre (0, 0), got another centre")
+    model, values, notes = _distortion(lens, focal, scale, pixels, offset)
+    made = projection(
+        root.file,
+        model,
+        pixels,
+        tuple(focal * s for s in scale),
+        tuple((n - 1) / 2 + o * s for n, o, s in zip(pixels, offset, scale, strict=True)),
+        values,
+    )
+    settings = _settings(lens) | _pose(root, lens)
+    return Calibration(made, "", np.eye(4), 1e3 / scale[0], settings, notes)
+
+
+def _resolution(still: Item) -> tuple[int, int]:
+    found = still.get("activeSensorResolution")
+    if found is None:
+        still.fail(
+            "missing: wanted the size of the picture (activeSensorResolution), got none; "
+            "size=(W, H) gives it"
+        )
+    return found.need("width").integer(1, 65536), found.need("height").integer(1, 65536)
+
+
+def _offset(lens: Item, name: str) -> tuple[float, float]:
+    found = lens.get(name)
+    if found is None:
+        return 0.0, 0.0
+    return found.need("x").number(), found.need("y").number()
+
+
+def _distortion(
+    lens: Item,
+    focal: float,
+    scale: tuple[float, float],
+    pixels: tuple[int, int],
+    offset: tuple[float, float],
+) -> tuple[str, tuple[float, ...], tuple[str, ...]]:
+    """Our model, its parameters, and what was decided."""
+    listed = lens.list_of("distortion")
+    if not listed:
+        return "rectilinear", (), ()
+    known = {_direction(item): item for item in reversed(listed)}
+    if IDEAL_TO_DISTORTED in known:
+        return "opencv", _coefficients(known[IDEAL_TO_DISTORTED], focal).opencv, ()
+    item = known[DISTORTED_TO_IDEAL]
+    inward = _coefficients(item, focal)
+    corner = [
+        ((np.arange(65) / 64 - 0.5) * n / s - o) / focal
+        for n, s, o in zip(pixels, scale, offset, strict=True)
+    ]
+    found, error = fit_inverse(inward, np.stack(np.meshgrid(*corner), -1).reshape(-1, 2))
+    error_px = error * focal * max(scale)
+    if not error_px <= TOLERANCE:
+        item.fail(
+            f"wanted a distortion whose inverse is OpenCV's rational model to {TOLERANCE} px, got "
+            f"{error_px:.3g} px at worst"
+        )
+    return "opencv", found.opencv, (
+        f"the distortion maps the picture to ideal points ({DISTORTED_TO_IDEAL}); its inverse is "
+        f"fitted, to {error_px:.2g} px at worst",
+    )  # fmt: skip
+
+
+def _direction(item: Item) -> str:
+    named = item.get("model")
+    if named is None:
+        return DISTORTED_TO_IDEAL
+    return choice(named, (DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED))
+
+
+def _coefficients(item: Item, focal: float) -> Rational:
+    """In units of the focal length; odd ones of the list (the first is 1) are the numerator's."""
+    listed = [one.number() for one in item.need("radial")]
+    if not 1 <= len(listed) <= 6:
+        item.need("radial").fail(f"wrong length: wanted 1 to 6 numbers, got {len(listed)}")
+    listed += [0.0] * (6 - len(listed))
+    over = [listed[2 * i] * focal ** (2 * i + 2) for i in range(3)]
+    under = [listed[2 * i + 1] * focal ** (2 * i + 2) for i in range(3)]
+    aside = item.get("tangential")
+    p1, p2 = (0.0, 0.0) if aside is None else aside.numbers(2)
+    return Rational((*over,), (*under,), (p1 * focal, p2 * focal))
+
+
+def _settings(lens: Item) -> dict[str, Any]:
+    found = {"f_stop": lens.get("fStop"), "focus_distance": lens.get("focusDistance")}
+    return {name: item.number(above=0) for name, item in found.items() if item is not None}
+
+
+def _pose(root: Item, lens: Item) -> dict[str, Any]:
+    """World from camera; the camera stands where its entrance pupil does."""
+    listed = root.list_of("transforms")
+    if not listed:
+        return {}
+    stage = np.eye(4)
+    for item in listed:
+        stage = stage @ _transform(item)
+    world = UPRIGHT @ stage @ UPRIGHT.T
+    ahead = lens.number_of("entrancePupilOffset", 0.0)
+    world[:3, 3] -= ahead * world[:3, 2]
+    return {"transform": world}
+
+
+def _transform(item: Item) -> FloatArray:
+    """About z (pan), then the turned x (tilt), then the turned y (roll); degrees and m."""
+    scale = item.get("scale")
+    if scale is not None and any(scale.number_of(axis, 1.0) != 1 for axis in "xyz"):
+        scale.fail("wanted a camera that is not scaled (1, 1, 1)")
+    turn, shift = item.need("rotation"), item.need("translation")
+    made = np.eye(4)
+    made[:3, 3] = [shift.number_of(axis, 0.0) for axis in "xyz"]
+    angles = (math.radians(turn.number_of(name, 0.0)) for name in ("pan", "tilt", "roll"))
+    for axis, angle in zip((2, 0, 1), angles, strict=True):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        one = np.eye(3)
+        one[i, i] = one[j, j] = math.cos(angle)
+        one[j, i] = math.sin(angle)
+        one[i, j] = -one[j, i]
+        made[:3, :3] = made[:3, :3] @ one
+    return made
+
+
+def write_opentrackio(calibration: Calibration) -> str:
+    """A sample with the lens alone, as JSON; its distortion maps as OpenCV's does.
+
+    Raises:
+        InputError: The model is none that OpenLensIO has, or there is no pixel pitch.
+    """
+    made, pitch = calibration.projection, calibration.pixel_pitch
+    if pitch is None:
+        raise InputError("calibration: OpenTrackIO: wanted a pixel pitch, as its lengths are mm")
+    values = (*made.parameters, *[0.0] * 14)[:14]
+    if made.model not in ("opencv", "rectilinear") or any(values[8:]):
+        raise InputError(
+            "calibration: OpenTrackIO: wanted rectilinear, or opencv without prism and tilt; got "
+            f"{made.model}"
+        )
+    focal = made.focal[0] * pitch * 1e-3
+    down = pitch * 1e-3 * made.focal[0] / made.focal[1]  # mm: one focal length serves both axes
+    k1, k2, p1, p2, k3, k4, k5, k6 = values[:8]
+    alternating = ((k1, 2), (k4, 2), (k2, 4), (k5, 4), (k3, 6), (k6, 6))
+    radial = [k / focal**power for k, power in alternating]
+    (width, height), (x, y) = made.size, made.center
+    lens: dict[str, Any] = {
+        "pinholeFocalLength": focal,
+        "projectionOffset": {
+            "x": (x - (width - 1) / 2) * pitch * 1e-3,
+            "y": (y - (height - 1) / 2) * down,
+        },
+    }
+    if any(values):
+        bent = {"model": IDEAL_TO_DISTORTED, "radial": radial}
+        lens["distortion"] = [bent | {"tangential": [p1 / focal, p2 / focal]}]
+    still = {
+        "activeSensorPhysicalDimensions": {"width": width * pitch * 1e-3, "height": height * down},
+        "activeSensorResolution": {"width": width, "height": height},
+    }
+    head = {"protocol": {"name": "OpenTrackIO", "version": [1, 0, 0]}}
+    return json.dumps({**head, "static": {"camera": still}, "lens": lens}, indent=2) + "\n"

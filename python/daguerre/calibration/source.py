@@ -1,0 +1,151 @@
+"""What a calibration is read from: a file, or the same as a dict."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import short
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.io import json_text
+from daguerre.io.json_item import Item
+
+from . import yaml_text
+
+FloatArray = NDArray[np.float64]
+Source = str | os.PathLike[str] | dict[str, Any]
+#: A calibration has some thousand bytes: what is so large is another kind of file.
+MAX_BYTES = 1 << 20
+
+
+def load(source: Source) -> Item:
+    """The values of a file (JSON by its suffix, else YAML), or of a dict.
+
+    Raises:
+        InputError: It cannot be read.
+    """
+    if isinstance(source, dict):
+        return Item(_plain(source), "calibration")
+    if not isinstance(source, str | os.PathLike):
+        raise UsageError(f"calibration: wanted a file or a dict, got {short(source)}")
+    path = Path(source)
+    data = read_bytes(path)
+    parse = json_text.parse if path.suffix.lower() == ".json" else yaml_text.parse
+    root = parse(data, str(path))
+    if not isinstance(root.value, dict):
+        root.fail(f"wanted names and values, got {short(root.value)}")
+    return root
+
+
+def read_bytes(path: Path) -> bytes:
+    """A file of at most ``MAX_BYTES``."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: wanted a calibration file: {reason}") from None
+    if len(data) > MAX_BYTES:
+        raise InputError(f"{path}: wanted a calibration of at most 1 MiB, got more")
+    return data
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and tuples as lists, as a file would have them."""
+    if isinstance(value, dict):
+        return {str(name): _plain(one) for name, one in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
+
+
+def first(root: Item, *names: str) -> Item | None:
+    """The member of the first of these names that is there."""
+    return next((found for name in names if (found := root.get(name)) is not None), None)
+
+
+def needed(root: Item, wanted: str, *names: str) -> Item:
+    """As :func:`first`; one must be there."""
+    found = first(root, *names)
+    if found is None:
+        root.fail(f"missing: wanted {wanted} ({' or '.join(names)}), got none of them")
+    return found
+
+
+def matrix(item: Item, rows: int, columns: int) -> FloatArray:
+    """Finite numbers of a shape: as rows, one after the other, or as OpenCV has matrices."""
+    data = item
+    if isinstance(item.value, dict):
+        shape = item.need("rows").integer(0, 4096), item.need("cols").integer(0, 4096)
+        if shape != (rows, columns):
+            _shape(item, rows, columns, f"{shape[0]} x {shape[1]}")
+        data = item.need("data")
+    elements = list(data)
+    if elements and isinstance(elements[0].value, list):
+        if len(elements) != rows or any(len(list(row)) != columns for row in elements):
+            _shape(item, rows, columns, f"{len(elements)} rows of {len(list(elements[0]))}")
+        elements = [element for row in elements for element in row]
+    if len(elements) != rows * columns:
+        _shape(item, rows, columns, f"{len(elements)} numbers")
+    return np.array([element.number() for element in elements]).reshape(rows, columns)
+
+
+def _shape(item: Item, rows: int, columns: int, got: str) -> NoReturn:
+    item.fail(f"wrong shape: wanted a matrix {rows} x {columns}, got {got}")
+
+
+def row(item: Item, counts: Iterable[int]) -> tuple[float, ...]:
+    """So many finite numbers, as a row or a column."""
+    data = item
+    if isinstance(item.value, dict):
+        shape = item.need("rows").integer(0, 4096), item.need("cols").integer(0, 4096)
+        if min(shape) > 1:
+            item.fail(f"wrong shape: wanted a row or a column, got {shape[0]} x {shape[1]}")
+        data = item.need("data")
+        if len(list(data)) != shape[0] * shape[1]:
+            item.fail(f"wrong shape: {shape[0]} x {shape[1]}, got {len(list(data))} numbers")
+    elements = list(data)
+    if len(elements) == 1 and isinstance(elements[0].value, list):
+        elements = list(elements[0])
+    elif elements and all(isinstance(e.value, list) and len(e.value) == 1 for e in elements):
+        elements = [next(iter(element)) for element in elements]
+    wanted = sorted(counts)
+    if len(elements) not in wanted:
+        names = " or ".join(str(count) for count in wanted)
+        item.fail(f"wrong shape: wanted {names} numbers, got {len(elements)}")
+    return tuple(element.number() for element in elements)
+
+
+def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Focal lengths and principal point, px."""
+    k = matrix(item, 3, 3)
+    if k[0, 1] != 0:
+        item.fail(f"wanted pixels without skew, got {k[0, 1]:g} at row 1, column 2")
+    if k[1, 0] != 0 or (k[2] != (0, 0, 1)).any():
+        item.fail(f"wanted [fx 0 cx; 0 fy cy; 0 0 1], got {k.tolist()}")
+    if min(k[0, 0], k[1, 1]) <= 0:
+        item.fail(f"wanted focal lengths above 0, got {k[0, 0]:g}, {k[1, 1]:g}")
+    return (float(k[0, 0]), float(k[1, 1])), (float(k[0, 2]), float(k[1, 2]))
+
+
+def rigid(item: Item) -> FloatArray:
+    """A rotation and a shift, shape (4, 4)."""
+    pose = matrix(item, 4, 4)
+    turned = pose[:3, :3]
+    odd = np.abs(turned @ turned.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turned) < 0
+    if odd or (np.abs(pose[3] - (0, 0, 0, 1)) > 1e-9).any():
+        item.fail(f"wanted a rotation and a shift (last row 0 0 0 1), got {short(pose.tolist())}")
+    return pose
+
+
+def choice(item: Item, known: Iterable[str]) -> str:
+    """One of the known names; the nearest is suggested."""
+    name, names = item.text(), list(known)
+    if name not in names:
+        item.fail(f"wanted {', '.join(names)}; got {short(name)}{suggest(name, names)}")
+    return name

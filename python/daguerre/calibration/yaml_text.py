@@ -1,0 +1,108 @@
+"""YAML text into values that know where they stand: plain data alone.
+
+Calibrations need no tags, anchors or aliases, through which a small file can grow without bounds or
+name objects of Python: all are refused. OpenCV's own tag of matrices is the one exception, and its
+first line ``%YAML:1.0``, which is no YAML. Numbers are YAML 1.2's: 1.1 takes ``1e-08``, as OpenCV
+and Python write it, for text.
+
+Source: YAML 1.2.2, chapter 10.3 (the core schema).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import yaml
+
+from daguerre.errors import InputError
+from daguerre.io.json_item import Item
+
+OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
+_OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
+
+
+def parse(data: bytes, file: str) -> Item:
+    """The value that a file's bytes spell.
+
+    Raises:
+        InputError: It is no YAML, or has what calibrations do not need.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{file}: YAML: wanted UTF-8, got byte 0x{data[error.start]:02x} at byte {error.start}"
+        ) from None
+    text = _OPENCV_HEAD.sub("", text, count=1)
+    text = re.sub(r"\n---\s*\Z", "\n", text)  # as `rostopic echo` ends each message
+    try:
+        return Item(yaml.load(text, _Plain), file)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise InputError(f"{file}: YAML: {place}{error.problem or error.context}") from None
+    except yaml.YAMLError as error:
+        raise InputError(f"{file}: YAML: {' '.join(str(error).split())}") from None
+    except RecursionError:
+        raise InputError(f"{file}: YAML: nested too deeply") from None
+    except ValueError as error:  # such as an integer of thousands of digits
+        raise InputError(f"{file}: YAML: {error}") from None
+
+
+class _Plain(yaml.SafeLoader):
+    """Mappings, lists, numbers, text, true, false and null."""
+
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 (PyYAML's own way)
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
+        if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
+            kind = "alias" if isinstance(event, yaml.AliasEvent) else "anchor"
+            self._refuse(f"wanted no anchors and aliases, got {kind} {event.anchor!r}", event)
+        if event.tag not in (None, OPENCV_MATRIX):
+            self._refuse(f"wanted no tags but !!opencv-matrix, got {event.tag!r}", event)
+        if event.tag and not isinstance(event, yaml.MappingStartEvent):
+            self._refuse("!!opencv-matrix: wanted rows, cols, dt and data", event)
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        """Text alone names values, each once: PyYAML takes the last of two of one name."""
+        found: dict[str, Any] = {}
+        for key, value in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                self._refuse("wanted text as a name", key)
+            if key.value in found:
+                self._refuse(f"wanted each name once, got {key.value!r} twice", key)
+            found[key.value] = self.construct_object(value, deep=deep)
+        return found
+
+    def _refuse(self, what: str, at: Any) -> None:
+        raise yaml.constructor.ConstructorError(None, None, what, at.start_mark)
+
+
+_CORE = {
+    "null": (r"(?:~|null|Null|NULL|)", ["~", "n", "N", ""]),
+    "bool": (r"(?:true|True|TRUE|false|False|FALSE)", list("tTfF")),
+    "int": (r"[-+]?[0-9]+", list("-+0123456789")),
+    "float": (
+        r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+        r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN|Nan)",
+        list("-+.0123456789"),
+    ),
+}
+for _name, (_form, _first) in _CORE.items():
+    _form = f"(?:{_form})\\Z"
+    _Plain.add_implicit_resolver(f"tag:yaml.org,2002:{_name}", re.compile(_form), _first)
+
+
+def _whole(loader: _Plain, node: Any) -> int:
+    return int(loader.construct_scalar(node))  # 1.1 would take 010 for 8
+
+
+def _matrix(loader: _Plain, node: Any) -> dict[Any, Any]:
+    return loader.construct_mapping(node, deep=True)
+
+
+_Plain.add_constructor("tag:yaml.org,2002:int", _whole)
+_Plain.add_constructor(OPENCV_MATRIX, _matrix)
