@@ -226,6 +226,11 @@ def test_the_command_line_exposes_film(tmp_path: Path, capsys: pytest.CaptureFix
     picture = np.asarray(oiio.ImageBuf(out).get_pixels(oiio.UINT8))
     assert picture.mean() == pytest.approx(118, abs=3)  # 0.18 in sRGB
     assert 0.3 < picture.std() < 10  # grain
+    assert "ISO" not in capsys.readouterr().err
+    frame.metadata["isoSpeed"] = 100.0
+    frame.save(tmp_path / "set.exr")
+    assert main(["develop", str(tmp_path / "set.exr"), "-o", out, *film]) == 0
+    assert "2.0 EV too much light; --ev -2.0" in capsys.readouterr().err
     for extra, message in (
         (["--sensor", "ideal"], "--stock"),
         (["--iso", "400"], "--stock"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -207,10 +208,24 @@ def _check_stock(source: Path, outputs: list[Path], sensor: str | None, iso: str
 
 def _on_film(frame: Frame, stock: str, ev: float, seed: int) -> Frame:
     """The print of film that was exposed."""
+    from daguerre.exposure import frame_iso
     from daguerre.stocks import load
 
     own = float(frame.metadata.get("exposure_compensation") or 0.0)
-    return load(stock).expose(frame, ev=own + ev, seed=seed).shown()
+    film = load(stock)
+    if not ev:
+        _tell_speed(film.iso, frame_iso(frame.metadata))
+    return film.expose(frame, ev=own + ev, seed=seed).shown()
+
+
+def _tell_speed(film: float, camera: float | None) -> None:
+    """A camera that was set to another ISO than its film has exposed it wrongly."""
+    stops = 0.0 if camera is None else math.log2(film / camera)
+    if abs(stops) >= 0.5:
+        console.note(
+            f"the film is of ISO {film:g}, the camera was set to ISO {camera:g}: {abs(stops):.1f} "
+            f"EV too {'much' if stops > 0 else 'little'} light; --ev {-stops:+.1f} makes up for it"
+        )
 
 
 def _frame(path: Path) -> Frame:
