@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         sensors,
         stocks,
     )
+    from .analysis.calibrate import calibrate
     from .frame import Frame
     from .raw import Raw
     from .session import Session, iter_render, render
@@ -65,6 +66,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "calibrate",
     "calibration",
     "charts",
     "development",
@@ -86,6 +88,7 @@ __all__ = [
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
 _LAZY = {
+    "calibrate": "analysis.calibrate",
     "Diffraction": "waves",
     "Frame": "frame",
     "Raw": "raw",

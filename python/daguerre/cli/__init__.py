@@ -18,6 +18,7 @@ import typer
 from daguerre.errors import DaguerreError, suggest
 
 from . import console
+from .calibrate import calibrate
 from .chart import chart
 from .develop import develop
 from .info import info
@@ -43,7 +44,20 @@ app = typer.Typer(
     rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-commands = (render, merge, post, develop, info, lenses, lens, sensors, sensor, stocks, chart)
+commands = (
+    render,
+    merge,
+    post,
+    develop,
+    info,
+    lenses,
+    lens,
+    sensors,
+    sensor,
+    stocks,
+    chart,
+    calibrate,
+)
 for command in (*commands, version):
     app.command(name=command.__name__)(command)
 

@@ -1,0 +1,236 @@
+"""Calibration of a lens by its chief rays: the projection that says where it puts things."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from daguerre.checks import number, numbers, whole
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.lenses import Lens, load
+from daguerre.lenses.focus import By
+from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.projection import MODELS, NEEDED, Projection
+
+from .bench import Bench, FloatArray, set_up
+from .chief import ChiefRays, chief_rays
+from .least_squares import least_squares
+
+#: Where models start that are none without parameters.
+STARTS = {"double_sphere": (0.0, 0.5), "eucm": (0.5, 1.0), "omni": (1.0,), "fov": (0.5,)}
+UNFIT = ("equirectangular", "cube")  # pictures of no lens
+#: What formats of calibration files call models.
+OTHER_NAMES = {
+    "fisheye": "kannala_brandt",
+    "brown_conrady": "opencv",
+}
+#: As OpenCV's own calibration has it, unless more are asked for.
+PARAMETERS = {"opencv": 5}
+ACROSS = 41  # chief rays across the picture
+LEAST = 50  # chief rays that a fit needs
+NOTHING = 1e-13  # what is left of parameters that symmetry forbids
+NEAR = 0.25  # of the picture's half, for the first guess of the focal length
+
+
+@dataclass(frozen=True)
+class ProjectionFit:
+    """A projection that was fitted, and how well it fits.
+
+    Attributes:
+        projection: The model.
+        bench: The lens, as it is used.
+        pixel_pitch_um: Of the picture.
+        pixels: Where the lens puts directions, shape (N, 2), pixel centres at integers.
+        directions: Unit, x right, y down, z ahead, from the entrance pupil, shape (N, 3).
+        unseen: Points of the picture that see nothing.
+    """
+
+    projection: Projection
+    bench: Bench
+    pixel_pitch_um: float
+    pixels: FloatArray
+    directions: FloatArray
+    unseen: int
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Where the model puts directions, less where the lens does, px, shape (N, 2)."""
+        return self.projection.project(self.directions) - self.pixels
+
+    @property
+    def rms(self) -> float:
+        """Of the distances, px: OpenCV's reprojection error."""
+        return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
+
+    @property
+    def largest(self) -> float:
+        """Distance, px."""
+        return float(np.hypot(*self.residuals.T).max())
+
+
+def calibrate(
+    lens: Lens | str,
+    model: str = "opencv",
+    *,
+    resolution: tuple[int, int],
+    sensor_size: tuple[float, float] = (36.0, 24.0),
+    f_stop: float | None = None,
+    focus_distance: float = math.inf,
+    focal_length: float | None = None,
+    focus_by: By = "paraxial",
+    terms: int | None = None,
+    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+) -> ProjectionFit:
+    """Fits a projection to a lens: least squares of pixels, evenly over the picture.
+
+    Args:
+        lens: Of the library, or a file.
+        model: One of ``MODELS``, but for panoramas; ``fisheye`` is OpenCV's, kannala_brandt.
+        resolution: Of the picture, px.
+        sensor_size: mm; the picture's width is the sensor's, its pixels are square.
+        f_stop: Wide open if None; it matters to where the film stands.
+        focus_distance: m from the entrance pupil; may be infinite.
+        focal_length: Of a zoom, mm.
+        focus_by: As of ``Camera``.
+        terms: How many parameters of the model are fitted, from the first; None: 5 of ``opencv``,
+            all of others.
+        wavelength_nm: nm.
+
+    Raises:
+        UsageError: No such model, or numbers that are no picture's.
+        InputError: The lens sees what the model cannot show, or nothing.
+    """
+    model = OTHER_NAMES.get(model, model)
+    count = _count(model, terms)
+    width, height = numbers(resolution, "calibrate: resolution", 2, "two whole numbers of pixels")
+    for side in (width, height):
+        whole(int(side) if side == int(side) else side, "calibrate: resolution", 2, 65536)
+    for side in numbers(sensor_size, "calibrate: sensor_size", 2, "width and height, mm"):
+        number(side, "calibrate: sensor_size", 0, 1e5, above=0)
+    bench = set_up(
+        load(lens) if isinstance(lens, str) else lens,
+        f_stop=f_stop,
+        focus_m=focus_distance,
+        zoom_mm=focal_length,
+        by=focus_by,
+    )
+    size = (int(width), int(height))
+    pixels, film = _grid(bench, size, sensor_size[0] / width)
+    directions = directions_seen(bench, chief_rays(bench, film, wavelength_nm))
+    known = np.isfinite(directions).all(axis=1)
+    if known.sum() < LEAST:
+        raise InputError(f"{bench.lens.name}: calibrate: wanted chief rays, got too few")
+    pixels, directions = pixels[known], directions[known]
+    made = fit_projection(model, size, pixels, directions, count, bench.lens.name)
+    pitch_um = 1e3 * sensor_size[0] / width
+    return ProjectionFit(made, bench, pitch_um, pixels, directions, int((~known).sum()))
+
+
+def fit_projection(
+    model: str,
+    size: tuple[int, int],
+    pixels: FloatArray,
+    directions: FloatArray,
+    terms: int,
+    name: str = "calibrate",
+) -> Projection:
+    """The model that puts directions closest to pixels.
+
+    Args:
+        model: One of ``MODELS``.
+        size: Of the picture, px.
+        pixels: Shape (N, 2), pixel centres at integers.
+        directions: Shape (N, 3), x right, y down, z ahead.
+        terms: Parameters of the model that are fitted.
+        name: Of the lens, for messages.
+
+    Raises:
+        InputError: Directions are outside of the model's field.
+    """
+    middle = (np.array(size) - 1) / 2
+    start = np.array([*STARTS.get(model, ()), *[0.0] * terms][:terms])
+    unit = Projection(model, size, (1.0, 1.0), (0.0, 0.0), tuple(start))
+    flat = unit.project(directions)
+    if not np.isfinite(flat).all():
+        ahead = directions[:, 2] / np.linalg.norm(directions, axis=1)
+        raise InputError(
+            f"{name}: calibrate: the picture shows up to {_degrees(ahead.min()):.4g} degrees from "
+            f"the axis, {model} up to {unit.largest_angle:.4g}: wanted a model with a wider field, "
+            "such as kannala_brandt"
+        )
+    away = pixels - middle
+    near = np.hypot(*away.T) <= max(NEAR * min(size), np.sort(np.hypot(*away.T))[8])
+    length = float((away[near] * flat[near]).sum() / (flat[near] ** 2).sum())
+
+    def made(x: FloatArray) -> Projection:
+        f, c = x[:2] * length, middle + x[2:4] * length
+        focal, center = (float(f[0]), float(f[1])), (float(c[0]), float(c[1]))
+        return Projection(model, size, focal, center, tuple(x[4:]))
+
+    def misses(x: FloatArray) -> FloatArray:
+        try:
+            return np.asarray((made(x).project(directions) - pixels).ravel())
+        except UsageError:  # numbers that make no model
+            return np.full(2 * len(pixels), np.nan)
+
+    first = np.concatenate([[1.0, 1.0, 0.0, 0.0], start])
+    found = least_squares(misses, first, np.ones(len(first)))
+    return made(np.where(np.abs(found) < NOTHING, 0.0, found))
+
+
+def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
+    """Of points in focus on chief rays, from the paraxial entrance pupil, where cameras stand.
+
+    In focus is a plane; of fisheyes, which see beside it, the sphere of that radius.
+
+    Returns:
+        Unit directions, x right, y down, z ahead, shape (N, 3); NaN: none.
+    """
+    # Rays come toward the lens along +z of its frame: x right and y up for who looks out.
+    d, pupil = rays.directions, np.array([0.0, 0.0, bench.order.entrance_pupil.z])
+    seen = -d
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if math.isfinite(bench.focus_mm):
+            from_pupil = rays.points - pupil
+            if bench.is_fisheye:
+                along = (from_pupil * d).sum(axis=1)
+                square = (from_pupil**2).sum(axis=1) - bench.focus_mm**2
+                back = along + np.sqrt(along**2 - square)
+            else:
+                back = (from_pupil[:, 2] + bench.focus_mm) / d[:, 2]
+                back[d[:, 2] <= 0] = np.nan
+            seen = from_pupil - back[:, None] * d
+        seen = seen / np.linalg.norm(seen, axis=1, keepdims=True)
+    return np.asarray(seen * (1, -1, -1))
+
+
+def _grid(bench: Bench, size: tuple[int, int], pitch: float) -> tuple[FloatArray, FloatArray]:
+    """Pixels evenly over the picture, corners included, and their places on the film, mm."""
+    width, height = size
+    rows = max(3, round((ACROSS - 1) * height / width) + 1)
+    x, y = np.linspace(-0.5, width - 0.5, ACROSS), np.linspace(-0.5, height - 0.5, min(rows, 101))
+    pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    # The picture stands upside down on the film, whose y is up.
+    film = (pixels - (np.array(size) - 1) / 2) * pitch * (-1, 1)
+    if bench.is_fisheye:  # around its circle there is nothing but the barrel
+        inside = np.hypot(*film.T) <= bench.field_mm * (1 + 1e-9)
+        pixels, film = pixels[inside], film[inside]
+    return pixels, film
+
+
+def _count(model: str, terms: int | None) -> int:
+    if model not in MODELS or model in UNFIT:
+        known = ["fisheye", *(name for name in MODELS if name not in UNFIT)]
+        raise UsageError(
+            f"calibrate: model: wanted {', '.join(known)}; got {model!r}{suggest(model, known)}"
+        )
+    most = len(MODELS[model])
+    if terms is None:
+        return PARAMETERS.get(model, most)
+    return whole(terms, f"calibrate: terms of {model}", NEEDED.get(model, 0), most)
+
+
+def _degrees(cosine: float) -> float:
+    return math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))

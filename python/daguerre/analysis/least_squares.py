@@ -1,0 +1,66 @@
+"""Nonlinear least squares for a handful of unknowns.
+
+Source: Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3 (Levenberg-Marquardt).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .bench import FloatArray
+
+STEP = 1e-6  # of differences, with unknowns of size 1
+STEPS = 200
+STILL = 1e-15  # relative change of the sum of squares that ends the search
+STUCK = 1e12  # damping at which nothing gets better
+
+
+def least_squares(
+    misses: Callable[[FloatArray], FloatArray], start: FloatArray, scale: FloatArray
+) -> FloatArray:
+    """Unknowns with the smallest sum of squares near a start.
+
+    Args:
+        misses: Of unknowns, shape (N,); NaN where a step leads out of what is known, and the step
+            is not taken.
+        start: Unknowns, shape (K,), where all misses are known.
+        scale: Sizes of steps that mean much the same, shape (K,).
+    """
+    at, damping = np.array(start, np.float64), 1e-3
+    found = misses(at)
+    for _ in range(STEPS):
+        slopes = _slopes(misses, at, scale, found)
+        square, down = slopes.T @ slopes, slopes.T @ found
+        before = float(found @ found)
+        while damping < STUCK:
+            damped = square + damping * np.diag(np.maximum(np.diag(square), 1e-300))
+            step = -np.linalg.lstsq(damped, down, rcond=None)[0] * scale
+            there = misses(at + step)
+            if float(there @ there) < before:  # false for NaN, too
+                at, found, damping = at + step, there, max(damping / 10, 1e-12)
+                break
+            damping *= 10
+        if damping >= STUCK or before - float(found @ found) <= STILL * before:
+            break
+    return at
+
+
+def _slopes(
+    misses: Callable[[FloatArray], FloatArray],
+    at: FloatArray,
+    scale: FloatArray,
+    here: FloatArray,
+) -> FloatArray:
+    """Derivatives by scaled unknowns, shape (N, K); one-sided beside what is not known."""
+    out = np.empty((len(here), len(at)))
+    for k, size in enumerate(scale):
+        delta = np.zeros(len(at))
+        delta[k] = STEP * size
+        up, down = misses(at + delta), misses(at - delta)
+        slope = (up - down) / (2 * STEP)
+        if not np.isfinite(slope).all():
+            slope = np.where(np.isfinite(up).all(), up - here, here - down) / STEP
+        out[:, k] = slope
+    return np.asarray(np.nan_to_num(out))

@@ -1,0 +1,162 @@
+"""``daguerre calibrate``: the projection of a lens, as calibrations of cameras have it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from daguerre.errors import UsageError
+
+from . import console
+from . import quantities as q
+from .flags import option
+
+if TYPE_CHECKING:
+    from daguerre.analysis.calibrate import ProjectionFit
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def calibrate(
+    name: Annotated[str, typer.Argument(metavar="LENS", help="Of the library, or a file.")],
+    model: Annotated[
+        str, option("--model", metavar="NAME", help="opencv, fisheye, double_sphere, ... [opencv].")
+    ] = "opencv",
+    terms: Annotated[
+        int | None,
+        option("--terms", metavar="N", help="Parameters of the model [5 of opencv, else all]."),
+    ] = None,
+    focus: Annotated[
+        str | None, option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].")
+    ] = None,
+    f_stop: Annotated[
+        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].")
+    ] = None,
+    zoom: Annotated[
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.")
+    ] = None,
+    focus_by: Annotated[
+        str, option("--focus-by", metavar="paraxial|best", help="As of render [paraxial].")
+    ] = "paraxial",
+    sensor: Annotated[
+        str, option("--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="mm [36x24].")
+    ] = "36x24",
+    resolution: Annotated[
+        str, option("--res", metavar="WxH", help="Of the picture, px [1920x1280].")
+    ] = "1920x1280",
+    wavelength: Annotated[
+        float, option("--wavelength", metavar="NM", help="nm [587.56].")
+    ] = 587.56,
+    output: Annotated[
+        Path | None, option("-o", "--output", metavar="FILE.json", help="The projection.")
+    ] = None,
+    residuals: Annotated[
+        Path | None,
+        option(
+            "--residuals",
+            metavar="FILE.png|svg|pdf",
+            help="What the model leaves, over the picture. Extra `plot`.",
+        ),
+    ] = None,
+    json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
+) -> int:
+    """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
+    from daguerre.analysis.calibrate import calibrate as fit
+
+    if focus_by not in ("paraxial", "best"):
+        raise UsageError(f"--focus-by: wanted paraxial or best, got {focus_by!r}")
+    _check_files(output, residuals)
+    made = fit(
+        name,
+        model,
+        resolution=q.resolution("--res", resolution, (1920, 1280)),
+        sensor_size=q.sensor_mm("--sensor", sensor),
+        f_stop=None if f_stop is None else q.f_number("--f-stop", f_stop),
+        focus_distance=math.inf if focus is None else q.distance_m("--focus", focus),
+        focal_length=None if zoom is None else q.length_mm("--zoom", zoom),
+        focus_by="best" if focus_by == "best" else "paraxial",
+        terms=terms,
+        wavelength_nm=wavelength,
+    )
+    _write(made, output, residuals)
+    if json:
+        from json import dumps
+
+        print(dumps(_facts(made), indent=2))
+    else:
+        _print(made)
+    return 0
+
+
+def _check_files(output: Path | None, residuals: Path | None) -> None:
+    from daguerre.io.atomic import check_writable
+    from daguerre.lenses.plot import check_available
+
+    if output is not None:
+        if output.suffix.lower() != ".json":
+            raise UsageError(f"--output: wanted a name ending in .json, got {str(output)!r}")
+        check_writable(output)
+    if residuals is not None:
+        suffix = residuals.suffix.lower()
+        if suffix not in PICTURES:
+            raise UsageError(
+                f"--residuals: wanted a name ending in {' or '.join(PICTURES)}, "
+                f"got {str(residuals)!r}"
+            )
+        check_available(suffix, needed=True)
+        check_writable(residuals)
+
+
+def _write(made: ProjectionFit, output: Path | None, residuals: Path | None) -> None:
+    from json import dumps
+
+    from daguerre.io.atomic import write_bytes
+
+    if output is not None:
+        write_bytes(output, dumps(_facts(made), indent=2).encode() + b"\n")
+        console.note(f"wrote {output}")
+    if residuals is not None:
+        from daguerre.analysis.residual_plot import plot_residuals
+
+        write_bytes(residuals, plot_residuals(made, residuals.suffix.lower()[1:]))
+        console.note(f"wrote {residuals}")
+
+
+def _facts(made: ProjectionFit) -> dict[str, Any]:
+    bench = made.bench
+    return {
+        **made.projection.facts(),
+        "pixel_pitch_um": made.pixel_pitch_um,
+        "lens": bench.lens.name,
+        "f_stop": bench.f_stop,
+        "focus_m": None if math.isinf(bench.focus_mm) else bench.focus_mm / 1e3,
+        "rms_px": made.rms,
+        "largest_px": made.largest,
+        "chief_rays": len(made.pixels),
+        "unseen": made.unseen,
+    }
+
+
+def _print(made: ProjectionFit) -> None:
+    from daguerre.projection import MODELS
+
+    model = made.projection
+    bench = made.bench
+    focus = "inf" if math.isinf(bench.focus_mm) else f"{bench.focus_mm / 1e3:g} m"
+    width, height = model.size
+    print(f"{bench.lens.name}, f/{bench.f_stop:.3g}, focus {focus}, {width} x {height} px")
+    rows = [
+        ("model", model.model),
+        ("focal lengths", "{:.6f}, {:.6f} px".format(*model.focal)),
+        ("principal point", "{:.4f}, {:.4f} px".format(*model.center)),
+        *zip(MODELS[model.model], (f"{k:.9g}" for k in model.parameters), strict=False),
+        ("residual", f"{made.rms:.3g} px RMS, {made.largest:.3g} px at most"),
+        ("chief rays", f"{len(made.pixels)}"),
+    ]
+    if made.unseen:
+        rows.append(("unseen", f"{made.unseen} points of the picture"))
+    for what, value in rows:
+        print(f"  {what:16} {value}")

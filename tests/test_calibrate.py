@@ -1,0 +1,161 @@
+"""Calibration of lenses by their chief rays: projections that say where lenses put things."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from daguerre.analysis.calibrate import directions_seen, fit_projection
+from daguerre.analysis.chief import chief_rays
+from daguerre.cli import main
+from daguerre.errors import InputError, UsageError
+
+SIZE = (640, 480)
+GAUSS, FISHEYE = "double-gauss-50mm-f2", "fisheye-16mm-f2.8"
+
+
+@pytest.mark.parametrize(
+    ("model", "parameters"),
+    [
+        ("rectilinear", ()),
+        ("equisolid", ()),
+        ("opencv", (-0.2, 0.08, 1e-3, -8e-4, -0.01)),
+        ("opencv", (-0.28, 0.09, 1e-3, -2e-3, -0.01, 0.02, 0.01, 1e-3)),
+        ("kannala_brandt", (0.01, -0.003, 1e-3, -2e-4)),
+        ("double_sphere", (-0.2, 0.58)),
+        ("eucm", (0.6, 1.1)),
+        ("omni", (0.9, -0.1, 0.02, 1e-3, -1e-3)),
+        ("fov", (0.9,)),
+    ],
+)
+def test_a_model_is_found_by_its_own_rays(model: str, parameters: tuple[float, ...]) -> None:
+    truth = dg.Projection(model, SIZE, (420.0, 417.0), (331.3, 236.8), parameters)
+    x, y = np.meshgrid(np.linspace(0, 639, 21), np.linspace(0, 479, 16))
+    pixels = np.stack([x, y], axis=-1).reshape(-1, 2)
+    made = fit_projection(model, SIZE, pixels, truth.unproject(pixels), len(parameters))
+    np.testing.assert_allclose(made.project(truth.unproject(pixels)), pixels, atol=1e-9)
+    np.testing.assert_allclose(made.focal, truth.focal, rtol=1e-8)
+    np.testing.assert_allclose(made.center, truth.center, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("lens", "model", "focus", "bound"),
+    [
+        (GAUSS, "opencv", 2.0, 0.001),
+        (GAUSS, "opencv", np.inf, 0.001),
+        (FISHEYE, "fisheye", 1.0, 0.04),
+        (FISHEYE, "fisheye", np.inf, 0.04),
+        ("nikon-28mm-f2.8", "opencv", 5.0, 0.07),
+    ],
+)
+def test_models_fit_lenses(lens: str, model: str, focus: float, bound: float) -> None:
+    fit = dg.calibrate(lens, model, resolution=(1920, 1280), f_stop=8, focus_distance=focus)
+    assert fit.largest < bound
+    # A lens that is the same on all sides has its axis in the middle, and one focal length.
+    np.testing.assert_allclose(fit.projection.center, (959.5, 639.5), atol=1e-6)
+    assert fit.projection.focal[0] == pytest.approx(fit.projection.focal[1], rel=1e-5)
+
+
+def test_focal_lengths_are_those_of_the_lens() -> None:
+    """Far away, the pinhole's of the paraxial focal length; near, the image distance's."""
+    pitch = 36 / 1920
+    far = dg.calibrate(GAUSS, resolution=(1920, 1280))
+    assert far.projection.focal[0] * pitch == pytest.approx(far.bench.order.efl, rel=2e-5)
+    near = dg.calibrate(GAUSS, resolution=(1920, 1280), focus_distance=0.8)
+    # Image size is magnification times object size, which the pupil sees at the focus distance.
+    wanted = -near.bench.magnification * near.bench.focus_mm
+    assert near.projection.focal[0] * pitch == pytest.approx(wanted, rel=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("lens", "model", "focus", "angle"),
+    [(GAUSS, "opencv", 1.0, 18.0), (FISHEYE, "fisheye", 2.0, 70.0)],
+)
+def test_rendered_lamps_land_where_the_projection_says(
+    lens: str, model: str, focus: float, angle: float
+) -> None:
+    """Through the exact lens, at f/16, so that the spot is next to the chief ray: 0.1 px."""
+    size, f_stop = (1200, 800), 16.0
+    middle = 559.0  # nm, of daylight as the eye has it: at 588 nm a fisheye is 0.1 px off
+    options = {"f_stop": f_stop, "focus_distance": focus}
+    fit = dg.calibrate(lens, model, resolution=size, wavelength_nm=middle, **options)
+    camera = dg.Camera(lens=lens, lens_model="exact", f_stop=f_stop, focus_distance=focus)
+    for turn in (0.5, 3.5):  # a mirrored picture would show
+        a = np.radians(angle)
+        point = np.array([np.sin(a) * np.cos(turn), np.sin(a) * np.sin(turn), np.cos(a)])
+        point *= focus / (1 if model == "fisheye" else point[2])
+        scene, place = dg.Scene(), np.eye(4)
+        place[:3, 3] = point * (1, -1, -1)
+        scene.add_light(dg.SphereLight((1e5, 1e5, 1e5), 2e-3 * focus), place)
+        wanted = fit.projection.project(point[None])[0]
+        x, y = np.round(wanted).astype(int)
+        crop = (x - 9, y - 9, x + 10, y + 10)
+        frame = dg.render(scene, camera, resolution=size, crop=crop, spp=256, filter="box")
+        light = np.maximum(frame.xyz[..., 1], 0)
+        assert light.sum() > 0
+        rows, columns = np.indices(light.shape)
+        got = [(light * k).sum() / light.sum() for k in (columns + x - 9, rows + y - 9)]
+        np.testing.assert_allclose(got, wanted, atol=0.1)
+
+
+def test_rays_meet_what_is_in_focus() -> None:
+    """Directions are those of points of the plane in focus from the middle of the pupil."""
+    fit = dg.calibrate(GAUSS, resolution=SIZE, focus_distance=0.5)
+    film = np.array([[3.0, 8.0], [-15.0, 2.0]])
+    rays = chief_rays(fit.bench, film)
+    seen = directions_seen(fit.bench, rays)
+    plane = fit.bench.order.entrance_pupil.z - 500
+    at = (
+        rays.points
+        + rays.directions * ((plane - rays.points[:, 2]) / rays.directions[:, 2])[:, None]
+    )
+    np.testing.assert_allclose(seen[:, 0] / seen[:, 2], at[:, 0] / 500, rtol=1e-9)
+    np.testing.assert_allclose(seen[:, 1] / seen[:, 2], -at[:, 1] / 500, rtol=1e-9)
+
+
+def test_the_command_writes_what_it_finds(tmp_path: Path, capsys: Any) -> None:
+    out, picture = tmp_path / "lens.json", tmp_path / "residuals.png"
+    command = ["calibrate", FISHEYE, "--model", "fisheye", "--focus", "1", "--f-stop", "8"]
+    options = ["--res", "960x640", "--sensor", "36x24", "-o", str(out), "--residuals", str(picture)]
+    pytest.importorskip("matplotlib")
+    assert main([*command, *options]) == 0
+    assert "kannala_brandt" in capsys.readouterr().out
+    facts = json.loads(out.read_text())
+    assert facts["pixel_pitch_um"] == pytest.approx(37.5)
+    assert facts["rms_px"] < 0.01
+    again = dg.Projection(
+        facts["model"], facts["size"], facts["focal_px"], facts["principal_px"], facts["parameters"]
+    )
+    assert again.center == pytest.approx((479.5, 319.5), abs=1e-6)
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "message"),
+    [
+        (["--model", "fishey"], 2, "did you mean 'fisheye'"),
+        (["--model", "cube"], 2, "model"),
+        (["--terms", "15"], 2, "terms of opencv"),
+        (["--focus-by", "eye"], 2, "--focus-by"),
+        (["-o", "x.yml"], 2, "--output"),
+        (["--residuals", "x.bmp"], 2, "--residuals"),
+        (["--f-stop", "1"], 3, "f"),
+    ],
+)
+def test_bad_wishes_are_one_line(options: list[str], code: int, message: str, capsys: Any) -> None:
+    assert main(["calibrate", GAUSS, *options]) == code
+    text = capsys.readouterr().err
+    assert message in text
+    assert text.count("\n") == 1
+
+
+def test_a_model_with_too_small_a_field_says_so() -> None:
+    with pytest.raises(InputError, match=r"9\d\.\d* degrees.*opencv up to 90"):
+        dg.calibrate(FISHEYE, "opencv", resolution=SIZE)
+    with pytest.raises(UsageError, match="resolution"):
+        dg.calibrate(GAUSS, resolution=(640.5, 480))  # type: ignore[arg-type]
