@@ -174,7 +174,7 @@ def test_a_chart_on_disk_is_the_chart(tmp_path: Any, flags: list[str]) -> None:
 def test_the_list_says_what_parameters_are(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["chart", "--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines.count("    width: m [0.9]") == len(charts.KINDS)
+    assert "    width: m [0.9]" in lines
     assert not [line for line in lines if line.startswith("    ") and ":  [" in line]
 
 
@@ -187,6 +187,7 @@ def test_the_list_says_what_parameters_are(capsys: pytest.CaptureFixture[str]) -
         (["chart", "colour", "-o", "x.glb", "--set", "steps=3"], "steps"),
         (["chart", "step-wedge", "-o", "x.glb", "--set", "steps=1"], "2 .. 100"),
         (["chart", "step-wedge", "-o", "x.glb", "--set", "steps"], "KEY=VALUE"),
+        (["chart", "step-wedge", "-o", "x.glb", "--set", "=3"], "KEY=VALUE"),
         (["chart", "siemens-star", "-o", "x.glb", "--set", "profile=saw"], "sine or bar"),
         (["chart", "slanted-edge", "-o", "x.glb", "--set", "angle=0"], "angle"),
         (["chart", "slanted-edge", "-o", "x.glb", "--set", "contrast=1"], "contrast"),
@@ -216,6 +217,19 @@ def test_bad_measurements_say_so() -> None:
         charts.edge_response(np.full((32, 32), 0.5))
     with pytest.raises(InputError, match="one shape"):
         charts.texture_response(np.ones((4, 4)), np.ones((4, 5)))
+    with pytest.raises(InputError, match="some texture"):
+        charts.texture_response(np.eye(8), np.ones((8, 8)))
+    with pytest.raises(UsageError, match="bend"):
+        charts.edge_response(upright, bend=-1)
+    for radius in (100, -3, 0, np.nan):
+        with pytest.raises(InputError, match="radii: wanted circles in the picture"):
+            charts.star_modulation(np.ones((40, 40)), (20, 20), [radius], 8)
+    with pytest.raises(InputError, match="light on the circle"):
+        charts.star_modulation(np.zeros((40, 40)), (20, 20), [10], 8)
+    with pytest.raises(InputError, match="star: picture: wanted"):
+        charts.star_modulation(np.ones((40, 40, 3)), (20, 20), [10], 8)
+    with pytest.raises(UsageError, match="center"):
+        charts.star_modulation(np.ones((40, 40)), (20,), [10], 8)
     with pytest.raises(InputError, match="worldToNDC"):
         charts.places([[0, 0]], {})
     with pytest.raises(InputError, match="patches"):

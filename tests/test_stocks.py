@@ -159,6 +159,7 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
         ({"granularity": -1}, "granularity"),
         ({"grain": 1}, "grain: not known"),
         ({"paper": None}, "paper"),
+        ({"paper": {"least": 0.1, "gamma": -2, "toe": -1, "shoulder": 0}}, "paper: gamma"),
         ({"layers": {"R": {}}}, "sensitivity"),
         ({"schema": "daguerre-stock/9"}, "wanted 'daguerre-stock/0.1'"),
         ({"halation": {"base_mm": 0.1, "share": [0.1]}}, "share: wanted 3 numbers"),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import to_numbers
+from daguerre.checks import numbers, to_numbers, whole
 from daguerre.errors import InputError
 
 from .chart import Chart
@@ -66,7 +66,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     Raises:
         InputError: No such edge is in the region.
     """
-    light = _plane(region)
+    light, bend = _plane(region, "edge: region", 8), whole(bend, "edge: bend", 1, 9)
     rows, columns = light.shape
     if abs(_slope(light, 0)) > abs(_slope(light, 1)):
         light = light.T
@@ -96,13 +96,16 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     return EdgeResponse(frequency[wanted], response[wanted], angle, low, high)
 
 
-def _plane(region: ArrayLike) -> FloatArray:
-    light = to_numbers(region, "edge", "region", "shape (H, W)").astype(np.float64)
-    if light.ndim != 2 or min(light.shape) < 8:
-        raise InputError(f"edge: region: wanted (H, W) of at least 8 x 8 pixels, got {light.shape}")
+def _plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
+    what, _, name = where.partition(": ")
+    light = to_numbers(values, what, name, "shape (H, W)").astype(np.float64)
+    if light.ndim != 2 or min(light.shape) < least:
+        raise InputError(
+            f"{where}: wanted (H, W) of at least {least} x {least} pixels, got {light.shape}"
+        )
     if not np.isfinite(light).all():
         raise InputError(
-            f"edge: region: wanted finite light, got {(~np.isfinite(light)).sum()} that is not"
+            f"{where}: wanted finite light, got {(~np.isfinite(light)).sum()} that is not"
         )
     return light
 
@@ -212,17 +215,22 @@ def star_modulation(
     Returns:
         Modulation, shape (R,).
     """
-    light = np.asarray(picture, np.float64)
+    light, cycles = _plane(picture, "star: picture"), whole(cycles, "star: cycles", 1, 10_000)
+    middle_x, middle_y = numbers(center, "star: center", 2, "x and y in px")
     rows, columns = np.indices(light.shape)
-    x, y = columns + 0.5 - np.asarray(center)[0], rows + 0.5 - np.asarray(center)[1]
+    x, y = columns + 0.5 - middle_x, rows + 0.5 - middle_y
     radius, angle = np.hypot(x, y), np.arctan2(y, x)
     found = []
     for r in np.atleast_1d(np.asarray(radii, np.float64)):
-        ring = np.abs(radius - r) < 0.75
+        ring = (np.abs(radius - r) < 0.75) & (r > 0)
+        if ring.sum() < 3:
+            raise InputError(f"star: radii: wanted circles in the picture, got one of {r:g} px")
         basis = np.c_[
             np.ones(ring.sum()), np.cos(cycles * angle[ring]), np.sin(cycles * angle[ring])
         ]
         mean, a, b = np.linalg.lstsq(basis, light[ring], rcond=None)[0]
+        if not mean > 0:
+            raise InputError(f"star: picture: wanted light on the circle of {r:g} px, got none")
         found.append(np.hypot(a, b) / mean)
     return np.asarray(found)
 
@@ -241,11 +249,13 @@ def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArr
     Returns:
         Frequencies, cycles per pixel, from 0 to 0.5, and the response at them.
     """
-    a, b = (np.asarray(p, np.float64) for p in (picture, reference))
-    if a.ndim != 2 or a.shape != b.shape:
+    a, b = _plane(picture, "texture: picture"), _plane(reference, "texture: reference")
+    if a.shape != b.shape:
         raise InputError(f"texture: wanted two planes of one shape, got {a.shape} and {b.shape}")
     rows, columns = a.shape
     window = np.hanning(rows)[:, None] * np.hanning(columns)[None]
+    if np.ptp(b) == 0:
+        raise InputError("texture: reference: wanted some texture, got even light")
     seen, wanted = (np.fft.fft2((p - p.mean()) * window) for p in (a, b))
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(columns), np.fft.fftfreq(rows)))
     steps = min(rows, columns) // 2

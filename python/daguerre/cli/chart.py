@@ -75,7 +75,7 @@ def _parameters(words: list[str]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for word in words:
         key, equals, value = word.partition("=")
-        if not equals:
+        if not (key and equals):
             raise UsageError(f"--set: wanted KEY=VALUE, got {word!r}")
         found[key] = _value(value)
     return found

@@ -190,6 +190,7 @@ def _check(stock: Stock) -> None:
         if stock.paper is None:
             raise InputError(f"{where}: paper: wanted its curve; negatives are printed on it")
         stock.paper.check(f"{where}: paper")
+        number(stock.paper.gamma, f"{where}: paper: gamma", above=0, error=InputError)
     if stock.halation is not None:
         _check_halation(stock.halation, len(stock.layers), f"{where}: halation")
 
