@@ -123,10 +123,11 @@ def calibrated(
     flags: int = 0,
     columns: int = 10,
     rows: int = 7,
+    square: float = 0.03,
     **options: Any,
 ) -> tuple[float, np.ndarray]:
     """OpenCV's reprojection error and camera matrix."""
-    chart = charts.make("checkerboard", columns=columns, rows=rows)
+    chart = charts.make("checkerboard", columns=columns, rows=rows, square=square)
     board = charts.object_points(chart.truth["corners_m"])
     found = []
     for i, pose in enumerate(charts.poses(chart, projection, count, 1)):

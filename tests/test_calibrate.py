@@ -119,20 +119,32 @@ def test_rays_meet_what_is_in_focus() -> None:
 
 
 def test_the_command_writes_what_it_finds(tmp_path: Path, capsys: Any) -> None:
-    out, picture = tmp_path / "lens.json", tmp_path / "residuals.png"
+    out, picture = tmp_path / "lens.yaml", tmp_path / "residuals.png"
     command = ["calibrate", FISHEYE, "--model", "fisheye", "--focus", "1", "--f-stop", "8"]
     options = ["--res", "960x640", "--sensor", "36x24", "-o", str(out), "--residuals", str(picture)]
     pytest.importorskip("matplotlib")
     assert main([*command, *options]) == 0
     assert "kannala_brandt" in capsys.readouterr().out
-    facts = json.loads(out.read_text())
+    assert main([*command, *options, "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
     assert facts["pixel_pitch_um"] == pytest.approx(37.5)
     assert facts["rms_px"] < 0.01
-    again = dg.Projection(
-        facts["model"], facts["size"], facts["focal_px"], facts["principal_px"], facts["parameters"]
-    )
+    again = dg.calibration.read(out).projection
+    assert again.model == facts["model"]
+    assert again.parameters == pytest.approx(facts["parameters"])
     assert again.center == pytest.approx((479.5, 319.5), abs=1e-6)
     assert picture.read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize("kind", dg.calibration.FORMATS)
+def test_every_format_says_where_the_lens_puts_things(kind: str, tmp_path: Path) -> None:
+    out = tmp_path / "lens.yaml"
+    command = ["calibrate", "nikon-28mm-f2.8", "--res", "640x480", "--focus", "3"]
+    assert main([*command, "--format", kind, "-o", str(out)]) == 0
+    fit = dg.calibrate("nikon-28mm-f2.8", resolution=SIZE, focus_distance=3)
+    found = dg.calibration.read(out).projection.project(fit.directions)
+    # Kalibr's model has no k3.
+    assert np.abs(found - fit.pixels).max() < (0.1 if kind == "kalibr" else 1.001 * fit.largest)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +154,9 @@ def test_the_command_writes_what_it_finds(tmp_path: Path, capsys: Any) -> None:
         (["--model", "cube"], 2, "model"),
         (["--terms", "15"], 2, "terms of opencv"),
         (["--focus-by", "eye"], 2, "--focus-by"),
-        (["-o", "x.yml"], 2, "--output"),
+        (["--format", "rost", "-o", "x.yaml"], 2, "did you mean 'ros'"),
+        (["--format", "ros"], 2, "-o FILE"),
+        (["--model", "equisolid", "-o", "/no/such/x"], 5, "/no/such"),
         (["--residuals", "x.bmp"], 2, "--residuals"),
         (["--f-stop", "1"], 3, "f"),
     ],

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from daguerre.errors import UsageError
+from daguerre.errors import UsageError, suggest
 
 from . import console
 from . import quantities as q
@@ -17,6 +17,7 @@ from .flags import option
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit
 
+FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
 PICTURES = (".png", ".svg", ".pdf")
 
 
@@ -27,7 +28,11 @@ def calibrate(
     ] = "opencv",
     terms: Annotated[
         int | None,
-        option("--terms", metavar="N", help="Parameters of the model [5 of opencv, else all]."),
+        option(
+            "--terms",
+            metavar="N",
+            help="Parameters of the model [5 of opencv, else all; for Kalibr 4].",
+        ),
     ] = None,
     focus: Annotated[
         str | None, option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].")
@@ -51,7 +56,11 @@ def calibrate(
         float, option("--wavelength", metavar="NM", help="nm [587.56].")
     ] = 587.56,
     output: Annotated[
-        Path | None, option("-o", "--output", metavar="FILE.json", help="The projection.")
+        Path | None, option("-o", "--output", metavar="FILE", help="A calibration file.")
+    ] = None,
+    file_format: Annotated[
+        str | None,
+        option("--format", metavar="opencv|ros|kalibr|opentrackio", help="Of that file [opencv]."),
     ] = None,
     residuals: Annotated[
         Path | None,
@@ -68,7 +77,9 @@ def calibrate(
 
     if focus_by not in ("paraxial", "best"):
         raise UsageError(f"--focus-by: wanted paraxial or best, got {focus_by!r}")
-    _check_files(output, residuals)
+    _check_files(output, file_format, residuals)
+    if terms is None and file_format == "kalibr" and model == "opencv":
+        terms = 4  # Kalibr's radtan has no k3
     made = fit(
         name,
         model,
@@ -81,7 +92,7 @@ def calibrate(
         terms=terms,
         wavelength_nm=wavelength,
     )
-    _write(made, output, residuals)
+    _write(made, output, file_format or FORMATS[0], residuals)
     if json:
         from json import dumps
 
@@ -91,13 +102,18 @@ def calibrate(
     return 0
 
 
-def _check_files(output: Path | None, residuals: Path | None) -> None:
+def _check_files(output: Path | None, file_format: str | None, residuals: Path | None) -> None:
     from daguerre.io.atomic import check_writable
     from daguerre.lenses.plot import check_available
 
+    if file_format is not None and file_format not in FORMATS:
+        raise UsageError(
+            f"--format: wanted {', '.join(FORMATS)}; got {file_format!r}"
+            f"{suggest(file_format, FORMATS)}"
+        )
+    if file_format is not None and output is None:
+        raise UsageError("--format: wanted with -o FILE")
     if output is not None:
-        if output.suffix.lower() != ".json":
-            raise UsageError(f"--output: wanted a name ending in .json, got {str(output)!r}")
         check_writable(output)
     if residuals is not None:
         suffix = residuals.suffix.lower()
@@ -110,13 +126,14 @@ def _check_files(output: Path | None, residuals: Path | None) -> None:
         check_writable(residuals)
 
 
-def _write(made: ProjectionFit, output: Path | None, residuals: Path | None) -> None:
-    from json import dumps
-
+def _write(
+    made: ProjectionFit, output: Path | None, file_format: str, residuals: Path | None
+) -> None:
+    from daguerre.calibration import Calibration, write
     from daguerre.io.atomic import write_bytes
 
     if output is not None:
-        write_bytes(output, dumps(_facts(made), indent=2).encode() + b"\n")
+        write(output, Calibration(made.projection, pixel_pitch=made.pixel_pitch_um), file_format)
         console.note(f"wrote {output}")
     if residuals is not None:
         from daguerre.analysis.residual_plot import plot_residuals
