@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .analysis.calibrate import calibrate
     from .frame import Frame
     from .raw import Raw
+    from .rig import render_rig, stereo_pair
     from .session import Session, iter_render, render
     from .waves import Diffraction
 
@@ -81,8 +82,10 @@ __all__ = [
     "polynomial",
     "post",
     "render",
+    "render_rig",
     "sensors",
     "spin",
+    "stereo_pair",
     "stocks",
 ]
 
@@ -95,6 +98,8 @@ _LAZY = {
     "Session": "session",
     "iter_render": "session",
     "render": "session",
+    "render_rig": "rig",
+    "stereo_pair": "rig",
 }
 
 

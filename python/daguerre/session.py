@@ -84,6 +84,8 @@ class Session:
             channels can be made later; 0: none.
         technique: Who draws what both could find: both, or camera or light alone (to check one
             against the other).
+        beside: Another session of this scene, unchanged since: where both look at the same time,
+            what it built serves this one, too.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -114,6 +116,7 @@ class Session:
         technique: str = "both",
         diffraction: bool | Diffraction = False,
         bands: int = 0,
+        beside: Session | None = None,
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -144,8 +147,12 @@ class Session:
         self.gt_time, self.motion = check_gt_time(gt_time, wanted=motion), motion
         started = time.perf_counter()
         self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
+        self._core_scene: _core.Scene
         self.warnings: list[str] = []  # what moves in a way that cannot be shown to its end
-        self._core_scene = build(scene, self.interval, self.warnings)
+        if beside is not None and beside.scene is scene and beside.interval == self.interval:
+            self._core_scene, self.warnings = beside._core_scene, list(beside.warnings)
+        else:
+            self._core_scene = build(scene, self.interval, self.warnings)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
         self.sensor = None if self.camera.sensor is None else sensors.load(self.camera.sensor)
         self._pupils = self._plan_waves()
@@ -503,8 +510,13 @@ def render(
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
     """
+    _most_samples(spp, noise)  # before anything is built
+    return finish(Session(scene, camera, **options), spp, noise)
+
+
+def finish(session: Session, spp: int | None = None, noise: float | None = None) -> Frame:
+    """The picture of a session; arguments as of :func:`render`."""
     spp = _most_samples(spp, noise)
-    session = Session(scene, camera, **options)
     if noise is None:
         session.draw(0, spp)
     else:
