@@ -226,3 +226,12 @@ def test_a_picture_of_another_shape_is_refused() -> None:
     camera = dg.Camera(transform=pose(), projection=Projection("opencv", SIZE, FOCAL))
     with pytest.raises(UsageError, match="192 x 108"):
         shot(camera, resolution=(192, 120), spp=1)
+
+
+def test_the_field_of_view_is_the_models() -> None:
+    fisheye = Projection.of_field("equisolid", (400, 300), 190)
+    across, down, diagonal = fisheye.field_of_view()
+    assert across == pytest.approx(190, abs=1e-9)
+    assert down < across < diagonal
+    tangent = Projection("rectilinear", (200, 100), (100.0, 100.0))
+    assert tangent.field_of_view()[:2] == pytest.approx((90, 2 * np.degrees(np.arctan(0.5))))

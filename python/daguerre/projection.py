@@ -147,6 +147,21 @@ class Projection:
         """Whether what lies beside the camera or behind it may be seen."""
         return bool(self.core.is_wide)
 
+    def field_of_view(self) -> tuple[float, float, float]:
+        """Of its picture: across, down and along the diagonal, degrees; NaN where nothing is seen.
+
+        The angles of the two edges from the axis, one after the other; of a panorama all around.
+        """
+        (width, height), (x, y) = self.size, self.center
+        left, right, top, bottom = -0.5, width - 0.5, -0.5, height - 0.5
+        ends = [[left, y], [right, y], [x, top], [x, bottom], [left, top], [right, bottom]]
+        if self.model in ("equirectangular", "cube"):
+            return (360.0, 180.0, 360.0)
+        seen = self.unproject(ends)
+        angles = np.degrees(np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2]))
+        across, down, diagonal = (float(a) for a in angles.reshape(3, 2).sum(axis=1))
+        return across, down, diagonal
+
     def project(self, points: ArrayLike) -> FloatArray:
         """Pixels of points of the camera's own frame as OpenCV has it: x right, y down, z ahead.
 
