@@ -111,12 +111,10 @@ def camera_facts(
     ev100 = None
     if stop is not None and shutter > 0:
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
-    angles = [
-        field_of_view_deg(setup.pinhole_focal_length, size, squeeze)
-        for size in (camera.sensor_size, setup.frame_size)
-    ]
+    full = field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size, squeeze)
+    shown = field_of_view_deg(setup.pinhole_focal_length, setup.frame_size, squeeze)
     if camera.projection is not None:
-        angles = 2 * [camera.projection.field_of_view()]
+        full = shown = camera.projection.field_of_view()
     return Facts(
         str(facts.get("lens", "thin")),
         focal,
@@ -129,7 +127,8 @@ def camera_facts(
         len(facts.get("decenter", ())),
         camera.sensor_size,
         setup.frame_size,
-        *angles,
+        full,
+        shown,
         focus,
         setup.notes,
         coc,
