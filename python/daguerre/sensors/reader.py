@@ -5,16 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.io.json_file import read_json_file
 from daguerre.io.json_item import Item
-from daguerre.io.json_text import parse
 
 from .curve import Curve
 from .mosaic import Mosaic
 from .sensor import DarkCurrent, DualGain, HotPixels, Sensor
 
 SCHEMA = "daguerre-sensor/0.1"
-MAX_BYTES = 16_000_000
 MEMBERS = (
     *("schema", "name", "make", "model", "source", "licence", "assumed", "note"),
     *("pixel_pitch_um", "resolution", "size_mm", "fill_factor", "pattern", "wavelengths_nm"),
@@ -30,27 +28,7 @@ def read(path: str | Path) -> Sensor:
     Raises:
         InputError: With file and JSON path of what cannot be used.
     """
-    path = Path(path)
-    try:
-        if path.stat().st_size > MAX_BYTES or not path.is_file():
-            raise InputError(f"{path}: sensor file: wanted a file of at most {MAX_BYTES} bytes")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
-    root = parse(data, str(path))
-    schema = root.need("schema")
-    if schema.value != SCHEMA:
-        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
-    for member in root.members():
-        if member.key not in MEMBERS:
-            member.fail(f"not known{suggest(str(member.key), MEMBERS)}")
-    try:
-        return _sensor(root)
-    except InputError as error:
-        text = str(error)
-        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
-    except DaguerreError as error:
-        raise InputError(f"{path}: {error}") from None
+    return read_json_file(path, "sensor", SCHEMA, MEMBERS, _sensor)
 
 
 def _sensor(root: Item) -> Sensor:

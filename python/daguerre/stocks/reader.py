@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.io.json_file import read_json_file
 from daguerre.io.json_item import Item
-from daguerre.io.json_text import parse
 from daguerre.sensors import illuminants
 from daguerre.sensors.curve import rising
 
@@ -15,7 +14,6 @@ from .curve import CharacteristicCurve
 from .stock import Halation, Layer, Stock
 
 SCHEMA = "daguerre-stock/0.1"
-MAX_BYTES = 16_000_000
 MEMBERS = (
     *("schema", "name", "kind", "source", "note", "iso", "balance_k", "wavelengths_nm", "layers"),
     *("granularity", "spread_um", "halation", "paper"),
@@ -28,25 +26,7 @@ def read(path: str | Path) -> Stock:
     Raises:
         InputError: With file and JSON path of what cannot be used.
     """
-    path = Path(path)
-    try:
-        if path.stat().st_size > MAX_BYTES or not path.is_file():
-            raise InputError(f"{path}: stock file: wanted a file of at most {MAX_BYTES} bytes")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
-    root = parse(data, str(path))
-    schema = root.need("schema")
-    if schema.value != SCHEMA:
-        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
-    for member in root.members():
-        if member.key not in MEMBERS:
-            member.fail(f"not known{suggest(str(member.key), MEMBERS)}")
-    try:
-        return _stock(root)
-    except DaguerreError as error:
-        text = str(error)
-        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+    return read_json_file(path, "stock", SCHEMA, MEMBERS, _stock)
 
 
 def _stock(root: Item) -> Stock:

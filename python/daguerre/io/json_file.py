@@ -1,0 +1,51 @@
+"""Files of a library as JSON: of a known schema and members, with errors that name the place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import TypeVar
+
+from daguerre.errors import DaguerreError, InputError, suggest
+
+from .json_item import Item
+from .json_text import parse
+
+Made = TypeVar("Made")
+MAX_BYTES = 16_000_000
+
+
+def read_json_file(
+    path: str | Path, what: str, schema: str, members: Collection[str], make: Callable[[Item], Made]
+) -> Made:
+    """Reads what a file describes.
+
+    Args:
+        path: The file.
+        what: It is: for messages.
+        schema: That the file must name.
+        members: That its object may have.
+        make: Makes the thing of the file's object.
+
+    Raises:
+        InputError: With file and JSON path of what cannot be used.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > MAX_BYTES or not path.is_file():
+            raise InputError(f"{path}: {what} file: wanted a file of at most {MAX_BYTES} bytes")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+    root = parse(data, str(path))
+    named = root.need("schema")
+    if named.value != schema:
+        named.fail(f"wanted {schema!r}, got {named.value!r}")
+    for member in root.members():
+        if member.key not in members:
+            member.fail(f"not known{suggest(str(member.key), members)}")
+    try:
+        return make(root)
+    except DaguerreError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
