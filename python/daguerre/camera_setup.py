@@ -179,7 +179,13 @@ def _set_up_projection(
         focus.sharp_at = lambda point: float(np.linalg.norm(point))
     distance = focus.distance(direction) if radius > 0 else math.inf
     setup.core = _core.Camera.projection(
-        pose, projection.core, *film.values(), radius, distance, iris_of(camera)
+        pose,
+        projection.core,
+        film["focal_mm"],
+        film["principal_mm"],
+        radius,
+        distance,
+        iris_of(camera),
     )
     setup.pinhole_focal_length = focal
     setup.facts |= {

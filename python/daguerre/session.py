@@ -257,11 +257,12 @@ class Session:
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
         layers = (self.aovs, self.light_paths != OFF, self.flare > 0 or self.scatter > 0)
-        spectra = {"bands": self.diffraction.bands if self.diffraction is not None else self.bands}
+        bands = self.diffraction.bands if self.diffraction is not None else self.bands
+        region = (x1 - x0, y1 - y0, x0, y0)
         if self.sensor is None:
-            return _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, **spectra)
+            return _core.Film(*region, *layers, bands=bands)
         curves = responses(self.sensor)
-        film = _core.Film(x1 - x0, y1 - y0, x0, y0, *layers, **spectra, channels=len(curves))
+        film = _core.Film(*region, *layers, bands=bands, channels=len(curves))
         film.set_responses(curves)
         return film
 
