@@ -1,8 +1,8 @@
 #include "camera/projection.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "math/across.h"
 #include "math/warp.h"
 
 namespace dg {
@@ -14,12 +14,6 @@ Vec3d turned(Vec3d v) {
 }
 
 }  // namespace
-
-AcrossDirection::AcrossDirection(Vec3d e) {
-    const double k = 1 / std::max(1 - e.z, 1e-9);
-    x = {1 - k * e.x * e.x, -k * e.x * e.y, e.x};
-    y = {-k * e.x * e.y, 1 - k * e.y * e.y, e.y};
-}
 
 Vec2d Projection::model_point(Vec2d film) const {
     return {(film.x - principal_mm.x) / focal_mm.x, (principal_mm.y - film.y) / focal_mm.y};
@@ -61,7 +55,7 @@ void Projection::generate(std::span<const CameraSample> samples, std::span<Camer
                 q = iris.sample({s.u_lens.x, s.u_lens.y});
                 rays[i].weight *= float(covered * iris.transmission(q));
             }
-            const AcrossDirection across(*chief);
+            const Across across(*chief);
             const double radius = 1e-3 * aperture_radius_mm * s.iris_opening;
             origin = radius * (q.x * across.x + q.y * across.y);
             const double ahead = model.is_wide() ? 1 : -chief->z;   // the plane is 1 / cos further off
@@ -114,7 +108,7 @@ Reprojection Projection::reproject_iris(const CameraRay& ray) const {
     const double ahead = dot(d, chief);
     if (!(ahead > 0)) return {};
     const Vec3d o = from - d * (dot(from, chief) / ahead);
-    const AcrossDirection across(chief);
+    const Across across(chief);
     const double pass = iris.transmission(Vec2d{dot(o, across.x), dot(o, across.y)} * (1 / radius));
     const auto film = pass > 0 ? film_point(chief) : std::nullopt;
     if (!film) return {};

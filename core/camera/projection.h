@@ -38,10 +38,4 @@ struct Projection {
     std::optional<Vec3d> in_focus(Vec3d from, Vec3d direction) const;
 };
 
-/// Axes across a direction that turn with it from straight ahead (-z) without a jump but straight behind.
-struct AcrossDirection {
-    Vec3d x, y;
-    explicit AcrossDirection(Vec3d unit);
-};
-
 }  // namespace dg

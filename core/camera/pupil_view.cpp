@@ -4,6 +4,7 @@
 
 #include "camera/pupil_shape.h"
 #include "camera/tilt.h"
+#include "math/across.h"
 #include "math/warp.h"
 
 namespace dg {
@@ -84,7 +85,7 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
         const double far = length(p);
         if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return std::nullopt;
         const Vec3d axis = p / far;
-        const AcrossDirection across(axis);
+        const Across across(axis);
         const double radius = bound_of(iris->radius, p, w);
         const Vec2f disk = warp_disk(u);
         const Vec3d q = radius * (disk.x * across.x + disk.y * across.y);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/across.h"
 #include "render/flare/highlight_survey.h"
 #include "render/light_arrival.h"
 
@@ -11,16 +12,6 @@ namespace {
 
 constexpr std::size_t kMostFour = 1024;   // ghosts by four reflections
 constexpr double kFurthestBack = 0.45;    // cosine: no lens sees what lies further behind it
-
-/// Axes across a direction that turn with it from straight ahead (-z) without a jump but straight behind.
-struct Across {
-    Vec3d x, y;
-    explicit Across(Vec3d e) {
-        const double k = 1 / std::max(1 - e.z, 1e-9);
-        x = {1 - k * e.x * e.x, -k * e.x * e.y, e.x};
-        y = {-k * e.x * e.y, 1 - k * e.y * e.y, e.y};
-    }
-};
 
 }  // namespace
 
