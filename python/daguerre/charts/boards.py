@@ -34,12 +34,7 @@ def checkerboard(columns: int = 10, rows: int = 7, square: float = 0.03) -> Char
     """
     centers = _centers(columns, rows, square, 3)
     size = (square * (columns + 2), square * (rows + 2))
-    black = [
-        Patch("square", rectangle(centers[r, c], (square, square)), grey(0.0), markers.BLACK_LAYER)
-        for r in range(rows)
-        for c in range(columns)
-        if (r + c) % 2 == 0
-    ]
+    black = _black_squares(centers, square)
     truth = _grid(columns, rows, square) | {"corners_m": _inner(centers, square).tolist()}
     return _board("checkerboard", size, black, truth)
 
@@ -65,12 +60,7 @@ def charuco(
     places = [(r, c) for r in range(rows) for c in range(columns) if (r + c) % 2]
     name, _ = markers.checked(dictionary, 0, len(places))
     size = (square * (columns + 1), square * (rows + 1))
-    shown = [
-        Patch("square", rectangle(centers[r, c], (square, square)), grey(0.0), markers.BLACK_LAYER)
-        for r in range(rows)
-        for c in range(columns)
-        if (r + c) % 2 == 0
-    ]
+    shown = _black_squares(centers, square)
     side, facts = marker * square, []
     for i, (r, c) in enumerate(places):
         shown += markers.patches(name, i, centers[r, c], side, 1, grey(WHITE))
@@ -153,6 +143,17 @@ def _centers(columns: int, rows: int, side: float, least: int, most: int = 200) 
 def _inner(centers: FloatArray, square: float) -> FloatArray:
     """Where four squares meet, row by row from the upper left, shape (N, 2)."""
     return np.asarray((centers[:-1, :-1] + [square / 2, -square / 2]).reshape(-1, 2))
+
+
+def _black_squares(centers: FloatArray, square: float) -> list[Patch]:
+    """Every other one, the first among them."""
+    rows, columns = centers.shape[:2]
+    return [
+        Patch("square", rectangle(centers[r, c], (square, square)), grey(0.0), markers.BLACK_LAYER)
+        for r in range(rows)
+        for c in range(columns)
+        if (r + c) % 2 == 0
+    ]
 
 
 def _grid(columns: int, rows: int, square: float) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from daguerre.errors import UsageError, suggest
 
 from . import console
 from . import quantities as q
+from .drawings import check_drawing
 from .flags import option
 
 if TYPE_CHECKING:
@@ -104,7 +105,6 @@ def calibrate(
 
 def _check_files(output: Path | None, file_format: str | None, residuals: Path | None) -> None:
     from daguerre.io.atomic import check_writable
-    from daguerre.lenses.plot import check_available
 
     if file_format is not None and file_format not in FORMATS:
         raise UsageError(
@@ -115,15 +115,7 @@ def _check_files(output: Path | None, file_format: str | None, residuals: Path |
         raise UsageError("--format: wanted with -o FILE")
     if output is not None:
         check_writable(output)
-    if residuals is not None:
-        suffix = residuals.suffix.lower()
-        if suffix not in PICTURES:
-            raise UsageError(
-                f"--residuals: wanted a name ending in {' or '.join(PICTURES)}, "
-                f"got {str(residuals)!r}"
-            )
-        check_available(suffix, needed=True)
-        check_writable(residuals)
+    check_drawing("--residuals", residuals, formats=PICTURES)
 
 
 def _write(

@@ -12,6 +12,7 @@ import typer
 from daguerre.errors import InputError, UsageError
 
 from .console import note
+from .drawings import check_drawing
 from .flags import option
 from .lens_export import Export
 from .lens_flare import Flare
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 #: the wavelength of the helium d line, at which lenses are specified, nm
 DESIGN_NM = 587.56
-FORMATS = (".svg", ".png", ".pdf")
 FOCUS_BY = ("best", "paraxial")
 BENCH, FILES = "On the bench", "What is written"
 
@@ -164,7 +164,7 @@ def lens(
     from daguerre.analysis import set_up
 
     for flag, path in (("--plot", plot), ("--drawing", drawing)):
-        _check_file(flag, path)
+        check_drawing(flag, path, plotted=flag == "--plot")
     polynomials = Export(degree, sensor, blades, blade_rotation, blade_curvature)
     (polynomials if flare is None else replace(polynomials, sensor=None)).check(export)
     ghosts = Flare(flare, ghost, cover_glass, sensor_reflectance, sensor)
@@ -201,21 +201,6 @@ def lens(
     if not json:
         _print(item if not setting else bench().lens, wavelength)
     return 0
-
-
-def _check_file(flag: str, path: Path | None) -> None:
-    from daguerre.io.atomic import check_writable
-    from daguerre.lenses.plot import check_available
-
-    if path is None:
-        return
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise UsageError(
-            f"{flag}: wanted a name ending in {' or '.join(FORMATS)}, got {str(path)!r}"
-        )
-    check_available(suffix, needed=flag == "--plot")
-    check_writable(path)
 
 
 def _setting(zoom: str | None, focus: str | None, f_stop: str | None) -> dict[str, Any]:

@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from daguerre.errors import UsageError
-
+from .drawings import check_drawing
 from .flags import option
 
 if TYPE_CHECKING:
     from daguerre.sensors import Sensor
-
-FORMATS = (".svg", ".png", ".pdf")
 
 
 def sensor(
@@ -34,7 +31,7 @@ def sensor(
     from daguerre.sensors import load
     from daguerre.sensors.facts import facts
 
-    _check_file(plot)
+    check_drawing("--plot", plot)
     item = load(name)
     if plot is not None:
         from daguerre.io.atomic import write_bytes
@@ -50,21 +47,6 @@ def sensor(
     elif plot is None:
         _print(item, facts(item))
     return 0
-
-
-def _check_file(plot: Path | None) -> None:
-    from daguerre.io.atomic import check_writable
-    from daguerre.lenses.plot import check_available
-
-    if plot is None:
-        return
-    suffix = plot.suffix.lower()
-    if suffix not in FORMATS:
-        raise UsageError(
-            f"--plot: wanted a name ending in {' or '.join(FORMATS)}, got {str(plot)!r}"
-        )
-    check_available(suffix, needed=True)
-    check_writable(plot)
 
 
 def _print(item: Sensor, numbers: dict[str, Any]) -> None:
