@@ -13,6 +13,7 @@ import pytest
 
 from daguerre import stocks
 from daguerre.cli import main
+from daguerre.development import develop
 from daguerre.errors import InputError, UsageError
 from daguerre.frame import Frame
 from daguerre.post.convolution import convolve
@@ -86,6 +87,14 @@ def test_a_scan_is_the_light_that_was(name: str) -> None:
     assert scanned.metadata["isoSpeed"] == stock.iso
     wanted = np.array([0.1, 0.3, 1.0, 3.0]) * 10 / stock.iso
     np.testing.assert_allclose(scanned.rgb[0, :, 1], wanted, rtol=0.02)
+
+
+def test_a_scan_of_more_light_is_developed_so_much_brighter_once() -> None:
+    """Compensation is in the densities: development must not add it again."""
+    stock = plain(stocks.load("generic-panchromatic-400"))
+    frame = even(stock, [0.5])
+    light = [develop(stock.expose(frame, ev=ev).scan()).linear()[0, 0, 1] for ev in (0, 1)]
+    assert light[1] / light[0] == pytest.approx(2, rel=0.02)
 
 
 @pytest.mark.parametrize("pitch", [4.0, 12.0])

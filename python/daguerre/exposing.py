@@ -20,6 +20,7 @@ from .checks import number, whole
 from .colour import rgb_from_xyz
 from .errors import InputError, UsageError
 from .exposure import frame_iso, luminance_exposure
+from .film_channels import seen_of
 from .frame import Frame
 from .raw import Raw
 from .sensors import illuminants
@@ -142,25 +143,9 @@ def light_of(frame: Frame, sensor: Sensor, ev: float = 0.0) -> Light:
     """The best planes that a frame has for a sensor: its channels, else bands, else XYZ."""
     lux_s = luminance_exposure(frame.metadata) * 2.0**ev
     electrons = sensor.electrons_per_lux_s()[:, None] * lux_s
-    if frame.channels is not None and frame.metadata.get("sensor_hash") == sensor.hash:
-        count = len(sensor.channels)
-        if frame.channels.shape != (*frame.rgb.shape[:2], count):
-            raise InputError(
-                f"frame: channels: wanted shape {(*frame.rgb.shape[:2], count)}, "
-                f"got {frame.channels.shape}"
-            )
-        return Light(_plain(frame.channels), electrons * np.eye(count), "channels", lux_s)
-    if frame.bands is not None:
-        weights = sensor.band_weights(frame.bands.shape[2])
-        return Light(_plain(frame.bands), electrons * weights.T, "bands", lux_s)
-    from_xyz = electrons * sensor.channels_from_xyz()
-    if frame.xyz is not None:
-        return Light(_plain(frame.xyz), from_xyz, "xyz", lux_s)
-    return Light(_plain(frame.rgb), from_xyz @ np.linalg.inv(rgb_from_xyz()), "xyz", lux_s)
-
-
-def _plain(planes: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.ascontiguousarray(planes, np.float32)
+    seen = seen_of(frame, sensor)
+    planes = np.ascontiguousarray(seen.planes, np.float32)
+    return Light(planes, electrons * seen.channels, seen.source, lux_s)
 
 
 def _shot(sensor: Sensor, light: Light, iso: float, dark: tuple[float, float]) -> Any:

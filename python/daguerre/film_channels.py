@@ -8,16 +8,26 @@ of them, right for the spectra that renders are made of, as far as these are eve
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .checks import whole
-from .colour import FINE, FIRST_NM, LAST_NM, band_weights, fine_wavelengths, unit_d65
+from .colour import (
+    FINE,
+    FIRST_NM,
+    LAST_NM,
+    band_weights,
+    fine_wavelengths,
+    rgb_from_xyz,
+    unit_d65,
+)
 from .errors import InputError
 
 if TYPE_CHECKING:
+    from .frame import Frame
     from .sensors.fit import Seeing
     from .sensors.sensor import Sensor
 
@@ -73,6 +83,38 @@ def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[n
         Channels, shape (H, W, C): D65 of luminance 1 is 1 in each.
     """
     return np.asarray(bands @ weights_of_bands(sensor, bands.shape[2]).astype(np.float32))
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a frame knows of what a sensor or a film stock sees.
+
+    Attributes:
+        planes: Of the frame, shape (H, W, P).
+        channels: Made of the planes, shape (C, P).
+        source: "channels", "bands" or "xyz": what the planes are.
+    """
+
+    planes: NDArray[np.float32]
+    channels: FloatArray
+    source: str
+
+
+def seen_of(frame: Frame, sensor: Seeing) -> Seen:
+    """The best planes that a frame has: channels of this very sensor, else bands, else XYZ."""
+    from .sensors.fit import channels_from_xyz
+
+    if frame.channels is not None and frame.metadata.get("sensor_hash") == sensor.hash:
+        wanted = (*frame.rgb.shape[:2], len(sensor.channels))
+        if frame.channels.shape != wanted:
+            raise InputError(f"frame: channels: wanted shape {wanted}, got {frame.channels.shape}")
+        return Seen(frame.channels, np.eye(len(sensor.channels)), "channels")
+    if frame.bands is not None:
+        return Seen(frame.bands, weights_of_bands(sensor, frame.bands.shape[2]).T, "bands")
+    from_xyz = channels_from_xyz(sensor)
+    if frame.xyz is not None:
+        return Seen(frame.xyz, from_xyz, "xyz")
+    return Seen(frame.rgb, from_xyz @ np.linalg.inv(rgb_from_xyz()), "xyz")
 
 
 def sensor_metadata(sensor: Sensor | None) -> dict[str, Any]:

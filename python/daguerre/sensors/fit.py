@@ -67,6 +67,14 @@ def _fitted(curves: FloatArray, light: FloatArray) -> FloatArray:
 class Seeing(Protocol):
     """A sensor or a film stock: what sees light by wavelength."""
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Their names."""
+
+    @property
+    def hash(self) -> str:
+        """Of what a frame's channels depend on."""
+
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
         """As of ``Sensor``: D65 of Y = 1 is 1 in each channel, shape (C, L)."""
 

@@ -13,6 +13,7 @@ from daguerre.checks import number, plain_light, whole
 from daguerre.colour import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.exposure import luminance_exposure
+from daguerre.film_channels import seen_of
 from daguerre.post.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
 from daguerre.sensors.sensor import GREY_LX_S
@@ -85,7 +86,7 @@ class Negative:
         for k, layer in enumerate(stock.layers):
             seen[..., k] = 10 ** layer.curve.exposure(self.density[..., k]) / unit
         rgb = (seen @ _rgb_from_layers(stock).T).astype(np.float32)
-        return Frame(rgb=rgb, metadata={**self.metadata, "isoSpeed": stock.iso})
+        return Frame(rgb=rgb, metadata={**self.metadata, "exposure_compensation": None})
 
     def develop(self, **look: Any) -> Picture:
         """The print, or the slide, for a screen; see ``daguerre.development.develop``."""
@@ -129,19 +130,10 @@ def layers_of(stock: Stock, frame: Frame) -> NDArray[np.float32]:
 
     Of the best that the frame has: channels of this stock, else bands, else XYZ by a fitted matrix.
     """
-    if frame.channels is not None and frame.metadata.get("sensor_hash") == stock.hash:
-        planes, matrix = frame.channels, np.eye(len(stock.layers))
-    elif frame.bands is not None:
-        from daguerre.film_channels import weights_of_bands
-
-        planes, matrix = frame.bands, weights_of_bands(stock, frame.bands.shape[2]).T
-    elif frame.xyz is not None:
-        planes, matrix = frame.xyz, channels_from_xyz(stock)
-    else:
-        planes, matrix = frame.rgb, channels_from_xyz(stock) @ np.linalg.inv(rgb_from_xyz())
-    matrix = (matrix / stock.white()[:, None]).astype(np.float32)
+    seen = seen_of(frame, stock)
+    matrix = (seen.channels / stock.white()[:, None]).astype(np.float32)
     with np.errstate(invalid="ignore"):  # light that is no number is refused later
-        return np.maximum(planes @ matrix.T, np.float32(0))
+        return np.asarray(np.maximum(seen.planes @ matrix.T, np.float32(0)), np.float32)
 
 
 def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> NDArray[np.float32]:
