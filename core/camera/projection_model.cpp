@@ -15,6 +15,7 @@ using Kind = ProjectionModel::Kind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kNewton = 40;
 constexpr double kExact = 1e-13;   // relative, of points
+constexpr double kSame = 1e-6;     // relative, of a point and what came back of it
 constexpr int kFoldSteps = 4096;
 
 double square(double x) {
@@ -60,6 +61,12 @@ Matrix inverse(const Matrix& m) {
 
 Vec2d seen(Vec3d v) {
     return {v.x / v.z, v.y / v.z};
+}
+
+/// By the matrix of a tilted sensor or its inverse; nothing behind the horizon of its plane.
+std::optional<Vec2d> through(const Matrix& tilt, Vec2d p) {
+    const Vec3d v = times(tilt, {p.x, p.y, 1});
+    return v.z > 0 ? std::optional(seen(v)) : std::nullopt;
 }
 
 /// Faces of the cube by where they stand in the row: the axis that they look along, and those across.
@@ -116,6 +123,8 @@ ProjectionModel::ProjectionModel(Kind kind, std::array<double, kMost> parameters
     case Kind::fov: within(0, "w", 1e-6, kPiD); break;
     default: break;
     }
+    leans_ = radial_[2] != 0 || radial_[3] != 0 ||
+             (kind_ == Kind::opencv && std::any_of(k_.begin() + 8, k_.begin() + 12, [](double s) { return s != 0; }));
     find_fold();
 }
 
@@ -218,14 +227,6 @@ std::optional<double> ProjectionModel::angle_of(double r) const {
     return t;
 }
 
-Vec2d ProjectionModel::tilted(Vec2d p) const {
-    return seen(times(tilt_, {p.x, p.y, 1}));
-}
-
-Vec2d ProjectionModel::untilted(Vec2d p) const {
-    return seen(times(untilt_, {p.x, p.y, 1}));
-}
-
 /// Radial, tangential and thin prism terms, wherever they lead, and how they change with x and with y.
 ProjectionModel::Bent ProjectionModel::bent(Vec2d u) const {
     const double r2 = u.x * u.x + u.y * u.y, xy = 2 * u.x * u.y;
@@ -249,19 +250,25 @@ ProjectionModel::Bent ProjectionModel::bent(Vec2d u) const {
 std::optional<Vec2d> ProjectionModel::distorted(Vec2d u) const {
     if (!(length(u) <= ideal_end_)) return std::nullopt;
     const Vec2d d = bent(u).point;
-    return tilts_ ? tilted(d) : d;
+    const auto p = tilts_ ? through(tilt_, d) : d;
+    if (!p || !leans_) return p;
+    // Tangential and prism terms fold on one side first: what lies beyond is a point that sees something else.
+    const auto back = undistorted(*p);
+    return back && length(*back - u) <= kSame * std::max(length(u), 1e-3) ? p : std::nullopt;
 }
 
 /// By Newton's method on both coordinates; what it finds must lie before the fold.
 std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
-    const Vec2d goal = tilts_ ? untilted(p) : p;
+    const auto flat = tilts_ ? through(untilt_, p) : p;
+    if (!flat) return std::nullopt;
+    const Vec2d goal = *flat;
     Vec2d u = goal;
     if (length(u) > ideal_end_) u = u * (0.9 * ideal_end_ / length(u));
     const double size = std::max(length(goal), 1e-3);
     for (int i = 0; i < kNewton; ++i) {
         const Bent here = bent(u);
         const Vec2d miss = here.point - goal;
-        const double det = here.by_x.x * here.by_y.y - here.by_x.y * here.by_y.x;
+        const double det = here.area();
         if (length(miss) <= kExact * size) return det > 0 ? std::optional(u) : std::nullopt;
         if (det == 0) return std::nullopt;
         Vec2d step{(here.by_y.y * miss.x - here.by_y.x * miss.y) / det,
@@ -272,8 +279,7 @@ std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
         if (length(u) > ideal_end_) u = u * (0.999999 * ideal_end_ / length(u));
     }
     const Bent here = bent(u);   // as near as rounding lets it come, or nowhere
-    const bool upright = here.by_x.x * here.by_y.y > here.by_x.y * here.by_y.x;
-    return upright && length(here.point - goal) <= 1e-10 * size ? std::optional(u) : std::nullopt;
+    return here.area() > 0 && length(here.point - goal) <= 1e-10 * size ? std::optional(u) : std::nullopt;
 }
 
 std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {

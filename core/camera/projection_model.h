@@ -34,7 +34,8 @@ struct ProjectionModel {
     explicit ProjectionModel(Kind kind = Kind::rectilinear, std::array<double, kMost> parameters = {});
 
     Kind kind() const { return kind_; }
-    /// Where a direction (of any length) is seen; nothing outside of the model's valid field.
+    /// Where a direction (of any length) is seen; nothing outside of the model's valid field, where no point of the
+    /// picture sees it.
     std::optional<Vec2d> project(Vec3d direction) const;
     /// The direction (unit) that a point sees; nothing where the model has none.
     std::optional<Vec3d> unproject(Vec2d point) const;
@@ -55,18 +56,18 @@ struct ProjectionModel {
     std::optional<Vec2d> undistorted(Vec2d point) const;
     struct Bent {
         Vec2d point, by_x, by_y;
+        double area() const { return by_x.x * by_y.y - by_x.y * by_y.x; }   // at most 0 where it folds
     };
     Bent bent(Vec2d ideal) const;
     double radial_slope(double radius) const;
     void find_fold();
-    Vec2d tilted(Vec2d point) const;
-    Vec2d untilted(Vec2d point) const;
 
     Kind kind_;
     std::array<double, kMost> k_;
     std::array<double, 8> radial_{};   // k1 k2 p1 p2 k3 k4 k5 k6, of opencv and omni
     std::array<double, 9> tilt_{}, untilt_{};   // rows
     bool tilts_ = false;
+    bool leans_ = false;   // has terms that are not the same on all sides
     double largest_angle_, largest_radius_;
     double ideal_end_;   // of opencv and omni: the ideal radius where the distorted one folds
 };

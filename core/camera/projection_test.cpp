@@ -124,6 +124,23 @@ TEST_CASE("beyond its fold, or behind it, a model sees nothing") {
     CHECK_FALSE(ProjectionModel(Kind::cube).unproject({3.2, 0}).has_value());
 }
 
+TEST_CASE("where tangential terms or a tilted sensor fold the picture, points have one direction or none") {
+    const ProjectionModel tangential(Kind::opencv, {0, 0, 0.3, -0.2});
+    const ProjectionModel tilted(Kind::opencv, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.9, -0.4});
+    for (const ProjectionModel& model : {tangential, tilted}) {
+        int seen = 0, refused = 0;
+        for (int i = 0; i <= 80; ++i)
+            for (int j = 0; j < 48; ++j) {
+                const Vec3d d = direction(0.018 * i, 0.13 + j * 2 * kPiD / 48);
+                const auto p = model.project(d);
+                const auto back = p ? model.unproject(*p) : std::nullopt;
+                ++(p ? seen : refused);
+                if (p) CHECK((back && length(*back - d) < 1e-8));
+            }
+        CHECK(std::min(seen, refused) > 300);
+    }
+}
+
 TEST_CASE("parameters that make no model are named") {
     const auto message = [](Kind kind, std::array<double, 14> k) {
         try {
