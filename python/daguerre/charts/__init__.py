@@ -17,18 +17,21 @@ from .boards import object_points
 from .chart import Chart, Patch
 from .measure import EdgeResponse, edge_response, means, places, star_modulation, texture_response
 from .poses import poses
+from .row_time import RowTime, row_time
 
 __all__ = [
     "KINDS",
     "Chart",
     "EdgeResponse",
     "Patch",
+    "RowTime",
     "edge_response",
     "make",
     "means",
     "object_points",
     "places",
     "poses",
+    "row_time",
     "star_modulation",
     "texture_response",
 ]

@@ -66,7 +66,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     Raises:
         InputError: No such edge is in the region.
     """
-    light, bend = _plane(region, "edge: region", 8), whole(bend, "edge: bend", 1, 9)
+    light, bend = plane(region, "edge: region", 8), whole(bend, "edge: bend", 1, 9)
     rows, columns = light.shape
     if abs(_slope(light, 0)) > abs(_slope(light, 1)):
         light = light.T
@@ -96,7 +96,8 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     return EdgeResponse(frequency[wanted], response[wanted], angle, low, high)
 
 
-def _plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
+def plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
+    """Finite light, shape (H, W), of at least so many pixels on a side."""
     what, _, name = where.partition(": ")
     light = to_numbers(values, what, name, "shape (H, W)").astype(np.float64)
     if light.ndim != 2 or min(light.shape) < least:
@@ -215,7 +216,7 @@ def star_modulation(
     Returns:
         Modulation, shape (R,).
     """
-    light, cycles = _plane(picture, "star: picture"), whole(cycles, "star: cycles", 1, 10_000)
+    light, cycles = plane(picture, "star: picture"), whole(cycles, "star: cycles", 1, 10_000)
     middle_x, middle_y = numbers(center, "star: center", 2, "x and y in px")
     rows, columns = np.indices(light.shape)
     x, y = columns + 0.5 - middle_x, rows + 0.5 - middle_y
@@ -249,7 +250,7 @@ def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArr
     Returns:
         Frequencies, cycles per pixel, from 0 to 0.5, and the response at them.
     """
-    a, b = _plane(picture, "texture: picture"), _plane(reference, "texture: reference")
+    a, b = plane(picture, "texture: picture"), plane(reference, "texture: reference")
     if a.shape != b.shape:
         raise InputError(f"texture: wanted two planes of one shape, got {a.shape} and {b.shape}")
     rows, columns = a.shape
