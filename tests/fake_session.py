@@ -45,7 +45,9 @@ class FakeSession:
         crop: tuple[int, int, int, int] | None = None,
         threads: int = 0,
         max_depth: int = 16,
+        built: object = None,
     ) -> None:
+        self.built = built or self
         if camera.f_stop is not None and camera.f_stop <= 0:
             raise ValueError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
         self.width, self.height = resolution

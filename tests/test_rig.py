@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import charts, session
+from daguerre import built_scene, charts, session
 from daguerre.errors import UsageError
 from daguerre.projection import Projection
 
@@ -30,8 +30,8 @@ def test_a_rig_has_the_bits_of_its_cameras_and_builds_once(monkeypatch: Any) -> 
         for name, camera in cameras.items()
         if camera.projection
     }
-    built, build = [], session.build
-    monkeypatch.setattr(session, "build", lambda *given: (built.append(1), build(*given))[1])
+    built, build = [], built_scene.build
+    monkeypatch.setattr(built_scene, "build", lambda *given: (built.append(1), build(*given))[1])
     frames = dg.render_rig(scene, cameras, spp=2, seed=3)
     assert len(built) == 1
     for name, frame in frames.items():
@@ -43,11 +43,10 @@ def test_cameras_of_other_moments_see_them() -> None:
     scene = charts.make("slanted-edge").scene(1.0)
     early, late = base().with_(shutter_time=0.01), base().with_(shutter_time=0.02)
     first = session.Session(scene, early, resolution=(96, 54))
-    assert session.Session(scene, early, resolution=(96, 54), beside=first)._core_scene is (
-        first._core_scene
-    )
-    other = session.Session(scene, late, resolution=(96, 54), beside=first)
-    assert other._core_scene is not first._core_scene
+    same = session.Session(scene, early, resolution=(96, 54), built=first.built)
+    assert same.built is first.built
+    other = session.Session(scene, late, resolution=(96, 54), built=first.built)
+    assert other.built is not first.built
 
 
 def test_disparity_is_focal_length_times_baseline_over_depth() -> None:
@@ -71,6 +70,24 @@ def test_bad_rigs_are_errors() -> None:
         dg.render_rig(scene, {})
     with pytest.raises(UsageError, match="baseline"):
         dg.stereo_pair(base(), -1)
-    moving = base().with_(transform=dg.keys([(0, np.eye(4)), (1, np.eye(4))]))
-    with pytest.raises(UsageError, match="stays"):
-        dg.stereo_pair(moving, 0.1)
+
+
+def test_rigs_move_with_the_body_that_they_are_fixed_to() -> None:
+    """Of a camera that turns and whose file scales it: the baseline is in metres of the world."""
+    turned = np.eye(4)
+    turned[:3, :3] = 3.0 * np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])
+    turned[:3, 3] = 1, 2, 3
+    camera = base().with_(transform=dg.keys([(0, 3.0 * np.diag([1, 1, 1, 1 / 3])), (1, turned)]))
+    pair = dg.stereo_pair(camera, 0.5)
+    for time in (0.0, 0.3, 1.0):
+        left, right = (pair[name].motion["transform"].at(time) for name in ("left", "right"))
+        between = right[:3, 3] - left[:3, 3]
+        np.testing.assert_allclose(between, 0.5 * right[:3, 0], atol=1e-12)
+        middle = 0.5 * (left[:3, 3] + right[:3, 3])
+        np.testing.assert_allclose(middle, camera.motion["transform"].at(time)[:3, 3], atol=1e-12)
+    np.testing.assert_allclose(pair["left"].at(1.0).transform[:3, 0], (0, 0, -1), atol=1e-12)
+    still = dg.stereo_pair(base().with_(transform=turned), 0.5)
+    np.testing.assert_allclose(still["right"].transform[:3, 3], (1, 2, 2.75), atol=1e-12)
+    scene = charts.make("slanted-edge").scene(1.0)
+    frames = dg.render_rig(scene, {n: c.with_(shutter_time=0.5) for n, c in pair.items()}, spp=1)
+    assert frames["left"].metadata["camera"]["motion"]["transform"]

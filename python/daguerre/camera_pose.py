@@ -40,6 +40,40 @@ class _Rigid:
         return self.transform.breaks(begin, end)
 
 
+@dataclass(frozen=True, eq=False)
+class _Mounted:
+    """World from what is fixed to a camera that moves."""
+
+    body: Dynamic
+    place: NDArray[np.float64]
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        return np.asarray(rigid(self.body.at(time_s)) @ self.place)
+
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
+        return self.body.breaks(begin, end)
+
+
+def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
+    """The same camera at another place of the body that it is fixed to, and moving with it.
+
+    Args:
+        camera: It gives all else.
+        place: Of the new one in this one's frame, rigid, m; shape (4, 4).
+    """
+    moving = camera.motion.get("transform")
+    if moving is not None:
+        return camera.with_(transform=_Mounted(moving, place))
+    return camera.with_(transform=rigid(camera.transform) @ place)
+
+
+def moved_right(camera: Camera, shift: float) -> Camera:
+    """As :func:`mounted`, to its own right, m."""
+    place = np.eye(4)
+    place[0, 3] = shift
+    return mounted(camera, place)
+
+
 def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
     """World from camera over an interval (s), in fractions of it; rigid.
 

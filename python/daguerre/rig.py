@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
+from .built_scene import BuiltScene
 from .camera import Camera
+from .camera_pose import moved_right
 from .checks import number, short
 from .errors import UsageError
 from .frame import Frame
-from .motion import is_dynamic
 from .scene import Scene
 from .session import Session, finish
 
@@ -45,29 +44,27 @@ def render_rig(
     if not isinstance(named, Mapping) or not named:
         raise UsageError(f"cameras: wanted cameras by name, got {short(named)}")
     frames: dict[str, Frame] = {}
-    before: Session | None = None
+    built: BuiltScene | None = None
     for name, given in cameras.items():
         camera = given if isinstance(given, Camera) else scene.camera(given)
         size = resolution or (camera.projection.size if camera.projection else (960, 540))
-        session = Session(scene, camera, resolution=size, beside=before, **options)
+        session = Session(scene, camera, resolution=size, built=built, **options)
         frames[name] = finish(session, spp, noise)
-        before = session
+        built = session.built
     return frames
 
 
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
     """Two cameras side by side, in whose middle the given one stands; they look in parallel.
 
+    Where it moves, they move with it.
+
     Args:
         camera: It gives all else.
         baseline: Between them, m.
     """
     number(baseline, "stereo_pair: baseline", above=0)
-    if is_dynamic(camera.motion.get("transform")):
-        raise UsageError("stereo_pair: wanted a transform that stays, got one over time")
-    pair = {}
-    for name, side in (("left", -0.5), ("right", 0.5)):
-        shift = np.eye(4)
-        shift[0, 3] = side * baseline
-        pair[name] = camera.with_(transform=camera.transform @ shift)
-    return pair
+    return {
+        name: moved_right(camera, side * baseline)
+        for name, side in (("left", -0.5), ("right", 0.5))
+    }

@@ -20,7 +20,7 @@ import daguerre._core as _core
 
 from . import sensors, shutter
 from .adaptive import Round, check_noise, rounds
-from .build import build, content_hash
+from .built_scene import BuiltScene
 from .camera import Camera
 from .camera_checks import check_surfaces
 from .camera_setup import set_up
@@ -84,8 +84,8 @@ class Session:
             channels can be made later; 0: none.
         technique: Who draws what both could find: both, or camera or light alone (to check one
             against the other).
-        beside: Another session of this scene, unchanged since: where both look at the same time,
-            what it built serves this one, too.
+        built: Of another session of this scene (``Session.built``), unchanged since: where both
+            look at the same time, it serves this one, too.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -116,7 +116,7 @@ class Session:
         technique: str = "both",
         diffraction: bool | Diffraction = False,
         bands: int = 0,
-        beside: Session | None = None,
+        built: BuiltScene | None = None,
     ) -> None:
         self.width, self.height = _resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
@@ -147,12 +147,10 @@ class Session:
         self.gt_time, self.motion = check_gt_time(gt_time, wanted=motion), motion
         started = time.perf_counter()
         self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
-        self._core_scene: _core.Scene
-        self.warnings: list[str] = []  # what moves in a way that cannot be shown to its end
-        if beside is not None and beside.scene is scene and beside.interval == self.interval:
-            self._core_scene, self.warnings = beside._core_scene, list(beside.warnings)
-        else:
-            self._core_scene = build(scene, self.interval, self.warnings)
+        if built is None or not built.shows(scene, self.interval):
+            built = BuiltScene(scene, self.interval)
+        self.built, self._core_scene = built, built.core
+        self.warnings = list(built.warnings)
         self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
         self.sensor = None if self.camera.sensor is None else sensors.load(self.camera.sensor)
         self._pupils = self._plan_waves()
@@ -413,7 +411,7 @@ class Session:
     def key(self) -> dict[str, str]:
         """What passes must share to be added: hashes of scene, camera, settings, and the build."""
         return {
-            "scene": content_hash(self.scene, self.interval),
+            "scene": self.built.hash,
             "camera": _hash_json(without_exposure(self._setup.facts)),
             "settings": _hash_json(self._identity),
             "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "

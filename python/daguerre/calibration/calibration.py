@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera import Camera
+from daguerre.camera_pose import mounted
 from daguerre.checks import number
 from daguerre.errors import InputError, UsageError
-from daguerre.motion import is_dynamic
 from daguerre.projection import Projection
 
 FloatArray = NDArray[np.float64]
@@ -62,13 +62,8 @@ class Calibration:
         if pitch is not None:
             number(pitch, "camera: pixel_pitch", 0.01, 1e4)
             changes["sensor_size"] = tuple(side * pitch * 1e-3 for side in self.projection.size)
-        if not np.array_equal(self.rig_from_camera, np.eye(4)):
-            if is_dynamic(given.motion.get("transform")):
-                raise UsageError(
-                    f"camera: {self.name or 'a camera of a rig'} stands beside the rig's first "
-                    "camera: wanted a transform that stays, got one over time"
-                )
-            changes.setdefault("transform", given.transform @ self.rig_from_camera)
+        if "transform" not in changes and not np.array_equal(self.rig_from_camera, np.eye(4)):
+            given = mounted(given, self.rig_from_camera)
         return given.with_(**changes)
 
 

@@ -45,17 +45,40 @@ def read(
         InputError: The file cannot be used; the message names the place.
         UsageError: There is no such camera or format.
     """
-    kind = format_of(source) if format is None else _format(format)
     where = "calibration" if isinstance(source, dict) else str(source)
+    return pick(read_all(source, format=format, size=size), camera, where)
+
+
+def read_all(
+    source: Source, *, format: str | None = None, size: tuple[int, int] | None = None
+) -> dict[str, Calibration]:
+    """All cameras of a calibration file, by name; the only one of a file has the file's own.
+
+    Args: as of :func:`read`.
+    """
+    kind = format_of(source) if format is None else _format(format)
     if kind == "kalibr":
-        return kalibr.pick(kalibr.read_kalibr(source), camera, where)
-    if camera is not None:
-        raise UsageError(f"{where}: wanted no name of a camera ({kind} has one), got {camera!r}")
+        return kalibr.read_kalibr(source)
     if kind == "ros":
-        return ros.read_ros(source)
-    if kind == "opentrackio":
-        return opentrackio.read_opentrackio(source, size=size)
-    return opencv.read_opencv(source, size=size)
+        found = ros.read_ros(source)
+    elif kind == "opentrackio":
+        found = opentrackio.read_opentrackio(source, size=size)
+    else:
+        found = opencv.read_opencv(source, size=size)
+    return {"camera" if isinstance(source, dict) else Path(source).stem: found}
+
+
+def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
+    """One of several; without a name the first.
+
+    Raises:
+        UsageError: There is none of that name; the nearest is suggested.
+    """
+    wanted = next(iter(cameras)) if name is None else name
+    if wanted not in cameras:
+        known = ", ".join(cameras)
+        raise UsageError(f"{where}: wanted {known}; got {wanted!r}{suggest(wanted, cameras)}")
+    return cameras[wanted]
 
 
 def write(path: str | Path, calibration: Calibration | Sequence[Calibration], format: str) -> None:

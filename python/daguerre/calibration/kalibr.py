@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daguerre.errors import InputError, UsageError, suggest
+from daguerre.errors import InputError
 from daguerre.io.json_item import Item
 from daguerre.projection import Projection
 
@@ -62,19 +62,6 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
         stands = FLIP @ np.linalg.inv(camera_from_first) @ FLIP
         found[name] = Calibration(_projection(item), name, stands if i else np.eye(4))
     return found
-
-
-def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
-    """One of a chain; without a name the first.
-
-    Raises:
-        UsageError: There is none of that name; the nearest is suggested.
-    """
-    wanted = next(iter(cameras)) if name is None else name
-    if wanted not in cameras:
-        known = ", ".join(cameras)
-        raise UsageError(f"{where}: wanted {known}; got {wanted!r}{suggest(wanted, cameras)}")
-    return cameras[wanted]
 
 
 def _projection(item: Item) -> Projection:

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 
+from . import console
 from . import quantities as q
 from .flags import Text, option
 
@@ -23,14 +24,15 @@ _OF_LENSES = {
 
 @dataclass(frozen=True)
 class CalibrationFlags:
-    """A camera that is known by its calibration."""
+    """Cameras that are known by their calibration."""
 
     calibration: Annotated[
-        Text,
+        list[str] | None,
         option(
             "--calibration",
-            metavar="FILE[:cam0]",
-            help="Instead of a lens: OpenCV, ROS, Kalibr (with the name of a camera), OpenTrackIO.",
+            metavar="FILE[:NAME,...|all]",
+            help="Instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO; several cameras of a file "
+            "by their names, or all; may be repeated.",
             panel=_CAMERA,
         ),
     ] = None
@@ -45,23 +47,30 @@ class CalibrationFlags:
     ] = None
 
     @cached_property
-    def found(self) -> Any:
-        """The calibration, read once; None without the flag."""
-        from daguerre.calibration import read
+    def found(self) -> dict[str, Any]:
+        """The calibrations by name, read once; none without the flag."""
         from daguerre.errors import UsageError
 
-        if self.calibration is None:
+        if not self.calibration:
             if self.pixel_pitch is not None:
                 raise UsageError("--pixel-pitch: wanted --calibration too")
-            return None
-        file, _, name = self.calibration.rpartition(":")
-        if not file or "/" in name or Path(self.calibration).exists():
-            file, name = self.calibration, ""
-        return read(file, name or None)
+            return {}
+        found: dict[str, Any] = {}
+        for text in self.calibration:
+            for name, one in _read(text).items():
+                if name in found:
+                    raise UsageError(
+                        f"--calibration {text}: wanted cameras of different names, got {name!r} "
+                        "twice (a file with one camera gives it its own name)"
+                    )
+                found[name] = one
+        return found
 
-    def resolution(self, res: str | None, default: tuple[int, int]) -> tuple[int, int]:
+    def resolution(
+        self, calibration: Any, res: str | None, default: tuple[int, int]
+    ) -> tuple[int, int]:
         """Of the picture, px: the calibrated one's, unless ``--res`` says another."""
-        size = default if self.found is None else self.found.projection.size
+        size = default if calibration is None else calibration.projection.size
         return q.resolution("--res", res, size) if res else size
 
     def check(self, changes: dict[str, Any]) -> None:
@@ -72,7 +81,7 @@ class CalibrationFlags:
         """
         from daguerre.errors import UsageError
 
-        if self.found is None:
+        if not self.found:
             return
         both = [flag for name, flag in _OF_LENSES.items() if name in changes]
         if self.pixel_pitch is not None and {"sensor", "sensor_size"} & set(changes):
@@ -80,21 +89,39 @@ class CalibrationFlags:
         if both:
             raise UsageError(f"--calibration and {both[0]}: wanted one of them, got both")
 
-    def camera(self, camera: Any, changes: dict[str, Any]) -> Any:
-        """The scene's camera, calibrated and changed."""
-        if self.found is not None:
+    def camera(self, camera: Any, calibration: Any, changes: dict[str, Any]) -> Any:
+        """The scene's camera, calibrated (unless that is None) and changed."""
+        if calibration is not None:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
-            camera = self.found.camera(camera, um)
+            camera = calibration.camera(camera, um)
         return camera.with_(**changes)
 
-    def notes(self, camera: Any) -> list[str]:
+    def notes(self, camera: Any, calibration: Any) -> list[str]:
         """What was decided, a sentence each."""
-        if self.found is None:
+        if calibration is None:
             return []
-        notes = list(self.found.notes)
-        if camera.f_stop is not None and self.pixel_pitch is None and not self.found.pixel_pitch:
+        notes = list(calibration.notes)
+        if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
                 f"no --pixel-pitch: blur is that of a sensor {camera.sensor_size[0]:g} mm wide"
             )
         return notes
+
+
+def _read(text: str) -> dict[str, Any]:
+    """``FILE``: its first camera; ``FILE:cam0,cam1``: these; ``FILE:all``."""
+    from daguerre.calibration import pick, read_all
+
+    file, _, names = text.rpartition(":")
+    if not file or "/" in names or Path(text).exists():
+        file, names = text, ""
+    known = read_all(file)
+    if names == "all" and "all" not in known:
+        return known
+    if not names:
+        first = next(iter(known))
+        if len(known) > 1:
+            console.note(f"{file} has {', '.join(known)}; {first} is taken (:all takes all)")
+        return {first: known[first]}
+    return {name: pick(known, name, file) for name in (part.strip() for part in names.split(","))}

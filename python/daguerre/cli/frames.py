@@ -38,6 +38,14 @@ def numbered(path: Path, frame: int) -> Path:
     )
 
 
+def before_number(path: Path, word: str) -> Path:
+    """``shot.####.exr`` as ``shot.WORD.####.exr``; ``shot.exr`` as ``shot.WORD.exr``."""
+    place = _PLACE.search(path.name)
+    cut = place.start() if place else len(path.stem)
+    head, tail = path.name[:cut].rstrip("."), path.name[cut:].lstrip(".")
+    return path.with_name(".".join(part for part in (head, word, tail) if part))
+
+
 def check_names(outputs: list[Path], frames: list[int] | None) -> None:
     """Each of several frames needs a file of its own, and # means a frame.
 

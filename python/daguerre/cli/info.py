@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,6 +15,7 @@ from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .scene_flags import SceneFlags
 from .shutter_flags import ShutterFlags
+from .views import views_of
 
 if TYPE_CHECKING:
     from daguerre.info import Facts
@@ -45,19 +46,23 @@ def info(
     from daguerre.build import build
     from daguerre.camera import Camera
 
-    resolution = calibration_flags.resolution(res, (960, 540))
+    views = views_of(camera_flags.camera, calibration_flags.found, None)
     changes = camera_flags.changes() | shutter_flags.changes()
     calibration_flags.check(changes)
     scene = scene_flags.load(scene_path)
-    names = [camera_flags.camera] if camera_flags.camera else list(scene.cameras)
+    if camera_flags.camera is None and len(views) == 1:
+        views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
     cameras: dict[str, Camera] = {
-        name: calibration_flags.camera(scene.camera(name), changes) for name in names
+        view.name: view.of(scene, calibration_flags, changes) for view in views
+    }
+    sizes = {
+        view.name: calibration_flags.resolution(view.calibration, res, (960, 540)) for view in views
     }
     content = facts_of.scene_facts(scene)
     core_scene = None
     if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):
         core_scene = build(scene)
-    facts = {n: facts_of.camera_facts(c, scene, core_scene, resolution) for n, c in cameras.items()}
+    facts = {n: facts_of.camera_facts(c, scene, core_scene, sizes[n]) for n, c in cameras.items()}
     warnings = {n: facts_of.camera_warnings(c) for n, c in cameras.items()}
     if json:
         _print_json(content, facts, warnings, scene.default_camera)
@@ -67,7 +72,7 @@ def info(
         default = " (default)" if name == scene.default_camera else ""
         print(f"camera {name!r}{default}")
         print(
-            "\n".join(f"  {key:20} {value}" for key, value in camera_rows(one, resolution).items())
+            "\n".join(f"  {key:20} {value}" for key, value in camera_rows(one, sizes[name]).items())
         )
     if not facts:
         print("no camera")

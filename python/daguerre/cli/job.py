@@ -27,11 +27,17 @@ class Job:
     """One picture on its way to its files."""
 
     def __init__(
-        self, session: Session, plan: Plan, tone: str, setup_s: float, stats: bool
+        self,
+        session: Session,
+        plan: Plan,
+        tone: str,
+        setup_s: float,
+        stats: bool,
+        facts: dict[str, Any] | None = None,
     ) -> None:
-
         self.session, self.plan, self.tone = session, plan, tone
         self.setup_s, self.stats = setup_s, stats
+        self.facts = facts or {}  # which picture of several this is
         self.loop: Loop
 
     def run(self, *, resume: bool, quiet: bool, as_json: bool) -> int:
@@ -44,7 +50,7 @@ class Job:
         work: Work = Range(self.session, plan.wanted)
         if plan.noise is not None:
             work = Rounds(self.session, plan.noise, plan.wanted[1])
-        reporter = progress.choose(quiet=quiet, as_json=as_json)
+        reporter = progress.choose(quiet=quiet, as_json=as_json, which=self.facts)
         self.loop = Loop(
             self.session, work, plan.checkpoint, plan.interval_s, reporter, self._snapshot
         )

@@ -10,6 +10,7 @@ from daguerre.errors import UsageError, suggest
 from . import quantities as q
 from .frames import numbered
 from .photograph import Photograph
+from .views import View, named
 
 DEFAULT_RESOLUTION = (960, 540)
 DEFAULT_SPP = 64
@@ -51,6 +52,13 @@ class Plan:
     def of_frame(self, frame: int) -> Plan:
         """The same for one frame of a sequence."""
         return replace(self, outputs=[numbered(path, frame) for path in self.outputs])
+
+    def of_view(self, view: View, resolution: tuple[int, int], *, several: bool) -> Plan:
+        """The same for one camera, whose picture may have a size of its own."""
+        if self.crop is not None:
+            check_crop(self.crop, resolution)
+        outputs = [named(path, view, several=several) for path in self.outputs]
+        return replace(self, outputs=outputs, resolution=resolution)
 
     def with_truth(self, gt_time: str | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
@@ -159,12 +167,18 @@ def _crop(text: str | None, resolution: tuple[int, int]) -> tuple[int, int, int,
     if text is None:
         return None
     x0, x1, y0, y1 = q.integers("--crop", text, 4, "100,400,50,300")
+    check_crop((x0, y0, x1, y1), resolution)
+    return x0, y0, x1, y1
+
+
+def check_crop(crop: tuple[int, int, int, int], resolution: tuple[int, int]) -> None:
+    """It must lie within the picture."""
+    x0, y0, x1, y1 = crop
     if not (0 <= x0 < x1 <= resolution[0] and 0 <= y0 < y1 <= resolution[1]):
         raise UsageError(
             f"--crop: wanted x0 < x1 within 0..{resolution[0]} and y0 < y1 within "
-            f"0..{resolution[1]}; got {text!r}"
+            f"0..{resolution[1]}; got '{x0},{x1},{y0},{y1}'"
         )
-    return x0, y0, x1, y1
 
 
 def _aov_groups(names: list[str], everything: bool) -> list[str]:

@@ -72,6 +72,7 @@ class RowStatus:
 
 
 AnyStatus = Status | RowStatus
+Which = dict[str, Any]
 
 
 class Silent:
@@ -100,14 +101,15 @@ class Lines(Silent):
 
     period_s = 10.0
 
-    def __init__(self) -> None:
+    def __init__(self, which: Which) -> None:
+        self._which = _named(which)
         self._next = time.monotonic() + self.period_s
 
     def update(self, status: AnyStatus) -> None:
         """Prints a line if it is time."""
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + self.period_s
-            console.say(f"daguerre: {describe(status)}")
+            console.say(f"daguerre: {self._which}{describe(status)}")
 
 
 class JsonLines(Silent):
@@ -115,8 +117,8 @@ class JsonLines(Silent):
 
     period_s = 0.5
 
-    def __init__(self) -> None:
-        self._next = 0.0
+    def __init__(self, which: Which) -> None:
+        self._which, self._next = which, 0.0
         console.writer = lambda line: self.event("message", text=line)
 
     def update(self, status: AnyStatus) -> None:
@@ -128,7 +130,7 @@ class JsonLines(Silent):
     def event(self, name: str, **facts: Any) -> None:
         """Prints one object."""
         try:
-            print(json.dumps({"event": name, **facts}), flush=True)
+            print(json.dumps({"event": name, **self._which, **facts}), flush=True)
         except BrokenPipeError:
             console.nobody_reads(sys.stdout)
 
@@ -136,10 +138,11 @@ class JsonLines(Silent):
 class Bar(Silent):
     """A bar on a terminal, with rates and time left."""
 
-    def __init__(self) -> None:
+    def __init__(self, which: Which) -> None:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
 
+        self._which = _named(which)
         screen = Console(stderr=True)
         self._progress = Progress(
             TextColumn("[progress.percentage]{task.percentage:>3.0f}%"),
@@ -152,9 +155,8 @@ class Bar(Silent):
 
     def update(self, status: AnyStatus) -> None:
         """Moves the bar."""
-        self._progress.update(
-            self._task, completed=status.fraction, description=describe(status, percent=False)
-        )
+        text = self._which + describe(status, percent=False)
+        self._progress.update(self._task, completed=status.fraction, description=text)
 
     def __enter__(self) -> Self:
         self._progress.start()
@@ -174,13 +176,25 @@ class Bar(Silent):
         super().__exit__(kind, value, tb)
 
 
-def choose(*, quiet: bool, as_json: bool) -> Silent:
-    """JSON if asked for, nothing if quiet, else a bar on a terminal and lines elsewhere."""
+def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:
+    """JSON if asked for, nothing if quiet, else a bar on a terminal and lines elsewhere.
+
+    Args:
+        quiet: As the flag.
+        as_json: As the flag.
+        which: Of several pictures: the ``frame`` and the ``camera`` of this one.
+    """
+    one = which or {}
     if as_json:
-        return JsonLines()
+        return JsonLines(one)
     if quiet:
         return Silent()
-    return Bar() if sys.stderr.isatty() else Lines()
+    return Bar(one) if sys.stderr.isatty() else Lines(one)
+
+
+def _named(which: Which) -> str:
+    """Such as ``frame 7, camera left:``, or nothing."""
+    return ", ".join(f"{name} {value}" for name, value in which.items()) + ": " * bool(which)
 
 
 def describe(status: AnyStatus, *, percent: bool = True) -> str:

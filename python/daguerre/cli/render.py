@@ -19,10 +19,11 @@ from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .frames import check_names, frame_numbers
 from .photograph import Photograph
-from .plan import DEFAULT_RESOLUTION, Plan, check_outputs, make_plan
+from .plan import DEFAULT_RESOLUTION, check_outputs, make_plan
 from .scene_flags import SceneFlags
-from .shoot import Shoot, interrupted_early
+from .shoot import Shoot, check_distinct, interrupted_early, pictures
 from .shutter_flags import ShutterFlags
+from .views import check_places, views_of
 
 _OUTPUT = "Output"
 _SAMPLING = "Sampling"
@@ -248,6 +249,15 @@ def render(
             panel=_OUTPUT,
         ),
     ] = None,
+    stereo: Annotated[
+        str | None,
+        option(
+            "--stereo",
+            metavar="M",
+            help="A pair, left and right, so far apart, m; the camera stands in its middle.",
+            panel="Camera",
+        ),
+    ] = None,
     quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
     json_progress: Annotated[
         bool, option("--json-progress", help="Progress as JSON lines on stdout.")
@@ -255,18 +265,20 @@ def render(
     stats: Annotated[bool, option("--stats", help="Counts and times at the end.")] = False,
     dry_run: Annotated[bool, option("--dry-run", help="Check everything, draw nothing.")] = False,
 ) -> int:
-    """Renders a scene to a picture, or a sequence of them.
+    """Renders a scene to a picture, or a sequence of them, by one camera or by several.
 
     Stop with Ctrl-C: what was drawn is kept, and the command that goes on is printed.
     """
     console.quiet = quiet
     sampling = (spp, samples, noise)
-    width, height = calibration_flags.resolution(res, DEFAULT_RESOLUTION)
-    res = f"{width}x{height}"
+    views = views_of(camera_flags.camera, calibration_flags.found, stereo)
+    sizes = [calibration_flags.resolution(v.calibration, res, DEFAULT_RESOLUTION) for v in views]
+    res = "{}x{}".format(*sizes[0])
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
     plan = plan.with_truth(gt_time)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
     check_names(plan.outputs, numbers)
+    check_places(plan.outputs, views)
     _check_numbers(seed, threads, max_depth)
     wanted_light = check_light_paths(light_paths, "--light-paths")
     wanted_flare = check_paths(flare, "--flare")
@@ -287,11 +299,10 @@ def render(
     if photograph.develops and tone != "srgb":
         raise UsageError(f"--tone {tone}: these pictures are developed; wanted --look")
     plan = replace(plan, photograph=photograph)
-    plans: list[tuple[int | None, Plan]] = [(None, plan)]
-    if numbers is not None:
-        plans = [(n, plan.of_frame(n)) for n in numbers]
-    for _, one in plans:
-        check_outputs(one)
+    wanted = pictures(plan, views, sizes, numbers)
+    for picture in wanted:
+        check_outputs(picture.plan)
+    check_distinct(wanted)
     launched = time.monotonic()
     try:
         scene = scene_flags.load(scene_path)
@@ -328,20 +339,10 @@ def render(
         settings["diffraction"] = Diffraction(diffraction_bands, diffraction_zones)
     elif (diffraction_bands, diffraction_zones) != (16, 1):
         raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
-    shoot = Shoot(
-        *(scene, scene_path, camera_flags.camera, changes, settings, tone, stats),
-        calibration=calibration_flags,
-    )
+    shoot = Shoot(scene, scene_path, calibration_flags, changes, settings, tone, stats)
     if dry_run:
-        return shoot.describe(*plans[0])
-    for i, (frame, one) in enumerate(plans):
-        if frame is not None:
-            console.note(f"frame {frame} ({i + 1} of {len(plans)})")
-        code = shoot.draw(frame, one, launched, resume=resume, quiet=quiet, as_json=json_progress)
-        if code:
-            return code
-        launched = time.monotonic()
-    return 0
+        return shoot.describe(wanted)
+    return shoot.draw_all(wanted, launched, resume=resume, quiet=quiet, as_json=json_progress)
 
 
 def _check_numbers(seed: int, threads: int, max_depth: int) -> None:

@@ -1,78 +1,162 @@
-"""Frames of one scene that is loaded once: each gets its time, its camera and its files."""
+"""Pictures of one scene that is loaded once: each gets its time, its camera and its files."""
 
 from __future__ import annotations
 
 import json
 import time
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.errors import UsageError
+
 from . import console
-from .calibration_flags import CalibrationFlags
 from .job import INTERRUPTED, Job, core_errors
 
 if TYPE_CHECKING:
-    from daguerre.camera import Camera
+    from daguerre.built_scene import BuiltScene
     from daguerre.scene import Scene
     from daguerre.session import Session
 
+    from .calibration_flags import CalibrationFlags
     from .plan import Plan
+    from .views import View
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One picture of a call.
+
+    Attributes:
+        frame: Of a sequence; None: the only one.
+        view: The camera.
+        plan: Its files, size and samples.
+        words: Which one it is, for people; empty: the only one.
+        facts: The same for programs.
+    """
+
+    frame: int | None
+    view: View
+    plan: Plan
+    words: str = ""
+    facts: dict[str, Any] = field(default_factory=dict)
+
+
+def pictures(
+    plan: Plan, views: list[View], sizes: list[tuple[int, int]], frames: list[int] | None
+) -> list[Picture]:
+    """All that a call asks for, frame after frame, of each all cameras.
+
+    Args:
+        plan: What they share; its outputs have places for frames and cameras.
+        views: The cameras.
+        sizes: Of their pictures, px.
+        frames: Their numbers; None: no sequence.
+    """
+    several, made = len(views) > 1, []
+    for number in [None] if frames is None else frames:
+        for view, size in zip(views, sizes, strict=True):
+            one = plan.of_view(view, size, several=several)
+            words: list[str] = []
+            facts: dict[str, Any] = {}
+            if number is not None:
+                one = one.of_frame(number)
+                words, facts = [f"frame {number}"], {"frame": number}
+            if several:
+                words.append(f"camera {view.name}")
+                facts["camera"] = view.name
+            made.append(Picture(number, view, one, ", ".join(words), facts))
+    return made
+
+
+def check_distinct(wanted: list[Picture]) -> None:
+    """Each picture has files of its own.
+
+    Raises:
+        UsageError: Two would share one, such as of cameras whose names differ by a slash.
+    """
+    paths = [path for picture in wanted for path in picture.plan.files]
+    if twice := [path for path, count in Counter(paths).items() if count > 1]:
+        raise UsageError(f"-o {twice[0]}: wanted a file for each picture, got one for several")
 
 
 @dataclass
 class Shoot:
-    """What all frames share.
+    """What all pictures share.
 
     Attributes:
         scene: At the time of frame 0.
         scene_path: Its file.
-        camera: Name of the camera; None: the scene's own.
-        changes: What the command line changes of the camera.
+        calibrations: What stands in the place of lenses.
+        changes: What the command line changes of the cameras.
         settings: Of the session.
         tone: Curve of a PNG.
         stats: Print counts and times.
-        calibration: What stands in the place of a lens.
     """
 
     scene: Scene
     scene_path: Path
-    camera: str | None
+    calibrations: CalibrationFlags
     changes: dict[str, Any]
     settings: dict[str, Any]
     tone: str
     stats: bool
-    calibration: CalibrationFlags = field(default_factory=CalibrationFlags)
-    _warned: bool = False
+    _warned: set[str] = field(default_factory=set)
+    _seen: Scene | None = None
+    _built: BuiltScene | None = None
 
-    def draw(
+    def draw_all(self, wanted: list[Picture], launched: float, **how: bool) -> int:
+        """Draws pictures one after the other; the exit code of the first that is not complete."""
+        for view in {picture.view.name: picture.view for picture in wanted}.values():
+            view.of(
+                self.scene, self.calibrations, self.changes
+            )  # or an error before hours are spent
+        for i, picture in enumerate(wanted):
+            if picture.words:
+                console.note(f"{picture.words} ({i + 1} of {len(wanted)})")
+            try:
+                code = self._draw(picture, launched, alone=len(wanted) == 1, **how)
+            except KeyboardInterrupt:
+                return interrupted_early() if i == 0 else interrupted_between(i, len(wanted))
+            if code:
+                return code
+            launched = time.monotonic()
+        return 0
+
+    def _draw(
         self,
-        frame: int | None,
-        plan: Plan,
+        picture: Picture,
         launched: float,
         *,
+        alone: bool,
         resume: bool,
         quiet: bool,
         as_json: bool,
     ) -> int:
-        """Draws one frame into its files; the exit code."""
+        """Draws one picture into its files; the exit code."""
+        plan = picture.plan
         complete = all(path.exists() for path in plan.files) and not plan.checkpoint.exists()
-        if frame is not None and resume and complete:
+        if resume and complete and not (alone and picture.frame is None):
             console.note(f"{plan.outputs[0]} is complete")
             return 0
-        try:
-            session = self._session(frame, plan)
-        except KeyboardInterrupt:
-            return interrupted_early()
-        job = Job(session, plan, self.tone, time.monotonic() - launched, self.stats)
+        session = self._session(picture)
+        job = Job(session, plan, self.tone, time.monotonic() - launched, self.stats, picture.facts)
         return job.run(resume=resume, quiet=quiet, as_json=as_json)
 
-    def describe(self, frame: int | None, plan: Plan) -> int:
-        """What would be drawn, on stdout."""
+    def describe(self, wanted: list[Picture]) -> int:
+        """What would be drawn, on stdout: of a sequence its first frame, of a rig each camera."""
         from daguerre.io.exr import jsonable, without_infinity
 
-        session = self._session(frame, plan)
-        facts = {
+        first = [picture for picture in wanted if picture.frame == wanted[0].frame]
+        told = {picture.view.name: self._facts(picture) for picture in first}
+        facts = {"cameras": told} if len(first) > 1 else next(iter(told.values()))
+        print(json.dumps(without_infinity(facts), indent=2, default=jsonable))
+        return 0
+
+    def _facts(self, picture: Picture) -> dict[str, Any]:
+        plan, session = picture.plan, self._session(picture)
+        return {
             "scene": str(self.scene_path),
             "outputs": [str(path) for path in plan.files],
             "resolution": list(plan.resolution),
@@ -83,26 +167,31 @@ class Shoot:
             "camera": session.metadata.get("camera"),
             "key": session.key,
         }
-        print(json.dumps(without_infinity(facts), indent=2, default=jsonable))
-        return 0
 
-    def _camera(self, scene: Scene) -> Camera:
-        camera: Camera = self.calibration.camera(scene.camera(self.camera), self.changes)
-        return camera
+    def _scene_of(self, picture: Picture) -> Scene:
+        """The scene at the time of a frame: the same one for all cameras of a rate."""
+        camera = picture.view.of(self.scene, self.calibrations, self.changes)
+        if not picture.frame:
+            return self.scene
+        when = self.scene.time + picture.frame / camera.fps
+        if self._seen is None or self._seen.time != when:
+            self._seen = self.scene.at(when)
+        return self._seen
 
-    def _session(self, frame: int | None, plan: Plan) -> Session:
+    def _session(self, picture: Picture) -> Session:
         from daguerre.info import camera_warnings, lit
         from daguerre.session import Session
 
-        scene = self.scene
-        camera = self._camera(scene)
-        if frame:
-            scene = scene.at(scene.time + frame / camera.fps)
-            camera = self._camera(scene)
-        first, self._warned = not self._warned, True  # warnings come once, not for every frame
-        if first:
+        plan, view = picture.plan, picture.view
+        scene = self._scene_of(picture)
+        camera = view.of(scene, self.calibrations, self.changes)
+        # Warnings come once, not for every frame.
+        first, new = not self._warned, view.name not in self._warned
+        self._warned.add(view.name)
+        which = f"camera {view.name}: " if "camera" in picture.facts else ""
+        if new:
             for warning in camera_warnings(camera):
-                console.warn(warning)
+                console.warn(which + warning)
         with core_errors("render"):
             session = Session(
                 scene,
@@ -112,8 +201,10 @@ class Shoot:
                 gt_time=plan.gt_time,
                 motion=plan.motion,
                 crop=plan.crop,
+                built=self._built,
                 **self.settings,
             )
+        self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)
         if plan.exposed:
             from daguerre.exposure import luminance_exposure
@@ -125,10 +216,17 @@ class Shoot:
             )
         for text in session.warnings:
             console.warn(f"{self.scene_path}: {text}")
-        calibrated = self.calibration.notes(camera) if first else []
+        calibrated = self.calibrations.notes(camera, view.calibration) if new else []
         for text in (*calibrated, *session.notes):
             console.note(text)
         return session
+
+
+def interrupted_between(done: int, wanted: int) -> int:
+    """Says so between two pictures, and how to go on; the exit code."""
+    console.say(f"daguerre: interrupted after {done} of {wanted} pictures; resume with:")
+    console.say(console.command_line("--resume"))
+    return INTERRUPTED
 
 
 def interrupted_early() -> int:

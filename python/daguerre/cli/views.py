@@ -1,0 +1,126 @@
+"""The cameras of a call: one, or those of a rig, and what their files are called.
+
+All of them draw the same random numbers, so each picture has the bits of a call with that camera
+alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daguerre.errors import UsageError, suggest
+
+from . import quantities as q
+from .frames import before_number
+
+if TYPE_CHECKING:
+    from daguerre.calibration import Calibration
+    from daguerre.camera import Camera
+    from daguerre.scene import Scene
+
+    from .calibration_flags import CalibrationFlags
+
+#: Stands for the name of a camera in the name of a file.
+PLACE = "{camera}"
+SIDES = {"left": -0.5, "right": 0.5}
+
+
+@dataclass(frozen=True)
+class View:
+    """One camera of a call.
+
+    Attributes:
+        name: What files and progress call it; empty: the only one, of no name.
+        camera: Of the scene; None: its own.
+        calibration: What stands in the place of its lens.
+        shift: To the right of where that camera stands, m.
+    """
+
+    name: str = ""
+    camera: str | None = None
+    calibration: Calibration | None = None
+    shift: float = 0.0
+
+    def of(self, scene: Scene, flags: CalibrationFlags, changes: dict[str, Any]) -> Camera:
+        """The camera itself."""
+        camera: Camera = flags.camera(scene.camera(self.camera), self.calibration, changes)
+        if not self.shift:
+            return camera
+        from daguerre.camera_pose import moved_right
+
+        return moved_right(camera, self.shift)
+
+
+def views_of(
+    camera: str | None, calibrations: Mapping[str, Calibration], stereo: str | None
+) -> list[View]:
+    """Which cameras ``--camera``, ``--calibration`` and ``--stereo`` ask for.
+
+    Raises:
+        UsageError: More than one of them asks for several cameras.
+    """
+    names = [None] if camera is None else _names(camera)
+    several = {
+        "--camera": len(names) > 1,
+        "--calibration": len(calibrations) > 1,
+        "--stereo": stereo is not None,
+    }
+    asking = [flag for flag, yes in several.items() if yes]
+    if len(asking) > 1:
+        raise UsageError(
+            f"{' and '.join(asking)}: wanted several cameras from one of them, got them from both"
+        )
+    if stereo is not None:
+        baseline = q.distance_m("--stereo", stereo)
+        if not 0 < baseline < 1e6:
+            raise UsageError(f"--stereo: wanted a distance above 0, m; got {stereo!r}")
+        only = next(iter(calibrations.values()), None)
+        return [View(name, names[0], only, side * baseline) for name, side in SIDES.items()]
+    if len(calibrations) > 1:
+        return [View(name, names[0], one) for name, one in calibrations.items()]
+    for name, one in calibrations.items():
+        return [View(each or name, each, one) for each in names]
+    return [View(each or "", each) for each in names]
+
+
+def _names(text: str) -> list[str]:
+    r"""Names between commas; a comma that belongs to a name is written ``\,``."""
+    names = [part.replace("\\,", ",").strip() for part in re.split(r"(?<!\\),", text)]
+    if "" in names:
+        raise UsageError(f"--camera: wanted names between commas, got {text!r}")
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise UsageError(f"--camera: wanted each name once, got {twice[0]!r} twice")
+    return names
+
+
+def check_places(outputs: list[Path], views: list[View]) -> None:
+    """``{camera}`` means a camera that has a name.
+
+    Raises:
+        UsageError: The only camera of this call was not named, or the place is misspelt.
+    """
+    for path in outputs:
+        for place in re.findall(r"\{[^{}]*\}", str(path)):
+            if place != PLACE and suggest(place, [PLACE]):
+                raise UsageError(f"-o {path}: wanted {PLACE}, got {place}")
+        if PLACE in str(path) and not views[0].name:
+            raise UsageError(
+                f"-o {path}: {PLACE} stands for the name of a camera; wanted --camera, "
+                "--calibration or --stereo"
+            )
+
+
+def named(path: Path, view: View, *, several: bool) -> Path:
+    """The file of a camera: its name in the place of ``{camera}``.
+
+    Without that place names of several cameras stand before the frame's number, or at the end.
+    """
+    name = re.sub(r"[/\\\x00-\x1f\x7f]", "_", view.name)
+    name = "_" * len(name) if name in (".", "..") else name
+    if PLACE in str(path):
+        return Path(str(path).replace(PLACE, name))
+    return before_number(path, name) if several else path
