@@ -70,6 +70,7 @@ class FakeSession:
         self.round = None
         self.rays = self.samples = self.light_path_count = self.splats_off_film = 0
         self.scatter_path_count = self.scatter_hits = 0
+        self.camera_rays = self.stopped_rays = 0
         self.flare_path_count = self.flare_rays = self.flare_hits = 0
         self.flare_spots = self.survey_rays = 0
         self.light_paths = (0.0, 0.0)

@@ -464,6 +464,7 @@ def test_stats_count_light_beside_the_frame(
             self.light_paths, self.light_path_count, self.splats_off_film = (50.0, 0.0), 200, 30
             self.flare_path_count, self.flare_rays, self.flare_hits = 100, 400, 300
             self.flare_spots, self.survey_rays = 3, 1000
+            self.camera_rays, self.stopped_rays = 400, 100
 
     monkeypatch.setattr(sys.modules["daguerre.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0
@@ -471,6 +472,7 @@ def test_stats_count_light_beside_the_frame(
     assert "light paths: 200 (50,0 per sample), 30 beside the frame" in said
     assert "flare: 100 paths, 75% of their rays on the frame" in said
     assert "highlights: 3 bright spots, by 1000 rays" in said
+    assert "stopped: 25.0% of the camera's rays" in said
 
 
 def test_passes_grow_on_aligned_powers_of_two() -> None:

@@ -169,6 +169,15 @@ def test_a_fisheye_sees_behind_itself() -> None:
     assert green + 0.5 == pytest.approx(wanted, abs=1.5)
 
 
+def test_rays_beyond_the_field_are_refused_and_counted() -> None:
+    model = Projection("orthographic", (100, 100), (40.0, 40.0))
+    session = dg.Session(dg.Scene(), dg.Camera(projection=model), resolution=(100, 100))
+    session.draw(0, 16)
+    inside = np.pi * 40**2 / 100**2
+    assert session.camera_rays == 16 * 100 * 100
+    assert session.stopped_rays / session.camera_rays == pytest.approx(1 - inside, abs=2e-3)
+
+
 def test_truth_is_that_of_the_model() -> None:
     model = Projection("kannala_brandt", (192, 108), (60.0, 60.0), None, FISHEYE)
     camera = dg.Camera(transform=pose(), projection=model, shutter_time=0)
