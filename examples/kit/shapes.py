@@ -31,6 +31,12 @@ def join(*shapes: Shape) -> Shape:
     )
 
 
+def by_matter(parts: Sequence[tuple[Shape, int]]) -> list[tuple[Shape, int]]:
+    """Shapes of one material as one, in the order in which materials come first."""
+    matters = dict.fromkeys(matter for _, matter in parts)
+    return [(join(*(shape for shape, of in parts if of == m)), m) for m in matters]
+
+
 def moved(shape: Shape, offset: Sequence[float]) -> Shape:
     """The same shape elsewhere."""
     p = shape.positions + np.asarray(offset, np.float32)

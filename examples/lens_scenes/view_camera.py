@@ -11,6 +11,7 @@ from night.stage import Stage
 
 BACK, FRONT = (0.190, 0.205), (0.120, 0.150)  # m: width and height of the standards
 DRAW, RISE = 0.165, 0.024  # from one to the other; of both over the table
+Parts = list[tuple[Shape, int]]
 LAID = np.array(((1, 0, 0), (0, 0, -1), (0, 1, 0)))  # what stands, laid toward the viewer
 
 
@@ -22,10 +23,10 @@ def add_view_camera(stage: Stage, at: tuple[float, float, float], degrees: float
         roughnessFactor=0.45,
     )
     leather = stage.matter("bellows", baseColorFactor=[0.20, 0.03, 0.02, 1], roughnessFactor=0.6)
-    body = stage.glb.add_node("view_camera", translation=at, rotation=turn_y(degrees))
+    parts: Parts = []
 
     def part(shape: Shape, matter: int, *place: float) -> None:
-        stage.put("part", shape, matter, parent=body, translation=place)
+        parts.append((shapes.moved(shape, place), matter))
 
     part(shapes.box((0.150, 0.016, 0.300)), wood, 0, 0.006, -0.085)
     for x in (-0.068, 0.068):
@@ -35,13 +36,15 @@ def add_view_camera(stage: Stage, at: tuple[float, float, float], degrees: float
             part(shape, wood, 0, RISE, z)
     part(_bellows(), leather, 0, RISE, 0)
     part(shapes.box((0.086, 0.086, 0.006)), wood, 0, RISE + FRONT[1] / 2 - 0.043, 0.010)
-    _add_lens(stage, body)
+    parts += _lens(stage)
     knob = shapes.lathe([(0.009, 0), (0.009, 0.008), (0.006, 0.0095), (0, 0.0095)], 32)
     for side in (-1, 1):
         aside = shapes.turned(knob, ((0, side, 0), (-side, 0, 0), (0, 0, 1)))
         for z in (-0.12, -0.02):
             part(aside, stage.brass, 0.075 * side, 0.014, z)
         part(aside, stage.brass, 0.5 * FRONT[0] * side, RISE + FRONT[1] / 2, 0)
+    mesh = stage.glb.add_parts("view_camera", shapes.by_matter(parts))
+    stage.glb.add_node("view_camera", mesh=mesh, translation=at, rotation=turn_y(degrees))
 
 
 def _mahogany() -> textures.Picture:
@@ -76,13 +79,15 @@ def _bellows(folds: int = 13) -> Shape:
     return shapes.faceted(shapes.surface(np.stack(rings, 1)))
 
 
-def _add_lens(stage: Stage, body: int) -> None:
+def _lens(stage: Stage) -> Parts:
+    """Its barrel and its front glass."""
     coated = stage.matter("coated", baseColorFactor=[0.01, 0.008, 0.03, 1], roughnessFactor=0.08)
     barrel = [(0, 0), (0.034, 0), (0.034, 0.004), (0.028, 0.006), (0.028, 0.026), (0.0295, 0.027)]
     barrel += [(0.0295, 0.033), (0.028, 0.034), (0.028, 0.052), (0.031, 0.054), (0.031, 0.060)]
     barrel += [(0.029, 0.060), (0.025, 0.050)]
     front = [(0.0255, 0.0505), (0.019, 0.0540), (0.010, 0.0560), (0, 0.0566)]
-    for profile, matter in ((barrel, stage.brass), (front, coated)):
-        shape = shapes.turned(shapes.lathe(profile, 96, 35), LAID)
-        place = [0, RISE + FRONT[1] / 2, 0.013]
-        stage.put("lens", shape, matter, parent=body, translation=place)
+    place = (0, RISE + FRONT[1] / 2, 0.013)
+    return [
+        (shapes.moved(shapes.turned(shapes.lathe(profile, 96, 35), LAID), place), matter)
+        for profile, matter in ((barrel, stage.brass), (front, coated))
+    ]

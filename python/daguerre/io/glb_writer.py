@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -116,15 +117,10 @@ class Glb:
         self.use(*properties.get("extensions", {}))
         return self.add("materials", {"name": name, **properties})
 
-    def add_mesh(
-        self,
-        name: str,
-        shape: Shape,
-        material: int,
-        more: dict[str, int] | None = None,
-        **primitive: Any,
-    ) -> int:
-        """Adds a mesh of one primitive, with `more` attributes by their accessors."""
+    def primitive(
+        self, shape: Shape, material: int, more: dict[str, int] | None = None, **primitive: Any
+    ) -> dict[str, Any]:
+        """A primitive of a mesh, with `more` attributes by their accessors."""
         attributes = {
             "POSITION": self.add_accessor(shape.positions, "VEC3", FLOAT, target=ARRAY_BUFFER),
             "NORMAL": self.add_accessor(shape.normals, "VEC3", FLOAT, target=ARRAY_BUFFER),
@@ -137,9 +133,23 @@ class Glb:
         flat = shape.indices.reshape(-1)
         indices = self.add_accessor(flat, "SCALAR", component, target=ELEMENT_ARRAY_BUFFER)
         attributes |= more or {}
-        return self.add_primitive(
-            name, attributes=attributes, indices=indices, material=material, **primitive
-        )
+        return {"attributes": attributes, "indices": indices, "material": material, **primitive}
+
+    def add_mesh(
+        self,
+        name: str,
+        shape: Shape,
+        material: int,
+        more: dict[str, int] | None = None,
+        **primitive: Any,
+    ) -> int:
+        """Adds a mesh of one primitive, with `more` attributes by their accessors."""
+        return self.add_primitive(name, **self.primitive(shape, material, more, **primitive))
+
+    def add_parts(self, name: str, parts: Sequence[tuple[Shape, int]]) -> int:
+        """Adds one mesh of several shapes, each of its own material."""
+        primitives = [self.primitive(shape, material) for shape, material in parts]
+        return self.add("meshes", {"name": name, "primitives": primitives})
 
     def add_primitive(self, name: str, **primitive: Any) -> int:
         """Adds a mesh of one primitive in glTF's own terms; extensions are noted as used."""

@@ -1,0 +1,1 @@
+"""Scenes of examples/calibrated.py, and files of calibrations."""
