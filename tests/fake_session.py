@@ -41,6 +41,8 @@ class FakeSession:
         filter: str = "blackman_harris",
         aovs: bool = False,
         gt_time: str | None = None,
+        gt_lens: str = "chief",
+        gt_rays: int | None = None,
         motion: bool = False,
         crop: tuple[int, int, int, int] | None = None,
         threads: int = 0,

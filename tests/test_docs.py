@@ -41,7 +41,14 @@ def test_command_line_page_names_every_command():
 
 @pytest.mark.parametrize(
     "name",
-    ["README.md", "examples/README.md", "docs/motion.md", "docs/gallery/README.md", "script/demo"],
+    [
+        "README.md",
+        "examples/README.md",
+        "docs/motion.md",
+        "docs/ground-truth.md",
+        "docs/gallery/README.md",
+        "script/demo",
+    ],
 )
 def test_commands_in_texts_use_flags_that_exist(name):
     lines = [s for s in (ROOT / name).read_text().splitlines() if "daguerre" in s or "--" in s]

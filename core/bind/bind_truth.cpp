@@ -4,7 +4,7 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "render/truth.h"
+#include "render/truth_mean.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -13,7 +13,7 @@ namespace {
 
 /// One value per pixel of a member of Truth.
 template <typename T, typename From, typename Of>
-auto plane(const dg::Truth& truth, const std::vector<From>& values, const Of& of) {
+auto plane(const dg::TruthPlanes& truth, const std::vector<From>& values, const Of& of) {
     std::vector<T> out;
     out.reserve(values.size());
     for (const From& value : values) out.push_back(of(value));
@@ -22,7 +22,7 @@ auto plane(const dg::Truth& truth, const std::vector<From>& values, const Of& of
 }
 
 /// A plane by the name that it has in files.
-nb::object plane_named(const dg::Truth& t, const std::string& name) {
+nb::object plane_named(const dg::TruthPlanes& t, const std::string& name) {
     const auto same = [](auto value) { return value; };
     if (name == "depth.Z") return nb::cast(plane<float>(t, t.depth, same));
     if (name == "distance.Z") return nb::cast(plane<float>(t, t.distance, same));
@@ -40,17 +40,46 @@ nb::object plane_named(const dg::Truth& t, const std::string& name) {
         "depth.Z, distance.Z, P.X/Y/Z, N.X/Y/Z, object_id or material_id", name);
 }
 
-auto places_of(const dg::Truth& truth, const dg::Scene& scene, const dg::Camera& camera,
-               const dg::RenderSettings& settings) {
+/// The means have one more.
+nb::object mean_plane_named(const dg::MeanTruth& t, const std::string& name) {
+    const auto same = [](float value) { return value; };
+    if (name == "coverage.Y") return nb::cast(plane<float>(t, t.coverage, same));
+    return plane_named(t, name);
+}
+
+/// One point, px, of each pixel that make() gives.
+template <typename Make>
+auto points_of(const dg::FilmLayout& region, const Make& make) {
     std::vector<double> flat;
     {
         nb::gil_scoped_release release;
-        for (const dg::Vec2d px : dg::places(truth, {scene, camera}, settings))
-            flat.insert(flat.end(), {px.x, px.y});
+        for (const dg::Vec2d px : make()) flat.insert(flat.end(), {px.x, px.y});
     }
-    return dg::bind::to_numpy(std::move(flat),
-                              {std::size_t(truth.region.height),
-                               std::size_t(truth.region.width), std::size_t(2)});
+    return dg::bind::to_numpy(std::move(flat), {std::size_t(region.height),
+                                                std::size_t(region.width), std::size_t(2)});
+}
+
+using Crop = std::tuple<int, int, int, int>;
+
+dg::FilmLayout region_of(const Crop& crop) {
+    const auto [x0, y0, x1, y1] = crop;
+    return {x1 - x0, y1 - y0, x0, y0};
+}
+
+auto places_of(const dg::Truth& truth, const dg::Scene& scene, const dg::Camera& camera,
+               const dg::RenderSettings& settings) {
+    return points_of(truth.region,
+                     [&] { return dg::places(truth, {scene, camera}, settings); });
+}
+
+auto mean_motion_of(const dg::Scene& scene, const dg::Camera& camera,
+                    const dg::RenderSettings& settings, const dg::Scene& other_scene,
+                    const dg::Camera& other_camera, const dg::RenderSettings& other_settings,
+                    const Crop& crop, int rays) {
+    return points_of(region_of(crop), [&] {
+        return dg::mean_motion({scene, camera}, settings, {other_scene, other_camera},
+                               other_settings, region_of(crop), rays);
+    });
 }
 
 }  // namespace
@@ -58,18 +87,33 @@ auto places_of(const dg::Truth& truth, const dg::Scene& scene, const dg::Camera&
 void bind_truth(nb::module_& m) {
     using namespace dg;
     nb::class_<Truth>(m, "Truth")
-        .def("plane", &plane_named, "name"_a, "Values (H, W) by the name of the channel.")
+        .def("plane", [](const Truth& t, const std::string& name) { return plane_named(t, name); },
+             "name"_a, "Values (H, W) by the name of the channel.")
         .def("places", &places_of, "scene"_a, "camera"_a, "settings"_a,
              "Where what was seen lies in another frame, px (H, W, 2); NaN: it is not "
              "there.");
+    nb::class_<MeanTruth>(m, "MeanTruth")
+        .def("plane", &mean_plane_named, "name"_a, "Values (H, W) by the name of the channel.");
     m.def(
         "see",
         [](const Scene& scene, const Camera& camera, const RenderSettings& settings,
-           std::tuple<int, int, int, int> crop) {
-            const auto [x0, y0, x1, y1] = crop;
+           const Crop& crop) {
             nb::gil_scoped_release release;
-            return see({scene, camera}, {x1 - x0, y1 - y0, x0, y0}, settings);
+            return see({scene, camera}, region_of(crop), settings);
         },
         "scene"_a, "camera"_a, "settings"_a, "crop"_a,
         "Ground truth of the pixels (x0, y0, x1, y1), end exclusive.");
+    m.def(
+        "see_mean",
+        [](const Scene& scene, const Camera& camera, const RenderSettings& settings,
+           const Crop& crop, int rays) {
+            nb::gil_scoped_release release;
+            return see_mean({scene, camera}, region_of(crop), settings, rays);
+        },
+        "scene"_a, "camera"_a, "settings"_a, "crop"_a, "rays"_a,
+        "The same as means over so many rays of each pixel.");
+    m.def("mean_motion", &mean_motion_of, "scene"_a, "camera"_a, "settings"_a, "other_scene"_a,
+          "other_camera"_a, "other_settings"_a, "crop"_a, "rays"_a,
+          "How far what is seen moves until another frame, px (H, W, 2), means over the same "
+          "rays; NaN: it has no place there.");
 }

@@ -22,22 +22,39 @@ struct TruthFrame {
     const Camera& camera;
 };
 
-/// Of the pixels of a region, in rows from the top.
-struct Truth {
-    /// What a pixel sees: a surface, or a direction at infinity.
-    struct Seen {
-        RawHit hit;
-        bool surface = false;
-        Vec3f direction;  // unit: the surface's normal in the world, or where in the sky
-    };
+/// What a ray of the camera sees: a surface, or a direction at infinity.
+struct Seen {
+    RawHit hit;
+    bool surface = false;
+    Vec3f direction;  // unit: the surface's normal in the world, or where in the sky
+};
+
+/// Of the pixels of a region, in rows from the top. Where there is no surface all is 0.
+struct TruthPlanes {
+    explicit TruthPlanes(const FilmLayout& region);
+
     FilmLayout region;
-    std::vector<Seen> seen;
-    // Where there is no surface all of these are 0.
     std::vector<float> depth, distance;   // m: along the camera's -z; from its origin
     std::vector<Vec3f> position, normal;  // world; m, unit
     std::vector<std::uint32_t> object_id,
         material_id;  // index + 1; 0: none, as of sphere lights
 };
+
+struct Truth : TruthPlanes {
+    explicit Truth(const FilmLayout& region);
+
+    std::vector<Seen> seen;
+};
+
+/// What a ray meets, where it meets a surface.
+struct TruthPoint {
+    float depth, distance;
+    Vec3f position, normal;
+    std::uint32_t object_id = 0, material_id = 0;
+};
+/// `camera`: its pose at the ray's time.
+TruthPoint truth_point(const Scene& scene, const Ray& ray, const RawHit& hit,
+                       const Affine3d& camera);
 
 /// Chief rays through the centres of the pixels, to the nearest surface that is not cut
 /// out. Of the settings sensor, shutter and threads count.

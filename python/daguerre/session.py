@@ -36,7 +36,7 @@ from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, 
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
-from .truth import GroundTruth, check_gt_time, focused
+from .truth import GroundTruth, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves
 
@@ -63,8 +63,11 @@ class Session:
         max_depth: Largest number of surfaces at which a path scatters.
         strategy: mis, or light or bsdf alone (to check one against the other).
         gt_time: open, mid or close: depth, distance, P, N, object_id and material_id are exact
-            values at that moment of each pixel's exposure, through its chief ray
-            (``daguerre.truth``), and not means over the samples.
+            values at that moment of each pixel's exposure (``docs/ground-truth.md``), and not
+            means over the samples.
+        gt_lens: Through which rays: chief, that of the pixel's centre, or mean: means over those
+            that expose the pixel then, with their share that meets a surface as ``coverage.Y``.
+        gt_rays: How many of each pixel are drawn for that, by default 64: the same ones each time.
         motion: Also ``motion`` and ``motion_back``, where things go and come from, in px; of mid
             unless ``gt_time`` is given.
         dispersion: What an exact lens does with a path's other wavelengths: reproject, or
@@ -102,6 +105,8 @@ class Session:
         filter: str = "blackman_harris",
         aovs: bool = False,
         gt_time: str | None = None,
+        gt_lens: str = "chief",
+        gt_rays: int | None = None,
         motion: bool = False,
         crop: tuple[int, int, int, int] | None = None,
         threads: int = 0,
@@ -144,7 +149,9 @@ class Session:
         self.scene = scene
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.aovs = aovs
-        self.gt_time, self.motion = check_gt_time(gt_time, wanted=motion), motion
+        self.gt_lens, self.gt_rays = gt_lens, check_gt_lens(gt_lens, gt_rays)
+        wanted_truth = motion or gt_lens == "mean"
+        self.gt_time, self.motion = check_gt_time(gt_time, wanted=wanted_truth), motion
         started = time.perf_counter()
         self.interval = shutter.interval(self.camera, scene.time, (self.width, self.height))
         if built is None or not built.shows(scene, self.interval):
@@ -364,6 +371,8 @@ class Session:
             (self.width, self.height),
             self.crop,
             self.gt_time or "mid",
+            self.gt_lens,
+            self.gt_rays,
             self._settings.threads,
             None if self.scene.motion else self._core_scene,
         )
@@ -467,6 +476,8 @@ class Session:
             "bad_samples": self.bad_samples[0],
             "bad_sample_places": [list(place) for place in self.bad_samples[1]],
             "gt_time": self.gt_time,
+            "gt_lens": self.gt_lens if self.gt_time else None,
+            "gt_rays": self.gt_rays if self.gt_time and self.gt_lens == "mean" else None,
             "version": _core.__version__,
             "intersector": self._core_scene.intersector,
         }
@@ -503,8 +514,8 @@ def render(
         noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
             pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
             samples as each needs.
-        **options: As of :class:`Session`: resolution, seed, filter, aovs, gt_time, motion,
-            crop, threads, max_depth.
+        **options: As of :class:`Session`: resolution, seed, filter, aovs, gt_time, gt_lens,
+            motion, crop, threads, max_depth.
 
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.

@@ -1,7 +1,8 @@
 """Ground truth: exact values at a stated time of the exposure, and motion in pixels.
 
-One ray per pixel, the chief ray of the pixel's centre, at the pixel's own moment: with a rolling
-shutter each line has its own. See "Ground truth" in docs/motion.md.
+One ray per pixel, the chief ray of the pixel's centre, or means over a fixed set of the rays that
+expose it, at the pixel's own moment: with a rolling shutter each line has its own. See
+docs/ground-truth.md.
 """
 
 from __future__ import annotations
@@ -18,16 +19,24 @@ from . import shutter
 from .build import build
 from .camera import Camera
 from .camera_setup import set_up
-from .checks import short
+from .checks import short, whole
 from .errors import UsageError, suggest
 from .scene import Scene
 
+Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
 #: When in the exposure of a pixel: as a fraction of its length.
 GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
 #: What is seen, in the names of the files.
 PLANES = (
     "depth.Z", "distance.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object_id", "material_id",
 )  # fmt: skip
+#: What only means have: the share of the light whose rays meet a surface.
+COVERAGE = "coverage.Y"
+#: Through which rays: the chief ray of the pixel's centre, or all that expose it.
+GT_LENSES = ("chief", "mean")
+#: How many of those are drawn.
+GT_RAYS = 64
+MAX_RAYS = 65536
 #: Where it is in the next frame and where it was in the last one: how many frames later.
 MOTION = {"motion": 1, "motion_back": -1}
 
@@ -48,6 +57,26 @@ def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") 
     return gt_time
 
 
+def check_gt_lens(
+    gt_lens: str, gt_rays: int | None, *, where: tuple[str, str] = ("gt_lens", "gt_rays")
+) -> int:
+    """How many rays of each pixel ground truth takes.
+
+    Raises:
+        UsageError: There is no such kind, or the number goes with means alone.
+    """
+    if str(gt_lens) not in GT_LENSES:
+        known = " or ".join(GT_LENSES)
+        raise UsageError(
+            f"{where[0]}: wanted {known}, got {short(gt_lens)}{suggest(str(gt_lens), GT_LENSES)}"
+        )
+    if gt_lens == "chief":
+        if gt_rays is not None:
+            raise UsageError(f"{where[1]}: the chief ray is one; wanted {where[0]} mean too")
+        return 1
+    return whole(GT_RAYS if gt_rays is None else gt_rays, where[1], 1, MAX_RAYS)
+
+
 @dataclass(frozen=True)
 class GroundTruth:
     """What is asked of a frame.
@@ -58,6 +87,8 @@ class GroundTruth:
         resolution: Width and height, px.
         crop: Pixels (x0, y0, x1, y1), end exclusive.
         gt_time: open, mid or close: when in the exposure of each pixel.
+        gt_lens: chief or mean: through which rays.
+        gt_rays: Of each pixel, for means.
         threads: 0: all cores.
         core_scene: The scene if it does not move, so that it need not be built again.
     """
@@ -67,6 +98,8 @@ class GroundTruth:
     resolution: tuple[int, int]
     crop: tuple[int, int, int, int]
     gt_time: str
+    gt_lens: str = "chief"
+    gt_rays: int = GT_RAYS
     threads: int = 0
     core_scene: _core.Scene | None = None
 
@@ -75,9 +108,11 @@ class GroundTruth:
 
         ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
         later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN
-        where it does not appear there, hidden or behind the camera.
+        where it does not appear there, hidden or behind the camera. Means also have ``COVERAGE``.
         """
         now = self._shot(0)
+        if self.gt_lens == "mean":
+            return self._means(now, motion=motion)
         seen = _core.see(*now, self.crop)
         planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in PLANES}
         if not motion:
@@ -89,7 +124,17 @@ class GroundTruth:
                 planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
         return planes
 
-    def _shot(self, frames: int) -> tuple[_core.Scene, _core.Camera, _core.RenderSettings]:
+    def _means(self, now: Shot, *, motion: bool) -> dict[str, NDArray[Any]]:
+        seen = _core.see_mean(*now, self.crop, self.gt_rays)
+        names = (*PLANES, COVERAGE)
+        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in names}
+        for name, frames in MOTION.items() if motion else ():
+            moved = _core.mean_motion(*now, *self._shot(frames), self.crop, self.gt_rays)
+            for axis, channel in enumerate("UV"):
+                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        return planes
+
+    def _shot(self, frames: int) -> Shot:
         """Scene and camera some frames later, built for the moments of ground truth alone."""
         camera = _instants(self.camera, self.resolution)
         opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)

@@ -26,7 +26,7 @@ AOVS = {
     "id": "object_id",
 }
 #: the same that only ground truth has; they are not among "all"
-TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back")}
+TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back", "coverage")}
 #: what photographs are measured against: light of the exposure, in lux s, and where it saturates
 EXPOSED = ("exposure", "saturated")
 #: groups that every EXR has, so asking for them changes nothing
@@ -47,6 +47,8 @@ class Plan:
     denoise: bool
     interval_s: float
     gt_time: str | None = None
+    gt_lens: str = "chief"
+    gt_rays: int | None = None
     photograph: Photograph = field(default_factory=Photograph)
 
     def of_frame(self, frame: int) -> Plan:
@@ -60,17 +62,24 @@ class Plan:
         outputs = [named(path, view, several=several) for path in self.outputs]
         return replace(self, outputs=outputs, resolution=resolution)
 
-    def with_truth(self, gt_time: str | None) -> Plan:
+    def with_truth(self, gt_time: str | None, gt_lens: str, gt_rays: int | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
-        wanted = any(name in self.aovs for name in TRUTH)
-        if gt_time is None and not wanted:
+        means = gt_lens != "chief"
+        wanted = means or any(name in self.aovs for name in TRUTH)
+        if gt_time is None and gt_rays is None and not wanted:
             return self
-        from daguerre.truth import check_gt_time
+        from daguerre.truth import check_gt_lens, check_gt_time
 
+        check_gt_lens(gt_lens, gt_rays, where=("--gt-lens", "--gt-rays"))
         moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
-        if gt_time is not None and not self.aovs:
-            raise UsageError("--gt-time: wanted channels to write, say --aov depth,motion")
-        return replace(self, gt_time=moment)
+        if not self.aovs:
+            flag = "--gt-lens" if gt_time is None else "--gt-time"
+            raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
+        if "coverage" in self.aovs and not means:
+            raise UsageError(
+                "--aov coverage: of the chief ray there is none; wanted --gt-lens mean"
+            )
+        return replace(self, gt_time=moment, gt_lens=gt_lens, gt_rays=gt_rays)
 
     @property
     def motion(self) -> bool:

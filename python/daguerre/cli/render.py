@@ -65,8 +65,8 @@ def render(
             "--aov",
             metavar="LIST",
             help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
-            "distance,material_id,motion,motion_back of ground truth; exposure,saturated of a "
-            "photograph.",
+            "distance,material_id,motion,motion_back,coverage of ground truth; exposure,saturated "
+            "of a photograph.",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -79,6 +79,20 @@ def render(
             "[mid with --aov motion].",
             panel=_OUTPUT,
         ),
+    ] = None,
+    gt_lens: Annotated[
+        str,
+        option(
+            "--gt-lens",
+            metavar="chief|mean",
+            help="Ground truth by the chief ray of each pixel, or as means over the rays that "
+            "expose it [chief].",
+            panel=_OUTPUT,
+        ),
+    ] = "chief",
+    gt_rays: Annotated[
+        int | None,
+        option("--gt-rays", metavar="N", help="Of a pixel, for such means [64].", panel=_OUTPUT),
     ] = None,
     aovs: Annotated[bool, option("--aovs", help="All of them.", panel=_OUTPUT)] = False,
     tone: Annotated[
@@ -275,7 +289,7 @@ def render(
     sizes = [calibration_flags.resolution(v.calibration, res, DEFAULT_RESOLUTION) for v in views]
     res = "{}x{}".format(*sizes[0])
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
-    plan = plan.with_truth(gt_time)
+    plan = plan.with_truth(gt_time, gt_lens, gt_rays)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
     check_names(plan.outputs, numbers)
     check_places(plan.outputs, views)

@@ -199,6 +199,8 @@ class Shoot:
                 resolution=plan.resolution,
                 aovs=bool(plan.aovs) or plan.denoise,
                 gt_time=plan.gt_time,
+                gt_lens=plan.gt_lens,
+                gt_rays=plan.gt_rays,
                 motion=plan.motion,
                 crop=plan.crop,
                 built=self._built,

@@ -40,11 +40,11 @@ MATRICES = ("worldToCamera", "worldToNDC")
 RATIONALS = ("captureRate",)
 OWN_NUMBERS = (
     "samples", "samples_min", "samples_max", "noise", "seed", "h0", "luminance_exposure",
-    "exposure_compensation", "time", "bad_samples", "motion_missing", "bands",
+    "exposure_compensation", "time", "bad_samples", "motion_missing", "gt_rays", "bands",
 )  # fmt: skip
 OWN_STRINGS = (
-    "version", "scene_hash", "filter", "denoised", "gt_time", "light_paths", "flare", "scatter",
-    "diffraction", "sensor", "sensor_hash", "sensor_from",
+    "version", "scene_hash", "filter", "denoised", "gt_time", "gt_lens", "light_paths", "flare",
+    "scatter", "diffraction", "sensor", "sensor_hash", "sensor_from",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
 

@@ -75,7 +75,8 @@ def merge(
 
 
 def _truth_facts(one: Pass) -> dict[str, Any]:
-    return {k: v for k, v in one.metadata.items() if k in ("gt_time", "motion_missing", "aovs")}
+    names = ("gt_time", "gt_lens", "gt_rays", "motion_missing", "aovs")
+    return {k: v for k, v in one.metadata.items() if k in names}
 
 
 def film_of(one: Pass) -> Any:

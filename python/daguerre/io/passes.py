@@ -210,12 +210,12 @@ def _read_truth(path: Path, source: Any) -> dict[str, NDArray[Any]]:
     """The channels of ground truth of the picture in a pass."""
     import OpenImageIO as oiio
 
-    from daguerre.truth import MOTION, PLANES
+    from daguerre.truth import COVERAGE, MOTION, PLANES
 
     source.seek_subimage(0, 0)
     spec = source.spec()
     _check_size(path, spec)
-    known = {*PLANES, *(f"{name}.{axis}" for name in MOTION for axis in "UV")}
+    known = {*PLANES, COVERAGE, *(f"{name}.{axis}" for name in MOTION for axis in "UV")}
     planes: dict[str, NDArray[Any]] = {}
     for i, name in enumerate(spec.channelnames):
         if name in known:
