@@ -165,9 +165,10 @@ class Job:
                 f"--noise {wanted:g} is not reached: --spp {self.plan.wanted[1]} ended it before"
             )
 
-    def _stopped(self) -> float:
+    def _stopped(self) -> str:
         """The share of the camera's rays that no light comes along."""
-        return self.session.stopped_rays / max(1, self.session.camera_rays)
+        share = self.session.stopped_rays / max(1, self.session.camera_rays)
+        return f"{share:.1%} of the camera's rays, by lens, iris or edge of the field"
 
     def _light_stats(self) -> dict[str, str]:
         """Of light paths, and how many passed the lens and missed the frame."""
@@ -215,7 +216,7 @@ class Job:
             "drawing": f"{elapsed:.2f} s",
             "processor": f"{usage.ru_utime + usage.ru_stime:.2f} s",
             "camera samples": f"{drawn} ({quantity(drawn / elapsed)} per s)",
-            "stopped": f"{self._stopped():.1%} of the camera's rays, by lens, iris or edge of the field",
+            "stopped": self._stopped(),
             "rays": f"{rays} ({quantity(rays / elapsed)} per s)",
             **self._light_stats(),
             **self._flare_stats(),
