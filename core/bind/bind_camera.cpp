@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
 #include "camera/chief.h"
 #include "math/error.h"
+#include "render/ray_map.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -70,6 +72,15 @@ auto film_points(const dg::ChiefRays& chief, const Rows3d& points, bool at_infin
         if (mm) film[2 * i] = mm->x, film[2 * i + 1] = mm->y;
     }
     return dg::bind::to_numpy(std::move(film), {n, std::size_t(2)});
+}
+
+auto seen(const dg::ChiefRays& chief, const dg::Camera& camera, const Rows2d& film_mm) {
+    const std::size_t n = film_mm.shape(0);
+    auto flags = std::make_unique<bool[]>(n);
+    for (std::size_t i = 0; i < n; ++i) flags[i] = sees(camera, chief, {film_mm(i, 0), film_mm(i, 1)}, 0);
+    bool* const data = flags.release();
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<bool*>(p); });
+    return nb::ndarray<nb::numpy, bool>(data, {n}, owner);
 }
 
 using Column = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -170,6 +181,8 @@ void bind_camera(nb::module_& m) {
     nb::class_<ChiefRays>(m, "ChiefRays")
         .def("rays", &chief_rays, "film_mm"_a,
              "(origins, directions), m, of the chief rays of film points (N, 2) (mm, upright).")
+        .def("sees", &seen, "camera"_a, "film_mm"_a,
+             "Whether light comes to film points (N, 2) (mm, upright) of the camera that these are of.")
         .def("film_points", &film_points, "points"_a, "at_infinity"_a = false,
              "Where the chief rays of points (N, 3) meet the film (mm, upright); NaN: behind the camera.");
     nb::class_<Camera>(m, "Camera")

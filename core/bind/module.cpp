@@ -22,6 +22,7 @@ void bind_shutter(nb::module_& m);
 void bind_spectrum(nb::module_& m);
 void bind_film(nb::module_& m);
 void bind_render(nb::module_& m);
+void bind_ray_map(nb::module_& m);
 void bind_truth(nb::module_& m);
 void bind_develop_expose(nb::module_& m);
 void bind_develop_picture(nb::module_& m);
@@ -55,6 +56,7 @@ NB_MODULE(_core, m) {
     bind_spectrum(m);
     bind_film(m);
     bind_render(m);
+    bind_ray_map(m);
     bind_truth(m);
     bind_develop_expose(m);
     bind_develop_picture(m);

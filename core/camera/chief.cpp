@@ -81,8 +81,8 @@ ChiefRays::ChiefRays(const LensKind& kind) {
     step_mm_ = lens->half_diagonal_mm() / kSteps;
     for (int i = 0; i <= kSteps; ++i) {
         const auto ray = mean_ray(passing(*lens, i * step_mm_));
-        if (!ray || (i > 0 && ray->angle <= table_.back().angle))
-            break;  // beyond the image circle
+        ends_ = !ray || (i > 0 && ray->angle <= table_.back().angle);
+        if (ends_) break;  // beyond the image circle
         table_.push_back(*ray);
     }
     if (table_.size() < 4)
@@ -134,6 +134,14 @@ ChiefRay ChiefRays::at(Vec2d film_mm) const {
     const double c = std::cos(m.angle), s = std::sin(m.angle);
     return {turned(m.offset * c + m.start * s, m.offset * s - m.start * c),
             turned(s, -c)};
+}
+
+ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
+    if (projection_) return projection_->chief_direction(film_mm) ? Lit::yes : Lit::no;
+    if (grid_) return grid_->lit(film_mm);
+    if (!ends_) return Lit::yes;
+    const double last = step_mm_ * (table_.size() - 1), radius = length(film_mm);
+    return radius <= last ? Lit::yes : radius < last + step_mm_ ? Lit::unknown : Lit::no;
 }
 
 /// The film radius whose ray meets the point: bisection until the bracket is short, since

@@ -24,6 +24,8 @@ struct ChiefRay {
 
 class ChiefRays {
   public:
+    using Lit = ChiefGrid::Lit;
+
     /// Throws Error if no light passes an exact lens on its axis.
     explicit ChiefRays(const LensKind& lens);
 
@@ -36,6 +38,9 @@ class ChiefRays {
     /// nothing if it lies behind. Homogeneous: (p, 1) is a point in m, (d, 0) lies in
     /// direction d at infinity.
     std::optional<Vec2d> film_point(Vec3d p, double w = 1) const;
+
+    /// Whether light comes to a film point: as far as the table tells.
+    Lit lit(Vec2d film_mm) const;
 
     /// In the plane of the axis: the line n . x = offset with the normal n = (cos angle,
     /// sin angle) in (outward, z), followed along (sin angle, -cos angle) from `start` m
@@ -56,6 +61,7 @@ class ChiefRays {
     std::optional<ChiefGrid> grid_;  // of an exact lens that is not the same on all sides
     std::vector<Meridional> table_;  // of an exact one, by film radius
     double step_mm_ = 0;
+    bool ends_ = false;              // the table, before the film does: beyond the image circle
 };
 
 /// Those of a camera whose lens changes while the shutter is open: of the lens that draws

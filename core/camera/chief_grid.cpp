@@ -49,25 +49,33 @@ std::optional<ChiefGrid::Node> ChiefGrid::mean_ray(const ExactLens& lens, Vec2d 
     return Node{angle_of(d), foot, mean.start - dot(foot, axis)};
 }
 
-ChiefGrid::ChiefGrid(const ExactLens& lens) : nodes_(kNodes * kNodes) {
+ChiefGrid::ChiefGrid(const ExactLens& lens) : nodes_(kNodes * kNodes), lit_(nodes_.size()) {
     const ExactLensSettings& s = lens.settings();
     const bool whole = !(s.film_half_mm.x > 0 && s.film_half_mm.y > 0);
     const double reach = s.half_diagonal_mm / std::sqrt(2.0);
     const Vec2d half = whole ? Vec2d{reach, reach} : s.film_half_mm * kMargin;
     corner_ = (whole ? Vec2d{} : s.film_center_mm) - half;
     step_ = half * (2.0 / (kNodes - 1));
-    std::vector<bool> lit(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Vec2d film{corner_.x + double(i % kNodes) * step_.x, corner_.y + double(i / kNodes) * step_.y};
         const auto ray = mean_ray(lens, film);
-        lit[i] = ray.has_value();
+        lit_[i] = ray.has_value();
         if (ray) nodes_[i] = *ray;
     }
-    fill_dark(lit);
+    fill_dark();
+}
+
+ChiefGrid::Lit ChiefGrid::lit(Vec2d film_mm) const {
+    const auto cell = [](double at) { return std::clamp(int(std::floor(at)), 0, kNodes - 2); };
+    const int x = cell((film_mm.x - corner_.x) / step_.x), y = cell((film_mm.y - corner_.y) / step_.y);
+    const int first = y * kNodes + x;
+    const int found = lit_[first] + lit_[first + 1] + lit_[first + kNodes] + lit_[first + kNodes + 1];
+    return found == 4 ? Lit::yes : found == 0 ? Lit::no : Lit::unknown;
 }
 
 /// Beyond the image circle rays go on linearly: from two lit nodes in a row, ring by ring.
-void ChiefGrid::fill_dark(std::vector<bool>& lit) {
+void ChiefGrid::fill_dark() {
+    std::vector<bool> lit = lit_;
     const auto inside = [](int x, int y) { return x >= 0 && y >= 0 && x < kNodes && y < kNodes; };
     const auto count = std::ranges::count(lit, true);
     if (count < 16) throw Error("chief rays: no light passes the lens near the middle of the film");

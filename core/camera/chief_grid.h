@@ -22,6 +22,10 @@ class ChiefGrid {
     /// As ChiefRays::film_point.
     std::optional<Vec2d> film_point(Vec3d p, double w) const;
 
+    /// Whether light comes to a film point; unknown between nodes that it reaches and others.
+    enum class Lit { no, unknown, yes };
+    Lit lit(Vec2d film_mm) const;
+
   private:
     /// Directions as vectors of their angle from straight ahead, which stay smooth beyond 90 degrees.
     struct Node {
@@ -30,13 +34,14 @@ class ChiefGrid {
         double start = 0;
     };
     static std::optional<Node> mean_ray(const ExactLens& lens, Vec2d film_mm);
-    void fill_dark(std::vector<bool>& lit);
+    void fill_dark();
     Node node(int column, int row) const;
     Node interpolated(Vec2d film_mm) const;
     Vec2d miss(Vec2d film_mm, Vec3d p, double w) const;
 
     Vec2d corner_{}, step_{};   // mm
     std::vector<Node> nodes_;   // rows from corner_ on
+    std::vector<bool> lit_;
 };
 
 }  // namespace dg

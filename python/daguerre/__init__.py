@@ -35,8 +35,10 @@ if TYPE_CHECKING:
     from .analysis.calibrate import calibrate
     from .frame import Frame
     from .raw import Raw
+    from .raymap import RayMap, raymap
     from .rig import render_rig, stereo_pair
     from .session import Session, iter_render, render
+    from .stmaps import StMaps, stmaps
     from .waves import Diffraction
 
 __all__ = [
@@ -58,12 +60,14 @@ __all__ = [
     "PointLight",
     "Projection",
     "Raw",
+    "RayMap",
     "RollingShutter",
     "Scene",
     "Session",
     "SphereLight",
     "Spin",
     "SpotLight",
+    "StMaps",
     "TextureSlot",
     "UsageError",
     "__version__",
@@ -81,11 +85,13 @@ __all__ = [
     "metering",
     "polynomial",
     "post",
+    "raymap",
     "render",
     "render_rig",
     "sensors",
     "spin",
     "stereo_pair",
+    "stmaps",
     "stocks",
 ]
 
@@ -95,6 +101,10 @@ _LAZY = {
     "Diffraction": "waves",
     "Frame": "frame",
     "Raw": "raw",
+    "RayMap": "raymap",
+    "raymap": "raymap",
+    "StMaps": "stmaps",
+    "stmaps": "stmaps",
     "Session": "session",
     "iter_render": "session",
     "render": "session",

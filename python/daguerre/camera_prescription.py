@@ -260,7 +260,7 @@ def _traced_lens(
     if model == "polynomial":
         degree = camera.degree or camera_fit.DEFAULT_DEGREE
         exact = _exact_lens(camera, sharp, frame, degree)
-        pitch = frame[0] / focus.resolution[0]
+        pitch = focus.frame[0] / focus.resolution[0]
         exact, facts = camera_fit.judged(exact, camera, sharp.lens.name, pitch, focus.notes)
     else:
         exact = _exact_lens(camera, sharp, frame)

@@ -26,6 +26,7 @@ from .errors import InputError, UsageError
 from .exposure import exposure_facts, exposure_notes, lens_h0
 from .focusing import Focus, ideal_direction
 from .lens_motion import LensMotion
+from .overscan import NONE, Overscan
 from .projection import Projection, check_resolution
 from .scene import Scene
 
@@ -52,7 +53,11 @@ class CameraSetup:
 
 
 def set_up(
-    scene: Scene, camera: Camera, resolution: tuple[int, int], core_scene: _core.Scene | None
+    scene: Scene,
+    camera: Camera,
+    resolution: tuple[int, int],
+    core_scene: _core.Scene | None,
+    overscan: Overscan = NONE,
 ) -> CameraSetup:
     """Resolves names, focus and f-stop of a camera.
 
@@ -61,6 +66,7 @@ def set_up(
         camera: In a photographer's terms.
         resolution: Width and height, px.
         core_scene: For autofocus; None: autofocus gives infinity.
+        overscan: Pixels beside the frame that are drawn, too.
 
     Raises:
         UsageError: A parameter that is wrong, or that the chosen kind of lens cannot honour.
@@ -83,7 +89,8 @@ def set_up(
     check(camera, model, prescription=lens is not None)
     setup = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
     focus = Focus(scene, camera, resolution, size, world, core_scene, setup.notes)
-    _set_up_lens(setup, camera, lens, model, pose, focus)
+    film = _film_size(size, resolution, overscan)
+    _set_up_lens(setup, camera, lens, model, pose, focus, film)
 
     traced = []  # models of the states of a lens that changes
 
@@ -94,7 +101,7 @@ def set_up(
         check(now, like, prescription=lens is not None)
         made = CameraSetup(core=cast("Any", None), frame_size=size, pinhole_focal_length=0)
         known = Focus(scene, now, resolution, size, world, None, [])
-        _set_up_lens(made, now, lens, like, pose, known)
+        _set_up_lens(made, now, lens, like, pose, known, film)
         traced.append(made.facts.get("lens_model", like))
         return made.core
 
@@ -141,6 +148,20 @@ def set_up(
     return setup
 
 
+def _film_size(
+    size: tuple[float, float], resolution: tuple[int, int], overscan: Overscan
+) -> tuple[float, float]:
+    """Width and height (mm) of the film around the frame's middle that has all that is drawn."""
+    across, along = (
+        pixels * mm / count
+        for pixels, mm, count in zip(
+            (max(overscan.left, overscan.right), max(overscan.top, overscan.bottom)),
+            size, resolution, strict=True,
+        )
+    )  # fmt: skip
+    return size[0] + 2 * across, size[1] + 2 * along
+
+
 def _set_up_lens(
     setup: CameraSetup,
     camera: Camera,
@@ -148,9 +169,10 @@ def _set_up_lens(
     model: str,
     pose: _core.Motion,
     focus: Focus,
+    film: tuple[float, float],
 ) -> None:
     if lens is not None:
-        real = camera_prescription.set_up(camera, lens, model, setup.frame_size, pose, focus)
+        real = camera_prescription.set_up(camera, lens, model, film, pose, focus)
         setup.core, setup.pinhole_focal_length = real.core, real.pinhole_focal_length
         setup.facts |= real.facts
     elif camera.projection is not None:

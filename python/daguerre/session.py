@@ -23,16 +23,18 @@ from .adaptive import Round, check_noise, rounds
 from .built_scene import BuiltScene
 from .camera import Camera
 from .camera_checks import check_surfaces
+from .camera_facts import camera_metadata
 from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
-from .exposure import exposure_metadata, without_exposure
+from .exposure import without_exposure
 from .film_channels import check_bands, responses, sensor_metadata
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
+from .overscan import NONE
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
@@ -123,7 +125,7 @@ class Session:
         bands: int = 0,
         built: BuiltScene | None = None,
     ) -> None:
-        self.width, self.height = _resolution(resolution)
+        self.width, self.height = check_resolution(resolution)
         self.crop = _crop(crop, self.width, self.height)
         kind, radius = _filter(filter)
         seed = whole(seed, "seed", 0, (1 << 64) - 1, "0 .. 2^64 - 1")
@@ -148,6 +150,7 @@ class Session:
             raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
         self.scene = scene
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
+        self.overscan = NONE
         self.aovs = aovs
         self.gt_lens, self.gt_rays = gt_lens, check_gt_lens(gt_lens, gt_rays)
         wanted_truth = motion or gt_lens == "mean"
@@ -222,6 +225,11 @@ class Session:
             self._identity["sensor"] = self.sensor.hash
         if self.bands:
             self._identity["bands"] = self.bands
+
+    @property
+    def focused_camera(self) -> Camera:
+        """The camera with the focus that was found."""
+        return focused(self.camera, self._setup.facts)
 
     def _plan(self) -> Plan:
         """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
@@ -367,7 +375,7 @@ class Session:
     def _truth(self) -> dict[str, NDArray[Any]]:
         truth = GroundTruth(
             self.scene,
-            focused(self.camera, self._setup.facts),
+            self.focused_camera,
             (self.width, self.height),
             self.crop,
             self.gt_time or "mid",
@@ -430,35 +438,9 @@ class Session:
     @property
     def metadata(self) -> dict[str, Any]:
         """Camera and picture facts, in the names and units of the EXR attributes."""
-        facts, camera = self._setup.facts, self.camera
-        matrix = np.asarray(facts["world_from_camera"])
-        width, height = self._setup.frame_size
         out: dict[str, Any] = {
-            "isoSpeed": camera.iso,
             "time": self.scene.time,
-            **shutter.metadata(camera),
-            **exposure_metadata(camera, facts, shutter.shutter_time(camera)),
-            "tStop": facts.get("t_stop"),
-            "pixelAspectRatio": facts.get("squeeze", 1.0),
-            "focus": facts.get("focus_distance_m"),
-            "nominalFocalLength": facts.get("focal_length_mm"),
-            "effectiveFocalLength": facts.get(
-                "effective_focal_length_mm", facts.get("focal_length_mm")
-            ),
-            "pinholeFocalLength": self._setup.pinhole_focal_length,
-            "entrancePupilOffset": facts.get("entrance_pupil_offset_mm"),
-            "lensModel": facts.get("lens"),
-            "sensorPhotositePitch": width / self.width * 1e3,
-            "sensorOverallDimensions": (width, height),
-            "sensorCenterOffset": tuple(1e3 * shift for shift in facts["shift_mm"]),
-            "worldToCamera": _world_to_camera(matrix),
-            "worldToNDC": _world_to_ndc(
-                matrix,
-                self._setup.pinhole_focal_length,
-                width * facts.get("squeeze", 1.0),
-                height,
-            ),
-            "camera": facts,
+            **camera_metadata(self.camera, self._setup, self.width),
             "seed": self._identity["seed"],
             **self._sample_facts(),
             "resolution": (self.width, self.height),
@@ -566,7 +548,8 @@ def _most_samples(spp: int | None, noise: float | None) -> int:
     return whole(DEFAULT_SPP if spp is None else spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
 
 
-def _resolution(resolution: tuple[int, int]) -> tuple[int, int]:
+def check_resolution(resolution: tuple[int, int]) -> tuple[int, int]:
+    """Width and height in px, checked."""
     try:
         width, height = resolution
     except (TypeError, ValueError):
@@ -616,18 +599,3 @@ def _filter(text: str) -> tuple[str, float]:
 
 def _hash_json(value: Any) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
-
-
-def _world_to_camera(world_from_camera: NDArray[np.float64]) -> NDArray[np.float64]:
-    """OpenEXR's convention: row vectors, left-handed camera with +z forward, +x right, +y up."""
-    camera_from_world = np.linalg.inv(world_from_camera)
-    return np.asarray((np.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world).T)
-
-
-def _world_to_ndc(
-    world_from_camera: NDArray[np.float64], focal_length: float, width: float, height: float
-) -> NDArray[np.float64]:
-    """Row-vector matrix to NDC (-1 .. 1, y up) of the pinhole with the same framing."""
-    scale = np.diag([2 * focal_length / width, 2 * focal_length / height, 1.0, 0.0])
-    scale[2, 3] = 1.0  # w = z
-    return np.asarray(_world_to_camera(world_from_camera) @ scale)

@@ -136,7 +136,7 @@ class GroundTruth:
 
     def _shot(self, frames: int) -> Shot:
         """Scene and camera some frames later, built for the moments of ground truth alone."""
-        camera = _instants(self.camera, self.resolution)
+        camera = instants(self.camera, self.resolution)
         opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)
         exposure = shutter.shutter_time(self.camera)
         begin = opens + GT_TIMES[self.gt_time] * exposure + frames / self.camera.fps
@@ -164,7 +164,7 @@ def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
     )
 
 
-def _instants(camera: Camera, resolution: tuple[int, int]) -> Camera:
+def instants(camera: Camera, resolution: tuple[int, int]) -> Camera:
     """The camera with an exposure of no length, around the scene's time, on each of its lines."""
     order, line_time = shutter.scan(camera, resolution)
     rolling = shutter.RollingShutter(order, line_time=line_time) if order != "none" else None

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.camera import Camera
 from daguerre.checks import number, numbers, whole
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.lenses import Lens, load
@@ -45,6 +46,7 @@ class ProjectionFit:
         pixels: Where the lens puts directions, shape (N, 2), pixel centres at integers.
         directions: Unit, x right, y down, z ahead, from the entrance pupil, shape (N, 3).
         unseen: Points of the picture that see nothing.
+        camera: The lens as it was calibrated.
     """
 
     projection: Projection
@@ -53,6 +55,7 @@ class ProjectionFit:
     pixels: FloatArray
     directions: FloatArray
     unseen: int
+    camera: Camera
 
     @property
     def residuals(self) -> FloatArray:
@@ -109,8 +112,9 @@ def calibrate(
         whole(int(side) if side == int(side) else side, "calibrate: resolution", 2, 65536)
     for side in numbers(sensor_size, "calibrate: sensor_size", 2, "width and height, mm"):
         number(side, "calibrate: sensor_size", 0, 1e5, above=0)
+    item = load(lens) if isinstance(lens, str) else lens
     bench = set_up(
-        load(lens) if isinstance(lens, str) else lens,
+        item,
         f_stop=f_stop,
         focus_m=focus_distance,
         zoom_mm=focal_length,
@@ -124,8 +128,17 @@ def calibrate(
         raise InputError(f"{bench.lens.name}: calibrate: wanted chief rays, got too few")
     pixels, directions = pixels[known], directions[known]
     made = fit_projection(model, size, pixels, directions, count, bench.lens.name)
-    pitch_um = 1e3 * sensor_size[0] / width
-    return ProjectionFit(made, bench, pitch_um, pixels, directions, int((~known).sum()))
+    pitch = sensor_size[0] / width
+    camera = Camera(
+        lens=item,
+        f_stop=bench.f_stop,
+        focus_distance=focus_distance,
+        focus_by=focus_by,
+        zoom=focal_length,
+        sensor_size=(width * pitch, height * pitch),
+    )
+    unseen = int((~known).sum())
+    return ProjectionFit(made, bench, 1e3 * pitch, pixels, directions, unseen, camera)
 
 
 def fit_projection(

@@ -13,7 +13,8 @@ from daguerre.errors import UsageError, suggest
 from . import console
 from . import quantities as q
 from .drawings import check_drawing
-from .flags import option
+from .flags import option, with_flags
+from .map_flags import MapFlags
 
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit
@@ -22,8 +23,10 @@ FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
 PICTURES = (".png", ".svg", ".pdf")
 
 
+@with_flags(map_flags=MapFlags)
 def calibrate(
     name: Annotated[str, typer.Argument(metavar="LENS", help="Of the library, or a file.")],
+    map_flags: MapFlags,
     model: Annotated[
         str, option("--model", metavar="NAME", help="opencv, fisheye, double_sphere, ... [opencv].")
     ] = "opencv",
@@ -75,10 +78,14 @@ def calibrate(
 ) -> int:
     """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
     from daguerre.analysis.calibrate import calibrate as fit
+    from daguerre.io.atomic import check_writable
 
     if focus_by not in ("paraxial", "best"):
         raise UsageError(f"--focus-by: wanted paraxial or best, got {focus_by!r}")
     _check_files(output, file_format, residuals)
+    map_flags.check()
+    for path in map_flags.files:
+        check_writable(path)
     if terms is None and file_format == "kalibr" and model == "opencv":
         terms = 4  # Kalibr's radtan has no k3
     made = fit(
@@ -94,6 +101,8 @@ def calibrate(
         wavelength_nm=wavelength,
     )
     _write(made, output, file_format or FORMATS[0], residuals)
+    if map_flags.files:
+        _write_maps(map_flags, made)
     if json:
         from json import dumps
 
@@ -132,6 +141,14 @@ def _write(
 
         write_bytes(residuals, plot_residuals(made, residuals.suffix.lower()[1:]))
         console.note(f"wrote {residuals}")
+
+
+def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:
+    """Of the lens, not of its fit."""
+    from daguerre import Scene
+    from daguerre.overscan import NONE
+
+    map_flags.write(Scene(), made.camera, made.projection.size, NONE)
 
 
 def _facts(made: ProjectionFit) -> dict[str, Any]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from daguerre.errors import UsageError, suggest
 
 from . import quantities as q
 from .frames import numbered
+from .map_flags import MapFlags
 from .photograph import Photograph
 from .views import View, named
 
@@ -49,18 +52,24 @@ class Plan:
     gt_time: str | None = None
     gt_lens: str = "chief"
     gt_rays: int | None = None
+    overscan: Any = None
+    maps: MapFlags = field(default_factory=MapFlags)
     photograph: Photograph = field(default_factory=Photograph)
 
     def of_frame(self, frame: int) -> Plan:
         """The same for one frame of a sequence."""
-        return replace(self, outputs=[numbered(path, frame) for path in self.outputs])
+        return self._renamed(lambda path: numbered(path, frame))
 
     def of_view(self, view: View, resolution: tuple[int, int], *, several: bool) -> Plan:
         """The same for one camera, whose picture may have a size of its own."""
         if self.crop is not None:
             check_crop(self.crop, resolution)
-        outputs = [named(path, view, several=several) for path in self.outputs]
-        return replace(self, outputs=outputs, resolution=resolution)
+        made = self._renamed(lambda path: named(path, view, several=several))
+        return replace(made, resolution=resolution)
+
+    def _renamed(self, name: Callable[[Path], Path]) -> Plan:
+        outputs = [name(path) for path in self.outputs]
+        return replace(self, outputs=outputs, maps=self.maps.renamed(name))
 
     def with_truth(self, gt_time: str | None, gt_lens: str, gt_rays: int | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
@@ -72,7 +81,7 @@ class Plan:
 
         check_gt_lens(gt_lens, gt_rays, where=("--gt-lens", "--gt-rays"))
         moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
-        if not self.aovs:
+        if not self.aovs and (means or self.maps.export_raymap is None):
             flag = "--gt-lens" if gt_time is None else "--gt-time"
             raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
         if "coverage" in self.aovs and not means:
@@ -97,8 +106,13 @@ class Plan:
         return [file for path in self.outputs for file, _ in self.photograph.files(path)]
 
     @property
+    def written(self) -> list[Path]:
+        """The same, and maps."""
+        return [*self.files, *self.maps.files]
+
+    @property
     def checkpoint(self) -> Path:
-        """Where the sums are kept until the picture is complete."""
+        """Where the sums are kept until the picture is complete; there are outputs."""
         return self.outputs[0].with_suffix(".checkpoint.exr")
 
 
@@ -133,6 +147,8 @@ def make_plan(
         wanted = (0, _ceiling(noise, spp, samples))
     if samples and spp is not None and wanted[1] > spp:
         raise UsageError(f"--samples {samples}: wanted at most --spp {spp}")
+    if not formats and (aov or all_aovs or samples or noise is not None or denoise):
+        raise UsageError("-o: wanted a file for the picture, since maps alone draw nothing")
     if samples and ".exr" not in formats:
         raise UsageError("--samples: a pass keeps its sums in an .exr; got none with -o")
     if samples and denoise:
@@ -209,10 +225,10 @@ def check_outputs(plan: Plan) -> None:
     """Before hours are spent: can the files be written at all?"""
     from daguerre.io.atomic import check_writable
 
-    names = [path.resolve() for path in plan.files]
+    names = [path.resolve() for path in plan.written]
     if len(set(names)) < len(names):
         raise UsageError("-o: the same file is named twice")
-    if plan.checkpoint.resolve() in names:
+    if plan.outputs and plan.checkpoint.resolve() in names:
         raise UsageError(f"-o {plan.checkpoint}: this name is kept for the checkpoint")
-    for path in plan.files:
+    for path in plan.written:
         check_writable(path)

@@ -18,6 +18,7 @@ from .calibration_flags import CalibrationFlags
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .frames import check_names, frame_numbers
+from .map_flags import MapFlags
 from .photograph import Photograph
 from .plan import DEFAULT_RESOLUTION, check_outputs, make_plan
 from .scene_flags import SceneFlags
@@ -34,6 +35,7 @@ _SAMPLING = "Sampling"
     calibration_flags=CalibrationFlags,
     shutter_flags=ShutterFlags,
     scene_flags=SceneFlags,
+    map_flags=MapFlags,
 )
 def render(
     scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
@@ -41,16 +43,17 @@ def render(
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
+    map_flags: MapFlags,
     output: Annotated[
-        list[Path],
+        list[Path] | None,
         option(
             "-o",
             "--output",
             metavar="FILE",
-            help=".exr, .png, .jpg, .tif or .dng; may be repeated.",
+            help=".exr, .png, .jpg, .tif or .dng; may be repeated. Without it maps alone are made.",
             panel=_OUTPUT,
         ),
-    ],
+    ] = None,
     res: Annotated[
         str | None,
         option("--res", metavar="WxH|50%", help="Size in pixels [960x540].", panel=_OUTPUT),
@@ -288,11 +291,16 @@ def render(
     views = views_of(camera_flags.camera, calibration_flags.found, stereo)
     sizes = [calibration_flags.resolution(v.calibration, res, DEFAULT_RESOLUTION) for v in views]
     res = "{}x{}".format(*sizes[0])
+    output = output or []
+    if not output and not map_flags.files:
+        raise UsageError("-o, --output: wanted a file, which only maps (--export-...) do without")
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
+    plan = replace(plan, maps=map_flags)
     plan = plan.with_truth(gt_time, gt_lens, gt_rays)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
-    check_names(plan.outputs, numbers)
-    check_places(plan.outputs, views)
+    map_flags.check()
+    check_names([*plan.outputs, *map_flags.files], numbers)
+    check_places([*plan.outputs, *map_flags.files], views)
     _check_numbers(seed, threads, max_depth)
     wanted_light = check_light_paths(light_paths, "--light-paths")
     wanted_flare = check_paths(flare, "--flare")

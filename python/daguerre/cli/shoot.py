@@ -76,7 +76,7 @@ def check_distinct(wanted: list[Picture]) -> None:
     Raises:
         UsageError: Two would share one, such as of cameras whose names differ by a slash.
     """
-    paths = [path for picture in wanted for path in picture.plan.files]
+    paths = [path for picture in wanted for path in picture.plan.written]
     if twice := [path for path, count in Counter(paths).items() if count > 1]:
         raise UsageError(f"-o {twice[0]}: wanted a file for each picture, got one for several")
 
@@ -136,13 +136,36 @@ class Shoot:
     ) -> int:
         """Draws one picture into its files; the exit code."""
         plan = picture.plan
-        complete = all(path.exists() for path in plan.files) and not plan.checkpoint.exists()
+        if not plan.outputs:
+            self._write_maps(picture)
+            return 0
+        complete = all(path.exists() for path in plan.written) and not plan.checkpoint.exists()
         if resume and complete and not (alone and picture.frame is None):
             console.note(f"{plan.outputs[0]} is complete")
             return 0
         session = self._session(picture)
+        if plan.maps.files:
+            scene, camera = session.scene, session.focused_camera
+            plan.maps.write(scene, camera, plan.resolution, session.overscan, plan.gt_time)
         job = Job(session, plan, self.tone, time.monotonic() - launched, self.stats, picture.facts)
         return job.run(resume=resume, quiet=quiet, as_json=as_json)
+
+    def _write_maps(self, picture: Picture) -> None:
+        """The maps of a camera, without its picture."""
+        from daguerre.build import build
+        from daguerre.camera_setup import set_up
+        from daguerre.overscan import NONE
+        from daguerre.shutter import interval
+        from daguerre.truth import focused
+
+        plan, scene = picture.plan, self._scene_of(picture)
+        camera = picture.view.of(scene, self.calibrations, self.changes)
+        size = plan.resolution
+        with core_errors("render"):
+            # Nothing is drawn, but what is in focus may have to be found.
+            setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
+            camera = focused(camera, setup.facts)
+            plan.maps.write(scene, camera, size, NONE, plan.gt_time)
 
     def describe(self, wanted: list[Picture]) -> int:
         """What would be drawn, on stdout: of a sequence its first frame, of a rig each camera."""

@@ -44,7 +44,7 @@ OWN_NUMBERS = (
 )  # fmt: skip
 OWN_STRINGS = (
     "version", "scene_hash", "filter", "denoised", "gt_time", "gt_lens", "light_paths", "flare",
-    "scatter", "diffraction", "sensor", "sensor_hash", "sensor_from",
+    "scatter", "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
 
@@ -139,11 +139,33 @@ def write_parts(
     Raises:
         OutputError: The file cannot be written; nothing is left of it.
     """
+    _write(path, parts, _windows(frame.metadata, frame.rgb.shape))
+
+
+def write_planes(
+    path: str | os.PathLike[str],
+    header: Mapping[str, Any],
+    planes: Channels,
+    metadata: Mapping[str, Any],
+) -> None:
+    """Writes channels that are no picture; their place is told by resolution and crop.
+
+    Raises:
+        OutputError: The file cannot be written; nothing is left of it.
+    """
+    windows = _windows(metadata, next(iter(planes.values())).shape)
+    _write(path, [("map", dict(header), planes)], windows)
+
+
+def _write(
+    path: str | os.PathLike[str],
+    parts: list[tuple[str, dict[str, Any], Channels]],
+    windows: dict[str, Any],
+) -> None:
     import OpenEXR
 
     # The module's default is one thread; compression is most of the time of writing.
     OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
-    windows = _windows(frame)
     storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with atomic_path(path) as temp:
         exr_parts = [
@@ -176,11 +198,11 @@ def jsonable(value: Any) -> Any:
     return str(value) if isinstance(value, Path | Fraction) else repr(value)
 
 
-def _windows(frame: Frame) -> dict[str, Any]:
-    """A crop keeps its place: the data window lies inside the display window."""
-    height, width = frame.rgb.shape[:2]
-    full_width, full_height = frame.metadata.get("resolution") or (width, height)
-    x0, y0 = (frame.metadata.get("crop") or (0, 0))[:2]
+def _windows(metadata: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
+    """A crop keeps its place in the display window; overscan reaches out of it."""
+    height, width = shape[:2]
+    full_width, full_height = metadata.get("resolution") or (width, height)
+    x0, y0 = (metadata.get("crop") or (0, 0))[:2]
     corner = np.array([x0, y0], np.int32)
     size = np.array([width - 1, height - 1], np.int32)
     full = np.array([full_width - 1, full_height - 1], np.int32)

@@ -8,6 +8,7 @@ s = (column + 0.5) / width and t = 1 - (row + 0.5) / height, rows counted from t
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -153,8 +154,19 @@ def st_rows(warp: Warp, canvas: Canvas, rows: Rows) -> Image:
     return np.stack([s, t], axis=2).astype(np.float32)
 
 
-def write_stmap(path: str | os.PathLike[str], warp: Warp, canvas: Canvas) -> None:
+def write_stmap(
+    path: str | os.PathLike[str],
+    warp: Warp,
+    canvas: Canvas,
+    attributes: Mapping[str, str] = {},
+) -> None:
     """Writes a map for a picture, in bands, whole or not at all: R is s, G is t, B is 0.
+
+    Args:
+        path: An .exr.
+        warp: The map.
+        canvas: Its windows.
+        attributes: Of the file.
 
     Raises:
         OutputError: It cannot be written.
@@ -162,7 +174,7 @@ def write_stmap(path: str | os.PathLike[str], warp: Warp, canvas: Canvas) -> Non
     header = new_header(
         ("B", "G", "R"), canvas.corner, (canvas.width, canvas.height), canvas.full_size
     )
-    with atomic_path(path) as temp, ExrWriter(temp, header) as writer:
+    with atomic_path(path) as temp, ExrWriter(temp, header, attributes) as writer:
         for begin in range(0, canvas.height, BLOCK):
             rows = Rows(begin, min(begin + BLOCK, canvas.height))
             st = st_rows(warp, canvas, rows)

@@ -1,0 +1,133 @@
+"""Flags of maps of a camera: the ray of each pixel, and STMaps both ways.
+
+Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+from . import console
+from .flags import option
+
+_MAPS = "Maps of the camera"
+
+
+@dataclass(frozen=True)
+class MapFlags:
+    """Maps of a camera, beside a picture or without one."""
+
+    export_raymap: Annotated[
+        Path | None,
+        option(
+            "--export-raymap",
+            metavar="FILE.exr",
+            help="Of each pixel: where its ray starts, its direction, and when.",
+            panel=_MAPS,
+        ),
+    ] = None
+    raymap_frame: Annotated[
+        str,
+        option(
+            "--raymap-frame",
+            metavar="camera|world",
+            help="In the camera's frame (x right, y down, z ahead), or the scene's [camera].",
+            panel=_MAPS,
+        ),
+    ] = "camera"
+    export_stmap_undistort: Annotated[
+        Path | None,
+        option(
+            "--export-stmap-undistort",
+            metavar="FILE.exr",
+            help="STMap that straightens this camera's pictures.",
+            panel=_MAPS,
+        ),
+    ] = None
+    export_stmap_redistort: Annotated[
+        Path | None,
+        option(
+            "--export-stmap-redistort",
+            metavar="FILE.exr",
+            help="STMap that bends straight pictures as this camera does.",
+            panel=_MAPS,
+        ),
+    ] = None
+
+    @property
+    def files(self) -> list[Path]:
+        """All that is written."""
+        given = (getattr(self, f.name) for f in fields(self) if f.name.startswith("export"))
+        return [path for path in given if path is not None]
+
+    def renamed(self, name: Callable[[Path], Path]) -> "MapFlags":
+        """Into other files."""
+        paths: dict[str, Any] = {
+            f.name: name(path)
+            for f in fields(self)
+            if isinstance(path := getattr(self, f.name), Path)
+        }
+        return replace(self, **paths)
+
+    def check(self) -> None:
+        """Refuses what is no map.
+
+        Raises:
+            UsageError: Another ending, or no such frame.
+        """
+        from daguerre.errors import UsageError
+        from daguerre.raymap import check_frame
+
+        check_frame(self.raymap_frame, "--raymap-frame")
+        if self.raymap_frame != "camera" and self.export_raymap is None:
+            raise UsageError("--raymap-frame: wanted --export-raymap too")
+        for path in self.files:
+            if path.suffix.lower() != ".exr":
+                raise UsageError(f"{path}: a map wanted a name ending in .exr")
+
+    def write(
+        self,
+        scene: Any,
+        camera: Any,
+        size: tuple[int, int],
+        overscan: Any,
+        gt_time: str | None = None,
+    ) -> None:
+        """Writes the maps that are asked for.
+
+        Args:
+            scene: For its time.
+            camera: Its focus stated.
+            size: Of the picture, px.
+            overscan: An ``Overscan``.
+            gt_time: When in the exposure rays are seen.
+        """
+        from daguerre.raymap import rays_of
+
+        if self.export_raymap is not None:
+            how = (gt_time or "mid", self.raymap_frame, overscan)
+            rays_of(camera, size, scene, None, *how).save(self.export_raymap)
+            console.note(f"wrote {self.export_raymap}")
+        both = {
+            "undistort": self.export_stmap_undistort,
+            "redistort": self.export_stmap_redistort,
+        }
+        found = {name: path for name, path in both.items() if path is not None}
+        if found:
+            _write_stmaps(scene, camera, size, overscan, found)
+
+
+def _write_stmaps(
+    scene: Any, camera: Any, size: tuple[int, int], overscan: Any, files: dict[str, Path]
+) -> None:
+    from daguerre.sight import Sight
+    from daguerre.stmaps import StMaps
+
+    maps = StMaps(Sight(camera, size, scene=scene, overscan=overscan), overscan)
+    maps.save(**files)
+    source = {"undistort": "a picture of this camera", "redistort": "a straight picture"}
+    for name, path in files.items():
+        needed = maps.needed[name]
+        what = "no bounds" if needed is None else f"--overscan {needed}" if needed else "none"
+        console.note(f"wrote {path} (overscan that {source[name]} needs for it: {what})")

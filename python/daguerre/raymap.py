@@ -1,0 +1,166 @@
+"""Raymaps: the ray of each pixel, for programs that know no lens.
+
+A ray is the chief ray of the pixel's centre, as ground truth has it (docs/ground-truth.md): through the
+middle of what the pixel sees. It is asked for at the pixel's own moment: with a rolling shutter
+each line has its own.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from . import shutter
+from .camera_facts import camera_metadata
+from .camera_setup import set_up
+from .errors import UsageError, suggest
+from .overscan import NONE, Overscan, check_overscan, to_undistort
+from .scene import Scene
+from .sight import Sight
+from .truth import GT_TIMES, check_gt_time, instants
+
+if TYPE_CHECKING:
+    from .camera import Camera
+
+FloatArray = NDArray[np.float64]
+#: What coordinates of rays are about.
+FRAMES = {
+    "camera": "x right, y down, z ahead (OpenCV); from the entrance pupil; m",
+    "world": "the scene's: y up; m",
+}
+#: From the camera's own frame (x right, y up, looking along -z) to OpenCV's.
+_OPENCV = np.array([1.0, -1.0, -1.0])
+
+
+@dataclass(frozen=True)
+class RayMap:
+    """The ray of each pixel; NaN where a pixel sees nothing.
+
+    Attributes:
+        origin: Where the ray starts, m, shape (H, W, 3): of ideal lenses and projections the centre
+            of the camera, of a traced lens a point on the ray in front of the glass.
+        direction: Unit, shape (H, W, 3).
+        time: When the pixel sees it, s after the scene's time, shape (H, W).
+        frame: One of ``FRAMES``: the camera's own as it stands at each ray's time, or the world's.
+        metadata: Facts of the camera, as of frames.
+    """
+
+    origin: FloatArray
+    direction: FloatArray
+    time: FloatArray
+    frame: str = "camera"
+    metadata: dict[str, Any] = field(default_factory=dict)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes origin.X/Y/Z, direction.X/Y/Z and time.R, 32-bit OpenEXR.
+
+        Raises:
+            OutputError: The file cannot be written.
+        """
+        from .io.exr import attributes, write_planes
+
+        planes = {
+            f"{name}.{axis}": values[:, :, k].astype(np.float32)
+            for name, values in (("origin", self.origin), ("direction", self.direction))
+            for k, axis in enumerate("XYZ")
+        }
+        planes["time.R"] = self.time.astype(np.float32)
+        header = attributes(self.metadata) | {
+            "daguerre:raymap": f"{self.frame}: {FRAMES[self.frame]}"
+        }
+        for name in ("chromaticities", "colorInteropID"):  # there is no colour in it
+            header.pop(name)
+        write_planes(path, header, planes, self.metadata)
+
+
+def raymap(
+    camera: Camera,
+    resolution: tuple[int, int],
+    *,
+    scene: Scene | None = None,
+    gt_time: str = "mid",
+    frame: str = "camera",
+    overscan: Any = None,
+) -> RayMap:
+    """The ray of each pixel of any camera.
+
+    Args:
+        camera: Pinhole, thin, thick, exact, polynomial or projection.
+        resolution: Of the picture, px.
+        scene: For its time, and for a camera that focuses by itself; without one it then focuses at
+            infinity.
+        gt_time: open, mid or close: when in the exposure of each pixel.
+        frame: ``"camera"``: OpenCV's, x right, y down, z ahead, from the entrance pupil, as the
+            camera stands at the ray's time; ``"world"``: the scene's.
+        overscan: As of ``Session``: pixels beside the picture.
+
+    Raises:
+        UsageError: A parameter is out of its range.
+    """
+    from .session import check_resolution
+
+    size = check_resolution(resolution)
+    check_frame(frame)
+    check_gt_time(gt_time, wanted=True)
+    core_scene = None
+    if scene is not None:
+        from .build import build
+
+        core_scene = build(scene, shutter.interval(camera, scene.time, size))
+    wanted = check_overscan(overscan, size)
+    if wanted is None:
+        wanted = to_undistort(Sight(camera, size, scene=scene, core_scene=core_scene))
+    return rays_of(camera, size, scene or Scene(), core_scene, gt_time, frame, wanted)
+
+
+def check_frame(frame: str, where: str = "frame") -> None:
+    """Refuses what is no frame of rays."""
+    if frame not in FRAMES:
+        raise UsageError(
+            f"{where}: wanted {' or '.join(FRAMES)}, got {frame!r}{suggest(str(frame), FRAMES)}"
+        )
+
+
+def rays_of(
+    camera: Camera,
+    size: tuple[int, int],
+    scene: Scene,
+    core_scene: _core.Scene | None,
+    gt_time: str,
+    frame: str,
+    overscan: Overscan = NONE,
+) -> RayMap:
+    """As ``raymap``, of what is checked."""
+    now = instants(camera, size)
+    opens, _ = shutter.interval(camera, scene.time, size)
+    begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)
+    duration = shutter.core_shutter(now, size).duration_s
+    # An exposure of no length stands around its scene's time.
+    at = scene.at(begin + duration / 2)
+    setup = set_up(at, now, size, core_scene, overscan)
+    settings = _core.RenderSettings()
+    settings.resolution = size
+    settings.sensor_size_mm = setup.frame_size
+    right, up = setup.facts["shift_mm"]
+    settings.sensor_center_mm = (right, up)
+    settings.shutter = shutter.core_shutter(now, size)
+    world = frame == "world"
+    origin, direction, time = _core.ray_map(setup.core, settings, overscan.region(size), world)
+    if not world:
+        origin, direction = origin * _OPENCV, direction * _OPENCV
+    seconds = begin - scene.time + time * duration
+    facts = camera_metadata(now, setup, size[0]) | {
+        "time": at.time,
+        "gt_time": gt_time,
+        "resolution": size,
+        "crop": overscan.region(size),
+        "overscan": str(overscan) if overscan else None,
+        "version": _core.__version__,
+    }
+    return RayMap(origin, direction, seconds, frame, facts)

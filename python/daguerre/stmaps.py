@@ -1,0 +1,143 @@
+"""STMaps of a camera, both ways: to straighten its pictures, and to bend straight ones.
+
+What ``s`` and ``t`` are is told in ``daguerre.post.stmap`` and in docs/darkroom.md.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .overscan import NONE, Overscan, check_overscan, to_redistort, to_undistort
+from .sight import Sight
+
+if TYPE_CHECKING:
+    from .camera import Camera
+    from .post.warp import Warp
+    from .scene import Scene
+
+Image = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class StMaps:
+    """The two maps of a camera.
+
+    Attributes:
+        sight: The camera.
+        overscan: Pixels beside the picture that the maps have, too.
+    """
+
+    sight: Sight
+    overscan: Overscan = NONE
+
+    @cached_property
+    def undistort(self) -> Image:
+        """For each pixel of the straight picture, where in the camera's own it is: s and t.
+
+        Shape (H, W, 2), rows from the top of the data window; NaN: nowhere.
+        """
+        return self._values(self._undistort)
+
+    @cached_property
+    def redistort(self) -> Image:
+        """For each pixel of the camera's picture, where in the straight one it is; as above."""
+        return self._values(self._redistort)
+
+    def save(
+        self,
+        undistort: str | os.PathLike[str] | None = None,
+        redistort: str | os.PathLike[str] | None = None,
+    ) -> None:
+        """Writes the maps, 32-bit OpenEXR: R is s, G is t.
+
+        Raises:
+            OutputError: A file cannot be written.
+        """
+        from .post.stmap import write_stmap
+
+        for path, warp in ((undistort, "_undistort"), (redistort, "_redistort")):
+            if path is not None:
+                named = {"daguerre:stmap": warp[1:], "daguerre:overscan": str(self.overscan)}
+                write_stmap(path, getattr(self, warp), self._canvas, named)
+
+    @property
+    def needed(self) -> dict[str, Overscan | None]:
+        """Pixels beside a picture that each map reads, for all of the display window.
+
+        ``undistort``: of the camera's picture; ``redistort``: of the straight one. None: without
+        bounds, or what the camera does not show.
+        """
+        try:
+            undistort: Overscan | None = to_undistort(self.sight)
+        except ValueError:
+            undistort = None
+        return {"undistort": undistort, "redistort": to_redistort(self.sight)}
+
+    @cached_property
+    def _canvas(self) -> Any:
+        from .post.picture import Canvas
+
+        size = self.sight.resolution
+        corner = -self.overscan.left, -self.overscan.top
+        return Canvas(*self.overscan.grown(size), corner=corner, full_size=size)
+
+    @cached_property
+    def _undistort(self) -> Warp:
+        from .post.warp import Warp
+
+        return Warp.of(self._canvas, self.sight.bent_from_straight)
+
+    @cached_property
+    def _redistort(self) -> Warp:
+        from .post.warp import Warp
+
+        return Warp.of(self._canvas, self.sight.straight_from_bent)
+
+    def _values(self, warp: Warp) -> Image:
+        from .post.picture import Rows
+        from .post.stmap import st_rows
+
+        return st_rows(warp, self._canvas, Rows(0, self._canvas.height))
+
+
+def stmaps(
+    camera: Camera,
+    resolution: tuple[int, int],
+    *,
+    scene: Scene | None = None,
+    overscan: Any = None,
+) -> StMaps:
+    """STMaps of any camera, as it is in the middle of its exposure.
+
+    The straight picture is that of the pinhole with the same focal length near the axis and the
+    same principal point; what lies on the plane in focus is in its place.
+
+    Args:
+        camera: Pinhole, thin, thick, exact, polynomial or projection.
+        resolution: Of the picture, px.
+        scene: For a camera that focuses by itself; without one it then focuses at infinity.
+        overscan: As of ``Session``: the maps have these pixels, too.
+
+    Raises:
+        UsageError: A cube, which cannot be straightened; or a parameter of the camera.
+    """
+    from .session import check_resolution
+
+    size = check_resolution(resolution)
+    focused, core_scene = camera, None
+    if scene is not None:
+        from .build import build
+        from .shutter import interval
+
+        core_scene = build(scene, interval(camera, scene.time, size))
+    wanted = check_overscan(overscan, size)
+    if wanted is None:
+        wanted = to_undistort(Sight(focused, size, scene=scene, core_scene=core_scene))
+    sight = Sight(focused, size, scene=scene, core_scene=core_scene, overscan=wanted)
+    return StMaps(sight, wanted)
