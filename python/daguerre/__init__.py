@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from .analysis.calibrate import calibrate
     from .frame import Frame
     from .raw import Raw
-    from .raymap import RayMap, raymap
+    from .ray_map import RayMap, raymap
     from .rig import render_rig, stereo_pair
     from .session import Session, iter_render, render
-    from .stmaps import StMaps, stmaps
+    from .st_maps import StMaps, stmaps
     from .waves import Diffraction
 
 __all__ = [
@@ -101,10 +101,10 @@ _LAZY = {
     "Diffraction": "waves",
     "Frame": "frame",
     "Raw": "raw",
-    "RayMap": "raymap",
-    "raymap": "raymap",
-    "StMaps": "stmaps",
-    "stmaps": "stmaps",
+    "RayMap": "ray_map",
+    "raymap": "ray_map",
+    "StMaps": "st_maps",
+    "stmaps": "st_maps",
     "Session": "session",
     "iter_render": "session",
     "render": "session",

@@ -1,7 +1,7 @@
 """Raymaps: the ray of each pixel, for programs that know no lens.
 
-A ray is the chief ray of the pixel's centre, as ground truth has it (docs/ground-truth.md): through the
-middle of what the pixel sees. It is asked for at the pixel's own moment: with a rolling shutter
+A ray is the chief ray of the pixel's centre, as ground truth has it (docs/ground-truth.md): through
+the middle of what the pixel sees. It is asked for at the pixel's own moment: with a rolling shutter
 each line has its own.
 """
 
