@@ -196,6 +196,15 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         ),
         (["-o", "x.exr", "--calibration", "chain.yaml:cam2"], 2, "cam0, cam1"),
         (["-o", "x.exr", *["--calibration", "chain.yaml:cam0"] * 2], 2, "'cam0' twice"),
+        (["-o", "x.exr", "--calibration", "chain.yaml", "--rectified"], 2, "rectified: wanted ROS"),
+        (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "1kg"], 2, "a unit"),
+        (
+            ["-o", "x.exr", "--calibration-unit", "mm"],
+            2,
+            "--calibration-unit: wanted --calibration",
+        ),
+        (["-o", "x.exr", "--timeshift"], 2, "--timeshift: wanted --calibration"),
+        (["-o", "x.exr", "--calibration", "no.yaml:cam0"], 3, "no.yaml:cam0"),
         (["-o", "x.exr", "--calibration", "chain.yaml:all", "--crop", "0,32,0,20"], 2, "0..24"),
     ],
 )
@@ -206,6 +215,47 @@ def test_bad_rigs(
     err = capsys.readouterr().err
     assert message in err.splitlines()[-1]
     assert not list(Path().glob("*.exr"))
+
+
+def written(name: str) -> dict[str, Any]:
+    return dict(dg.load_frame(name).metadata["camera"])
+
+
+def test_pairs_of_opencv_and_of_ros() -> None:
+    """Two files of one camera each; a pair in millimetres that does not say its size."""
+    eye = "[1, 0, 0, 0, 1, 0, 0, 0, 1]"
+    for name, away in (("left", 0), ("right", -4)):
+        Path(f"{name}.yaml").write_text(
+            f"image_width: 32\nimage_height: 20\nK: [40, 0, 15, 0, 40, 9, 0, 0, 1]\nR: {eye}\n"
+            "distortion_model: plumb_bob\nD: [-0.1, 0, 0, 0, 0]\n"
+            f"P: [40, 0, 15, {away}, 0, 40, 9, 0, 0, 0, 1, 0]\n"
+        )
+    flags = ["-c", "A", "--rectified", *without_lens(QUICK)]
+    both = ["--calibration", "left.yaml", "--calibration", "right.yaml"]
+    assert render("-o", "ros.exr", *both, *flags) == 0
+    assert written("ros.right.exr")["world_from_camera"][0][3] == pytest.approx(0.1)
+    assert written("ros.left.exr")["projection"]["model"] == "rectilinear"
+    k = "[[40, 0, 15], [0, 40, 9], [0, 0, 1]]"
+    Path("pair.yml").write_text(
+        f"M1: {k}\nM2: {k}\nD1: [0.01, 0, 0, 0]\nD2: [0.01, 0, 0, 0]\n"
+        "R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nT: [-120, 0, 0]\n"
+    )
+    flags = ["-c", "A", "--calibration", "pair.yml:all", *without_lens(QUICK)]
+    assert render("-o", "cv.exr", *flags) == 2 + 1  # no size
+    flags += ["--calibration-size", "32x20", "--calibration-unit", "mm"]
+    assert render("-o", "cv.exr", *flags, "--calibration-model", "fisheye") == 0
+    assert written("cv.right.exr")["world_from_camera"][0][3] == pytest.approx(0.12)
+    assert written("cv.left.exr")["projection"]["model"] == "kannala_brandt"
+
+
+def test_a_chain_whose_cameras_are_triggered_apart(built: list[int]) -> None:
+    """Of a scene that stands still, so it is built once for both moments."""
+    Path("late.yaml").write_text(CHAIN + "  timeshift_cam_imu: 0.004\n")
+    flags = ["-c", "A", "--calibration", "late.yaml:all", "--fps", "50", *without_lens(QUICK)]
+    assert render("-o", "s.exr", *flags, "--timeshift", "--shutter", "10ms") == 0
+    assert len(built) == 1
+    opens = {name: written(f"s.{name}.exr")["shutter"]["opens_s"] for name in ("cam0", "cam1")}
+    assert opens == pytest.approx({"cam0": -0.005, "cam1": -0.001})
 
 
 def test_info_shows_each_camera(capsys: pytest.CaptureFixture[str]) -> None:

@@ -28,8 +28,8 @@ class BuiltScene:
         self.core: _core.Scene = build(scene, interval, self.warnings)
 
     def shows(self, scene: Scene, interval: tuple[float, float]) -> bool:
-        """Whether it is of this scene at this time."""
-        return self.scene is scene and self.interval == interval
+        """Whether it is of this scene at this time; what stays is the same at any."""
+        return self.scene is scene and (self.interval == interval or not scene.motion)
 
     @cached_property
     def hash(self) -> str:

@@ -6,6 +6,7 @@ for angles.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -209,27 +210,40 @@ class Camera:
     def from_opencv(
         cls,
         calibration: Source,
+        name: str | None = None,
         *,
         model: str | None = None,
         size: tuple[int, int] | None = None,
+        rectified: bool = False,
+        unit_m: float = 1.0,
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
         """A camera as OpenCV calibrated it.
 
         Args:
-            calibration: YAML or JSON by ``cv::FileStorage``, or a dict of the same names.
+            calibration: YAML, XML or JSON by ``cv::FileStorage``, or a dict of the same names.
+            name: left or right of a stereo pair; None: left.
             model: opencv or fisheye; None: as the file says, else opencv.
             size: Of the calibrated picture, px, if the file does not say it.
-            camera: Gives all that a calibration does not say.
+            rectified: Of a pair: as after rectification, by P1 and P2.
+            unit_m: Of a pair: what a length of 1 in the file is, m.
+            camera: Gives all that a calibration does not say, and where the left one stands.
             pixel_pitch: um; the size of blur depends on it.
 
         Raises:
             InputError: The calibration cannot be used; the message names the place.
         """
-        from .calibration import read_opencv
+        from .calibration import read
 
-        found = read_opencv(calibration, model=model, size=size)
+        found = read(
+            *(calibration, name),
+            format="opencv",
+            model=model,
+            size=size,
+            rectified=rectified,
+            unit_m=unit_m,
+        )
         return found.camera(camera, pixel_pitch)
 
     @classmethod
@@ -237,16 +251,18 @@ class Camera:
         cls,
         calibration: Source,
         *,
+        rectified: bool = False,
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
         """A camera by its ROS ``camera_info``: the raw picture, in its place of a stereo rig.
 
         Args: as of :meth:`from_opencv`; ``camera`` stands where the rig's first, rectified, does.
+            ``rectified`` draws that picture, by P.
         """
         from .calibration import read_ros
 
-        return read_ros(calibration).camera(camera, pixel_pitch)
+        return read_ros(calibration, rectified=rectified).camera(camera, pixel_pitch)
 
     @classmethod
     def from_kalibr(
@@ -254,16 +270,37 @@ class Camera:
         calibration: Source,
         name: str | None = None,
         *,
+        timeshift: bool = False,
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
         """A camera of Kalibr's chain, ``cam0`` or of another name.
 
         Args: as of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
+            ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
         """
         from .calibration import read
 
         found = read(calibration, name, format="kalibr")
+        return found.camera(camera, pixel_pitch, timeshift=timeshift)
+
+    @classmethod
+    def from_colmap(
+        cls,
+        folder: str | os.PathLike[str],
+        name: str | None = None,
+        *,
+        unit_m: float = 1.0,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+    ) -> Camera:
+        """The camera of a picture of a COLMAP model as text, where it stood in COLMAP's world.
+
+        Args: as of :meth:`from_opencv`; ``name`` is that of the picture.
+        """
+        from .calibration import read
+
+        found = read(folder, name, format="colmap", unit_m=unit_m)
         return found.camera(camera, pixel_pitch)
 
     @classmethod

@@ -1,23 +1,28 @@
-"""Calibration files in and out: OpenCV, ROS, Kalibr, OpenTrackIO."""
+"""Calibration files in and out: OpenCV, ROS, Kalibr, OpenTrackIO; in also COLMAP."""
 
 from __future__ import annotations
 
 from .calibration import Calibration
-from .files import FORMATS, pick, read, read_all, write
+from .colmap import read_colmap
+from .files import FORMATS, WRITTEN, pick, read, read_all, write
 from .kalibr import read_kalibr
 from .opencv import read_opencv
 from .opentrackio import read_opentrackio
 from .ros import read_ros
+from .stereo import read_stereo
 
 __all__ = [
     "FORMATS",
+    "WRITTEN",
     "Calibration",
     "pick",
     "read",
     "read_all",
+    "read_colmap",
     "read_kalibr",
     "read_opencv",
     "read_opentrackio",
     "read_ros",
+    "read_stereo",
     "write",
 ]

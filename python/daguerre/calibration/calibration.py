@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre import shutter
 from daguerre.camera import Camera
 from daguerre.camera_pose import mounted
 from daguerre.checks import number
@@ -38,6 +39,7 @@ class Calibration:
         pixel_pitch: um; None where the file does not say.
         settings: Parameters of ``Camera`` that the file says, such as ``f_stop``.
         notes: What a reader should know, a sentence each.
+        delay_s: How much later than the rig's first camera it is triggered.
     """
 
     projection: Projection
@@ -46,8 +48,15 @@ class Calibration:
     pixel_pitch: float | None = None
     settings: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    delay_s: float = 0.0
 
-    def camera(self, camera: Camera | None = None, pixel_pitch: float | None = None) -> Camera:
+    def camera(
+        self,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+        *,
+        timeshift: bool = False,
+    ) -> Camera:
         """A camera that sees so.
 
         Args:
@@ -55,6 +64,7 @@ class Calibration:
                 camera; its lens goes. None: one at the origin.
             pixel_pitch: um; it makes the film as large as the calibrated sensor, on which the size
                 of blur depends. None: the file's, else the camera's ``sensor_size``.
+            timeshift: Its shutter opens ``delay_s`` later.
         """
         given = Camera() if camera is None else camera
         pitch = self.pixel_pitch if pixel_pitch is None else pixel_pitch
@@ -64,7 +74,16 @@ class Calibration:
             changes["sensor_size"] = tuple(side * pitch * 1e-3 for side in self.projection.size)
         if "transform" not in changes and not np.array_equal(self.rig_from_camera, np.eye(4)):
             given = mounted(given, self.rig_from_camera)
-        return given.with_(**changes)
+        made = given.with_(**changes)
+        return delayed(made, self.delay_s) if timeshift else made
+
+
+def delayed(camera: Camera, seconds: float) -> Camera:
+    """The camera with a shutter that opens so much later, s; one that is calibrated."""
+    if not seconds or camera.projection is None:
+        return camera
+    opens = shutter.interval(camera, 0.0, camera.projection.size)[0]
+    return camera.with_(shutter_offset=(opens + seconds) * camera.fps)
 
 
 def projection(where: str, *values: Any) -> Projection:

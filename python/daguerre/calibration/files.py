@@ -4,26 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from daguerre.errors import UsageError, suggest
 
-from . import kalibr, opencv, opentrackio, ros
+from . import colmap, kalibr, opencv, opentrackio, ros, stereo
 from .calibration import Calibration
 from .source import Source, load
 
-FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
+FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap")
+WRITTEN = FORMATS[:4]
 
 
 def format_of(source: Source) -> str:
     """Which format a file has, by the names in it."""
+    if colmap.is_colmap(source):
+        return "colmap"
     names = set(load(source).value)
     if "cam0" in names:
         return "kalibr"
     if {"static", "lens"} <= names or "protocol" in names:
         return "opentrackio"
-    if "distortion_model" in names or {"rectification_matrix", "projection_matrix"} & names:
+    if "msg" in names or "distortion_model" in names:
         return "ros"
-    return "opencv"
+    return "ros" if {"rectification_matrix", "projection_matrix"} & names else "opencv"
 
 
 def read(
@@ -31,40 +35,72 @@ def read(
     camera: str | None = None,
     *,
     format: str | None = None,
+    model: str | None = None,
     size: tuple[int, int] | None = None,
+    rectified: bool = False,
+    unit_m: float = 1.0,
 ) -> Calibration:
     """One camera of a calibration file.
 
     Args:
-        source: File, or the same as a dict.
+        source: File, or the same as a dict; of COLMAP the folder.
         camera: Which of several, such as ``cam1``; None: the first.
         format: One of ``FORMATS``; None: as the names in the file tell.
+        model: Of OpenCV: opencv or fisheye; None: as the file says, else opencv.
         size: Of the picture, px, where the file does not say it.
+        rectified: The picture after rectification, of ROS and of OpenCV's stereo pairs.
+        unit_m: What a length of 1 in the file is, m, of formats that do not say it: OpenCV's stereo
+            pairs, COLMAP.
 
     Raises:
         InputError: The file cannot be used; the message names the place.
         UsageError: There is no such camera or format.
     """
     where = "calibration" if isinstance(source, dict) else str(source)
-    return pick(read_all(source, format=format, size=size), camera, where)
+    options: dict[str, Any] = {"format": format, "model": model, "size": size}
+    found = read_all(source, **options, rectified=rectified, unit_m=unit_m)
+    return pick(found, camera, where)
 
 
 def read_all(
-    source: Source, *, format: str | None = None, size: tuple[int, int] | None = None
+    source: Source,
+    *,
+    format: str | None = None,
+    model: str | None = None,
+    size: tuple[int, int] | None = None,
+    rectified: bool = False,
+    unit_m: float = 1.0,
 ) -> dict[str, Calibration]:
     """All cameras of a calibration file, by name; the only one of a file has the file's own.
 
     Args: as of :func:`read`.
     """
-    kind = format_of(source) if format is None else _format(format)
+    kind = format_of(source) if format is None else _format(format, FORMATS)
+    pair = kind == "opencv" and stereo.is_stereo(load(source))
+    colmap.check_unit(unit_m)
+    where = "calibration" if isinstance(source, dict) else str(source)
+    if rectified and not (pair or kind == "ros"):
+        raise UsageError(f"{where}: rectified: wanted ROS or a stereo pair of OpenCV, got {kind}")
+    if unit_m != 1 and not (pair or kind == "colmap"):
+        raise UsageError(f"{where}: unit: wanted COLMAP or a stereo pair of OpenCV, got {kind}")
+    if model is not None and kind != "opencv":
+        raise UsageError(f"{where}: model: wanted none, as {kind} says it; got {model!r}")
     if kind == "kalibr":
         return kalibr.read_kalibr(source)
+    if kind == "colmap":
+        if isinstance(source, dict):
+            raise UsageError("calibration: colmap: wanted a folder, got a dict")
+        return colmap.read_colmap(source, unit_m=unit_m)
+    if pair:
+        return stereo.read_stereo(
+            source, model=model, size=size, rectified=rectified, unit_m=unit_m
+        )
     if kind == "ros":
-        found = ros.read_ros(source)
+        found = ros.read_ros(source, rectified=rectified)
     elif kind == "opentrackio":
         found = opentrackio.read_opentrackio(source, size=size)
     else:
-        found = opencv.read_opencv(source, size=size)
+        found = opencv.read_opencv(source, model=model, size=size)
     return {"camera" if isinstance(source, dict) else Path(source).stem: found}
 
 
@@ -87,7 +123,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
     Args:
         path: The file.
         calibration: Of Kalibr's chains also several, in order.
-        format: One of ``FORMATS``.
+        format: One of ``WRITTEN``.
 
     Raises:
         InputError: The format does not have this model.
@@ -95,7 +131,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
     """
     from daguerre.io.atomic import write_bytes
 
-    kind = _format(format)
+    kind = _format(format, WRITTEN)
     several = [calibration] if isinstance(calibration, Calibration) else list(calibration)
     if kind == "kalibr":
         text = kalibr.write_kalibr(several)
@@ -111,10 +147,10 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
     write_bytes(path, text.encode())
 
 
-def _format(name: str) -> str:
-    if name not in FORMATS:
+def _format(name: str, known: tuple[str, ...]) -> str:
+    if name not in known:
         raise UsageError(
-            f"calibration: format: wanted {', '.join(FORMATS)}; got {name!r}"
-            f"{suggest(str(name), FORMATS)}"
+            f"calibration: format: wanted {', '.join(known)}; got {name!r}"
+            f"{suggest(str(name), known)}"
         )
     return name

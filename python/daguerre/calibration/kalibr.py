@@ -1,7 +1,9 @@
 """Kalibr's camera chains: several cameras, each of which stands by the one before it.
 
 The conventions are OpenCV's. ``T_cn_cnm1`` takes points of the camera before into this one's frame,
-so a camera stands, seen from the first, at the inverse of the product of them all.
+so a camera stands, seen from the first, at the inverse of the product of them all. The time of the
+IMU is that of a camera and ``timeshift_cam_imu``: of two pictures with the same stamp that of the
+camera with the larger shift was taken later.
 
 Source: Kalibr's wiki, "YAML formats" and "Supported models".
 """
@@ -53,6 +55,7 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
     if [str(name) for name in names] != [f"cam{i}" for i in range(len(names))] or not names:
         root.fail(f"wanted cameras cam0, cam1, ..., got {', '.join(map(str, names)) or 'none'}")
     found, camera_from_first = {}, np.eye(4)
+    shifts = [root.need(str(name)).number_of("timeshift_cam_imu", 0.0) for name in names]
     for i, name in enumerate(map(str, names)):
         item = root.need(name)
         if i > 0:
@@ -60,7 +63,9 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
         if (imu := item.get("T_cam_imu")) is not None:
             rigid(imu)
         stands = FLIP @ np.linalg.inv(camera_from_first) @ FLIP
-        found[name] = Calibration(_projection(item), name, stands if i else np.eye(4))
+        found[name] = Calibration(
+            *(_projection(item), name, stands if i else np.eye(4)), delay_s=shifts[i] - shifts[0]
+        )
     return found
 
 
@@ -102,6 +107,7 @@ def write_kalibr(calibrations: Sequence[Calibration]) -> str:
         lines += [f"cam{i}:", f"  camera_model: {camera}", f"  intrinsics: {numbers}"]
         lines += [f"  distortion_model: {distortion}", f"  distortion_coeffs: {bent}"]
         lines += [f"  resolution: {list(one.projection.size)}", f"  rostopic: /cam{i}/image_raw"]
+        lines += [f"  timeshift_cam_imu: {one.delay_s!r}"] if one.delay_s else []
         now = np.asarray(np.linalg.inv(FLIP @ one.rig_from_camera @ FLIP), np.float64)
         if i == 0 and not np.allclose(now, np.eye(4), atol=1e-12):
             raise InputError("calibration: Kalibr: wanted a first camera that stands at the rig's")

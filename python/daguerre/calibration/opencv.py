@@ -1,4 +1,4 @@
-"""Calibrations as OpenCV's ``FileStorage`` has them: YAML and JSON.
+"""Calibrations as OpenCV's ``FileStorage`` has them: YAML, XML and JSON.
 
 The names are those of OpenCV's calibration sample, and the ones that people write by hand. Pixel
 centres are at integers; the distortion maps ideal points to those of the picture; p1 belongs to y.
@@ -39,7 +39,7 @@ def read_opencv(
     """A calibration by OpenCV.
 
     Args:
-        source: YAML or JSON by ``cv::FileStorage``, or the same as a dict.
+        source: YAML, XML or JSON by ``cv::FileStorage``, or the same as a dict.
         model: opencv or fisheye; None: as the file says, else opencv.
         size: Of the picture, px, if the file does not say it.
 
@@ -47,27 +47,30 @@ def read_opencv(
         InputError: The file cannot be used; the message names the place.
         UsageError: No such model.
     """
-    if model is not None and model not in MODELS:
-        raise UsageError(
-            f"calibration: model: wanted opencv or fisheye, got {model!r}{suggest(model, MODELS)}"
-        )
     root = load(source)
     where = root.file
     focal, principal = camera_matrix(needed(root, "a camera matrix", *MATRICES))
-    kind = MODELS[model] if model else _model(root)
+    kind = model_of(root, model)
     found = first(root, *COEFFICIENTS)
     values: tuple[float, ...] = ()
     if found is not None:
         values = row(found, (0, 4) if kind == "kannala_brandt" else COUNTS)
     if not values and kind == "opencv":
         kind = "rectilinear"
-    made = projection(where, kind, size or _size(root), focal, principal, values)
+    made = projection(where, kind, size or size_of(root), focal, principal, values)
     name = root.get("camera_name")
     return Calibration(made, "" if name is None else name.text())
 
 
-def _model(root: Item) -> str:
-    """As the file says it: in words, or by a flag of OpenCV's sample."""
+def model_of(root: Item, model: str | None = None) -> str:
+    """As asked for, or as the file says it: in words, or by a flag of OpenCV's sample."""
+    if model is not None:
+        if model not in MODELS:
+            raise UsageError(
+                f"calibration: model: wanted opencv or fisheye, got {model!r}"
+                f"{suggest(model, MODELS)}"
+            )
+        return MODELS[model]
     named = first(root, "distortion_model", "camera_model")
     if named is not None:
         return MODELS[choice(named, MODELS)]
@@ -75,7 +78,8 @@ def _model(root: Item) -> str:
     return "kannala_brandt" if flag is not None and flag.value in (1, True) else "opencv"
 
 
-def _size(root: Item) -> tuple[int, int]:
+def size_of(root: Item) -> tuple[int, int]:
+    """Of the picture, px."""
     width, height = first(root, "image_width", "width"), first(root, "image_height", "height")
     if width is not None and height is not None:
         return width.integer(1, 65536), height.integer(1, 65536)

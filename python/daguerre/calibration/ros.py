@@ -1,9 +1,9 @@
 """ROS ``camera_info``: the YAML of ``camera_info_manager``, and messages as they are echoed.
 
-What is drawn is the raw picture, by K and D. R and P say where the camera stands in a stereo rig.
-The conventions are OpenCV's.
+What is drawn is the raw picture, by K and D, or the rectified one, by P. R and P say where the
+camera stands in a stereo rig. The conventions are OpenCV's.
 
-Source: sensor_msgs/CameraInfo, and REP 104.
+Source: sensor_msgs/CameraInfo (also for regions and binning), and REP 104.
 """
 
 from __future__ import annotations
@@ -16,6 +16,12 @@ from daguerre.io.json_item import Item
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .opencv import coefficients, matrix_of
 from .source import Source, camera_matrix, choice, first, load, matrix, needed, row
+from .stereo import rectified_of, rotation
+
+Pair = tuple[float, float]
+Numbers = tuple[str, Pair, Pair, tuple[float, ...]]
+PROJECTION = ("projection_matrix", "P", "p")
+OFFSETS, SIDES = ("x_offset", "y_offset"), ("width", "height")
 
 #: Name -> our model, and how many coefficients there may be.
 MODELS = {
@@ -25,61 +31,93 @@ MODELS = {
 }
 
 
-def read_ros(source: Source) -> Calibration:
+def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
     """A ``camera_info``.
 
     Args:
-        source: YAML, or the same as a dict.
+        source: YAML or JSON, or the same as a dict.
+        rectified: The picture after rectification, by P, instead of the raw one, by K and D.
 
     Raises:
         InputError: The file cannot be used; the message names the place.
     """
     root = load(source)
+    root = root.get("msg") or root  # rosbridge puts a message into an envelope
     sides = [
         needed(root, "the size of the picture", *names).integer(1, 65536)
         for names in (("image_width", "width"), ("image_height", "height"))
     ]
+    numbers = _rectified(root) if rectified else _raw(root)
+    model, focal, principal, values = numbers
+    size, focal, principal, notes = _read_out(root, sides, focal, principal, whole=rectified)
+    made = projection(root.file, model, size, focal, principal, values)
+    name = root.get("camera_name")
+    stands = _rig_from_camera(root, rectified=rectified)
+    return Calibration(made, "" if name is None else name.text(), stands, notes=notes)
+
+
+def _raw(root: Item) -> Numbers:
+    """Model, focal lengths, principal point and parameters of the raw picture."""
     focal, principal = camera_matrix(needed(root, "a camera matrix", "camera_matrix", "K", "k"))
     named = choice(needed(root, "a model", "distortion_model"), MODELS)
     model, counts = MODELS[named]
     values = row(needed(root, "coefficients", "distortion_coefficients", "D", "d"), counts)
-    _check_whole(root)
-    made = projection(
-        root.file, model if values else "rectilinear", tuple(sides), focal, principal, values
-    )
-    name = root.get("camera_name")
-    return Calibration(made, "" if name is None else name.text(), _rig_from_camera(root))
+    return model if values else "rectilinear", focal, principal, values
 
 
-def _check_whole(root: Item) -> None:
-    """K and D are about the whole sensor; of a part or of summed pixels they say little."""
-    for name in ("binning_x", "binning_y"):
-        found = root.get(name)
-        if found is not None and found.integer() > 1:
-            found.fail(f"wanted a picture without binning (0 or 1), got {found.value}")
+def _rectified(root: Item) -> Numbers:
+    """The same of the rectified one."""
+    focal, principal, _ = rectified_of(needed(root, "a projection matrix", *PROJECTION))
+    return "rectilinear", focal, principal, ()
+
+
+def _read_out(
+    root: Item, sides: list[int], focal: Pair, principal: Pair, *, whole: bool
+) -> tuple[tuple[int, int], Pair, Pair, tuple[str, ...]]:
+    """Size and numbers of the picture that is read out of the sensor, of which K and P are.
+
+    First a window, then the mean of b x b pixels as one, whose centre lies (b - 1) / 2 behind that
+    of its first. (``image_geometry`` scales K alone, and is off by that.)
+    """
+    corner, size = [0, 0], [*sides]
     roi = root.get("roi")
-    for name in ("x_offset", "y_offset"):
-        found = None if roi is None else roi.get(name)
-        if found is not None and found.integer() > 0:
-            found.fail(f"wanted the whole picture (0), got {found.value}")
+    if roi is not None:
+        corner = [_or_0(roi, name, n - 1) for name, n in zip(OFFSETS, sides, strict=True)]
+        given = [_or_0(roi, name, n) for name, n in zip(SIDES, sides, strict=True)]
+        size = [a or n - c for a, n, c in zip(given, sides, corner, strict=True)]
+        if any(c + a > n for c, a, n in zip(corner, size, sides, strict=True)):
+            roi.fail(f"wanted a region within {sides[0]} x {sides[1]}")
+        if whole and size != sides:
+            roi.fail("wanted the whole picture, as a region's rectified picture is not told")
+    bins = [max(_or_0(root, name, 1024), 1) for name in ("binning_x", "binning_y")]
+    pixels = [a // b for a, b in zip(size, bins, strict=True)]
+    if min(pixels) < 1:
+        root.fail(f"binning: wanted at most the size of the picture, got {bins[0]} x {bins[1]}")
+    notes: tuple[str, ...] = ()
+    if bins != [1, 1]:
+        notes = (f"{bins[0]} x {bins[1]} pixels are one: a pixel pitch is that of the larger ones",)
+    zoomed = [f / b for f, b in zip(focal, bins, strict=True)]
+    moved = [(p - c - (b - 1) / 2) / b for p, c, b in zip(principal, corner, bins, strict=True)]
+    return (pixels[0], pixels[1]), (zoomed[0], zoomed[1]), (moved[0], moved[1]), notes
 
 
-def _rig_from_camera(root: Item) -> FloatArray:
+def _or_0(item: Item, name: str, most: int) -> int:
+    found = item.get(name)
+    return 0 if found is None else found.integer(0, most)
+
+
+def _rig_from_camera(root: Item, *, rectified: bool) -> FloatArray:
     """The rig's frame is that of the first camera after rectification.
 
     A point X of the raw camera is R X there, and P's last column is -fx times the way to the right.
     """
     rig = np.eye(4)
     turn = first(root, "rectification_matrix", "R", "r")
-    if turn is not None:
-        rig[:3, :3] = matrix(turn, 3, 3)
-        if not np.allclose(rig[:3, :3] @ rig[:3, :3].T, np.eye(3), atol=1e-4):
-            turn.fail("wanted a rotation")
-    ahead = first(root, "projection_matrix", "P", "p")
-    if ahead is not None:
-        p = matrix(ahead, 3, 4)
-        if p[0, 0] > 0 and p[1, 1] > 0:  # all 0 where nothing is calibrated
-            rig[:2, 3] = -p[0, 3] / p[0, 0], -p[1, 3] / p[1, 1]
+    if turn is not None and not rectified:
+        rig[:3, :3] = rotation(turn)
+    ahead = first(root, *PROJECTION)
+    if ahead is not None and matrix(ahead, 3, 4).any():  # all 0 where nothing is calibrated
+        rig[:3, 3] = rectified_of(ahead)[2]
     return np.asarray(FLIP @ rig @ FLIP)
 
 

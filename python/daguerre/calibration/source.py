@@ -15,7 +15,7 @@ from daguerre.errors import InputError, UsageError, suggest
 from daguerre.io import json_text
 from daguerre.io.json_item import Item
 
-from . import yaml_text
+from . import xml_text, yaml_text
 
 FloatArray = NDArray[np.float64]
 Source = str | os.PathLike[str] | dict[str, Any]
@@ -24,7 +24,7 @@ MAX_BYTES = 1 << 20
 
 
 def load(source: Source) -> Item:
-    """The values of a file (JSON by its suffix, else YAML), or of a dict.
+    """The values of a file (JSON by its suffix, XML by how it begins, else YAML), or of a dict.
 
     Raises:
         InputError: It cannot be read.
@@ -36,6 +36,8 @@ def load(source: Source) -> Item:
     path = Path(source)
     data = read_bytes(path)
     parse = json_text.parse if path.suffix.lower() == ".json" else yaml_text.parse
+    if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
+        parse = xml_text.parse
     root = parse(data, str(path))
     if not isinstance(root.value, dict):
         root.fail(f"wanted names and values, got {short(root.value)}")

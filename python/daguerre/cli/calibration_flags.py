@@ -3,7 +3,7 @@
 Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -31,8 +31,8 @@ class CalibrationFlags:
         option(
             "--calibration",
             metavar="FILE[:NAME,...|all]",
-            help="Instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO; several cameras of a file "
-            "by their names, or all; may be repeated.",
+            help="Instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO, COLMAP; several cameras of "
+            "a file by their names, or all; may be repeated.",
             panel=_CAMERA,
         ),
     ] = None
@@ -46,18 +46,65 @@ class CalibrationFlags:
         ),
     ] = None
 
+    calibration_size: Annotated[
+        Text,
+        option(
+            "--calibration-size",
+            metavar="WxH",
+            help="Of the calibrated picture, px, where the file does not say it.",
+            panel=_CAMERA,
+        ),
+    ] = None
+    calibration_unit: Annotated[
+        Text,
+        option(
+            "--calibration-unit",
+            metavar="M",
+            help="What a length of 1 in a stereo pair by OpenCV, or in COLMAP's model, is, such as "
+            "mm or 25mm [1 m].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    calibration_model: Annotated[
+        Text,
+        option(
+            "--calibration-model",
+            metavar="opencv|fisheye",
+            help="Of OpenCV's files that do not say it [opencv].",
+            panel=_CAMERA,
+        ),
+    ] = None
+    rectified: Annotated[
+        bool,
+        option(
+            "--rectified",
+            help="Pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
+            panel=_CAMERA,
+        ),
+    ] = False
+    timeshift: Annotated[
+        bool,
+        option(
+            "--timeshift",
+            help="Shutters of a chain open later by their timeshift_cam_imu, less that of cam0.",
+            panel=_CAMERA,
+        ),
+    ] = False
+
     @cached_property
     def found(self) -> dict[str, Any]:
         """The calibrations by name, read once; none without the flag."""
         from daguerre.errors import UsageError
 
         if not self.calibration:
-            if self.pixel_pitch is not None:
-                raise UsageError("--pixel-pitch: wanted --calibration too")
+            for name in (f.name for f in fields(self)):
+                if getattr(self, name):
+                    flag = "--" + name.replace("_", "-")
+                    raise UsageError(f"{flag}: wanted --calibration too")
             return {}
         found: dict[str, Any] = {}
         for text in self.calibration:
-            for name, one in _read(text).items():
+            for name, one in _read(text, self._options).items():
                 if name in found:
                     raise UsageError(
                         f"--calibration {text}: wanted cameras of different names, got {name!r} "
@@ -65,6 +112,17 @@ class CalibrationFlags:
                     )
                 found[name] = one
         return found
+
+    @property
+    def _options(self) -> dict[str, Any]:
+        """Of the reader."""
+        size, unit = self.calibration_size, self.calibration_unit
+        options: dict[str, Any] = {"model": self.calibration_model, "rectified": self.rectified}
+        if size is not None:
+            options["size"] = q.resolution("--calibration-size", size, (0, 0))
+        if unit is not None:
+            options["unit_m"] = q.unit_m("--calibration-unit", unit)
+        return options
 
     def resolution(
         self, calibration: Any, res: str | None, default: tuple[int, int]
@@ -95,7 +153,12 @@ class CalibrationFlags:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
             camera = calibration.camera(camera, um)
-        return camera.with_(**changes)
+        camera = camera.with_(**changes)
+        if not self.timeshift or calibration is None:
+            return camera
+        from daguerre.calibration.calibration import delayed
+
+        return delayed(camera, calibration.delay_s)
 
     def notes(self, camera: Any, calibration: Any) -> list[str]:
         """What was decided, a sentence each."""
@@ -109,14 +172,14 @@ class CalibrationFlags:
         return notes
 
 
-def _read(text: str) -> dict[str, Any]:
+def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     """``FILE``: its first camera; ``FILE:cam0,cam1``: these; ``FILE:all``."""
     from daguerre.calibration import pick, read_all
 
     file, _, names = text.rpartition(":")
-    if not file or "/" in names or Path(text).exists():
+    if not file or Path(text).exists() or not Path(file).exists():
         file, names = text, ""
-    known = read_all(file)
+    known = read_all(file, **options)
     if names == "all" and "all" not in known:
         return known
     if not names:
@@ -124,4 +187,5 @@ def _read(text: str) -> dict[str, Any]:
         if len(known) > 1:
             console.note(f"{file} has {', '.join(known)}; {first} is taken (:all takes all)")
         return {first: known[first]}
-    return {name: pick(known, name, file) for name in (part.strip() for part in names.split(","))}
+    wanted = [names] if names in known else [name.strip() for name in names.split(",")]
+    return {name: pick(known, name, file) for name in wanted}

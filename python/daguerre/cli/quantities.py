@@ -61,6 +61,15 @@ def distance_m(flag: str, text: str) -> float:
     return _quantity(flag, text, LENGTHS, "m", "a distance such as 2.5, 250cm, 8ft or inf")
 
 
+def unit_m(flag: str, text: str) -> float:
+    """What a length of 1 is, m: ``mm``, ``25mm``."""
+    wanted = "a unit such as mm, 25mm or 0.001"
+    value = _quantity(flag, f"1{text}" if text.isalpha() else text, LENGTHS, "m", wanted)
+    if not 1e-9 <= value <= 1e9:
+        raise _bad(flag, wanted, text)
+    return value
+
+
 def time_s(flag: str, text: str) -> float:
     """A time in s; without a unit it is s."""
     return _finite(

@@ -1,0 +1,174 @@
+"""COLMAP's models as text: ``cameras.txt``, and ``images.txt`` with a pose for each picture.
+
+COLMAP has the upper left corner of the picture at (0, 0), so **pixel centres at halves**, unlike
+all other formats here. Its frame of a camera is OpenCV's, and a pose takes points of its world into
+it. That world is taken for the scene's: a mesh that was reconstructed is seen as in the pictures.
+
+Source: COLMAP, "Output Format" and src/colmap/sensor/models.h (names and order of parameters).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from daguerre.checks import short
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.projection import Projection
+
+from .calibration import FLIP, Calibration, FloatArray, projection
+
+#: A model of many thousand pictures; most of ``images.txt`` is points, which are passed over.
+MAX_BYTES = 1 << 30
+#: Model -> ours, how many focal lengths it has, and how many parameters beside the centre.
+MODELS = {
+    "SIMPLE_PINHOLE": ("rectilinear", 1, 0),
+    "PINHOLE": ("rectilinear", 2, 0),
+    "SIMPLE_RADIAL": ("opencv", 1, 1),
+    "RADIAL": ("opencv", 1, 2),
+    "OPENCV": ("opencv", 2, 4),
+    "FULL_OPENCV": ("opencv", 2, 8),
+    "OPENCV_FISHEYE": ("kannala_brandt", 2, 4),
+    "SIMPLE_RADIAL_FISHEYE": ("kannala_brandt", 1, 1),
+    "RADIAL_FISHEYE": ("kannala_brandt", 1, 2),
+    "FOV": ("fov", 2, 1),
+}
+
+
+def is_colmap(source: object) -> bool:
+    """Whether it is a folder of COLMAP's, or its file of cameras or images."""
+    if not isinstance(source, str | os.PathLike):
+        return False
+    path = Path(source)
+    return path.is_dir() or path.name in ("cameras.txt", "images.txt")
+
+
+def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[str, Calibration]:
+    """The pictures of a model by their names; without ``images.txt`` the cameras by their numbers.
+
+    Args:
+        source: The folder.
+        unit_m: What a length of 1 of the model is, m: pictures alone do not tell.
+
+    Raises:
+        InputError: A file cannot be used; the message names file and line.
+    """
+    path = Path(source)
+    folder = path if path.is_dir() else path.parent
+    cameras = {}
+    for where, words in _lines(folder / "cameras.txt"):
+        name, made = _camera(where, words)
+        if name in cameras:
+            raise InputError(f"{where}: wanted each camera once, got {name} twice")
+        cameras[name] = made
+    if not cameras:
+        raise InputError(f"{folder / 'cameras.txt'}: wanted a camera, got none")
+    images = folder / "images.txt"
+    if not images.exists():
+        return {f"camera{name}": Calibration(made) for name, made in cameras.items()}
+    found: dict[str, Calibration] = {}
+    for where, words in _lines(images, every=2):
+        one = _image(where, words, cameras, unit_m)
+        if one.name in found:
+            raise InputError(f"{where}: wanted each picture once, got {short(one.name)} twice")
+        found[one.name] = one
+    if not found:
+        raise InputError(f"{images}: wanted a picture, got none")
+    return found
+
+
+def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
+    """Place and words of lines without comments: of each ``every``-th."""
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise InputError(f"{path}: wanted at most 1 GiB, got more")
+        with path.open(encoding="utf-8") as file:
+            count = 0
+            for number, line in enumerate(file, 1):
+                # An empty line is a picture without points, or the end of the file.
+                if line.startswith("#") or (not line.strip() and count % every == 0):
+                    continue
+                if count % every == 0:
+                    yield f"{path}: line {number}", line.split()
+                count += 1
+    except OSError as error:
+        raise InputError(f"{path}: wanted a text file of COLMAP's: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: wanted text in UTF-8 (COLMAP's .bin is not read)") from None
+
+
+def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
+    """CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]."""
+    if len(words) < 5:
+        raise InputError(
+            f"{where}: wanted CAMERA_ID MODEL WIDTH HEIGHT PARAMS, got {len(words)} words"
+        )
+    name, model = words[:2]
+    if model not in MODELS:
+        raise InputError(
+            f"{where}: model: wanted {', '.join(MODELS)}; got {short(model)}"
+            f"{suggest(model, MODELS)}"
+        )
+    ours, focals, more = MODELS[model]
+    width, height = (_number(where, word) for word in words[2:4])
+    for side in (width, height):
+        if not 1 <= side <= 65536 or side != int(side):
+            raise InputError(f"{where}: size: wanted whole numbers of 1 .. 65536 px, got {side:g}")
+    numbers = [_number(where, word) for word in words[4:]]
+    if len(numbers) != focals + 2 + more:
+        raise InputError(
+            f"{where}: {model}: wanted {focals + 2 + more} parameters, got {len(numbers)}"
+        )
+    fx, fy = numbers[0], numbers[focals - 1]
+    x, y = numbers[focals : focals + 2]
+    values = tuple(numbers[focals + 2 :])
+    size = int(width), int(height)
+    return name, projection(where, ours, size, (fx, fy), (x - 0.5, y - 0.5), values)
+
+
+def _image(
+    where: str, words: list[str], cameras: dict[str, Projection], unit_m: float
+) -> Calibration:
+    """IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; names may have blanks."""
+    if len(words) < 10:
+        raise InputError(
+            f"{where}: wanted IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, got {len(words)} words"
+        )
+    values = np.array([_number(where, word) for word in words[1:8]])
+    turn, size = values[:4], float(np.linalg.norm(values[:4]))
+    if not abs(size - 1) < 1e-3:
+        raise InputError(f"{where}: wanted a quaternion of length 1, got {size:.4g}")
+    if words[8] not in cameras:
+        raise InputError(f"{where}: wanted a camera of cameras.txt, got {short(words[8])}")
+    camera_from_world = np.eye(4)
+    camera_from_world[:3, :3] = _rotation(turn / size)
+    camera_from_world[:3, 3] = unit_m * values[4:]
+    world_from_camera = np.linalg.inv(camera_from_world) @ FLIP
+    settings = {"transform": world_from_camera}
+    return Calibration(cameras[words[8]], " ".join(words[9:]), settings=settings)
+
+
+def _rotation(q: FloatArray) -> FloatArray:
+    """Of a unit quaternion (w, x, y, z), Hamilton's."""
+    w, v = q[0], q[1:]
+    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
+
+
+def _number(where: str, word: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        value = np.nan
+    if not abs(value) < 1e15:
+        raise InputError(f"{where}: wanted a finite number, got {short(word)}")
+    return value
+
+
+def check_unit(unit_m: float) -> None:
+    """What a length of 1 in a file is, m."""
+    if not 1e-9 <= unit_m <= 1e9:
+        raise UsageError(f"calibration: unit_m: wanted 1e-9 .. 1e9 m, got {unit_m:g}")

@@ -1,0 +1,155 @@
+"""Stereo pairs as OpenCV calibrates them: two cameras, and how the second stands by the first.
+
+``R`` and ``T`` of ``cv::stereoCalibrate`` take points of the first camera into the second's frame;
+``R1`` and ``R2`` of ``cv::stereoRectify`` turn points of each raw camera onto common rows, where
+``P1`` and ``P2`` project them. Lengths are those of the board: metres only if its squares were
+given in metres.
+
+Source: OpenCV 5, calib3d, ``stereoCalibrate`` and ``stereoRectify``; samples/cpp/stereo_calib.cpp,
+which writes two files, ``intrinsics.yml`` and ``extrinsics.yml``.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from daguerre.io.json_item import Item
+from daguerre.projection import Projection
+
+from .calibration import FLIP, Calibration, FloatArray, projection
+from .opencv import COUNTS, model_of, size_of
+from .source import Source, camera_matrix, first, load, matrix, needed, row
+
+SIDES = ("left", "right")
+#: A longer baseline was hardly given in metres.
+LONGEST_M = 20.0
+
+
+def is_stereo(root: Item) -> bool:
+    """Whether it is about two cameras."""
+    return first(root, *_matrices(2)) is not None
+
+
+def read_stereo(
+    source: Source,
+    *,
+    model: str | None = None,
+    size: tuple[int, int] | None = None,
+    rectified: bool = False,
+    unit_m: float = 1.0,
+) -> dict[str, Calibration]:
+    """Both cameras of a pair: left, right.
+
+    Args:
+        source: YAML, XML or JSON, or the same as a dict. Where it has no R and T, they are read
+            from ``extrinsics`` beside it.
+        model: opencv or fisheye; None: as the file says, else opencv.
+        size: Of the picture, px, if the file does not say it.
+        rectified: The pictures after rectification, by P1 and P2, instead of the raw ones.
+        unit_m: What the lengths in the file are, m.
+
+    Raises:
+        InputError: The file cannot be used; the message names the place.
+    """
+    root = load(source)
+    pixels = size or size_of(root)
+    pose = _with_pose(root, source, rectified=rectified)
+    made = {}
+    for number, name in enumerate(SIDES, 1):
+        if rectified:
+            one, stands = _rectified(pose, number, pixels, unit_m)
+        else:
+            one = _raw(root, number, pixels, model)
+            stands = np.eye(4) if number == 1 else _second(pose, unit_m)
+        notes = _too_far(stands) if number == 2 else ()
+        made[name] = Calibration(one, name, FLIP @ stands @ FLIP, notes=notes)
+    return made
+
+
+def _matrices(number: int) -> list[str]:
+    names = ("M{}", "K{}", "cameraMatrix{}", "camera_matrix{}", "camera_matrix_{}", "mtx{}")
+    return [name.format(number) for name in names]
+
+
+def _coefficients(number: int) -> list[str]:
+    names = ("D{}", "distCoeffs{}", "dist_coeffs{}", "dist_coeffs_{}", "dist{}")
+    return [name.format(number) for name in names] + [f"distortion_coefficients{number}"]
+
+
+def _raw(root: Item, number: int, pixels: tuple[int, int], model: str | None) -> Projection:
+    focal, principal = camera_matrix(needed(root, "a camera matrix", *_matrices(number)))
+    kind, found = model_of(root, model), first(root, *_coefficients(number))
+    counts = (0, 4) if kind == "kannala_brandt" else COUNTS
+    values = () if found is None else row(found, counts)
+    if not values and kind == "opencv":
+        kind = "rectilinear"
+    return projection(f"{root.file}: camera {number}", kind, pixels, focal, principal, values)
+
+
+def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
+    """Where the pose is written: here, or in ``extrinsics`` beside it."""
+    wanted = ("R1", "R2", "P1", "P2") if rectified else ("R", "T")
+    if all(root.get(name) is not None for name in wanted):
+        return root
+    beside = None
+    if isinstance(source, str | os.PathLike):
+        beside = Path(source).with_name("extrinsics" + Path(source).suffix)
+    if beside is None or not beside.exists():
+        where = "" if beside is None else f", here or in {beside}"
+        root.fail(f"missing: wanted {', '.join(wanted)}{where}; got none")
+    return load(beside)
+
+
+def _second(pose: Item, unit_m: float) -> FloatArray:
+    """Where the second raw camera stands in the first one's frame."""
+    turn = rotation(pose.need("R"))
+    stands = np.eye(4)
+    stands[:3, :3] = turn.T
+    stands[:3, 3] = -unit_m * turn.T @ row(pose.need("T"), (3,))
+    return stands
+
+
+def _rectified(
+    pose: Item, number: int, pixels: tuple[int, int], unit_m: float
+) -> tuple[Projection, FloatArray]:
+    """By P, in the frame that R1 turns the first camera to."""
+    turn = rotation(pose.need("R1"))
+    rotation(pose.need(f"R{number}"))
+    focal, principal, away = rectified_of(pose.need(f"P{number}"))
+    made = projection(f"{pose.file}: P{number}", "rectilinear", pixels, focal, principal, ())
+    stands = np.eye(4)
+    stands[:3, :3] = turn.T
+    stands[:3, 3] = unit_m * turn.T @ away
+    return made, stands
+
+
+def rectified_of(
+    item: Item,
+) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float, float]]:
+    """Focal lengths and principal point of a P, px, and where its camera stands, right and down."""
+    p = matrix(item, 3, 4)
+    if p[0, 1] != 0 or p[1, 0] != 0 or (p[2] != (0, 0, 1, 0)).any() or min(p[0, 0], p[1, 1]) <= 0:
+        item.fail(f"wanted [fx 0 cx tx; 0 fy cy ty; 0 0 1 0], got {p.tolist()}")
+    away = float(-p[0, 3] / p[0, 0]), float(-p[1, 3] / p[1, 1]), 0.0
+    return (float(p[0, 0]), float(p[1, 1])), (float(p[0, 2]), float(p[1, 2])), away
+
+
+def rotation(item: Item) -> FloatArray:
+    """A rotation, shape (3, 3)."""
+    turn = matrix(item, 3, 3)
+    if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turn) < 0:
+        item.fail("wanted a rotation")
+    return turn
+
+
+def _too_far(stands: FloatArray) -> tuple[str, ...]:
+    baseline = float(np.linalg.norm(stands[:3, 3]))
+    if baseline <= LONGEST_M:
+        return ()
+    return (
+        f"the cameras stand {baseline:.4g} m apart: the lengths of the file are probably those of "
+        "a board in other units (--calibration-unit, unit_m)",
+    )
