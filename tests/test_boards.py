@@ -98,6 +98,17 @@ def test_tags_are_found_with_their_corners(dictionary: str, first: int) -> None:
         assert np.abs(corners.reshape(4, 2) - wanted).max() < 1.5  # whole pixels, but in order
 
 
+def test_large_boards_keep_their_squares_before_their_paper() -> None:
+    """Single precision must not confuse layers: a kilometre of board looks like a metre."""
+    shown = []
+    for scale in (1, 1000):
+        chart = charts.make("checkerboard", square=0.1 * scale)
+        pose = charts.poses(chart, BROWN, 5, 1)[3]
+        camera = dg.Camera(transform=pose, projection=BROWN)
+        shown.append(picture(chart, camera, BROWN, spp=4, max_depth=1).astype(float))
+    assert np.abs(shown[1] - shown[0]).mean() < 0.5
+
+
 def test_poses_show_the_whole_board_all_over_the_picture() -> None:
     chart = charts.make("checkerboard")
     for projection in (BROWN, FISHEYE):
@@ -116,26 +127,36 @@ def test_poses_show_the_whole_board_all_over_the_picture() -> None:
     np.testing.assert_array_equal(again, poses)
 
 
-def calibrated(
+Session = tuple[np.ndarray, list[np.ndarray]]
+
+
+def photographed(
     projection: dg.Projection,
     count: int,
     camera: dg.Camera | None = None,
-    flags: int = 0,
     columns: int = 10,
     rows: int = 7,
     square: float = 0.03,
+    farthest: float = 2.0,
     **options: Any,
-) -> tuple[float, np.ndarray]:
-    """OpenCV's reprojection error and camera matrix."""
+) -> Session:
+    """Corners of a board as OpenCV has them (N, 3), and where it finds them in each picture."""
     chart = charts.make("checkerboard", columns=columns, rows=rows, square=square)
-    board = charts.object_points(chart.truth["corners_m"])
     found = []
-    for i, pose in enumerate(charts.poses(chart, projection, count, 1)):
+    for i, pose in enumerate(charts.poses(chart, projection, count, 1, farthest=farthest)):
         base = camera or dg.Camera(projection=projection)
         image = picture(chart, base.with_(transform=pose), projection, seed=i, **options)
         found.append(corners_found(image, chart))
+    return charts.object_points(chart.truth["corners_m"]), found
+
+
+def calibrated(
+    projection: dg.Projection, session: Session, flags: int = 0
+) -> tuple[float, np.ndarray]:
+    """OpenCV's reprojection error and camera matrix."""
+    board, found = session
     if projection.model == "opencv":
-        boards = [board.astype(np.float32)] * count
+        boards = [board.astype(np.float32)] * len(found)
         points = [p.astype(np.float32)[:, None] for p in found]
         error, matrix, *_ = cv2.calibrateCamera(
             boards, points, projection.size, None, None, flags=flags
@@ -145,7 +166,7 @@ def calibrated(
     flags = home.CALIB_RECOMPUTE_EXTRINSIC | home.CALIB_FIX_SKEW
     points = [p[None] for p in found]
     error, matrix, *_ = cv2.fisheye.calibrate(
-        [board[None]] * count, points, projection.size, None, None, flags=flags
+        [board[None]] * len(found), points, projection.size, None, None, flags=flags
     )
     return error, matrix
 
@@ -161,13 +182,14 @@ def test_opencv_calibrates_a_camera_back() -> None:
     """A few small boards, quickly: within three times the bounds of the full test."""
     small = dg.Projection("opencv", (320, 240), (260, 257.5), (163.4, 118.2), (-0.2, 0.08))
     flags = cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K3
-    check(small, *calibrated(small, 8, flags=flags, columns=7, rows=6), 3)
+    session = photographed(small, 8, columns=7, rows=6)
+    check(small, *calibrated(small, session, flags), 3)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("projection", [BROWN, FISHEYE], ids=lambda p: p.model)
 def test_opencv_calibrates_cameras_back(projection: dg.Projection) -> None:
-    check(projection, *calibrated(projection, 20, spp=32), 1)
+    check(projection, *calibrated(projection, photographed(projection, 20, spp=32)), 1)
 
 
 def test_a_board_is_written_with_its_truth(tmp_path: Path) -> None:
@@ -206,3 +228,5 @@ def test_a_session_that_cannot_be_is_refused() -> None:
         charts.poses(chart, BROWN, 0)
     with pytest.raises(UsageError, match="tilt"):
         charts.poses(chart, BROWN, 2, tilt=80)
+    with pytest.raises(UsageError, match="farthest"):
+        charts.poses(chart, BROWN, 2, farthest=0.5)

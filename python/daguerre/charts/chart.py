@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 Rgb = tuple[float, float, float]
-#: How far layers of a chart stand before each other, m: more than single precision confuses.
+#: How far layers of a chart stand before each other, as a share of its larger side, or of a metre
+#: if that is smaller: more than single precision confuses.
 LAYER = 5e-6
 #: Size of the ground over the chart's: distortion and focus bring what is around into the frame.
 GROUND = 2.0
@@ -115,7 +116,8 @@ class Chart:
         by_color: dict[Rgb, list[Patch]] = defaultdict(list)
         for patch in (ground, *self.patches):
             by_color[patch.rgb].append(patch)
-        return {rgb: _mesh(patches) for rgb, patches in by_color.items()}
+        apart = LAYER * max(1.0, *self.size)
+        return {rgb: _mesh(patches, apart) for rgb, patches in by_color.items()}
 
     def save(
         self,
@@ -199,9 +201,9 @@ def _paint(glb: Any, rgb: Rgb) -> int:
     )
 
 
-def _mesh(patches: list[Patch]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Fans about the first corner: patches are convex."""
-    points = [np.c_[p.points, np.full(len(p.points), p.layer * LAYER)] for p in patches]
+def _mesh(patches: list[Patch], apart: float) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Fans about the first corner: patches are convex. Layers are so far apart, m."""
+    points = [np.c_[p.points, np.full(len(p.points), p.layer * apart)] for p in patches]
     fans, first = [], 0
     for corners in points:
         second = np.arange(1, len(corners) - 1)

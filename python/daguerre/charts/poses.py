@@ -27,12 +27,14 @@ def poses(
     seed: int = 0,
     *,
     tilt: float = 40.0,
+    farthest: float = 2.0,
     margin: float = 0.02,
 ) -> list[FloatArray]:
     """Poses of a camera from which it sees all of a board.
 
-    Boards stand where a Halton sequence puts them in the picture, from as near as they fit to twice
-    as far, turned about all axes: what tells focal length and distance apart is the tilt.
+    Boards stand where a Halton sequence puts them in the picture, from as near as they fit to some
+    times as far, turned about all axes. The tilt tells focal length and distance apart; boards that
+    fill the picture find the middle of weak distortion.
 
     Args:
         chart: The board, in the plane z = 0.
@@ -40,6 +42,7 @@ def poses(
         count: How many.
         seed: Of the choice.
         tilt: Largest, of the board to the line of sight, degrees, 0 to 60.
+        farthest: Distances as they fit, 1 to 10.
         margin: Left free at the picture's edges, share of its height.
 
     Returns:
@@ -50,11 +53,14 @@ def poses(
     """
     whole(count, "poses: count", 1, 10000)
     number(tilt, "poses: tilt", 0, 60)
+    number(farthest, "poses: farthest", 1, 10)
     number(margin, "poses: margin", 0, 0.4)
     rng = np.random.default_rng(whole(seed, "poses: seed", 0, 2**63 - 1))
     turn = rng.random(2)
     targets = [(np.array([_halton(i, 2), _halton(i, 3)]) + turn) % 1 for i in range(count)]
-    return [_pose(chart, projection, at, rng, math.radians(tilt), margin) for at in targets]
+    return [
+        _pose(chart, projection, at, rng, math.radians(tilt), farthest, margin) for at in targets
+    ]
 
 
 def _pose(
@@ -63,12 +69,13 @@ def _pose(
     at: FloatArray,
     rng: np.random.Generator,
     tilt: float,
+    farthest: float,
     margin: float,
 ) -> FloatArray:
     board = _board_turn(rng, tilt)
     border = _border(chart)
     size = np.array(projection.size, np.float64)
-    further = 2 ** rng.random()
+    further = farthest ** rng.random()
     place = at
     for _ in range(TRIES):
         ahead = projection.unproject([place * (size - 1)])[0]
