@@ -16,12 +16,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import calibrations
 import numpy as np
 import OpenImageIO as oiio
 import photograph_page
+import photographs
 import word_page
 from numpy.typing import NDArray
-from photographs import SHEETS
 from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
 from words import WORDS
 
@@ -34,6 +35,7 @@ EXAMPLES = (
     ["lens_scenes.py"],
     ["imperfections.py"],
     ["exposure.py"],
+    ["calibrated.py"],
 )
 
 INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
@@ -66,6 +68,14 @@ ABOUT_PHOTOGRAPHS = """## Photographs
 
 What sensors and films make of the light: the exposure triangle, ISO 100 beside ISO 25600, raw files
 developed by Daguerre and by LibRaw, film: [a page of its own](exposure.md).
+"""
+
+ABOUT_CALIBRATED = """## Calibrated cameras
+
+![A desk through a phone, a fisheye, and a stereo camera with its depth.](calibrated.jpg)
+
+One desk through files as OpenCV, ROS and Kalibr write them: a phone, a fisheye of 190 degrees, the
+left one of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
 """
 
 ABOUT_BLENDER = """## A lens that left
@@ -141,11 +151,11 @@ def section(pictures: list[Picture]) -> list[str]:
 def main() -> None:
     """Renders what was asked for, then writes the page."""
     every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
+    sheets = [*photographs.SHEETS, *calibrations.SHEETS]
+    names = [picture.name for picture in [*every, *WORDS, *sheets]]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
-    parser.add_argument(
-        "--only", action="append", choices=[p.name for p in [*every, *WORDS, *SHEETS]]
-    )
+    parser.add_argument("--only", action="append", choices=["calibrated", *names])
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     if not given.page:
@@ -158,15 +168,22 @@ def main() -> None:
         for word in WORDS:
             if not given.only or word.name in given.only:
                 word_page.make(word, lambda command: run(command, None))
-        for sheet in SHEETS:
+        for sheet in sheets:
             if not given.only or sheet.name in given.only:
                 photograph_page.make(sheet, lambda command: run(command, None))
+        if not given.only or any(name.startswith("calibrated") for name in given.only):
+            photograph_page.overview("calibrated", calibrations.OVERVIEW)
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
-    page += [ABOUT_PHOTOGRAPHS]
+    page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED]
     page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER, ABOUT_MOTION, *section(MOTION)]
     (HERE / "README.md").write_text("\n".join(page) + CREDITS)
     (HERE / "imperfections.md").write_text(word_page.page())
-    (HERE / "exposure.md").write_text(photograph_page.page())
+    (HERE / "exposure.md").write_text(
+        photograph_page.page(photographs.INTRODUCTION, photographs.SHEETS)
+    )
+    (HERE / "calibrated.md").write_text(
+        photograph_page.page(calibrations.INTRODUCTION, calibrations.SHEETS)
+    )
 
 
 if __name__ == "__main__":

@@ -1,33 +1,18 @@
-"""The page of photographs: what a sensor or a film made of a frame's light."""
+"""Pages of sheets: photographs by sensors and films, and by calibrated cameras."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from photographs import OUT, SHEETS, Sheet
-from sheet import captioned, grid
+from photographs import OUT, Sheet
+from sheet import GAP, captioned, grid
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-
-INTRODUCTION = """# From exposure to photograph
-
-What bodies and films make of the light that a frame holds: [exposure](../exposure.md),
-[sensors](../sensors.md), [developing](../developing.md), [film](../film-stocks.md). Begin with
-
-```
-python examples/night_table.py out/night_table.glb
-python examples/exposure.py
-mkdir -p out/gallery
-```
-
-`--denoise` (extra of that name) takes away the noise of rendering, so that what is left is the
-sensor's. A pixel of these pictures is a photosite: they are as a crop of the body's at 100 %.
-"""
 
 
 def make(sheet: Sheet, run: Callable[[str], None]) -> None:
@@ -41,9 +26,30 @@ def make(sheet: Sheet, run: Callable[[str], None]) -> None:
             run(command)
         panels.append(captioned(_pixels(ROOT / OUT / photograph.file), photograph.caption))
     rows = [panels[k : k + sheet.columns] for k in range(0, len(panels), sheet.columns)]
-    pixels = oiio.ImageBuf(np.ascontiguousarray(grid(rows)))
+    _write(grid(rows), sheet.name)
+
+
+def overview(name: str, rows: Sequence[Sequence[str]], wide: int = 960) -> None:
+    """Pictures of sheets that have been made, each row as wide as the others."""
+    made = []
+    for files in rows:
+        panels = [_pixels(ROOT / OUT / file) for file in files]
+        high = round((wide - GAP) / sum(p.shape[1] / p.shape[0] for p in panels))
+        made.append([_smaller(panel, high) for panel in panels])
+    _write(grid(made), name)
+
+
+def _smaller(pixels: NDArray[np.uint8], high: int) -> NDArray[np.uint8]:
+    wide = round(pixels.shape[1] * high / pixels.shape[0])
+    found = oiio.ImageBuf(np.ascontiguousarray(pixels))
+    resized = oiio.ImageBufAlgo.resize(found, roi=oiio.ROI(0, wide, 0, high))
+    return np.asarray(resized.get_pixels(oiio.UINT8))
+
+
+def _write(sheet: NDArray[np.uint8], name: str) -> None:
+    pixels = oiio.ImageBuf(np.ascontiguousarray(sheet))
     pixels.specmod().attribute("Compression", "jpeg:90")
-    if not pixels.write(str(HERE / f"{sheet.name}.jpg")):
+    if not pixels.write(str(HERE / f"{name}.jpg")):
         raise SystemExit(pixels.geterror())
 
 
@@ -54,10 +60,10 @@ def _pixels(file: Path) -> NDArray[np.uint8]:
     return np.asarray(picture.get_pixels(oiio.UINT8)[..., :3])
 
 
-def page() -> str:
-    """The text of the page, of sheets that have been made."""
-    made = [sheet for sheet in SHEETS if (HERE / f"{sheet.name}.jpg").exists()]
-    return "\n".join([INTRODUCTION, *map(_section, made)])
+def page(introduction: str, sheets: Sequence[Sheet]) -> str:
+    """The text of a page, with those sheets that have been made."""
+    made = [sheet for sheet in sheets if (HERE / f"{sheet.name}.jpg").exists()]
+    return "\n".join([introduction, *map(_section, made)])
 
 
 def _section(sheet: Sheet) -> str:

@@ -4,6 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+INTRODUCTION = """# From exposure to photograph
+
+What bodies and films make of the light that a frame holds: [exposure](../exposure.md),
+[sensors](../sensors.md), [developing](../developing.md), [film](../film-stocks.md). Begin with
+
+```
+python examples/night_table.py out/night_table.glb
+python examples/exposure.py
+mkdir -p out/gallery
+```
+
+`--denoise` (extra of that name) takes away the noise of rendering, so that what is left is the
+sensor's. A pixel of these pictures is a photosite: they are as a crop of the body's at 100 %.
+"""
 OUT = "out/gallery"
 GAUSS = "--lens double-gauss-50mm-f2"
 BODY = "sony-a7r-ii"

@@ -34,7 +34,7 @@ def _add_board(stage: Stage) -> None:
     face = shapes.turned(shapes.square(*size), about_x(-90))
     plate = shapes.box((size[0] + 0.01, 0.004, size[1] + 0.01))
     parts = [(shapes.moved(face, (0, 0.0042, 0)), paper), (plate, stage.steel)]
-    put(stage, "board", parts, translation=on_desk(-0.39, 0.19), rotation=turn_y(16))
+    put(stage, "board", parts, translation=on_desk(-0.365, 0.185), rotation=turn_y(16))
 
 
 def _add_books(stage: Stage) -> None:

@@ -42,7 +42,7 @@ def outside(height: int = 256) -> Picture:
     green = np.clip((y - trees) * 14 + 0.5, 0, 1)[..., None]
     leaves = noise((height, height), (9, 9), 4)[..., None] * 0.05
     sky = ramp(y, [(0.86, 0.93, 1.0), (0.97, 0.985, 1.0), (1.0, 0.99, 0.96)])
-    bush = np.array((0.27, 0.33, 0.24)) * (1 + leaves * 4)
+    bush = np.array((0.255, 0.28, 0.24)) * (1 + leaves * 3)
     return np.clip(sky * (1 - green) + bush * green, 0, 1)
 
 

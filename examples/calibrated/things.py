@@ -14,7 +14,7 @@ from kit.moves import spinning
 from kit.pose import turn_y
 from night.stage import WARM, Stage
 
-TURNS_PER_SECOND, END_S = 30, 2.0  # of the fan
+TURNS_PER_SECOND, END_S = 45, 2.0  # of the fan
 BULB = 0.030, 800.0  # radius of the bulb, m, and what it gives, lm
 
 
@@ -102,7 +102,7 @@ def _add_fan(stage: Stage) -> None:
     place = {"translation": on_desk(-0.42, -0.26), "rotation": turn_y(24)}
     fan = put(stage, "fan", parts, **place)
     blue = stage.matter("blade", baseColorFactor=[0.03, 0.16, 0.24, 1], roughnessFactor=0.35)
-    blades = [(_blade(2 * math.pi * k / 4), blue) for k in range(4)]
+    blades = [(_blade(2 * math.pi * k / 5), blue) for k in range(5)]
     nose = shapes.turned(
         shapes.lathe([(0.018, -0.01), (0.018, 0.008), (0, 0.016)], 48), about_x(90)
     )
@@ -131,7 +131,7 @@ def _cage(hub: float) -> list[Shape]:
 def _blade(turned: float) -> Shape:
     """A sheet from the hub outward, twisted, with two sides."""
     r, t = np.linspace(0.015, 0.090, 13)[:, None], np.linspace(-0.5, 0.5, 11)[None]
-    wide = 1.15 * (0.55 + 0.45 * np.sin(math.pi * np.clip((r - 0.0) / 0.1, 0, 1)))
+    wide = 0.72 * (0.55 + 0.45 * np.sin(math.pi * np.clip((r - 0.0) / 0.1, 0, 1)))
     angle = turned + wide * t
     grid = np.stack([r * np.cos(angle), r * np.sin(angle), -0.016 * t * (r > 0)], -1)
     return shapes.join(shapes.surface(grid), shapes.surface(grid[::-1]))
