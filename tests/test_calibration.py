@@ -404,6 +404,19 @@ def test_the_wrong_arguments_are_errors() -> None:
     )
 
 
+def test_a_calibration_without_an_iris_and_shares_of_its_size(chain: Path) -> None:
+    from daguerre.cli.calibration_flags import CalibrationFlags
+
+    flags = CalibrationFlags(calibration=[f"{chain}:cam1"])
+    (found,) = flags.found.values()
+    base = dg.Camera(f_stop=2)
+    assert flags.camera(base, found, {}).f_stop == 2
+    assert flags.camera(base, found, {"lens": "pinhole"}).f_stop is None
+    phone = Calibration(dg.Projection("opencv", (4032, 3024), (2713, 2713)))
+    assert flags.resolution(phone, "2%", (960, 540)) == (81, 61)  # 60.48 rows, but 81 columns
+    assert flags.resolution(phone, "50%", (960, 540)) == (2016, 1512)
+
+
 def test_a_render_by_the_command_line(tmp_path: Path, chain: Path) -> None:
     from daguerre.cli import main
 
@@ -416,8 +429,16 @@ def test_a_render_by_the_command_line(tmp_path: Path, chain: Path) -> None:
     assert camera["projection"]["model"] == "double_sphere"
     assert camera["sensor_size_mm"] == pytest.approx([3.84, 2.88])
     assert dg.load_frame(out).rgb.shape == (120, 160, 3)
-    for flags in (["--lens", "thin"], ["--focal-length", "35"], ["--tilt", "1,0"]):
+    for flags in (
+        ["--lens", "thin"],
+        ["--focal-length", "35"],
+        ["--tilt", "1,0"],
+        ["--fit", "vertical"],
+        ["--focus-breathing"],
+        ["--lens", "pinhole", "--f-stop", "2"],
+    ):
         assert main([*given, *flags]) == 2
+    assert main([*given, "--lens", "pinhole"]) == 0
     assert main([*base, "--pixel-pitch", "6"]) == 2
     assert main([*base, "--calibration", f"{chain}:cam7"]) == 2
     assert main([*base, "--calibration", str(tmp_path / "no.yaml")]) == 3

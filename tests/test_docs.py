@@ -42,12 +42,9 @@ def test_command_line_page_names_every_command():
 @pytest.mark.parametrize(
     "name",
     [
-        "README.md",
-        "examples/README.md",
-        "docs/motion.md",
-        "docs/ground-truth.md",
-        "docs/gallery/README.md",
-        "script/demo",
+        *("README.md", "examples/README.md", "script/demo"),
+        *("docs/motion.md", "docs/ground-truth.md", "docs/coming-from.md"),
+        *("docs/gallery/README.md", "docs/gallery/calibrated.md"),
     ],
 )
 def test_commands_in_texts_use_flags_that_exist(name):

@@ -19,6 +19,8 @@ _OF_LENSES = {
     **{name: "--" + name.replace("_", "-") for name in ("fit_tolerance", "focal_length", "t_stop")},
     **{name: "--" + name.replace("_", "-") for name in ("aperture_diameter", "decenter", "tilt")},
     **{name: "--" + name.replace("_", "-") for name in ("natural_vignetting", "ripple", "shift")},
+    **{name: "--" + name.replace("_", "-") for name in ("focus_breathing", "focus_by")},
+    "sensor_fit": "--fit",
 }
 
 
@@ -129,7 +131,12 @@ class CalibrationFlags:
     ) -> tuple[int, int]:
         """Of the picture, px: the calibrated one's, unless ``--res`` says another."""
         size = default if calibration is None else calibration.projection.size
-        return q.resolution("--res", res, size) if res else size
+        if not res:
+            return size
+        columns, rows = q.resolution("--res", res, size)
+        if calibration is not None and "%" in res:  # its shape, whatever was rounded
+            rows = max(1, round(columns * size[1] / size[0]))
+        return columns, rows
 
     def check(self, changes: dict[str, Any]) -> None:
         """A calibration takes the place of a lens.
@@ -142,6 +149,10 @@ class CalibrationFlags:
         if not self.found:
             return
         both = [flag for name, flag in _OF_LENSES.items() if name in changes]
+        if changes.get("lens") == "pinhole":  # no iris: all is sharp
+            both.remove("--lens")
+            if "f_stop" in changes:
+                raise UsageError("--lens pinhole and --f-stop: wanted one of them, got both")
         if self.pixel_pitch is not None and {"sensor", "sensor_size"} & set(changes):
             raise UsageError("--pixel-pitch and --sensor: wanted one of them, got both")
         if both:
@@ -153,6 +164,9 @@ class CalibrationFlags:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
             camera = calibration.camera(camera, um)
+            if changes.get("lens") == "pinhole":
+                changes = {name: value for name, value in changes.items() if name != "lens"}
+                camera = camera.with_(f_stop=None)
         camera = camera.with_(**changes)
         if not self.timeshift or calibration is None:
             return camera
