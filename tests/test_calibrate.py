@@ -32,6 +32,7 @@ NIKKOR = "nikon-28mm-f2.8"
         ("eucm", (0.6, 1.1)),
         ("omni", (0.9, -0.1, 0.02, 1e-3, -1e-3)),
         ("fov", (0.9,)),
+        ("opencv_inverse", (0.1, -0.02, 1e-3, -8e-4, 0.01)),
     ],
 )
 def test_a_model_is_found_by_its_own_rays(model: str, parameters: tuple[float, ...]) -> None:
@@ -168,7 +169,7 @@ def test_the_command_writes_what_it_finds(tmp_path: Path, capsys: Any) -> None:
     assert picture.read_bytes()[:4] == b"\x89PNG"
 
 
-@pytest.mark.parametrize("kind", dg.calibration.FORMATS)
+@pytest.mark.parametrize("kind", dg.calibration.WRITTEN)
 def test_every_format_says_where_the_lens_puts_things(kind: str, tmp_path: Path) -> None:
     out = tmp_path / "lens.yaml"
     command = ["calibrate", "nikon-28mm-f2.8", "--res", "640x480", "--focus", "3"]

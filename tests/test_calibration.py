@@ -15,7 +15,6 @@ import pytest
 import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
-from daguerre.calibration.inverse import Rational, fit_inverse
 from daguerre.errors import DaguerreError, InputError, UsageError
 from daguerre.projection import Projection
 
@@ -207,13 +206,18 @@ def test_opentrackio_from_ideal_points_to_the_picture() -> None:
 
 @pytest.mark.parametrize("model", [None, "Brown-Conrady D-U"])
 def test_opentrackio_from_the_picture_to_ideal_points(model: str | None) -> None:
-    told = {"radial": RADIAL, "tangential": (0.0, 0.0)} | ({"model": model} if model else {})
-    found = calibration.read(sample(distortion=[told]))
+    """Exactly, also with tangential terms of more than 20 px."""
+    told = {"radial": RADIAL, "tangential": (0.02, -0.03)} | ({"model": model} if model else {})
+    offset = {"x": 0.12, "y": -0.05}
+    found = calibration.read(sample(distortion=[told], projectionOffset=offset)).projection
     pixels = np.array([[0, 0], [639, 479], [100, 300], [320.0, 10]])
-    ideal = bent((pixels - (319.5, 239.5)) * PITCH, RADIAL, (0, 0)) / 3.0
+    film = (pixels - (319.5, 239.5)) * PITCH - (0.12, -0.05)
+    ideal = bent(film, RADIAL, (0.02, -0.03)) / 3.0
     points = np.c_[ideal, np.ones(len(ideal))]
-    np.testing.assert_allclose(found.projection.project(points), pixels, atol=1e-3)
-    assert "inverse" in found.notes[0]
+    assert np.abs(ideal - bent(film, RADIAL, (0, 0)) / 3.0).max() * 3.0 / PITCH > 20
+    np.testing.assert_allclose(found.project(points), pixels, atol=1e-9)
+    seen = found.unproject(pixels)
+    np.testing.assert_allclose(seen[:, :2] / seen[:, 2:], ideal, atol=1e-12)
 
 
 def test_opentrackio_stands_where_it_is_tracked() -> None:
@@ -232,14 +236,6 @@ def test_opentrackio_stands_where_it_is_tracked() -> None:
     assert camera.sensor_size == pytest.approx((640 * PITCH, 480 * PITCH))
 
 
-def test_an_inverse_is_one() -> None:
-    points = np.random.default_rng(1).uniform(-0.6, 0.6, (400, 2))
-    model = Rational((0.1, -0.05, 0.01), (0.02, 0.0, 0.0), (0.0, 0.0))
-    found, error = fit_inverse(model, points)
-    np.testing.assert_allclose(found(model(points)), points, atol=1e-6)
-    assert error < 1e-6
-
-
 MADE = {
     "opencv": Projection("opencv", SIZE, (520, 515), (331.3, 236.8), BROWN),
     "rational": Projection("opencv", SIZE, (520, 515), (331.3, 236.8), RATIONAL),
@@ -250,12 +246,13 @@ MADE = {
     "omni": Projection("omni", SIZE, (520, 515), (331.3, 236.8), (0.9, -0.1, 0.01, 1e-3, 2e-3)),
     "unified": Projection("omni", SIZE, (520, 515), (331.3, 236.8), (0.9,)),
     "fov": Projection("fov", SIZE, (520, 515), (331.3, 236.8), (0.9,)),
+    "inverse": Projection("opencv_inverse", SIZE, (520, 515), (331.3, 236.8), RATIONAL),
 }
 BACK = [
     *(("opencv", name) for name in ("opencv", "rational", "rectilinear", "kannala_brandt")),
     *(("ros", name) for name in ("opencv", "rational", "rectilinear", "kannala_brandt")),
-    *(("opentrackio", name) for name in ("opencv", "rational", "rectilinear")),
-    *(("kalibr", name) for name in MADE if name not in ("opencv", "rational")),
+    *(("opentrackio", name) for name in ("opencv", "rational", "rectilinear", "inverse")),
+    *(("kalibr", name) for name in MADE if name not in ("opencv", "rational", "inverse")),
 ]
 
 
@@ -311,7 +308,7 @@ def opencv(**changes: Any) -> dict[str, Any]:
         (calibration.read, sample(distortionOffset={"x": 1, "y": 0}), "distortionOffset"),
         (calibration.read, sample(distortion=[{"radial": []}]), "1 to 6"),
         (calibration.read, sample(distortion=[{"radial": [1], "model": "Brown"}]), "Brown-Conrady"),
-        (calibration.read, sample(distortion=[{"radial": [0.5]}]), "inverse"),
+        (calibration.read, sample(distortion=[{"radial": [-0.2]}]), "opencv_inverse: .* folds at"),
         (calibration.read_opencv, opencv(dist_coeffs="abc"), "a list"),
     ],
 )
@@ -327,6 +324,15 @@ def test_a_chain_with_a_model_outside_its_field(chain: Path) -> None:
     chain.write_text(CHAIN.replace("[-0.2, 0.59,", "[-0.2, 1.59,"))
     with pytest.raises(InputError, match=r"cam1: .*alpha"):
         calibration.read_kalibr(chain)
+    omni = CHAIN.replace("camera_model: ds", "camera_model: omni").replace("none", "radtan")
+    for xi, k1, folds in ((0.9, -0.4, True), (0.9, -0.2, False), (5, -3, False)):
+        coefficients = f"[{xi}, 320, 321, 331.3, 236.8]\n  distortion_coeffs: [{k1}, 0, 0, 0]"
+        chain.write_text(omni.replace("[-0.2, 0.59, 320, 321, 331.3, 236.8]", coefficients))
+        if folds:
+            with pytest.raises(InputError, match=r"cam1: omni: .* folds at 195 px .*78"):
+                calibration.read_kalibr(chain)
+        else:
+            assert calibration.read_kalibr(chain)["cam1"].projection.model == "omni"
     chain.write_text(CHAIN.replace("distortion_model: none", "distortion_model: fov"))
     with pytest.raises(InputError, match="wanted none with camera_model ds"):
         calibration.read_kalibr(chain)

@@ -114,6 +114,7 @@ ProjectionModel::ProjectionModel(Kind kind, std::array<double, kMost> parameters
         tilt_ = tilt_matrix(k_[12], k_[13]);
         untilt_ = inverse(tilt_);
         break;
+    case Kind::opencv_inverse: std::copy_n(k_.begin(), 8, radial_.begin()); break;
     case Kind::omni:
         within(0, "xi", 0, 100);
         radial_ = {k_[1], k_[2], k_[3], k_[4], 0, 0, 0, 0};
@@ -130,7 +131,7 @@ ProjectionModel::ProjectionModel(Kind kind, std::array<double, kMost> parameters
 
 bool ProjectionModel::is_wide() const {
     switch (kind_) {
-    case Kind::rectilinear: case Kind::opencv: case Kind::fov: return false;
+    case Kind::rectilinear: case Kind::opencv: case Kind::opencv_inverse: case Kind::fov: return false;
     default: return true;
     }
 }
@@ -156,6 +157,7 @@ void ProjectionModel::find_fold() {
         return;
     }
     case Kind::opencv:
+    case Kind::opencv_inverse:
     case Kind::omni: {
         // The ideal radius beyond which the distorted one falls; an omni model's ideal points end at its own.
         double last = kInfinity;
@@ -168,6 +170,9 @@ void ProjectionModel::find_fold() {
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
         largest_radius_ = last < kInfinity ? bent({last, 0}).point.x : kInfinity;
+        if (kind_ != Kind::opencv_inverse) return;
+        largest_angle_ = std::atan(largest_radius_);
+        largest_radius_ = last;
         return;
     }
     default: return;
@@ -290,6 +295,7 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
         return Vec2d{std::atan2(d.x, d.z), std::asin(std::clamp(d.y / norm, -1.0, 1.0))};
     case Kind::cube: return on_cube(d);
     case Kind::opencv: return d.z > 0 ? distorted(seen(d)) : std::nullopt;
+    case Kind::opencv_inverse: return d.z > 0 ? undistorted(seen(d)) : std::nullopt;
     case Kind::omni: {
         const double z = d.z + k_[0] * norm;
         // Beyond this angle two directions share a point (Mei and Rives 2007: xi > 1), or none has one.
@@ -329,8 +335,9 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
         return Vec3d{c * std::sin(p.x), std::sin(p.y), c * std::cos(p.x)};
     }
     case Kind::cube: return from_cube(p);
-    case Kind::opencv: {
-        const auto u = undistorted(p);
+    case Kind::opencv:
+    case Kind::opencv_inverse: {
+        const auto u = kind_ == Kind::opencv ? undistorted(p) : distorted(p);
         return u ? std::optional(normalize(Vec3d{u->x, u->y, 1})) : std::nullopt;
     }
     case Kind::omni: {

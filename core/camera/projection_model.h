@@ -5,7 +5,7 @@
 // of the focal length from the principal point, as OpenCV has them before the camera matrix.
 //
 // Sources: OpenCV 5, "Camera Calibration and 3D Reconstruction" (rational, thin prism, tilt) and "Fisheye";
-// Kannala and Brandt 2006; Usenko, Demmel and Cremers 2018, The Double Sphere Camera Model (double sphere,
+// Kannala and Brandt 2006; OpenLensIO 1.0.1 (the inverse: its Brown-Conrady D-U); Usenko, Demmel and Cremers 2018, The Double Sphere Camera Model (double sphere,
 // EUCM, UCM and their domains); Mei and Rives 2007 (omni); Devernay and Faugeras 2001 (FOV).
 #pragma once
 #include <array>
@@ -27,6 +27,7 @@ struct ProjectionModel {
         eucm,              // alpha beta
         omni,              // xi k1 k2 p1 p2; Kalibr's omni with radtan
         fov,               // w (radians)
+        opencv_inverse,    // k1 k2 p1 p2 k3 k4 k5 k6: points of the picture to ideal ones, by opencv's terms
     };
     static constexpr int kMost = 14;
 
@@ -69,7 +70,7 @@ struct ProjectionModel {
     bool tilts_ = false;
     bool leans_ = false;   // has terms that are not the same on all sides
     double largest_angle_, largest_radius_;
-    double ideal_end_;   // of opencv and omni: the ideal radius where the distorted one folds
+    double ideal_end_;   // of opencv and omni: the ideal radius where the distorted one folds; of the inverse the other
 };
 
 }  // namespace dg

@@ -35,7 +35,8 @@ std::vector<Case> cases() {
             {"eucm", ProjectionModel(Kind::eucm, {0.62, 1.1}), 1.7},
             {"omni", ProjectionModel(Kind::omni, {1.2, -0.2, 0.05, 1e-3, -1e-3}), 1.6},
             {"ucm", ProjectionModel(Kind::omni, {0.8}), 1.9},
-            {"fov", ProjectionModel(Kind::fov, {0.93}), 1.3}};
+            {"fov", ProjectionModel(Kind::fov, {0.93}), 1.3},
+            {"opencv_inverse", ProjectionModel(Kind::opencv_inverse, {0.2, -0.03, 2e-3, -3e-3, 0.01, -0.05}), 0.8}};
 }
 
 /// At an angle from the axis, turned about it.
@@ -82,6 +83,25 @@ TEST_CASE("solid angle is the area of the sphere that a piece of the picture cov
             CHECK(c.model.solid_angle(*p) == doctest::Approx(area).epsilon(5e-3));
         }
     }
+}
+
+TEST_CASE("the inverse of opencv takes points of the picture to ideal ones by its terms") {
+    const std::array<double, ProjectionModel::kMost> k{-0.2, 0.03, 2e-3, -3e-3, 0.01, -0.05};
+    const ProjectionModel there(Kind::opencv, k), back(Kind::opencv_inverse, k);
+    for (const Vec2d p : {Vec2d{0.3, -0.2}, {-0.5, 0.4}, {0, 0.1}}) {
+        const Vec3d seen = *back.unproject(p);
+        const Vec2d ideal = *there.project({p.x, p.y, 1});
+        CHECK(seen.x / seen.z == doctest::Approx(ideal.x));
+        CHECK(seen.y / seen.z == doctest::Approx(ideal.y));
+    }
+    const ProjectionModel folds(Kind::opencv_inverse, {-0.3});
+    const double edge = 1 / std::sqrt(0.9), ideal = edge * (1 - 0.3 * edge * edge);
+    CHECK(folds.largest_radius() == doctest::Approx(edge).epsilon(2e-3));
+    CHECK(std::tan(folds.largest_angle()) == doctest::Approx(ideal).epsilon(2e-3));
+    CHECK(folds.unproject({0.98 * edge, 0}).has_value());
+    CHECK_FALSE(folds.unproject({0, 1.02 * edge}).has_value());
+    CHECK(folds.project({0.99 * ideal, 0, 1}).has_value());
+    CHECK_FALSE(folds.project({1.01 * ideal, 0, 1}).has_value());
 }
 
 TEST_CASE("closed forms of fisheyes and panoramas") {

@@ -71,6 +71,8 @@ inline std::vector<ViewCase> projection_cases() {
     around.push_back({{-0.9, 0.5, 0.3}, 0, 0.01});
     std::vector<ViewCase> cases;
     cases.push_back({"projection, hole", still(Projection{phone, {30, 31}, {0.5, -0.3}}), usual_points()});
+    const ProjectionModel tracked(Kind::opencv_inverse, {0.15, -0.02, 0.002, -0.003});
+    cases.push_back({"projection by the inverse, hole", still(Projection{tracked, {30, 31}, {0.5, -0.3}}), usual_points()});
     cases.push_back({"fisheye, hole", still(Projection{fisheye, {11, 11}, {0.2, 0}}), around});
     cases.push_back({"projection, iris", still(Projection{phone, {30, 31}, {0.5, -0.3}, 5, 2}), usual_points(), 0.7f});
     cases.push_back({"fisheye, iris", still(Projection{fisheye, {11, 11.5}, {0.2, 0}, 3, 1.5}), around});

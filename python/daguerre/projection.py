@@ -40,6 +40,7 @@ MODELS: dict[str, tuple[str, ...]] = {
     "eucm": ("alpha", "beta"),
     "omni": ("xi", "k1", "k2", "p1", "p2"),
     "fov": ("w",),
+    "opencv_inverse": ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
 }
 #: Models that have no picture of their own with all parameters 0.
 NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}

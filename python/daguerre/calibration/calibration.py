@@ -19,6 +19,8 @@ from daguerre.projection import Projection
 FloatArray = NDArray[np.float64]
 #: Between the camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z behind).
 FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
+#: Models of whose picture no corner may stay dark, and those with polynomials of which some may.
+WHOLE, FISHEYES = ("opencv", "opencv_inverse"), ("kannala_brandt", "omni")
 #: Of a lens; a projection stands in its place.
 OF_LENSES: dict[str, Any] = {
     **dict.fromkeys(("lens", "lens_model", "degree", "fit_tolerance", "focal_length", "zoom")),
@@ -113,20 +115,22 @@ def check_field(made: Projection, where: str) -> None:
         InputError: The model ends within the picture.
     """
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
-    fold = made.core.largest_radius * math.sqrt(fx * fy)
-    if made.model == "opencv" and not np.isfinite(made.unproject(_border(width, height))).all():
+    fold, angle = made.core.largest_radius * math.sqrt(fx * fy), made.largest_angle
+    if made.model in WHOLE and not np.isfinite(made.unproject(_border(width, height))).all():
         reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
         what = "farthest corner"
-    elif made.model == "kannala_brandt" and made.largest_angle < 179.9:
+    elif made.model in FISHEYES and math.isfinite(fold):
         reach, what = min(x, y, width - 1 - x, height - 1 - y), "nearest edge"
-        if fold >= reach:
+        last = made.unproject([[x + 0.999 * fold * math.sqrt(fx / fy), y]])[0]
+        angle = math.degrees(math.acos(min(max(last[2], -1), 1)))
+        if fold >= reach or math.isnan(angle) or angle > 179.8:  # it sees no farther anyway
             return
     else:
         return
     raise InputError(
         f"{where}: {made.model}: the radial polynomial folds at {fold:.4g} px from the principal "
-        f"point ({made.largest_angle:.4g} degrees): wanted it to rise up to the {what} of the "
-        f"picture, {reach:.4g} px"
+        f"point ({angle:.4g} degrees): wanted it to rise up to the {what} of the picture, "
+        f"{reach:.4g} px"
     )
 
 

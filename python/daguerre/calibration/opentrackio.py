@@ -4,7 +4,7 @@ Lengths of the lens are mm, distances m. OpenLensIO's coefficients belong to poi
 mm from the centre, y down; in its list they alternate: of the numerator and of the denominator of
 the rational polynomial. Which way they map is in the name of the model: ``Brown-Conrady D-U`` takes
 points of the picture to ideal ones, which is what a list without a name means; ``U-D`` is OpenCV's
-way, and is what we write. Of D-U the inverse is fitted.
+way.
 
 Offsets are from the middle of the sensor, which in calibrations' pixels lies at (W - 1) / 2.
 
@@ -28,14 +28,12 @@ from daguerre.errors import InputError
 from daguerre.io.json_item import Item
 
 from .calibration import Calibration, FloatArray, projection
-from .inverse import Rational, fit_inverse
 from .source import Source, choice, load
 
 DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED = "Brown-Conrady D-U", "Brown-Conrady U-D"
 #: World of OpenTrackIO (x right, y ahead, z up) as Daguerre has it (y up, z toward the viewer).
 UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-#: Largest error of a fitted inverse, px: radial ones are far below, large tangential ones above.
-TOLERANCE = 0.1
+MODELS = {DISTORTED_TO_IDEAL: "opencv_inverse", IDEAL_TO_DISTORTED: "opencv"}
 
 
 def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> Calibration:
@@ -61,7 +59,7 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     moved = lens.get("distortionOffset")
     if moved is not None and any(_offset(lens, "distortionOffset")):
         moved.fail("wanted distortion about the projection's centre (0, 0), got another centre")
-    model, values, notes = _distortion(lens, focal, scale, pixels, offset)
+    model, values = _distortion(lens, focal)
     made = projection(
         root.file,
         model,
@@ -71,7 +69,7 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
         values,
     )
     settings = _settings(lens) | _pose(root, lens)
-    return Calibration(made, "", np.eye(4), 1e3 / scale[0], settings, notes)
+    return Calibration(made, "", np.eye(4), 1e3 / scale[0], settings)
 
 
 def _resolution(still: Item) -> tuple[int, int]:
@@ -91,37 +89,14 @@ def _offset(lens: Item, name: str) -> tuple[float, float]:
     return found.need("x").number(), found.need("y").number()
 
 
-def _distortion(
-    lens: Item,
-    focal: float,
-    scale: tuple[float, float],
-    pixels: tuple[int, int],
-    offset: tuple[float, float],
-) -> tuple[str, tuple[float, ...], tuple[str, ...]]:
-    """Our model, its parameters, and what was decided."""
+def _distortion(lens: Item, focal: float) -> tuple[str, tuple[float, ...]]:
+    """Our model and its parameters."""
     listed = lens.list_of("distortion")
     if not listed:
-        return "rectilinear", (), ()
+        return "rectilinear", ()
     known = {_direction(item): item for item in reversed(listed)}
-    if IDEAL_TO_DISTORTED in known:
-        return "opencv", _coefficients(known[IDEAL_TO_DISTORTED], focal).opencv, ()
-    item = known[DISTORTED_TO_IDEAL]
-    inward = _coefficients(item, focal)
-    corner = [
-        ((np.arange(65) / 64 - 0.5) * n / s - o) / focal
-        for n, s, o in zip(pixels, scale, offset, strict=True)
-    ]
-    found, error = fit_inverse(inward, np.stack(np.meshgrid(*corner), -1).reshape(-1, 2))
-    error_px = error * focal * max(scale)
-    if not error_px <= TOLERANCE:
-        item.fail(
-            f"wanted a distortion whose inverse is OpenCV's rational model to {TOLERANCE} px, got "
-            f"{error_px:.3g} px at worst"
-        )
-    return "opencv", found.opencv, (
-        f"the distortion maps the picture to ideal points ({DISTORTED_TO_IDEAL}); its inverse is "
-        f"fitted, to {error_px:.2g} px at worst",
-    )  # fmt: skip
+    named = IDEAL_TO_DISTORTED if IDEAL_TO_DISTORTED in known else DISTORTED_TO_IDEAL
+    return MODELS[named], _coefficients(known[named], focal)
 
 
 def _direction(item: Item) -> str:
@@ -131,8 +106,11 @@ def _direction(item: Item) -> str:
     return choice(named, (DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED))
 
 
-def _coefficients(item: Item, focal: float) -> Rational:
-    """In units of the focal length; odd ones of the list (the first is 1) are the numerator's."""
+def _coefficients(item: Item, focal: float) -> tuple[float, ...]:
+    """In units of the focal length, in OpenCV's order: k1 k2 p1 p2 k3 k4 k5 k6.
+
+    Odd ones of the list (the first is 1) are the numerator's.
+    """
     listed = [one.number() for one in item.need("radial")]
     if not 1 <= len(listed) <= 6:
         item.need("radial").fail(f"wrong length: wanted 1 to 6 numbers, got {len(listed)}")
@@ -141,7 +119,7 @@ def _coefficients(item: Item, focal: float) -> Rational:
     under = [listed[2 * i + 1] * focal ** (2 * i + 2) for i in range(3)]
     aside = item.get("tangential")
     p1, p2 = (0.0, 0.0) if aside is None else aside.numbers(2)
-    return Rational((*over,), (*under,), (p1 * focal, p2 * focal))
+    return (*over[:2], p1 * focal, p2 * focal, over[2], *under)
 
 
 def _settings(lens: Item) -> dict[str, Any]:
@@ -183,7 +161,7 @@ def _transform(item: Item) -> FloatArray:
 
 
 def write_opentrackio(calibration: Calibration) -> str:
-    """A sample with the lens alone, as JSON; its distortion maps as OpenCV's does.
+    """A sample with the lens alone, as JSON; its distortion maps as the model does.
 
     Raises:
         InputError: The model is none that OpenLensIO has, or there is no pixel pitch.
@@ -192,10 +170,11 @@ def write_opentrackio(calibration: Calibration) -> str:
     if pitch is None:
         raise InputError("calibration: OpenTrackIO: wanted a pixel pitch, as its lengths are mm")
     values = (*made.parameters, *[0.0] * 14)[:14]
-    if made.model not in ("opencv", "rectilinear") or any(values[8:]):
+    named = next((name for name, model in MODELS.items() if model == made.model), None)
+    if (named is None and made.model != "rectilinear") or any(values[8:]):
         raise InputError(
-            "calibration: OpenTrackIO: wanted rectilinear, or opencv without prism and tilt; got "
-            f"{made.model}"
+            "calibration: OpenTrackIO: wanted rectilinear, opencv_inverse, or opencv without prism "
+            f"and tilt; got {made.model}"
         )
     focal = made.focal[0] * pitch * 1e-3
     down = pitch * 1e-3 * made.focal[0] / made.focal[1]  # mm: one focal length serves both axes
@@ -211,7 +190,7 @@ def write_opentrackio(calibration: Calibration) -> str:
         },
     }
     if any(values):
-        bent = {"model": IDEAL_TO_DISTORTED, "radial": radial}
+        bent = {"model": named, "radial": radial}
         lens["distortion"] = [bent | {"tangential": [p1 / focal, p2 / focal]}]
     still = {
         "activeSensorPhysicalDimensions": {"width": width * pitch * 1e-3, "height": height * down},
