@@ -2,9 +2,12 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include <limits>
+
 #include "bind/arrays.h"
 #include "math/error.h"
 #include "render/truth_mean.h"
+#include "render/truth_objects.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -82,6 +85,61 @@ auto mean_motion_of(const dg::Scene& scene, const dg::Camera& camera,
     });
 }
 
+using GroupArray = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// Checked: one for each instance, and below `count` where there is one.
+dg::Groups groups_of(const dg::Scene& scene, const GroupArray& groups, std::size_t count) {
+    const std::size_t instances = scene.description().instances.size();
+    const dg::Groups given{groups.data(), groups.shape(0)};
+    if (given.size() != instances)
+        throw dg::input_error("truth", "groups", std::to_string(instances) + " of instances",
+                              std::to_string(given.size()));
+    for (const std::uint32_t group : given)
+        if (group != dg::kNoGroup && group >= count)
+            throw dg::input_error("truth", "groups", "numbers below " + std::to_string(count),
+                                  std::to_string(group));
+    return given;
+}
+
+/// (visible, whole) of each group and the pixels of the whole, x0 y0 x1 y1.
+auto silhouettes_of(const dg::Scene& scene, const dg::Camera& camera,
+                    const dg::RenderSettings& settings, const Crop& crop,
+                    const GroupArray& groups, std::size_t count) {
+    const dg::Groups given = groups_of(scene, groups, count);
+    std::vector<std::uint64_t> pixels;
+    std::vector<int> boxes;
+    {
+        nb::gil_scoped_release release;
+        for (const dg::Silhouette& s :
+             dg::silhouettes({scene, camera}, region_of(crop), settings, given, count)) {
+            pixels.insert(pixels.end(), {s.visible, s.whole});
+            boxes.insert(boxes.end(), {s.x0, s.y0, s.x1, s.y1});
+        }
+    }
+    return std::tuple{dg::bind::to_numpy(std::move(pixels), {count, std::size_t(2)}),
+                      dg::bind::to_numpy(std::move(boxes), {count, std::size_t(4)})};
+}
+
+/// x0 y0 x1 y1 of each group, NaN where it has no place, and whether it is open.
+auto outlines_of(const dg::Scene& scene, const dg::Camera& camera,
+                 const dg::RenderSettings& settings, const GroupArray& groups,
+                 std::size_t count) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const dg::Groups given = groups_of(scene, groups, count);
+    std::vector<double> boxes;
+    std::vector<std::uint8_t> open;
+    {
+        nb::gil_scoped_release release;
+        for (const dg::Outline& o : dg::outlines({scene, camera}, settings, given, count)) {
+            const std::array box{o.low.x, o.low.y, o.high.x, o.high.y};
+            for (const double value : box) boxes.push_back(o.empty ? kNone : value);
+            open.push_back(o.open);
+        }
+    }
+    return std::tuple{dg::bind::to_numpy(std::move(boxes), {count, std::size_t(4)}),
+                      dg::bind::to_numpy(std::move(open), {count})};
+}
+
 }  // namespace
 
 void bind_truth(nb::module_& m) {
@@ -116,4 +174,11 @@ void bind_truth(nb::module_& m) {
           "other_camera"_a, "other_settings"_a, "crop"_a, "rays"_a,
           "How far what is seen moves until another frame, px (H, W, 2), means over the same "
           "rays; NaN: it has no place there.");
+    m.def("silhouettes", &silhouettes_of, "scene"_a, "camera"_a, "settings"_a, "crop"_a,
+          "groups"_a, "count"_a,
+          "Pixels whose chief rays meet a group of instances, first of all and at all (N, 2), and "
+          "the box of the latter (N, 4), end exclusive; 2^32 - 1: an instance of no group.");
+    m.def("outlines", &outlines_of, "scene"_a, "camera"_a, "settings"_a, "groups"_a, "count"_a,
+          "Boxes (x0, y0, x1, y1), px, around all points of groups, and whether some of their "
+          "points have no place; NaN: none has.");
 }
