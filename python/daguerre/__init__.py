@@ -33,6 +33,8 @@ if TYPE_CHECKING:
         stocks,
     )
     from .analysis.calibrate import calibrate
+    from .annotations import annotate
+    from .categories import Categories
     from .frame import Frame
     from .raw import Raw
     from .ray_map import RayMap, raymap
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Camera",
+    "Categories",
     "Conductor",
     "DaguerreError",
     "Dielectric",
@@ -71,6 +74,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "annotate",
     "calibrate",
     "calibration",
     "charts",
@@ -97,6 +101,8 @@ __all__ = [
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
 _LAZY = {
+    "Categories": "categories",
+    "annotate": "annotations",
     "calibrate": "analysis.calibrate",
     "Diffraction": "waves",
     "Frame": "frame",

@@ -372,8 +372,9 @@ class Session:
         return frame
 
     @cached_property
-    def _truth(self) -> dict[str, NDArray[Any]]:
-        truth = GroundTruth(
+    def ground_truth(self) -> GroundTruth:
+        """What is known of scene and camera without samples: of ``gt_time``, or of mid."""
+        return GroundTruth(
             self.scene,
             self.focused_camera,
             (self.width, self.height),
@@ -384,7 +385,14 @@ class Session:
             self._settings.threads,
             None if self.scene.motion else self._core_scene,
         )
-        return truth.planes(motion=self.motion)
+
+    @cached_property
+    def _truth(self) -> dict[str, NDArray[Any]]:
+        return self.ground_truth.planes(motion=self.motion)
+
+    def object_ids(self) -> NDArray[np.uint32]:
+        """Of ground truth: index + 1 of the instance that a pixel sees, (H, W); 0: none."""
+        return self._truth["object_id"] if self.gt_time else self.ground_truth.object_ids()
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:

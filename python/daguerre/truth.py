@@ -18,7 +18,7 @@ import daguerre._core as _core
 from . import shutter
 from .build import build
 from .camera import Camera
-from .camera_setup import set_up
+from .camera_setup import CameraSetup, set_up
 from .checks import short, whole
 from .errors import UsageError, suggest
 from .scene import Scene
@@ -78,6 +78,21 @@ def check_gt_lens(
 
 
 @dataclass(frozen=True)
+class Moment:
+    """What is looked at, and by what.
+
+    Attributes:
+        shot: As the core takes it.
+        scene: As it is then; of a rolling shutter, when the line in the middle opens.
+        setup: The camera, likewise.
+    """
+
+    shot: Shot
+    scene: Scene
+    setup: CameraSetup
+
+
+@dataclass(frozen=True)
 class GroundTruth:
     """What is asked of a frame.
 
@@ -134,7 +149,19 @@ class GroundTruth:
                 planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
         return planes
 
+    def object_ids(self) -> NDArray[np.uint32]:
+        """That plane alone, (H, W)."""
+        now = self._shot(0)
+        if self.gt_lens == "mean":
+            seen: Any = _core.see_mean(*now, self.crop, self.gt_rays)
+        else:
+            seen = _core.see(*now, self.crop)
+        return np.asarray(seen.plane("object_id"))
+
     def _shot(self, frames: int) -> Shot:
+        return self.moment(frames).shot
+
+    def moment(self, frames: int) -> Moment:
         """Scene and camera some frames later, built for the moments of ground truth alone."""
         camera = instants(self.camera, self.resolution)
         opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)
@@ -151,7 +178,7 @@ class GroundTruth:
         settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
-        return core_scene, setup.core, settings
+        return Moment((core_scene, setup.core, settings), scene, setup)
 
 
 def focused(camera: Camera, facts: dict[str, Any]) -> Camera:

@@ -18,6 +18,7 @@ from .calibration_flags import CalibrationFlags
 from .camera_flags import CameraFlags
 from .flags import option, with_flags
 from .frames import check_names, frame_numbers
+from .labels import coco_of
 from .map_flags import MapFlags
 from .photograph import Photograph
 from .plan import DEFAULT_RESOLUTION, check_outputs, make_plan
@@ -96,6 +97,24 @@ def render(
     gt_rays: Annotated[
         int | None,
         option("--gt-rays", metavar="N", help="Of a pixel, for such means [64].", panel=_OUTPUT),
+    ] = None,
+    coco: Annotated[
+        Path | None,
+        option(
+            "--coco",
+            metavar="FILE.json",
+            help="Boxes, masks and categories of all things in the pictures, one file for all.",
+            panel=_OUTPUT,
+        ),
+    ] = None,
+    categories: Annotated[
+        Path | None,
+        option(
+            "--categories",
+            metavar="FILE.json",
+            help="For --coco: what nodes are, by patterns of their names [their names].",
+            panel=_OUTPUT,
+        ),
     ] = None,
     aovs: Annotated[bool, option("--aovs", help="All of them.", panel=_OUTPUT)] = False,
     tone: Annotated[
@@ -325,6 +344,7 @@ def render(
     for picture in wanted:
         check_outputs(picture.plan)
     check_distinct(wanted)
+    labels = coco_of(coco, categories, wanted)
     launched = time.monotonic()
     try:
         scene = scene_flags.load(scene_path)
@@ -361,7 +381,7 @@ def render(
         settings["diffraction"] = Diffraction(diffraction_bands, diffraction_zones)
     elif (diffraction_bands, diffraction_zones) != (16, 1):
         raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
-    shoot = Shoot(scene, scene_path, calibration_flags, changes, settings, tone, stats)
+    shoot = Shoot(scene, scene_path, calibration_flags, changes, settings, tone, stats, *labels)
     if dry_run:
         return shoot.describe(wanted)
     return shoot.draw_all(wanted, launched, resume=resume, quiet=quiet, as_json=json_progress)

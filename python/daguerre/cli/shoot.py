@@ -16,6 +16,8 @@ from .job import INTERRUPTED, Job, core_errors
 
 if TYPE_CHECKING:
     from daguerre.built_scene import BuiltScene
+    from daguerre.categories import Categories
+    from daguerre.io.coco import CocoFile
     from daguerre.scene import Scene
     from daguerre.session import Session
 
@@ -93,6 +95,8 @@ class Shoot:
         settings: Of the session.
         tone: Curve of a PNG.
         stats: Print counts and times.
+        coco: What the pictures show is written there.
+        categories: What it is.
     """
 
     scene: Scene
@@ -102,6 +106,8 @@ class Shoot:
     settings: dict[str, Any]
     tone: str
     stats: bool
+    coco: CocoFile | None = None
+    categories: Categories | None = None
     _warned: set[str] = field(default_factory=set)
     _seen: Scene | None = None
     _built: BuiltScene | None = None
@@ -112,6 +118,8 @@ class Shoot:
             view.of(
                 self.scene, self.calibrations, self.changes
             )  # or an error before hours are spent
+        if self.categories is not None:
+            self.categories.things(self.scene)
         for i, picture in enumerate(wanted):
             if picture.words:
                 console.note(f"{picture.words} ({i + 1} of {len(wanted)})")
@@ -122,6 +130,9 @@ class Shoot:
             if code:
                 return code
             launched = time.monotonic()
+        if self.coco is not None:
+            self.coco.write()
+            console.note(f"wrote {self.coco.path}")
         return 0
 
     def _draw(
@@ -142,13 +153,31 @@ class Shoot:
         complete = all(path.exists() for path in plan.written) and not plan.checkpoint.exists()
         if resume and complete and not (alone and picture.frame is None):
             console.note(f"{plan.outputs[0]} is complete")
+            if self.coco is not None:
+                self._annotate(picture, self._session(picture))
             return 0
         session = self._session(picture)
         if plan.maps.files:
             scene, camera = session.scene, session.focused_camera
             plan.maps.write(scene, camera, plan.resolution, session.overscan, plan.gt_time)
         job = Job(session, plan, self.tone, time.monotonic() - launched, self.stats, picture.facts)
-        return job.run(resume=resume, quiet=quiet, as_json=as_json)
+        code = job.run(resume=resume, quiet=quiet, as_json=as_json)
+        if not code:
+            self._annotate(picture, session)
+        return code
+
+    def _annotate(self, picture: Picture, session: Session) -> None:
+        """Notes what a picture shows, if that is wanted."""
+        if self.coco is None:
+            return
+        from daguerre.annotations import annotations_of
+
+        with core_errors("render"):
+            seen = annotations_of(session, self.categories)
+        # Readers of data sets want files that image libraries open.
+        files = picture.plan.files
+        plain = (f for f in files if f.suffix.lower() not in (".exr", ".dng"))
+        self.coco.add(seen, next(plain, files[0]), picture.facts)
 
     def _write_maps(self, picture: Picture) -> None:
         """The maps of a camera, without its picture."""

@@ -1,0 +1,225 @@
+"""What a camera sees of each thing: boxes, masks, and boxes in space; see docs/ground-truth.md.
+
+Boxes in the picture are (x, y, width, height), px from the upper left edge of the picture, as COCO
+has them: the box of its first pixel is (0, 0, 1, 1). Of a crop, the picture is the crop.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+
+from .boxes import Box3, box_of
+from .camera import Camera
+from .categories import Categories, Category, Thing
+from .scene import Scene
+from .session import Session
+from .truth import GroundTruth, Moment
+
+Box = tuple[float, float, float, float]
+NO_GROUP = 0xFFFFFFFF
+#: The camera's frame as OpenCV has it, x right, y down, z ahead, from Daguerre's.
+FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Annotation:
+    """One thing, as it is seen.
+
+    Attributes:
+        name: Its node.
+        category: What it is.
+        instances: Indices of the scene's.
+        area: Pixels in which it is seen.
+        box: Around those; None: it is hidden.
+        full_box: Around all of it, hidden parts too, as far as the picture goes.
+        truncation: Share of its whole box that lies beside the picture; None: nobody knows, since
+            some of it has no place there, such as what is behind the camera.
+        visibility: Pixels whose chief ray meets it first, of those whose chief ray meets it.
+        box3: Around it in the world, m, at the picture's ``time``.
+        camera_box3: The same in the camera's frame, x right, y down, z ahead.
+    """
+
+    name: str
+    category: Category
+    instances: tuple[int, ...]
+    area: int
+    box: Box | None
+    full_box: Box
+    truncation: float | None
+    visibility: float
+    box3: Box3
+    camera_box3: Box3
+
+
+@dataclass(frozen=True)
+class Annotations:
+    """The things of a picture.
+
+    Attributes:
+        things: Those that are in the picture, hidden or not, in the order of the scene.
+        categories: All that there may be.
+        labels: Of each pixel the index among ``things`` + 1 of what it shows, shape (H, W).
+        time: Of the boxes in space, s: of a rolling shutter that of the line in the middle.
+        world_from_camera: The camera's frame as OpenCV has it, shape (4, 4), m.
+        intrinsics: Of a camera that has them: ``model``, ``camera_matrix`` (3, 3) and
+            ``parameters`` as OpenCV has them, with pixel centres at whole numbers.
+    """
+
+    things: list[Annotation]
+    categories: list[Category]
+    labels: NDArray[np.int32]
+    time: float
+    world_from_camera: NDArray[np.float64]
+    intrinsics: dict[str, Any] = field(default_factory=dict)
+
+    def mask(self, index: int) -> NDArray[np.bool_]:
+        """Where one of ``things`` is seen, shape (H, W)."""
+        return np.asarray(self.labels == index + 1)
+
+
+def annotate(
+    scene: Scene,
+    camera: Camera | str | None = None,
+    *,
+    categories: Categories | None = None,
+    **options: Any,
+) -> Annotations:
+    """What a camera sees of each thing of a scene, without drawing a picture.
+
+    Args:
+        scene: What is seen.
+        camera: What sees it; None: the scene's own.
+        categories: What its things are; None: the names of its nodes say it.
+        **options: As of :class:`Session`: resolution, crop, gt_time, gt_lens, gt_rays, threads.
+    """
+    session = Session(scene, camera, **{"light_paths": "off", **options})
+    return annotations_of(session, categories)
+
+
+def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
+    """What a session's camera sees of each thing; of ``gt_time``, or of mid without one."""
+    chosen = categories or Categories()
+    truth, moment = session.ground_truth, session.ground_truth.moment(0)
+    things, all_known = chosen.things(session.scene), chosen.all(session.scene)
+    groups = np.full(len(session.scene.instances), NO_GROUP, np.uint32)
+    for i, thing in enumerate(things):
+        groups[list(thing.instances)] = i
+    seen = _Seen(truth, moment, groups, len(things), session.object_ids())
+    world = np.asarray(moment.setup.facts["world_from_camera"], np.float64) @ FLIP
+    found, kept = [], np.zeros(len(things) + 1, np.int32)
+    for i, thing in enumerate(things):
+        made = seen.annotation(i, thing, moment.scene, world)
+        if made is not None:
+            found.append(made)
+            kept[i + 1] = len(found)
+    intrinsics = _intrinsics(truth, moment)
+    labels = kept[seen.labels]
+    return Annotations(found, all_known, labels, moment.scene.time, world, intrinsics)
+
+
+class _Seen:
+    """Pixels and boxes of groups of instances."""
+
+    def __init__(
+        self,
+        truth: GroundTruth,
+        moment: Moment,
+        groups: NDArray[np.uint32],
+        count: int,
+        ids: NDArray[np.uint32],
+    ) -> None:
+        x0, y0, x1, y1 = truth.crop
+        self.corner, self.size = np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
+        self.pixels, boxes = _core.silhouettes(*moment.shot, truth.crop, groups, count)
+        self.outlines, self.open = _core.outlines(*moment.shot, groups, count)
+        self.silhouettes = np.asarray(boxes, np.float64)
+        with_none = np.concatenate([[NO_GROUP], groups]).astype(np.uint32)
+        self.labels = (with_none[ids] + np.uint32(1)).astype(np.int32)  # 2^32 - 1 becomes 0
+        self.areas = np.bincount(self.labels.ravel(), minlength=count + 1)[1:]
+        self.boxes = _boxes(self.labels, count)
+
+    def annotation(self, i: int, thing: Thing, scene: Scene, world: Any) -> Annotation | None:
+        """Of one group; None: it is not in the picture."""
+        visible, whole = (int(n) for n in self.pixels[i])
+        area = int(self.areas[i])
+        box3 = box_of(scene, thing.instances)
+        if box3 is None or not (whole or area):
+            return None
+        ends = self._ends(i, whole)
+        shown = np.clip(ends, 0, self.size)
+        x, y, width, height = self.boxes[i]
+        return Annotation(
+            name=thing.name,
+            category=thing.category,
+            instances=thing.instances,
+            area=area,
+            box=(float(x), float(y), float(width), float(height)) if area else None,
+            full_box=_box(shown),
+            truncation=None if self.open[i] else _beside(ends, shown),
+            visibility=visible / whole if whole else 1.0,
+            box3=box3,
+            camera_box3=box3.seen_from(world),
+        )
+
+    def _ends(self, i: int, whole: int) -> NDArray[np.float64]:
+        """Low and high corner of all of it, px, where the whole picture would be."""
+        outline: NDArray[np.float64] = self.outlines[i].reshape(2, 2) - self.corner
+        if not whole:
+            return outline
+        pixels = self.silhouettes[i].reshape(2, 2) - self.corner
+        if not self.open[i] and np.isfinite(outline).all():
+            return outline
+        # Edges that are all out of sight tell nothing of a face that fills the picture.
+        low = np.fmin(outline[0], pixels[0])
+        return np.stack([low, np.fmax(outline[1], pixels[1])])
+
+
+def _boxes(labels: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+    """(x, y, width, height) of each label from 1 on, shape (count, 4)."""
+    y, x = np.nonzero(labels)
+    of = labels[y, x] - 1
+    low = np.full((2, count), np.iinfo(np.int64).max)
+    high = np.full((2, count), -1)
+    for axis, values in enumerate((x, y)):
+        np.minimum.at(low[axis], of, values)
+        np.maximum.at(high[axis], of, values)
+    return np.stack([*low, *(high - low + 1)], axis=1)
+
+
+def _box(ends: NDArray[np.float64]) -> Box:
+    x, y, width, height = np.concatenate([ends[0], ends[1] - ends[0]]).tolist()
+    return x, y, width, height
+
+
+def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
+    """Share of a box that is not in the picture."""
+    whole = float(np.prod(ends[1] - ends[0]))
+    return max(0.0, 1 - float(np.prod(shown[1] - shown[0])) / whole) if whole > 0 else 0.0
+
+
+def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
+    """Empty where the camera has none: of glass, tilted lenses, shifts that change."""
+    camera, setup, (width, height) = truth.camera, moment.setup, truth.resolution
+    (x0, y0), model = truth.crop[:2], setup.facts["lens_model"]
+    if camera.projection is not None:
+        made = camera.projection
+        scale = width / made.size[0]
+        focal = [scale * f for f in made.focal]
+        center = [scale * (c + 0.5) - 0.5 for c in made.center]
+        named: dict[str, Any] = {"model": made.model, "parameters": list(made.parameters)}
+    elif model in ("pinhole", "thin") and not any(camera.tilt):
+        right, up = setup.facts["shift_mm"]
+        across, down = width / setup.frame_size[0], height / setup.frame_size[1]
+        focal = [setup.pinhole_focal_length * across, setup.pinhole_focal_length * down]
+        center = [width / 2 - 0.5 - right * across, height / 2 - 0.5 + up * down]
+        named = {"model": "pinhole", "parameters": []}
+    else:
+        return {}
+    matrix = [[focal[0], 0.0, center[0] - x0], [0.0, focal[1], center[1] - y0], [0.0, 0.0, 1.0]]
+    return named | {"camera_matrix": matrix}

@@ -1,0 +1,72 @@
+"""Boxes in space: around what belongs together, with the axes of its node."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .scene import Scene
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Box3:
+    """A box that lies in space as it likes.
+
+    Attributes:
+        center: Its middle, shape (3,), m.
+        size: Along its own axes, shape (3,), m.
+        rotation: Those axes, as columns of a rotation, shape (3, 3).
+    """
+
+    center: FloatArray
+    size: FloatArray
+    rotation: FloatArray
+
+    def corners(self) -> FloatArray:
+        """Shape (8, 3), m; the last axis changes first."""
+        half = np.array(list(product((-0.5, 0.5), repeat=3))) * self.size
+        return np.asarray(half @ self.rotation.T + self.center)
+
+    def seen_from(self, frame: FloatArray) -> Box3:
+        """The same in a frame that lies in the world as a rigid matrix (4, 4) has it."""
+        turn = frame[:3, :3]
+        center = (self.center - frame[:3, 3]) @ turn
+        return Box3(center, self.size, turn.T @ self.rotation)
+
+
+def box_of(scene: Scene, instances: Iterable[int]) -> Box3 | None:
+    """The box around instances, with the axes of the first one; None: they have no triangles.
+
+    Vertices are those of the scene's own time.
+    """
+    axes: FloatArray | None = None
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for i in instances:
+        instance = scene.instances[i]
+        world = np.asarray(instance.transform, np.float64)
+        if axes is None:
+            axes = rotation_of(world)
+        mesh = scene.meshes[instance.mesh]
+        used = np.unique(mesh.indices)
+        if not used.size:
+            continue
+        points = (mesh.positions[used] @ world[:3, :3].T + world[:3, 3]) @ axes
+        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    if axes is None or not (high >= low).all():
+        return None
+    return Box3(axes @ (0.5 * (low + high)), high - low, axes)
+
+
+def rotation_of(world: FloatArray) -> FloatArray:
+    """The rotation that a matrix comes nearest to, scale, shear and mirrors left out."""
+    u, _, v = np.linalg.svd(np.asarray(world, np.float64)[:3, :3])
+    turn = u @ v
+    if np.linalg.det(turn) < 0:  # a mirror: the x axis looks the other way
+        turn = turn @ np.diag([-1.0, 1.0, 1.0])
+    return np.asarray(turn)

@@ -1,0 +1,198 @@
+"""What the things of a scene are: which instances belong together, and the category of each.
+
+Without a file each node with a mesh is a thing, and copies are of one category: ``Chair``,
+``Chair.001`` and ``Chair_2`` are chairs. A file says it otherwise::
+
+    {"Chair*": "chair", "Lamp?": {"name": "lamp", "id": 7, "supercategory": "light"}, "Floor": null}
+
+Patterns of names (``*``, ``?``, ``[ab]``) in the order of the file; the first one that matches a
+node decides. A node is one thing with all that hangs below it. What is null, and what no pattern
+matches, is no thing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from .errors import InputError, UsageError, suggest
+from .io.json_item import Item
+from .io.json_text import parse
+from .scene import Scene
+
+#: What programs append to the names of copies.
+_COPY = re.compile(r"(?:[ ._-]\d+|\s*\(\d+\))$")
+_MAX_BYTES = 1_000_000
+
+
+@dataclass(frozen=True)
+class Category:
+    """What a thing is; numbers as COCO has them, from 1."""
+
+    name: str
+    id: int
+    supercategory: str = ""
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Instances of a scene that belong together."""
+
+    name: str
+    category: Category
+    instances: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Nodes of which name are what; None: nothing."""
+
+    pattern: str
+    category: Category | None
+
+
+@dataclass(frozen=True)
+class Categories:
+    """How the things of a scene are found; without rules by the names of nodes.
+
+    Attributes:
+        rules: In their order; None: names are categories.
+        where: For messages.
+    """
+
+    rules: Sequence[Rule] | None = None
+    where: str = "categories"
+
+    @classmethod
+    def read(cls, path: str | Path) -> Categories:
+        """A file of patterns.
+
+        Raises:
+            InputError: With file and JSON path of what cannot be used.
+        """
+        path = Path(path)
+        try:
+            if not path.is_file() or path.stat().st_size > _MAX_BYTES:
+                raise InputError(
+                    f"{path}: categories: wanted a JSON file of at most {_MAX_BYTES} bytes"
+                )
+            data = path.read_bytes()
+        except OSError as error:
+            raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+        return cls(_rules(parse(data, str(path))), str(path))
+
+    def all(self, scene: Scene) -> list[Category]:
+        """All that there may be, by number, whether a picture shows some or not."""
+        if self.rules is None:
+            return list(_by_name(scene).values())
+        found = {rule.category.name: rule.category for rule in self.rules if rule.category}
+        return sorted(found.values(), key=lambda category: category.id)
+
+    def things(self, scene: Scene) -> list[Thing]:
+        """The things of a scene.
+
+        Raises:
+            UsageError: A pattern that names no node.
+        """
+        if self.rules is None:
+            known = _by_name(scene)
+            return [
+                Thing(name, known[base_name(name)], tuple(instances))
+                for name, instances in _nodes(scene).items()
+            ]
+        self._check(scene)
+        return list(self._ruled(scene, self.rules))
+
+    def _ruled(self, scene: Scene, rules: Sequence[Rule]) -> Iterator[Thing]:
+        taken: set[int] = set()
+        for name, instances in scene.nodes.items():  # parents come first
+            rule = next((r for r in rules if fnmatchcase(name, r.pattern)), None)
+            left = tuple(i for i in instances if i not in taken) if rule else ()
+            taken.update(left)
+            if rule is not None and rule.category is not None and left:
+                yield Thing(name, rule.category, left)
+
+    def _check(self, scene: Scene) -> None:
+        names = list(scene.nodes)
+        for rule in self.rules or ():
+            if not any(fnmatchcase(name, rule.pattern) for name in names):
+                raise UsageError(
+                    f"{self.where}: {rule.pattern!r}: wanted a pattern of some node's name, got "
+                    f"none that has it{suggest(rule.pattern, names)}"
+                )
+
+
+def base_name(name: str) -> str:
+    """A node's name without the numbers of copies; one that is nothing but a number stays."""
+    base = name
+    while (shorter := _COPY.sub("", base)) != base and shorter:
+        base = shorter
+    return base.rstrip(" ._-") or name
+
+
+def _nodes(scene: Scene) -> dict[str, list[int]]:
+    """Instances of each node, by its name; those without one stand alone."""
+    nodes: dict[str, list[int]] = {}
+    for i, instance in enumerate(scene.instances):
+        nodes.setdefault(instance.name or f"instance {i}", []).append(i)
+    return nodes
+
+
+def _by_name(scene: Scene) -> dict[str, Category]:
+    names = sorted({base_name(name) for name in _nodes(scene)})
+    return {name: Category(name, i + 1) for i, name in enumerate(names)}
+
+
+def _rules(root: Item) -> list[Rule]:
+    members = root.members()
+    if not members:
+        root.fail("wanted patterns of names and their categories, got none")
+    given = [(str(member.key), _category(member)) for member in members]
+    known: dict[str, Category] = {}
+    for member, (_, category) in zip(members, given, strict=True):
+        if category is None:
+            continue
+        before = known.setdefault(category.name, category)
+        if category.id and before.id and category.id != before.id:
+            member.fail(f"wanted one id for {category.name!r}, got {before.id} and {category.id}")
+        if category.id and not before.id:
+            known[category.name] = category
+    numbered = _numbered(root, known)
+    return [Rule(pattern, category and numbered[category.name]) for pattern, category in given]
+
+
+def _category(item: Item) -> Category | None:
+    """With the id 0 where the file says none."""
+    if item.value is None:
+        return None
+    if isinstance(item.value, str):
+        return Category(item.text(), 0)
+    members = ("name", "id", "supercategory")
+    for member in item.members():
+        if member.key not in members:
+            member.fail(f"not known{suggest(str(member.key), members)}")
+    number, above = item.get("id"), item.get("supercategory")
+    return Category(
+        item.need("name").text(),
+        0 if number is None else number.integer(1, 2**31 - 1),
+        "" if above is None else above.text(),
+    )
+
+
+def _numbered(root: Item, known: dict[str, Category]) -> dict[str, Category]:
+    """Those without a number get the free ones from 1 on, in the order of the file."""
+    taken: dict[int, str] = {}
+    for category in known.values():
+        if category.id and taken.setdefault(category.id, category.name) != category.name:
+            root.fail(
+                f"wanted an id for each category, got {category.id} for "
+                f"{taken[category.id]!r} and {category.name!r}"
+            )
+    free = (i for i in range(1, 2**31) if i not in taken)
+    return {
+        name: category if category.id else Category(name, next(free), category.supercategory)
+        for name, category in known.items()
+    }
