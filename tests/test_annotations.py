@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.annotations import Annotation, Annotations
 from daguerre.boxes import rotation_of
 from daguerre.categories import Categories, base_name
-from daguerre.errors import DaguerreError
+from daguerre.errors import DaguerreError, UsageError
 from daguerre.projection import Projection
 from daguerre.shutter import RollingShutter
 
@@ -306,6 +306,14 @@ def test_bad_files_of_categories(text: str, message: str, tmp_path: Path) -> Non
         dg.annotate(family(), PINHOLE, categories=read(tmp_path / "c.json", text), resolution=SIZE)
     assert message in str(caught.value)
     assert str(tmp_path / "c.json") in str(caught.value)
+
+
+def test_what_is_no_file_of_categories_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="categories: wanted Categories or a file, got 3"):
+        dg.annotate(family(), PINHOLE, categories=3)
+    (tmp_path / "c.json").write_text('{"Table": "table"}')
+    seen = dg.annotate(family(), PINHOLE, resolution=SIZE, categories=tmp_path / "c.json")
+    assert only(seen).name == "Table"
 
 
 def test_means_label_by_the_largest_share() -> None:

@@ -7,6 +7,7 @@ has them: the box of its first pixel is (0, 0, 1, 1). Of a crop, the picture is 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ import daguerre._core as _core
 from .boxes import Box3, box_of
 from .camera import Camera
 from .categories import Categories, Category, Thing
+from .checks import short
+from .errors import UsageError
 from .scene import Scene
 from .session import Session
 from .truth import GroundTruth, Moment
@@ -27,7 +30,7 @@ NO_GROUP = 0xFFFFFFFF
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Annotation:
     """One thing, as it is seen.
 
@@ -57,7 +60,7 @@ class Annotation:
     camera_box3: Box3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Annotations:
     """The things of a picture.
 
@@ -87,7 +90,7 @@ def annotate(
     scene: Scene,
     camera: Camera | str | None = None,
     *,
-    categories: Categories | None = None,
+    categories: Categories | str | Path | None = None,
     **options: Any,
 ) -> Annotations:
     """What a camera sees of each thing of a scene, without drawing a picture.
@@ -95,9 +98,13 @@ def annotate(
     Args:
         scene: What is seen.
         camera: What sees it; None: the scene's own.
-        categories: What its things are; None: the names of its nodes say it.
+        categories: What its things are, or the file that says it; None: the names of its nodes do.
         **options: As of :class:`Session`: resolution, crop, gt_time, gt_lens, gt_rays, threads.
     """
+    if isinstance(categories, str | Path):
+        categories = Categories.read(categories)
+    if not isinstance(categories, Categories | None):
+        raise UsageError(f"categories: wanted Categories or a file, got {short(categories)}")
     session = Session(scene, camera, **{"light_paths": "off", **options})
     return annotations_of(session, categories)
 
@@ -105,12 +112,13 @@ def annotate(
 def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
     """What a session's camera sees of each thing; of ``gt_time``, or of mid without one."""
     chosen = categories or Categories()
-    truth, moment = session.ground_truth, session.ground_truth.moment(0)
+    truth = session.ground_truth
+    moment = truth.moment(0)
     things, all_known = chosen.things(session.scene), chosen.all(session.scene)
     groups = np.full(len(session.scene.instances), NO_GROUP, np.uint32)
     for i, thing in enumerate(things):
         groups[list(thing.instances)] = i
-    seen = _Seen(truth, moment, groups, len(things), session.object_ids())
+    seen = _Seen(truth, moment, groups, len(things), session.object_ids(moment))
     world = np.asarray(moment.setup.facts["world_from_camera"], np.float64) @ FLIP
     found, kept = [], np.zeros(len(things) + 1, np.int32)
     for i, thing in enumerate(things):
@@ -141,6 +149,7 @@ class _Seen:
         self.silhouettes = np.asarray(boxes, np.float64)
         with_none = np.concatenate([[NO_GROUP], groups]).astype(np.uint32)
         self.labels = (with_none[ids] + np.uint32(1)).astype(np.int32)  # 2^32 - 1 becomes 0
+        self._used: dict[int, NDArray[np.uint32]] = {}  # vertices of meshes
         self.areas = np.bincount(self.labels.ravel(), minlength=count + 1)[1:]
         self.boxes = _boxes(self.labels, count)
 
@@ -148,9 +157,9 @@ class _Seen:
         """Of one group; None: it is not in the picture."""
         visible, whole = (int(n) for n in self.pixels[i])
         area = int(self.areas[i])
-        box3 = box_of(scene, thing.instances)
-        if box3 is None or not (whole or area):
+        if not (whole or area):
             return None
+        box3 = box_of(scene, thing.instances, self._used)
         ends = self._ends(i, whole)
         shown = np.clip(ends, 0, self.size)
         x, y, width, height = self.boxes[i]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -14,7 +14,7 @@ from .scene import Scene
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Box3:
     """A box that lies in space as it likes.
 
@@ -40,26 +40,26 @@ class Box3:
         return Box3(center, self.size, turn.T @ self.rotation)
 
 
-def box_of(scene: Scene, instances: Iterable[int]) -> Box3 | None:
-    """The box around instances, with the axes of the first one; None: they have no triangles.
+def box_of(
+    scene: Scene, instances: Sequence[int], used: dict[int, NDArray[np.uint32]] | None = None
+) -> Box3:
+    """The box around instances that have triangles, with the axes of the first one.
 
-    Vertices are those of the scene's own time.
+    Args:
+        scene: Vertices are those of its own time.
+        instances: Indices, one at least.
+        used: Vertices of triangles by the index of the mesh, kept from call to call.
     """
-    axes: FloatArray | None = None
+    used = {} if used is None else used
+    axes = rotation_of(scene.instances[instances[0]].transform)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for i in instances:
-        instance = scene.instances[i]
-        world = np.asarray(instance.transform, np.float64)
-        if axes is None:
-            axes = rotation_of(world)
-        mesh = scene.meshes[instance.mesh]
-        used = np.unique(mesh.indices)
-        if not used.size:
-            continue
-        points = (mesh.positions[used] @ world[:3, :3].T + world[:3, 3]) @ axes
-        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-    if axes is None or not (high >= low).all():
-        return None
+    for instance in (scene.instances[i] for i in instances):
+        mesh, world = scene.meshes[instance.mesh], instance.transform
+        if instance.mesh not in used:
+            used[instance.mesh] = np.unique(mesh.indices)
+        points = (mesh.positions[used[instance.mesh]] @ world[:3, :3].T + world[:3, 3]) @ axes
+        if len(points):
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
     return Box3(axes @ (0.5 * (low + high)), high - low, axes)
 
 

@@ -38,7 +38,7 @@ from .overscan import NONE
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
-from .truth import GroundTruth, check_gt_lens, check_gt_time, focused
+from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves
 
@@ -390,9 +390,12 @@ class Session:
     def _truth(self) -> dict[str, NDArray[Any]]:
         return self.ground_truth.planes(motion=self.motion)
 
-    def object_ids(self) -> NDArray[np.uint32]:
-        """Of ground truth: index + 1 of the instance that a pixel sees, (H, W); 0: none."""
-        return self._truth["object_id"] if self.gt_time else self.ground_truth.object_ids()
+    def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
+        """Of ground truth: index + 1 of the instance that a pixel sees, (H, W); 0: none.
+
+        ``moment`` is that of ``ground_truth``, so that it need not be built again.
+        """
+        return self._truth["object_id"] if self.gt_time else self.ground_truth.object_ids(moment)
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:

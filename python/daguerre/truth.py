@@ -149,13 +149,12 @@ class GroundTruth:
                 planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
         return planes
 
-    def object_ids(self) -> NDArray[np.uint32]:
-        """That plane alone, (H, W)."""
-        now = self._shot(0)
+    def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
+        """That plane alone, (H, W), of ``moment(0)``."""
         if self.gt_lens == "mean":
-            seen: Any = _core.see_mean(*now, self.crop, self.gt_rays)
+            seen: Any = _core.see_mean(*moment.shot, self.crop, self.gt_rays)
         else:
-            seen = _core.see(*now, self.crop)
+            seen = _core.see(*moment.shot, self.crop)
         return np.asarray(seen.plane("object_id"))
 
     def _shot(self, frames: int) -> Shot:
