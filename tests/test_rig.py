@@ -9,8 +9,9 @@ import pytest
 
 import daguerre as dg
 from daguerre import built_scene, charts, session
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError
 from daguerre.projection import Projection
+from daguerre.rig import disparity
 
 MODEL = Projection("opencv", (96, 54), (90.0, 90.0), (46.0, 27.0), (-0.1, 0.02))
 
@@ -58,12 +59,43 @@ def test_disparity_is_focal_length_times_baseline_over_depth() -> None:
     place[:3, 3] = 0.1, -0.05, -1.2
     scene.add_light(dg.SphereLight((1e3, 1e3, 1e3), 0.01), place)
     camera = dg.Camera(projection=Projection("rectilinear", (96, 54), (80.0, 80.0)))
-    frames = dg.render_rig(scene, dg.stereo_pair(camera, 0.24), spp=512, filter="box")
+    options: dict[str, Any] = {"filter": "box", "crop": (40, 25, 70, 35)}
+    frames = dg.render_rig(scene, dg.stereo_pair(camera, 0.24), spp=512, **options)
     x = {}
     for name, frame in frames.items():
         light = np.maximum(frame.xyz[..., 1], 0)
-        x[name] = (light.sum(axis=0) * np.arange(96)).sum() / light.sum()
+        x[name] = (light.sum(axis=0) * np.arange(light.shape[1])).sum() / light.sum()
     assert x["left"] - x["right"] == pytest.approx(80 * 0.24 / 1.2, abs=0.05)
+
+
+def test_disparity_is_where_both_pictures_show_a_point() -> None:
+    """What a pixel of one picture shows, projected into the other, lies so much further."""
+    scene = charts.make("slanted-edge").scene(1.0)
+    model = Projection("rectilinear", (96, 54), (90.0, 80.0), (46.0, 27.0))
+    place = np.eye(4)
+    place[2, 3] = 2.5
+    cameras = dg.stereo_pair(base().with_(projection=model, transform=place), 0.12)
+    frames = dg.render_rig(scene, cameras, spp=1, gt_time="mid", resolution=(48, 27), aovs=True)
+    rows, columns = 0.5 + 2 * np.mgrid[:27, :48]  # in pixels of the projection
+    for name, other, sign in (("left", "right", 1), ("right", "left", -1)):
+        frame = frames[name]
+        points = np.stack([frame.aovs[f"P.{axis}"] for axis in "XYZ"], axis=-1)
+        hit = frame.aovs["depth.Z"] > 0
+        assert 0.2 < hit.mean() < 0.95
+        local = np.c_[points[hit], np.ones(hit.sum())] @ np.linalg.inv(cameras[other].transform).T
+        there = model.project(local[:, :3] * (1, -1, -1))
+        found = disparity(frame, 0.12)
+        assert (found[~hit] == 0).all()
+        np.testing.assert_allclose(sign * (columns[hit] - there[:, 0]) / 2, found[hit], atol=1e-4)
+        np.testing.assert_allclose(there[:, 1], rows[hit], atol=1e-3)
+    wide = base().with_(projection=MODEL)
+    with pytest.raises(InputError, match="got opencv"):
+        disparity(dg.render(scene, wide, resolution=(48, 27), spp=1, gt_time="mid"), 0.1)
+    with pytest.raises(InputError, match="exact depth"):
+        disparity(dg.render(scene, cameras["left"], resolution=(48, 27), spp=1, aovs=True), 0.1)
+    options: dict[str, Any] = {"resolution": (48, 27), "spp": 1, "gt_time": "mid"}
+    with pytest.raises(InputError, match="gt_lens='chief'"):
+        disparity(dg.render(scene, cameras["left"], gt_lens="mean", **options), 0.1)
 
 
 def test_bad_rigs_are_errors() -> None:

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +95,22 @@ def test_a_pair_stands_around_its_camera() -> None:
     assert alone.transform[0, 3] == pytest.approx(0.15)
 
 
+def test_disparity_of_a_pair(capsys: pytest.CaptureFixture[str]) -> None:
+    flags = ["--res", "20x12", "--aov", "disparity,depth", *QUICK]
+    assert render("-o", "p.exr", "--stereo", "0.2", "-c", "A", *flags) == 0
+    frame = dg.load_frame("p.right.exr")
+    focal = 12 / np.tan(0.3) * 20 / 36  # px: the file's yfov is of a sensor of 36 x 24 mm
+    expected = np.where(frame.aovs["depth.Z"] > 0, focal * 0.2 / 2, 0)
+    np.testing.assert_allclose(frame.aovs["disparity.X"], expected, rtol=1e-5)
+    for more, message in (
+        ([], "wanted --stereo"),
+        (["--stereo", "1", "--gt-lens", "mean"], "--gt-lens chief"),
+        (["--stereo", "1", "--samples", "0:2"], "wanted no --aov disparity"),
+    ):
+        assert render("-o", "x.exr", *flags, *more) == 2
+        assert message in capsys.readouterr().err
+
+
 def test_cameras_of_a_chain_have_sizes_of_their_own(built: list[int]) -> None:
     flags = [*without_lens(QUICK), "-c", "A", "--pixel-pitch", "5"]
     assert render("-o", "rig.exr", "--calibration", "chain.yaml:all", *flags) == 0
@@ -145,7 +162,7 @@ def test_programs_are_told_which_camera(capsys: pytest.CaptureFixture[str]) -> N
 def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: Path) -> None:
     root = Path(__file__).parents[1]
     paths = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH", "")]))
-    flags = ["-o", "a.exr", "--stereo", "0.1", "--spp", "40", "--res", "8x6"]
+    flags = ["-o", "a.exr", "--stereo", "0.1", "--spp", "24", "--res", "8x6"]
 
     def start(seconds: float, *more: str) -> subprocess.Popen[str]:
         command = [sys.executable, "-m", "tests.fake_session", "render", "s.glb", *flags, *more]
@@ -153,12 +170,10 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         return subprocess.Popen([*command, "--json-progress"], text=True, env=env, **pipes)
 
-    process = start(0.02)
-    assert process.stdout is not None
-    for line in process.stdout:
-        event = json.loads(line)
-        if event["event"] == "progress" and event["camera"] == "right" and event["samples"] > 2:
-            break
+    process = start(0.02, "--checkpoint", "50ms")
+    until = time.monotonic() + 20
+    while not (tmp_path / "a.right.checkpoint.exr").exists() and time.monotonic() < until:
+        time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=20)
     assert process.returncode == 75

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .built_scene import BuiltScene
 from .camera import Camera
 from .camera_pose import moved_right
 from .checks import number, short
-from .errors import UsageError
+from .errors import InputError, UsageError
 from .frame import Frame
 from .scene import Scene
 from .session import Session, finish
@@ -68,3 +71,39 @@ def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
         name: moved_right(camera, side * baseline)
         for name, side in (("left", -0.5), ("right", 0.5))
     }
+
+
+def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
+    """How far what a pixel shows lies apart in the two pictures of a stereo pair, px.
+
+    Of both pictures x_left - x_right, so focal length x baseline / depth; 0 where nothing is.
+
+    Args:
+        frame: Left or right, with ground truth (``gt_time``) through its chief rays, by a pinhole,
+            a thin lens or a rectilinear projection: their straight lines stay straight.
+        baseline: Of the pair, m.
+
+    Returns:
+        Shape (H, W).
+
+    Raises:
+        InputError: The picture is another one.
+    """
+    number(baseline, "disparity: baseline", above=0)
+    facts = frame.metadata.get("camera", {})
+    projection = facts.get("projection", {})
+    kind = projection.get("model") or facts.get("lens_model")
+    if kind not in ("pinhole", "thin", "rectilinear"):
+        raise InputError(
+            f"disparity: wanted a pinhole, a thin lens or a rectilinear projection, got {kind}"
+        )
+    depth = frame.aovs.get("depth.Z")
+    if depth is None or "gt_time" not in frame.metadata:
+        raise InputError("disparity: wanted exact depth, got none; gt_time='mid' makes it")
+    if (lens := frame.metadata.get("gt_lens", "chief")) != "chief":
+        raise InputError(f"disparity: wanted gt_lens='chief', got {lens!r}")
+    focal = frame.metadata["pinholeFocalLength"] / frame.metadata["sensorPhotositePitch"] * 1e3
+    if projection:  # it may have another one downward
+        focal = projection["focal_px"][0] * frame.metadata["resolution"][0] / projection["size"][0]
+    apart = focal * baseline
+    return np.where(depth > 0, apart / np.maximum(depth, 1e-30), 0).astype(np.float32)

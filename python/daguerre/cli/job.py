@@ -123,6 +123,11 @@ class Job:
             if self.plan.photograph.sensor is not None:
                 console.note("denoised: the sensor's channels are fitted from the clean colours")
         frame = self.session.with_truth(frame)
+        if "disparity" in self.plan.aovs:
+            from daguerre.rig import disparity
+
+            apart = disparity(frame, self.plan.baseline)
+            frame = replace(frame, aovs={**frame.aovs, "disparity.X": apart})
         frame = self.plan.photograph.metered(frame, self.plan.outputs)
         if self.plan.exposed:
             truth = frame.exposure_truth(self.plan.photograph.sensor)

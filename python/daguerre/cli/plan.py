@@ -32,6 +32,8 @@ AOVS = {
 TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back", "coverage")}
 #: what photographs are measured against: light of the exposure, in lux s, and where it saturates
 EXPOSED = ("exposure", "saturated")
+#: of a stereo pair, by its depth
+DISPARITY = "disparity"
 #: groups that every EXR has, so asking for them changes nothing
 ALWAYS = ("variance", "samples")
 
@@ -55,6 +57,7 @@ class Plan:
     overscan: Any = None
     maps: MapFlags = field(default_factory=MapFlags)
     photograph: Photograph = field(default_factory=Photograph)
+    baseline: float = 0.0
 
     def of_frame(self, frame: int) -> Plan:
         """The same for one frame of a sequence."""
@@ -64,8 +67,10 @@ class Plan:
         """The same for one camera, whose picture may have a size of its own."""
         if self.crop is not None:
             check_crop(self.crop, resolution)
+        if DISPARITY in self.aovs and not view.shift:
+            raise UsageError("--aov disparity: wanted --stereo, got no pair")
         made = self._renamed(lambda path: named(path, view, several=several))
-        return replace(made, resolution=resolution)
+        return replace(made, resolution=resolution, baseline=2 * abs(view.shift))
 
     def _renamed(self, name: Callable[[Path], Path]) -> Plan:
         outputs = [name(path) for path in self.outputs]
@@ -74,7 +79,7 @@ class Plan:
     def with_truth(self, gt_time: str | None, gt_lens: str, gt_rays: int | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
         means = gt_lens != "chief"
-        wanted = means or any(name in self.aovs for name in TRUTH)
+        wanted = means or any(name in self.aovs for name in (*TRUTH, DISPARITY))
         if gt_time is None and gt_rays is None and not wanted:
             return self
         from daguerre.truth import check_gt_lens, check_gt_time
@@ -88,6 +93,8 @@ class Plan:
             raise UsageError(
                 "--aov coverage: of the chief ray there is none; wanted --gt-lens mean"
             )
+        if DISPARITY in self.aovs and means:
+            raise UsageError("--aov disparity: wanted --gt-lens chief, as means have no one place")
         return replace(self, gt_time=moment, gt_lens=gt_lens, gt_rays=gt_rays)
 
     @property
@@ -158,6 +165,8 @@ def make_plan(
     groups = _aov_groups(aov, all_aovs)
     if samples and (found := [name for name in EXPOSED if name in groups]):
         raise UsageError(f"--samples: a pass is not exposed; wanted no --aov {','.join(found)}")
+    if samples and DISPARITY in groups:
+        raise UsageError("--samples: wanted no --aov disparity; depth comes through a pass")
     if denoise:
         from daguerre.denoise import check_available
 
@@ -211,10 +220,10 @@ def _aov_groups(names: list[str], everything: bool) -> list[str]:
     for name in (part.strip() for text in names for part in text.split(",")):
         if name == "all":
             groups |= set(AOVS.values())
-        elif name in AOVS or name in TRUTH or name in EXPOSED:
+        elif name in AOVS or name in TRUTH or name in EXPOSED or name == DISPARITY:
             groups.add(AOVS.get(name, name))
         elif name not in ALWAYS:
-            known = [*AOVS, *TRUTH, *EXPOSED, *ALWAYS, "all"]
+            known = [*AOVS, *TRUTH, *EXPOSED, DISPARITY, *ALWAYS, "all"]
             raise UsageError(
                 f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
             )

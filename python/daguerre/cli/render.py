@@ -69,8 +69,8 @@ def render(
             "--aov",
             metavar="LIST",
             help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
-            "distance,material_id,motion,motion_back,coverage of ground truth; exposure,saturated "
-            "of a photograph.",
+            "distance,material_id,motion,motion_back,coverage of ground truth; disparity of "
+            "--stereo; exposure,saturated of a photograph.",
             panel=_OUTPUT,
         ),
     ] = None,
