@@ -117,6 +117,8 @@ def test_boxes_in_space_are_those_of_the_node() -> None:
     corners = CUBE @ POSE[:3, :3].T + POSE[:3, 3]
     np.testing.assert_allclose(sorted(box.corners().tolist()), sorted(corners.tolist()), atol=1e-6)
     assert inside.center[2] > 0  # ahead is +z
+    there = CUBE @ (pose := only(seen).camera_from_node)[:3, :3].T + pose[:3, 3]
+    np.testing.assert_allclose(sorted(inside.corners().tolist()), sorted(there.tolist()), atol=1e-6)
 
 
 def test_mirrors_and_flat_things_have_axes() -> None:
@@ -124,6 +126,27 @@ def test_mirrors_and_flat_things_have_axes() -> None:
         turn = rotation_of(matrix)
         np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(turn) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("rolling", [None, RollingShutter("top", line_time=5e-4)])
+def test_through_glass_the_box_holds_the_pixels(rolling: RollingShutter | None) -> None:
+    camera = dg.Camera(
+        lens="fisheye-16mm-f2.8", focus_distance=1.0, shutter_time=0.0, rolling_shutter=rolling
+    )
+    scene = dg.Scene()
+    points, faces, normals = scenes.sphere(48, 0.35)
+    mesh = scene.add_mesh(points, faces, normals)
+    places = [(0, 0, -1), (1.1, 0.4, -0.9), (-0.8, -0.6, -1.1)]
+    for i, (x, y, z) in enumerate(places):
+        way = dg.keys([(-1.0, at(x - 2, y, z)), (1.0, at(x + 2, y, z))])
+        scene.add_instance(mesh, transform=way, name=f"ball {i}")
+    seen = dg.annotate(scene, camera, resolution=(180, 120))
+    assert len(seen.things) == 3
+    for found in seen.things:
+        (x, y, width, height), (left, top, across, down) = found.box, found.full_box
+        off = np.array([x - left, y - top, width - across, height - down])
+        assert found.truncation == 0
+        assert np.abs(off).max() < 1.3  # px: centres of pixels at both ends
 
 
 def test_what_is_hidden_has_its_whole_box_and_no_pixel() -> None:

@@ -46,6 +46,8 @@ class Annotation:
         visibility: Pixels whose chief ray meets it first, of those whose chief ray meets it.
         box3: Around it in the world, m, at the picture's ``time``.
         camera_box3: The same in the camera's frame, x right, y down, z ahead.
+        camera_from_node: From the node's own frame to the camera's, shape (4, 4), m: its pose, with
+            its scale; of several instances that of the first.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Annotation:
     visibility: float
     box3: Box3
     camera_box3: Box3
+    camera_from_node: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +177,7 @@ class _Seen:
             visibility=visible / whole if whole else 1.0,
             box3=box3,
             camera_box3=box3.seen_from(world),
+            camera_from_node=np.linalg.inv(world) @ scene.instances[thing.instances[0]].transform,
         )
 
     def _ends(self, i: int, whole: int) -> NDArray[np.float64]:

@@ -125,6 +125,7 @@ def _annotation(thing: Annotation) -> dict[str, Any]:
         "visibility": _plain(thing.visibility),
         "bbox3d": _box3(thing.camera_box3),
         "bbox3d_world": _box3(thing.box3),
+        "camera_from_node": _plain(thing.camera_from_node),
     }
 
 
