@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.calibration import read, read_kalibr
+from daguerre.cli import main
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = ROOT / "examples" / "calibrated"
@@ -106,3 +108,31 @@ def test_stereo_cameras_stand_twelve_centimetres_apart() -> None:
     assert aside[0, 3] == pytest.approx(0.12, abs=1e-4)
     assert np.abs(aside[1:3, 3]).max() < 1.5e-3
     assert np.degrees(np.arccos((np.trace(aside[:3, :3]) - 1) / 2)) < 0.5
+
+
+def test_pictures_of_depth_and_of_boxes(
+    desk: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    calibration = [*("--camera", "phone"), *("--calibration", str(FILES / "phone.yaml"))]
+    flags = ["--res", "2%", "--spp", "1", "--max-depth", "1", "--aov", "depth", "--quiet"]
+    flags += ["--coco", "c.json", "--categories", str(FILES / "categories.json")]
+    assert main(["render", str(desk), *calibration, *flags, "-o", "d.exr", "-o", "p.png"]) == 0
+    coco = json.loads(Path("c.json").read_text())
+    names = {one["id"]: one["name"] for one in coco["categories"]}
+    found = [names[one["category_id"]] for one in coco["annotations"]]
+    assert {"laptop", "cup", "mouse", "apple", "potted plant"} <= set(found)
+    assert found.count("book") == 5  # a pile of four, and the notebook
+    for script, *given in (
+        ["depth_map.py", "d.exr", "depth.png", "0.4", "1.3"],
+        ["coco_boxes.py", "c.json", "p.png", "boxes.png"],
+    ):
+        subprocess.run([sys.executable, ROOT / "examples" / script, *given], check=True)
+    assert cv2.imread("depth.png").shape == (61 + 40, 81, 3)
+    boxes, plain = cv2.imread("boxes.png"), cv2.imread("p.png")
+    assert boxes.shape == plain.shape == (61, 81, 3)
+    x, y, wide, high = next(a["bbox"] for a in coco["annotations"] if a["node"] == "laptop")
+    part = slice(int(y), int(y + high)), slice(int(x), int(x + wide))
+    inside = np.abs(boxes[part].astype(int) - plain[part])
+    assert inside.mean() > 10  # tinted there,
+    assert np.abs(boxes[:6, 20:50].astype(int) - plain[:6, 20:50]).mean() < 2  # and not elsewhere

@@ -39,6 +39,31 @@ def _phone() -> Sheet:
     return Sheet("calibrated_phone", "A phone.", text, 1, (shot,))
 
 
+def _truth() -> Sheet:
+    given = f"{SCENE} {PHONE} --shutter 1/250 --rolling top,16ms --time 0.5 --res 20%"
+    out = f"{OUT}/known"
+    first = (
+        f"{given} {DRAWN} -o {out}.exr -o {out}.png --coco {out}.json "
+        f"--categories {FILES}/categories.json",
+        f"{given} --export-stmap-undistort {out}_undistort.exr",
+    )
+    boxes = f"python examples/coco_boxes.py {out}.json {out}.png {out}_boxes.png"
+    straight = (
+        f"daguerre post {out}.exr -o {out}_straight.exr --effect stmap:file={out}_undistort.exr",
+        f"daguerre develop {out}_straight.exr -o {out}_straight.png",
+    )
+    text = (
+        "Boxes and masks ([ground truth](../ground-truth.md#boxes-and-masks)) follow the lens and "
+        "the moment of each row. Right: the picture straightened by the camera's own map "
+        "([matching a plate](../plates.md)), as a phone or Nuke would do it; the rail is straight."
+    )
+    shots = (
+        Photograph("what is where: a COCO file", (boxes,), "known_boxes.png"),
+        Photograph("straightened by an STMap", straight, "known_straight.png"),
+    )
+    return Sheet("calibrated_truth", "What is known of its picture.", text, 2, shots, first)
+
+
 def _shutters() -> Sheet:
     shots = []
     common = f"{PHONE} --shutter 1/2000 --time 0.5 --res 50% --crop 320,740,430,830"
@@ -92,6 +117,6 @@ def _stereo() -> Sheet:
     return Sheet("calibrated_stereo", "A stereo rig and its depth.", text, 2, tuple(shots), (pair,))
 
 
-SHEETS = (_phone(), _shutters(), _fisheye(), _stereo())
+SHEETS = (_phone(), _truth(), _shutters(), _fisheye(), _stereo())
 #: The row in the gallery: pictures of the sheets, smaller.
 OVERVIEW = (("phone.png", "fisheye.png"), ("stereo.cam0.png", "depth.cam0.png"))
