@@ -190,6 +190,29 @@ def test_a_room_around_the_camera_fills_the_picture() -> None:
     assert found.truncation is None
 
 
+def test_an_empty_scene_and_one_that_is_hidden_have_no_things() -> None:
+    scene = dg.Scene()
+    scene.set_environment(color=(1, 1, 1))
+    assert dg.annotate(scene, PINHOLE, resolution=SIZE).things == []
+    cube(scene, POSE, shown=dg.keys([(-1.0, True), (-0.5, False)]))
+    seen = dg.annotate(scene, PINHOLE, resolution=SIZE)
+    assert seen.things == []
+    assert not seen.labels.any()
+    assert [c.name for c in seen.categories] == ["cube"]
+
+
+def test_a_lamp_hides_and_is_no_thing() -> None:
+    scene = dg.Scene()
+    cube(scene, at(z=-6), "far")
+    scene.add_light(dg.SphereLight((1, 1, 1), 0.5), at(z=-3))
+    found = only(seen := dg.annotate(scene, PINHOLE, resolution=(120, 90)))
+    assert seen.labels[45, 60] == 0
+    # A ball of radius r at the distance d covers the angle asin(r / d).
+    disc = np.pi * (np.tan(np.arcsin(0.5 / 3)) * 50 / 36 * 120) ** 2
+    square = (2 / 5 * 50 / 36 * 120) ** 2
+    assert found.visibility == pytest.approx(1 - disc / square, abs=0.02)
+
+
 @pytest.mark.parametrize(("moment", "seconds"), [("open", -0.02), ("mid", 0), ("close", 0.02)])
 def test_what_moves_is_where_it_is_at_the_moment(moment: str, seconds: float) -> None:
     scene = dg.Scene()

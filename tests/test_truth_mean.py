@@ -15,7 +15,8 @@ from daguerre.projection import Projection
 from daguerre.shutter import RollingShutter
 from daguerre.truth import GroundTruth
 
-from .test_truth import FPS, PINHOLE, SIZE, at, drifting, truth, wall
+from . import scenes
+from .test_truth import FPS, PINHOLE, SIZE, at, drifting, truth, turned, wall
 
 MODEL = Projection("kannala_brandt", SIZE, (30.0, 30.0), None, (0.05, -0.01, 0, 0))
 LENS = "double-gauss-50mm-f2"
@@ -73,6 +74,24 @@ def test_each_line_of_a_rolling_shutter_has_its_own_moment() -> None:
     # The whole wall is at one depth, so motion is that of the chief rays, but for the pixel's area.
     chief = truth(drifting((0, -1.0, 5.0)), camera).motion
     np.testing.assert_allclose(frame.motion, chief, atol=0.02)
+
+
+def test_motion_of_the_sky_and_of_what_is_hidden_then() -> None:
+    sky = dg.Scene()
+    sky.set_environment(color=(1, 1, 1))
+    pan = KINDS["thin"].with_(
+        fps=FPS, transform=dg.keys([(t, turned(2, 30 * t)) for t in (-1.0, 1.0)])
+    )
+    mean, chief = (truth(sky, pan, gt_lens=lens).motion for lens in ("mean", "chief"))
+    np.testing.assert_allclose(mean, chief, atol=0.01)
+    assert np.abs(chief).max() > 0.3
+    scene = dg.Scene()
+    shown = dg.keys([(0.0, True), (0.05, False)])
+    scene.add_instance(scene.add_mesh(*scenes.quad(4)), transform=at(z=-4), shown=shown)
+    frame = truth(scene, PINHOLE, gt_lens="mean")
+    assert np.isnan(frame.motion).all()
+    assert frame.metadata["motion_missing"] == SIZE[0] * SIZE[1]
+    assert not np.isnan(frame.motion_back).any()
 
 
 def test_means_are_the_same_each_time_and_with_few_rays_near_those_with_many() -> None:
