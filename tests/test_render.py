@@ -289,6 +289,11 @@ def test_a_stopped_pass_leaves_no_picture_until_whole_sums_are_back() -> None:
     assert session.draw(1, 2)
 
 
+def test_names_of_aovs_are_refused_where_all_or_none_are_wanted() -> None:
+    with pytest.raises(dg.UsageError, match=r"aovs: wanted True or False .*, got \['depth'\]"):
+        dg.render(dg.Scene(), dg.Camera(), resolution=(4, 4), aovs=["depth"])
+
+
 def test_aovs_of_a_ball() -> None:
     scene = scenes.furnace(dg.Material(dg.Diffuse((0.2, 0.4, 0.6))))
     frame = dg.render(

@@ -64,7 +64,9 @@ def _projection(camera: Camera) -> str:
         raise UsageError(f"camera: projection: wanted a Projection, got {short(camera.projection)}")
     for name in ("lens", "lens_model", "focal_length", "t_stop", "aperture_diameter"):
         if getattr(camera, name) is not None:
-            raise UsageError(f"camera: projection: wanted without {name}, got both")
+            raise UsageError(
+                f"camera: projection: wanted without {name}, got both; {name}=None takes it away"
+            )
     if any(camera.tilt) or camera.natural_vignetting:
         name = "tilt" if any(camera.tilt) else "natural_vignetting"
         raise UsageError(f"camera: projection: wanted without {name}, got both")

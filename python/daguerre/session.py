@@ -151,7 +151,9 @@ class Session:
         self.scene = scene
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
         self.overscan = NONE
-        self.aovs = aovs
+        if not isinstance(aovs, bool | np.bool_):
+            raise UsageError(f"aovs: wanted True or False (all of them or none), got {short(aovs)}")
+        self.aovs = bool(aovs)
         self.gt_lens, self.gt_rays = gt_lens, check_gt_lens(gt_lens, gt_rays)
         wanted_truth = motion or gt_lens == "mean"
         self.gt_time, self.motion = check_gt_time(gt_time, wanted=wanted_truth), motion
