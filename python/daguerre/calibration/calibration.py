@@ -116,7 +116,15 @@ def check_field(made: Projection, where: str) -> None:
     """
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
     fold, angle = made.core.largest_radius * math.sqrt(fx * fy), made.largest_angle
-    if made.model in WHOLE and not np.isfinite(made.unproject(_border(width, height))).all():
+    border = _border(width, height)
+    dark = ~np.isfinite(made.unproject(border)).all(axis=1)
+    if made.model in WHOLE and dark.any() and not math.isfinite(fold):
+        u, v = border[dark][0]
+        raise InputError(
+            f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing, as the distortion "
+            "folds before it: wanted one that is valid all over the picture"
+        )
+    if made.model in WHOLE and dark.any():
         reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
         what = "farthest corner"
     elif made.model in FISHEYES and math.isfinite(fold):

@@ -87,7 +87,7 @@ def size_of(root: Item) -> tuple[int, int]:
     if both is None:
         root.fail(
             "missing: wanted the size of the picture (image_width and image_height), got none; "
-            "size=(W, H) gives it"
+            "size=(W, H) or --calibration-size gives it"
         )
     across, down = row(both, (2,))
     if not (1 <= across == int(across) and 1 <= down == int(down)):

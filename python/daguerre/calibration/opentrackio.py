@@ -77,7 +77,7 @@ def _resolution(still: Item) -> tuple[int, int]:
     if found is None:
         still.fail(
             "missing: wanted the size of the picture (activeSensorResolution), got none; "
-            "size=(W, H) gives it"
+            "size=(W, H) or --calibration-size gives it"
         )
     return found.need("width").integer(1, 65536), found.need("height").integer(1, 65536)
 

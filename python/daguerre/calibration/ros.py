@@ -28,6 +28,7 @@ MODELS = {
     "plumb_bob": ("opencv", (0, 4, 5)),
     "rational_polynomial": ("opencv", (8, 12, 14)),
     "equidistant": ("kannala_brandt", (4,)),
+    "fisheye": ("kannala_brandt", (4,)),
 }
 
 
