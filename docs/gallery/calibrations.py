@@ -16,7 +16,7 @@ mkdir -p out/gallery
 ```
 
 The light is that of a bright day, so `--exposure auto` meters it. `--denoise` is the extra of that
-name, `depth_map.py` needs the extra `plot`.
+name, `depth_map.py` and `coco_boxes.py` need the extra `plot`.
 """
 SCENE = "daguerre render out/calibrated/desk.glb"
 FILES = "examples/calibrated"
