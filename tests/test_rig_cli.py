@@ -211,6 +211,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         ),
         (["-o", "x.exr", "--calibration", "chain.yaml:cam2"], 2, "cam0, cam1"),
         (["-o", "x.exr", *["--calibration", "chain.yaml:cam0"] * 2], 2, "'cam0' twice"),
+        (["-o", "x.exr", "--calibration", "chain.yaml:cam1,cam1"], 2, "'cam1' twice"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--rectified"], 2, "rectified: wanted ROS"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "1kg"], 2, "a unit"),
         (

@@ -75,10 +75,10 @@ class Categories:
         """
         path = Path(path)
         try:
-            if not path.is_file() or path.stat().st_size > _MAX_BYTES:
-                raise InputError(
-                    f"{path}: categories: wanted a JSON file of at most {_MAX_BYTES} bytes"
-                )
+            if not path.is_file():
+                raise InputError(f"{path}: categories: wanted a JSON file, there is none")
+            if path.stat().st_size > _MAX_BYTES:
+                raise InputError(f"{path}: categories: wanted at most {_MAX_BYTES} bytes, got more")
             data = path.read_bytes()
         except OSError as error:
             raise InputError(f"{path}: cannot read: {error.strerror or error}") from None

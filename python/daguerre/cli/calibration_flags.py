@@ -189,6 +189,7 @@ class CalibrationFlags:
 def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     """``FILE``: its first camera; ``FILE:cam0,cam1``: these; ``FILE:all``."""
     from daguerre.calibration import pick, read_all
+    from daguerre.errors import UsageError
 
     file, _, names = text.rpartition(":")
     if not file or Path(text).exists() or not Path(file).exists():
@@ -202,4 +203,6 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
             console.note(f"{file} has {', '.join(known)}; {first} is taken (:all takes all)")
         return {first: known[first]}
     wanted = [names] if names in known else [name.strip() for name in names.split(",")]
+    if twice := [name for name in wanted if wanted.count(name) > 1]:
+        raise UsageError(f"--calibration {text}: wanted each name once, got {twice[0]!r} twice")
     return {name: pick(known, name, file) for name in wanted}
