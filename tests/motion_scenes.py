@@ -377,6 +377,34 @@ def iris_closing() -> Case:
     return _seen(camera, lambda now: 1 / (now.f_stop or 0.0) ** 2)
 
 
+def _calibrated(focal: float, at: tuple[float, float], k: tuple[float, ...]) -> dg.Projection:
+    return dg.Projection("opencv", (24, 16), (focal, 1.05 * focal), at, k)
+
+
+def zoom_calibrated() -> Case:
+    """A calibration all of whose numbers change, and keys that have not as many of them."""
+    track = dg.keys(
+        [
+            (0.75, _calibrated(16.0, (11.0, 8.0), (-0.1, 0.02))),
+            (1.1, _calibrated(28.0, (12.5, 7.0), (-0.25, 0.1, 0.01, -0.01))),
+            (1.25, _calibrated(34.0, (12.0, 7.5), (-0.1,))),
+        ]
+    )
+    return _seen(dg.Camera(projection=track))
+
+
+def pull_calibrated() -> Case:
+    """Focus, iris and focal length of a calibration, ten times as wide as any real one."""
+    near, far = (dg.Projection("equidistant", (24, 16), (f, f)) for f in (20.0, 30.0))
+    camera = dg.Camera(
+        projection=dg.keys([(0.75, near), (1.25, far)]),
+        f_stop=dg.keys([(0.75, 0.06), (1.25, 0.12)]),
+        focus_distance=dg.keys([(0.75, 1.2), (1.25, 4.0)]),
+        blades=5,
+    )
+    return _seen(camera, lambda now: 1 / (now.f_stop or 0.0) ** 2)
+
+
 def exact_pull() -> Case:
     """Focus and iris of a real lens; the frame is in units of mid-shutter all the way."""
     camera = dg.Camera(
@@ -627,6 +655,8 @@ ALL: dict[str, Callable[[], Case]] = {
     "sensor shift": sensor_shift,
     "focus pull": focus_pull,
     "iris": iris_closing,
+    "zoom of a calibration": zoom_calibrated,
+    "focus pull of a calibration": pull_calibrated,
 }
 #: of what takes longer
 SLOW: dict[str, Callable[[], Case]] = {

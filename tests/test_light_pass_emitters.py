@@ -18,6 +18,8 @@ from daguerre.materials import Gltf, TextureSlot
 from . import scenes
 from .light_proof import (
     CLOSE,
+    SIZE,
+    SMALL,
     Case,
     ball,
     by_chance,
@@ -149,6 +151,11 @@ def over_time(first: Any, last: Any) -> dg.Keys:
     return dg.keys([(-0.05, first), (0.05, last)])
 
 
+def calibrated(focal: float, k1: float) -> dg.Projection:
+    """Of SMALL: 267 px are 50 mm."""
+    return dg.Projection("opencv", SIZE, (focal, focal), None, (k1,))
+
+
 #: Moves and turns, and lines are read out one after the other.
 MOVED = {
     "transform": over_time(
@@ -182,6 +189,17 @@ SLOW = {
     "zoom, thin": Case(
         still_lamps,
         thin(shutter_time=0.04).with_(focal_length=over_time(44.0, 56.0)),
+        **MANY,
+    ),
+    "zoom, projection": Case(
+        still_lamps,
+        dg.Camera(
+            projection=over_time(calibrated(235.0, -2.0), calibrated(299.0, 1.0)),
+            f_stop=over_time(2.0, 2.8),
+            focus_distance=CLOSE,
+            sensor_size=SMALL,
+            shutter_time=0.04,
+        ),
         **MANY,
     ),
     "zoom, exact": Case(

@@ -222,7 +222,6 @@ def test_bad_calibrations_name_the_field(values: dict[str, Any], message: str) -
         ({"focal_length": 50}, "focal_length=None takes it away"),
         ({"tilt": (3, 0)}, "tilt"),
         ({"natural_vignetting": True}, "natural_vignetting"),
-        ({"f_stop": dg.keys([(0, 2.0), (1, 4.0)]), "shutter_time": 0.5}, "f_stop"),
         ({"projection": "opencv"}, "Projection"),
     ],
 )

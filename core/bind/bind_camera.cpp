@@ -122,14 +122,18 @@ void change_setting(dg::Camera& camera, const Column& times, const Column& openi
     camera.setting = std::move(setting);
 }
 
-std::array<double, 5> lens_numbers(const dg::Camera& camera) {
-    if (const auto* pinhole = std::get_if<dg::Pinhole>(&camera.lens))
-        return {pinhole->film_distance_mm, 0, 0, 0, 0};
+std::vector<std::vector<double>> lens_numbers(const dg::Camera& camera) {
+    if (const auto* pinhole = std::get_if<dg::Pinhole>(&camera.lens)) return {{pinhole->film_distance_mm}};
     if (const auto* thin = std::get_if<dg::ThinLens>(&camera.lens)) {
         const auto n = thin->numbers();
-        return {n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus, n.tilt_deg.x, n.tilt_deg.y};
+        return {{n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus, n.tilt_deg.x, n.tilt_deg.y}};
     }
-    throw dg::Error("camera: lens numbers: wanted a pinhole or a thin lens");
+    if (const auto* projection = std::get_if<dg::Projection>(&camera.lens)) {
+        const auto n = projection->numbers();
+        return {{n.focal_mm.x, n.focal_mm.y}, {n.principal_mm.x, n.principal_mm.y}, {n.aperture_radius_mm},
+                {n.inverse_focus}};
+    }
+    throw dg::Error("camera: lens numbers: wanted a pinhole, a thin lens or a projection");
 }
 
 }  // namespace
@@ -230,7 +234,9 @@ void bind_camera(nb::module_& m) {
         .def_rw("sensor_stack", &Camera::sensor_stack, "What of the body reflects: for ghosts and scatter alone.")
         .def_rw("scatter", &Camera::scatter, "How the parts of an exact lens scatter, where that is drawn.")
         .def_prop_ro("lens_numbers", &lens_numbers,
-                     "Film distance (mm), iris radius (mm), 1 / focus distance (1/m), tilts (deg) of a pinhole or thin lens.")
+                     "What changes evenly, in groups. Pinhole: film distance (mm). Thin lens: film distance, iris radius (mm), "
+             "1 / focus distance (1/m), tilts (deg). Projection: focal lengths; principal point; iris radius (mm); "
+             "1 / focus distance.")
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
              "(origins, directions, weights) in the world for explicit film points (mm, upright).")
         .def("chief_rays", [](const Camera& camera) { return ChiefRays(camera.lens); },

@@ -22,7 +22,8 @@ namespace dg {
 using LensKind = std::variant<Pinhole, ThinLens, ThickLens, ExactLens, Projection>;
 
 /// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Ideal
-/// lenses change evenly from one to the next; of thick and exact ones each sample takes the nearest in time.
+/// lenses and the numbers of projections change evenly from one to the next; of thick and exact ones, and of
+/// the parameters of a projection's model, each sample takes the nearest in time.
 struct LensMotion {
     std::vector<float> times;       // empty: it stays as it is
     std::vector<LensKind> lenses;   // real ones relative to the camera's own (in_the_body_of)

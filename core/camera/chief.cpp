@@ -71,7 +71,10 @@ ChiefRays::ChiefRays(const LensKind& kind) {
         if (const auto* thin = std::get_if<ThinLens>(&kind))
             film_distance_mm_ = thin->film_distance_mm;
         if (const auto* thick = std::get_if<ThickLens>(&kind)) thick_ = *thick;
-        if (const auto* projection = std::get_if<Projection>(&kind)) projection_ = *projection;
+        if (const auto* projection = std::get_if<Projection>(&kind)) {
+            projection_ = *projection;
+            projection_->iris = {};   // chief rays need none
+        }
         return;
     }
     if (!lens->is_axial()) {
@@ -88,6 +91,14 @@ ChiefRays::ChiefRays(const LensKind& kind) {
     if (table_.size() < 4)
         throw Error("chief rays: no light passes the lens near its axis");
     table_[0].angle = table_[0].offset = 0;
+}
+
+ChiefRays ChiefRays::between(const ChiefRays& a, const ChiefRays& b, double share) {
+    if (!a.projection_)
+        return ChiefRays(a.film_distance_mm_ + share * (b.film_distance_mm_ - a.film_distance_mm_));
+    ChiefRays now = share < 0.5 ? a : b;
+    now.projection_->set(blend(a.projection_->numbers(), b.projection_->numbers(), share));
+    return now;
 }
 
 ChiefRaysOverTime::ChiefRaysOverTime(const Camera& camera)

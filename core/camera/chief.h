@@ -52,6 +52,9 @@ class ChiefRays {
   private:
     friend class ChiefRaysOverTime;
     explicit ChiefRays(double film_distance_mm) : film_distance_mm_(film_distance_mm) {}
+    /// Of what lies between two lenses that change evenly.
+    static ChiefRays between(const ChiefRays& a, const ChiefRays& b, double share);
+    bool changes_evenly() const { return film_distance_mm_ > 0 || projection_; }
     Meridional at_radius(double mm) const;
     std::optional<double> solve(double outward, double z, double w) const;
 
@@ -77,10 +80,8 @@ class ChiefRaysOverTime {
         if (times_.empty()) return use(states_.front());
         const KeyPlace p = place_among(times_, time);
         const ChiefRays &a = states_[p.left], &b = states_[p.right];
-        if (a.film_distance_mm_ == 0)
-            return use(p.share < 0.5 ? a : b);  // as exact lenses draw
-        return use(ChiefRays(a.film_distance_mm_ +
-                             p.share * (b.film_distance_mm_ - a.film_distance_mm_)));
+        if (!a.changes_evenly()) return use(p.share < 0.5 ? a : b);   // as exact lenses draw
+        return use(ChiefRays::between(a, b, p.share));
     }
 
   private:

@@ -42,10 +42,11 @@ void generate_states(const LensMotion& motion, std::span<const CameraSample> sam
              });
 }
 
-/// A thin lens with the numbers that it has at some time.
-struct ThinLensNow {
-    const ThinLens& lens;
-    ThinLens::Numbers numbers;
+/// A thin lens or a projection with the numbers that it has at some time.
+template <typename Lens>
+struct LensNow {
+    const Lens& lens;
+    typename Lens::Numbers numbers;
 
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         lens.generate(numbers, samples, rays);
@@ -54,6 +55,15 @@ struct ThinLensNow {
         lens.reproject(numbers, rays, out);
     }
 };
+
+/// What exposure goes with: the square of iris over image distance.
+double light_cone(const ThinLens::Numbers& n) {
+    const double slope = n.aperture_radius_mm / n.film_distance_mm;
+    return slope * slope;
+}
+double light_cone(const Projection::Numbers& n) {
+    return n.aperture_radius_mm * n.aperture_radius_mm / (n.focal_mm.x * n.focal_mm.y);
+}
 
 /// Numbers lie between those of the neighbouring keys; an iris is that of the nearer key.
 template <typename Use>
@@ -67,17 +77,20 @@ void with_ideal(const Camera& camera, float time, const Use& use) {
         now.film_distance_mm += p.share * (next - now.film_distance_mm);
         return use(now);
     }
-    const ThinLens &first = std::get<ThinLens>(a), &second = std::get<ThinLens>(b);
-    ThinLens::Numbers now = blend(first.numbers(), second.numbers(), p.share);
-    const double cone = now.aperture_radius_mm / now.film_distance_mm;
-    const ThinLens& middle = std::get<ThinLens>(camera.lens);
-    const double usual = middle.aperture_radius_mm / middle.film_distance_mm;
-    now.exposure = cone * cone / (usual * usual);
-    use(ThinLensNow{p.share < 0.5 ? first : second, now});
+    const auto between = [&]<typename Lens>(const Lens& middle) {
+        const Lens &first = std::get<Lens>(a), &second = std::get<Lens>(b);
+        auto now = blend(first.numbers(), second.numbers(), p.share);
+        const double cone = light_cone(now), usual = light_cone(middle.numbers());
+        now.exposure = usual > 0 ? cone / usual : 1;
+        use(LensNow<Lens>{p.share < 0.5 ? first : second, now});
+    };
+    if (const auto* projection = std::get_if<Projection>(&camera.lens)) return between(*projection);
+    between(std::get<ThinLens>(camera.lens));
 }
 
 bool is_ideal(const LensKind& lens) {
-    return std::holds_alternative<Pinhole>(lens) || std::holds_alternative<ThinLens>(lens);
+    return std::holds_alternative<Pinhole>(lens) || std::holds_alternative<ThinLens>(lens) ||
+           std::holds_alternative<Projection>(lens);
 }
 
 void reproject_alone(const LensKind& lens, std::span<const CameraRay> rays,

@@ -67,6 +67,32 @@ TEST_CASE("a thin lens that opens and focuses is at each time the lens in betwee
     }
 }
 
+TEST_CASE("a projection that zooms, shifts and opens is at each time the one in between") {
+    using Kind = ProjectionModel::Kind;
+    const ProjectionModel weak(Kind::opencv, {-0.1, 0.02}), strong(Kind::opencv, {-0.2, 0.05});
+    const Iris corner = Iris::polygon(5, 0, 0), turned = Iris::polygon(5, 30, 0);
+    const Projection from{weak, {30, 31}, {1, -1}, 4, 1, corner}, to{strong, {40, 45}, {2, 3}, 8, 4, turned},
+        middle{weak, {35, 38}, {1.5, 1}, 6, 1.6};
+    Camera camera{Motion{}, middle};
+    camera.lens_motion = {{0, 1}, {from, to}};
+    for (const float t : {0.f, 0.25f, 0.75f, 1.f}) {
+        const Projection now{t < 0.5f ? weak : strong, {30 + 10 * t, 31 + 14 * t}, {1 + t, -1 + 4 * t},
+                             4 + 4 * t,                1 / (1 - 0.75 * t),         t < 0.5f ? corner : turned};
+        const auto samples = samples_at(t, 50);
+        const auto rays = drawn(camera, samples), expected = drawn({Motion{}, now}, samples);
+        const double cone = now.aperture_radius_mm * now.aperture_radius_mm / (now.focal_mm.x * now.focal_mm.y);
+        const double light = cone / (36 / (35.0 * 38));
+        std::vector<Reprojection> back(50);
+        reproject(camera, rays, std::vector<float>(50, 550.f), back);
+        for (int i = 0; i < 50; ++i) {
+            CHECK(length(rays[i].ray.origin - expected[i].ray.origin) < 1e-7f);
+            CHECK(length(rays[i].ray.direction - expected[i].ray.direction) < 1e-6f);
+            CHECK(rays[i].weight == doctest::Approx(expected[i].weight * light));
+            if (rays[i].weight > 0) CHECK(length(back[i].film_mm - Vec2f{3, 2}) < 1e-4f);
+        }
+    }
+}
+
 TEST_CASE("an exact lens takes the nearest of its states, and the film stays where it is") {
     const ExactLens near = focused(0.6), far = focused(5), middle = focused(1.2);
     Camera camera{Motion{}, middle};

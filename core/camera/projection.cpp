@@ -13,40 +13,52 @@ Vec3d turned(Vec3d v) {
     return {v.x, -v.y, -v.z};
 }
 
-}  // namespace
-
-Vec2d Projection::model_point(Vec2d film) const {
-    return {(film.x - principal_mm.x) / focal_mm.x, (principal_mm.y - film.y) / focal_mm.y};
+Vec2d model_point(const Projection::Numbers& now, Vec2d film) {
+    return {(film.x - now.principal_mm.x) / now.focal_mm.x, (now.principal_mm.y - film.y) / now.focal_mm.y};
 }
 
-std::optional<Vec3d> Projection::chief_direction(Vec2d film_mm) const {
-    const auto d = model.unproject(model_point(film_mm));
+}  // namespace
+
+void Projection::set(const Numbers& n) {
+    focal_mm = n.focal_mm, principal_mm = n.principal_mm;
+    aperture_radius_mm = n.aperture_radius_mm, focus_distance_m = 1 / n.inverse_focus;
+}
+
+Projection::Numbers blend(const Projection::Numbers& a, const Projection::Numbers& b, double share) {
+    const auto mix = [&](auto x, auto y) { return x + (y - x) * share; };
+    return {mix(a.focal_mm, b.focal_mm), mix(a.principal_mm, b.principal_mm),
+            mix(a.aperture_radius_mm, b.aperture_radius_mm), mix(a.inverse_focus, b.inverse_focus)};
+}
+
+std::optional<Vec3d> Projection::chief_direction(const Numbers& now, Vec2d film) const {
+    const auto d = model.unproject(model_point(now, film));
     return d ? std::optional(turned(*d)) : std::nullopt;
 }
 
-std::optional<Vec2d> Projection::film_point(Vec3d direction) const {
+std::optional<Vec2d> Projection::film_point(const Numbers& now, Vec3d direction) const {
     const auto p = model.project(turned(direction));
     if (!p) return std::nullopt;
-    return Vec2d{principal_mm.x + focal_mm.x * p->x, principal_mm.y - focal_mm.y * p->y};
+    return Vec2d{now.principal_mm.x + now.focal_mm.x * p->x, now.principal_mm.y - now.focal_mm.y * p->y};
 }
 
-double Projection::solid_angle(Vec2d film_mm) const {
-    return model.solid_angle(model_point(film_mm)) / (focal_mm.x * focal_mm.y);
+double Projection::solid_angle(const Numbers& now, Vec2d film) const {
+    return model.solid_angle(model_point(now, film)) / (now.focal_mm.x * now.focal_mm.y);
 }
 
-void Projection::generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
-    const double covered = iris.sampling_area() / kPiD, inverse_focus = 1 / focus_distance_m;
+void Projection::generate(const Numbers& now, std::span<const CameraSample> samples,
+                          std::span<CameraRay> rays) const {
+    const double covered = iris.sampling_area() / kPiD;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const CameraSample& s = samples[i];
         rays[i] = {};
         rays[i].iris_opening = s.iris_opening;
         rays[i].ray.time = s.time;
         rays[i].ray.direction = {0, 0, -1};
-        const auto chief = chief_direction({s.film_mm.x, s.film_mm.y});
+        const auto chief = chief_direction(now, {s.film_mm.x, s.film_mm.y});
         if (!chief) continue;
-        rays[i].weight = s.iris_opening * s.iris_opening;   // the area that is open
+        rays[i].weight = float(now.exposure) * s.iris_opening * s.iris_opening;   // the area that is open
         Vec3d origin{0, 0, 0}, direction = *chief;
-        if (aperture_radius_mm > 0) {
+        if (now.aperture_radius_mm > 0) {
             Vec2d q;
             if (iris.kind() == Iris::Kind::round) {
                 const Vec2f disk = warp_disk(s.u_lens);
@@ -56,40 +68,42 @@ void Projection::generate(std::span<const CameraSample> samples, std::span<Camer
                 rays[i].weight *= float(covered * iris.transmission(q));
             }
             const Across across(*chief);
-            const double radius = 1e-3 * aperture_radius_mm * s.iris_opening;
+            const double radius = 1e-3 * now.aperture_radius_mm * s.iris_opening;
             origin = radius * (q.x * across.x + q.y * across.y);
             const double ahead = model.is_wide() ? 1 : -chief->z;   // the plane is 1 / cos further off
-            direction = normalize(*chief - origin * (inverse_focus * ahead));
+            direction = normalize(*chief - origin * (now.inverse_focus * ahead));
         }
         rays[i].ray.origin = to_float(origin);
         rays[i].ray.direction = to_float(direction);
     }
 }
 
-void Projection::reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+void Projection::reproject(const Numbers& now, std::span<const CameraRay> rays,
+                           std::span<Reprojection> out) const {
     for (std::size_t i = 0; i < rays.size(); ++i)
-        out[i] = aperture_radius_mm > 0 ? reproject_iris(rays[i]) : reproject_hole(rays[i]);
+        out[i] = now.aperture_radius_mm > 0 ? reproject_iris(now, rays[i]) : reproject_hole(now, rays[i]);
 }
 
 /// The measure across the ray is 1: etendue is in sr.
-Reprojection Projection::reproject_hole(const CameraRay& ray) const {
-    const auto film = film_point(to_double(ray.ray.direction));
+Reprojection Projection::reproject_hole(const Numbers& now, const CameraRay& ray) const {
+    const auto film = film_point(now, to_double(ray.ray.direction));
     if (!film || !(ray.iris_opening > 0)) return {};
-    const double etendue = solid_angle(*film), weight = double(ray.iris_opening) * ray.iris_opening;
+    const double etendue = solid_angle(now, *film);
+    const double weight = now.exposure * ray.iris_opening * ray.iris_opening;
     if (!(etendue > 0)) return {};
     return {{float(film->x), float(film->y)}, 1, float(weight), float(etendue), float(weight / etendue)};
 }
 
 /// Where a ray meets what is in focus; a direction, if that is infinitely far.
-std::optional<Vec3d> Projection::in_focus(Vec3d from, Vec3d direction) const {
-    const double inverse = 1 / focus_distance_m;
-    if (inverse == 0) return direction;
+std::optional<Vec3d> Projection::in_focus(const Numbers& now, Vec3d from, Vec3d direction) const {
+    if (now.inverse_focus == 0) return direction;
+    const double distance = 1 / now.inverse_focus;
     if (!model.is_wide()) {
         if (!(direction.z < 0)) return std::nullopt;
-        return from + direction * ((-focus_distance_m - from.z) / direction.z);
+        return from + direction * ((-distance - from.z) / direction.z);
     }
     const double along = dot(from, direction);
-    const double inside = along * along + focus_distance_m * focus_distance_m - length_squared(from);
+    const double inside = along * along + distance * distance - length_squared(from);
     if (!(inside > 0)) return std::nullopt;
     return from + direction * (std::sqrt(inside) - along);
 }
@@ -99,10 +113,10 @@ std::optional<Vec3d> Projection::in_focus(Vec3d from, Vec3d direction) const {
 // and which c sees under the solid angle dw, make
 //   dA cos(d, c) . (|P|^2 dw / cos(c, n)) cos(d, n) / (|P|^2 + |o|^2),
 // o the point of the iris; cos(c, n) = 1 on a sphere, where n = c.
-Reprojection Projection::reproject_iris(const CameraRay& ray) const {
+Reprojection Projection::reproject_iris(const Numbers& now, const CameraRay& ray) const {
     const Vec3d from = to_double(ray.ray.origin), d = to_double(ray.ray.direction);
-    const double opening = ray.iris_opening, radius = 1e-3 * aperture_radius_mm * opening;
-    const auto point = in_focus(from, d);
+    const double opening = ray.iris_opening, radius = 1e-3 * now.aperture_radius_mm * opening;
+    const auto point = in_focus(now, from, d);
     if (!point || !(radius > 0)) return {};
     const Vec3d chief = normalize(*point);
     const double ahead = dot(d, chief);
@@ -110,17 +124,17 @@ Reprojection Projection::reproject_iris(const CameraRay& ray) const {
     const Vec3d o = from - d * (dot(from, chief) / ahead);
     const Across across(chief);
     const double pass = iris.transmission(Vec2d{dot(o, across.x), dot(o, across.y)} * (1 / radius));
-    const auto film = pass > 0 ? film_point(chief) : std::nullopt;
+    const auto film = pass > 0 ? film_point(now, chief) : std::nullopt;
     if (!film) return {};
     const double region = iris.sampling_area();
-    double etendue = region * radius * radius * ahead * solid_angle(*film);
-    if (std::isfinite(focus_distance_m)) {
+    double etendue = region * radius * radius * ahead * solid_angle(now, *film);
+    if (now.inverse_focus > 0) {
         const double far = length_squared(*point);
         const bool plane = !model.is_wide();
         etendue *= far / (far + length_squared(o)) * (plane ? d.z / chief.z : ahead);
     }
     if (!(etendue > 0)) return {};
-    const double weight = opening * opening * region / kPiD;
+    const double weight = now.exposure * opening * opening * region / kPiD;
     return {{float(film->x), float(film->y)}, float(pass), float(weight), float(etendue),
             float(weight * pass / etendue)};
 }

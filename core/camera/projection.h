@@ -22,20 +22,41 @@ struct Projection {
     double focus_distance_m = 1;       // infinity is allowed
     Iris iris = {};                    // shape of unit radius
 
-    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
-    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
+    /// What of it changes evenly while it is on its way; the model's parameters change in steps.
+    struct Numbers {
+        Vec2d focal_mm, principal_mm;
+        double aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
+        double exposure = 1;                        // factor on weights
+    };
+    Numbers numbers() const { return {focal_mm, principal_mm, aperture_radius_mm, 1 / focus_distance_m}; }
+    void set(const Numbers& numbers);
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+        generate(numbers(), samples, rays);
+    }
+    /// With other numbers than its own.
+    void generate(const Numbers& numbers, std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+        reproject(numbers(), rays, out);
+    }
+    void reproject(const Numbers& numbers, std::span<const CameraRay> rays, std::span<Reprojection> out) const;
 
     /// Unit, camera frame; nothing where the model sees nothing.
-    std::optional<Vec3d> chief_direction(Vec2d film_mm) const;
-    std::optional<Vec2d> film_point(Vec3d direction) const;
+    std::optional<Vec3d> chief_direction(Vec2d film_mm) const { return chief_direction(numbers(), film_mm); }
+    std::optional<Vec2d> film_point(Vec3d direction) const { return film_point(numbers(), direction); }
     /// Of the scene per mm2 of film.
-    double solid_angle(Vec2d film_mm) const;
+    double solid_angle(Vec2d film_mm) const { return solid_angle(numbers(), film_mm); }
 
   private:
-    Vec2d model_point(Vec2d film_mm) const;
-    Reprojection reproject_hole(const CameraRay& ray) const;
-    Reprojection reproject_iris(const CameraRay& ray) const;
-    std::optional<Vec3d> in_focus(Vec3d from, Vec3d direction) const;
+    std::optional<Vec3d> chief_direction(const Numbers& now, Vec2d film_mm) const;
+    std::optional<Vec2d> film_point(const Numbers& now, Vec3d direction) const;
+    double solid_angle(const Numbers& now, Vec2d film_mm) const;
+    Reprojection reproject_hole(const Numbers& now, const CameraRay& ray) const;
+    Reprojection reproject_iris(const Numbers& now, const CameraRay& ray) const;
+    std::optional<Vec3d> in_focus(const Numbers& now, Vec3d from, Vec3d direction) const;
 };
+
+Projection::Numbers blend(const Projection::Numbers& a, const Projection::Numbers& b, double share);
 
 }  // namespace dg

@@ -55,6 +55,10 @@ PupilView::Disc PupilView::disc_of(const ThinLens::Numbers& numbers,
             std::move(iris)};
 }
 
+PupilView::Turning PupilView::turning(const Projection::Numbers& numbers, const Projection& shape) {
+    return {1e-3 * numbers.aperture_radius_mm * shape.iris.outer_radius(), shape.model.is_wide()};
+}
+
 PupilView::Kind PupilView::view_of(const LensKind& kind) {
     if (const auto* lens = std::get_if<ThinLens>(&kind))
 
@@ -70,9 +74,8 @@ PupilView::Kind PupilView::view_of(const LensKind& kind) {
     if (const auto* lens = std::get_if<ExactLens>(&kind))
         return std::make_shared<const PupilShape>(*lens);
     if (const auto* lens = std::get_if<Projection>(&kind)) {
-        const bool wide = lens->model.is_wide();
-        if (!(lens->aperture_radius_mm > 0)) return Hole{wide};
-        return Turning{1e-3 * lens->aperture_radius_mm * lens->iris.outer_radius(), wide};
+        if (!(lens->aperture_radius_mm > 0)) return Hole{lens->model.is_wide()};
+        return turning(lens->numbers(), *lens);
     }
     return Hole{};
 }
@@ -141,7 +144,8 @@ float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
 
 PupilViewOverTime::PupilViewOverTime(const Camera& camera)
     : times_(camera.lens_motion.times),
-      evenly_(std::holds_alternative<ThinLens>(camera.lens)) {
+      evenly_(std::holds_alternative<ThinLens>(camera.lens) ||
+              std::holds_alternative<Projection>(camera.lens)) {
     const auto add = [&](const LensKind& lens) {
         states_.push_back(std::make_unique<State>());
         states_.back()->lens = lens;
@@ -162,6 +166,13 @@ decltype(auto) PupilViewOverTime::with_lens(float time, const Use& use) const {
     const KeyPlace p = place_among(times_, time);
     const PupilView& nearest = view(p.share < 0.5 ? p.left : p.right);
     if (!evenly_) return use(nearest);
+    if (const auto* from = std::get_if<Projection>(&states_[p.left]->lens)) {
+        if (!std::holds_alternative<PupilView::Turning>(nearest.kind_)) return use(nearest);
+        const auto& to = std::get<Projection>(states_[p.right]->lens);
+        const Projection& shape = p.share < 0.5 ? *from : to;
+        const auto now = blend(from->numbers(), to.numbers(), p.share);
+        return use(PupilView(PupilView::turning(now, shape)));
+    }
     const ThinLens &a = std::get<ThinLens>(states_[p.left]->lens),
                    &b = std::get<ThinLens>(states_[p.right]->lens);
     return use(

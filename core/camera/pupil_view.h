@@ -63,6 +63,8 @@ class PupilView {
     static Disc disc_of(const ThinLens::Numbers& numbers,
                         std::shared_ptr<const Iris> iris);
 
+    static Turning turning(const Projection::Numbers& numbers, const Projection& shape);
+
     Kind kind_;
 };
 
@@ -89,7 +91,7 @@ class PupilViewOverTime {
     const PupilView& view(std::size_t state) const;
 
     std::vector<float> times_;  // empty: one state
-    bool evenly_ = false;       // thin lenses change evenly from one to the next
+    bool evenly_ = false;       // thin lenses and projections change evenly from one to the next
     std::vector<std::unique_ptr<State>> states_;
 };
 

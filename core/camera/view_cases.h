@@ -70,6 +70,11 @@ inline std::vector<ViewCase> projection_cases() {
     around.push_back({{1.5, 0.4, -0.2}, 1, 0.02});
     around.push_back({{-0.9, 0.5, 0.3}, 0, 0.01});
     std::vector<ViewCase> cases;
+    Camera zooming = still(Projection{phone, {30, 31}, {0.5, -0.3}, 5, 2});
+    zooming.lens_motion = {
+        {0.2f, 0.9f},
+        {Projection{phone, {25, 26}, {}, 3, 1.5, pentagon}, Projection{phone, {36, 37}, {1, -0.5}, 7, 4}}};
+    cases.push_back({"projection, zooming", zooming, usual_points()});
     cases.push_back({"projection, hole", still(Projection{phone, {30, 31}, {0.5, -0.3}}), usual_points()});
     const ProjectionModel tracked(Kind::opencv_inverse, {0.15, -0.02, 0.002, -0.003});
     cases.push_back({"projection by the inverse, hole", still(Projection{tracked, {30, 31}, {0.5, -0.3}}), usual_points()});

@@ -46,7 +46,7 @@ LIMITS = {
 #: what may change while the shutter is open
 MOVABLE = (
     *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
-    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt", "zoom"),
+    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt", "zoom", "projection"),
 )
 
 
@@ -77,7 +77,8 @@ class Camera:
         lens_model: exact, polynomial, thick, thin or pinhole; None: exact if a prescription is
             named.
         projection: Instead of a lens: a calibration, or the formula of a fisheye or a panorama. It
-            takes f_stop (none: all is sharp) and focus; the width of ``sensor_size`` counts.
+            takes f_stop (none: all is sharp) and focus; the width of ``sensor_size`` counts. Keys
+            are of one model and size.
         degree: Of a polynomial lens, odd, 1 to 13; None: 7.
         fit_tolerance: RMS error (px) of a polynomial lens on the film, above which the exact lens
             takes its place; None: 0.5.

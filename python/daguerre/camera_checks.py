@@ -67,8 +67,8 @@ def _projection(camera: Camera) -> str:
             raise UsageError(
                 f"camera: projection: wanted without {name}, got both; {name}=None takes it away"
             )
-    if any(camera.tilt) or camera.natural_vignetting:
-        name = "tilt" if any(camera.tilt) else "natural_vignetting"
+    if any(camera.tilt) or "tilt" in camera.motion or camera.natural_vignetting:
+        name = "natural_vignetting" if camera.natural_vignetting else "tilt"
         raise UsageError(f"camera: projection: wanted without {name}, got both")
     return "projection"
 

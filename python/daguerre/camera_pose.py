@@ -16,6 +16,7 @@ import daguerre._core as _core
 from .camera import Camera
 from .camera_parts import rigid
 from .motion import Dynamic, Keys, Spin
+from .projection import Projection
 from .resample import resample_transform
 
 #: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
@@ -106,7 +107,7 @@ def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
     for name, dynamic in camera.motion.items():
         breaks = [float(t) for t in dynamic.breaks(begin, end)]
         times = sorted({*even, *breaks[: 16 * _LOOKS]})
-        values = [np.asarray(dynamic.at(t)).tolist() for t in times]
+        values = [_plain(dynamic.at(t)) for t in times]
         if any(value != values[0] for value in values):
             text = json.dumps([values, breaks])
             found[name] = {
@@ -115,6 +116,11 @@ def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
                 "sha256": hashlib.sha256(text.encode()).hexdigest(),
             }
     return {"motion": found} if found else {}
+
+
+def _plain(value: Any) -> Any:
+    """For JSON."""
+    return value.facts() if isinstance(value, Projection) else np.asarray(value).tolist()
 
 
 def _near(keys: Keys, begin: float, end: float) -> Keys:

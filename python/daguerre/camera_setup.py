@@ -108,11 +108,6 @@ def set_up(
     if any(camera.tilt) and model != "pinhole":
         setup.notes.append(tilt.note(camera.tilt, setup.facts["focal_length_mm"]))
     changing = set(facts.get("motion", {})) - {"transform"}
-    if model == "projection" and changing:
-        raise UsageError(
-            f"camera: {min(changing)}: a projection's own numbers wanted to stay while the shutter "
-            "is open (its place may change)"
-        )
     if changing:
         parts = setup.facts.get("focus_distance_m"), setup.facts.get("f_stop")
         behind = 1e-3 * setup.facts.get("entrance_pupil_offset_mm", 0.0) / tilt.cosine(camera.tilt)

@@ -113,8 +113,9 @@ def camera_facts(
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
     full = field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size, squeeze)
     shown = field_of_view_deg(setup.pinhole_focal_length, setup.frame_size, squeeze)
-    if camera.projection is not None:
-        full = shown = camera.projection.field_of_view()
+    projection = camera.at(scene.time).projection
+    if projection is not None:
+        full = shown = projection.field_of_view()
     return Facts(
         str(facts.get("lens", "thin")),
         focal,

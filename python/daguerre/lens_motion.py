@@ -1,10 +1,12 @@
 """Focus, zoom, iris and film shift that change while the shutter is open.
 
-An ideal lens is keyed so that its numbers are within the bound of :mod:`daguerre.resample` at all
-times. A thick or exact lens is set up in states, each drawn by the samples that are nearest to it
-in time: so many that focusing and tilting blur by less than ``STATE_BLUR`` of a pixel from what it
-should be, and the iris turns and bends by less than 1 % of its radius. Its f-stop needs no states:
-the widest iris is closed as far as it is at each moment.
+An ideal lens or a projection is keyed so that its numbers are within the bound of
+:mod:`daguerre.resample` at all times; the parameters of a projection's model change in steps that
+move nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in
+states, each drawn by the samples that are nearest to it in time: so many that focusing and tilting
+blur by less than ``STATE_BLUR`` of a pixel from what it should be, and the iris turns and bends by
+less than 1 % of its radius. Its f-stop needs no states: the widest iris is closed as far as it is
+at each moment.
 """
 
 from __future__ import annotations
@@ -29,9 +31,16 @@ STATE_BLUR = 0.1
 #: Radii by which the iris's corner may miss.
 _STATE_TURN = 0.01
 MAX_STATES = 129
+#: The same of a projection's model, whose states are cheap, and are ground truth's, too.
+MODEL_BLUR = 0.01
+MAX_MODELS = 513
 _LOOKS = 1024
 _IRIS = ("blades", "blade_rotation", "blade_curvature")
-_LENS = ("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", "zoom", *_IRIS)
+_LENS = (
+    *("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", "zoom"),
+    *("projection", *_IRIS),
+)
+_ACROSS = 9  # points across the picture at which it is seen how far a model moves it
 
 
 @dataclass
@@ -83,7 +92,7 @@ class LensMotion:
         note = None
         if efl is None:
             if self.changing & {*_LENS}:
-                self._change_ideal(core)
+                note = self._change_ideal(core)
         elif self.changing & {*_LENS, "shift"}:
             note = self._change_states(core, efl, frame, pitch)
         if "shift" in self.changing or (efl is not None and "f_stop" in self.changing):
@@ -114,7 +123,7 @@ class LensMotion:
         even = self.begin + (self.end - self.begin) * np.arange(_LOOKS + 1) / _LOOKS
         return [float(t) for t in even]
 
-    def _change_ideal(self, core: _core.Camera) -> None:
+    def _change_ideal(self, core: _core.Camera) -> str | None:
         made: dict[float, _core.Camera] = {}
 
         def lens(time: float) -> _core.Camera:
@@ -124,9 +133,31 @@ class LensMotion:
 
         watched = _Watched(lambda t: lens(t).lens_numbers, self.camera, self.changing)
         times, _ = resample(watched, self.begin, self.end)
+        steps, needed = self._model_times()
         if self.changing & {*_IRIS}:
-            times = sorted({*times, *self._looks()[:: _LOOKS // (MAX_STATES - 1)]})
+            steps = [*steps, *self._looks()[:: _LOOKS // (MAX_STATES - 1)]]
+        if steps:
+            times = sorted({*times, *steps})
         core.change_lens(self._fractions(times), [lens(t) for t in times])
+        if needed <= MAX_MODELS:
+            return None
+        return _too_many("projection: its parameters", needed, MAX_MODELS)
+
+    def _model_times(self) -> tuple[list[float], int]:
+        """Of a projection whose parameters change: times of models, and how many are asked for."""
+        if "projection" not in self.changing:
+            return [], 0
+        models = [self.camera.motion["projection"].at(t) for t in self._looks()]
+        if len({projection.parameters for projection in models}) == 1:
+            return [], 0
+        middle = models[_LOOKS // 2]
+        ends = [np.linspace(-0.5, side - 0.5, _ACROSS) for side in middle.size]
+        pixels = np.stack(np.meshgrid(*ends), axis=-1).reshape(-1, 2)
+        ahead = middle.unproject(pixels)
+        ahead = ahead[np.isfinite(ahead).all(axis=1)]
+        places = np.array([p.core.project(ahead) for p in models]) * middle.focal
+        moved = np.linalg.norm(np.diff(places, axis=0), axis=2)
+        return self._spread(np.nan_to_num(moved).max(axis=1) / (2 * MODEL_BLUR), MAX_MODELS)
 
     def _change_states(
         self, core: _core.Camera, efl: float, frame: tuple[float, float], pitch: float
@@ -146,10 +177,7 @@ class LensMotion:
             core.change_lens(self._fractions(times), list(pool.map(self.make, states)))
         if needed <= MAX_STATES:
             return None
-        return (
-            f"lens: its focus and iris change so much that {needed} states were wanted; "
-            f"{MAX_STATES} are taken"
-        )
+        return _too_many("lens: its focus and iris", needed, MAX_STATES)
 
     def _stop(self, camera: Camera) -> float:
         if "f_stop" in self.changing and camera.f_stop is not None:
@@ -178,11 +206,15 @@ class LensMotion:
         bends = np.array([c.blade_curvature for c in cameras])
         blades = np.diff([c.blades for c in cameras]) != 0
         steps += (np.abs(np.diff(turns)) + np.abs(np.diff(bends))) / (2 * _STATE_TURN) + 2 * blades
+        return self._spread(steps, MAX_STATES)
+
+    def _spread(self, steps: NDArray[np.float64], most: int) -> tuple[list[float], int]:
+        """Times of states that share what changes from look to look, in units of what one may."""
         way = np.concatenate([[0.0], np.cumsum(steps)])
         if not way[-1] > 0:
             return [0.5 * (self.begin + self.end)], 1
         needed = int(np.ceil(way[-1]))
-        count = min(needed, MAX_STATES)
+        count = min(needed, most)
         middles = way[-1] * (np.arange(count) + 0.5) / count
         return [float(t) for t in np.interp(middles, way, self._looks())], needed
 
@@ -202,6 +234,10 @@ class LensMotion:
         table = np.array(values, np.float32)
         openings = np.ascontiguousarray(np.minimum(1, table[:, 0]))
         core.change_setting(self._fractions(times), openings, np.ascontiguousarray(table[:, 1:]))
+
+
+def _too_many(what: str, needed: int, most: int) -> str:
+    return f"{what} change so much that {needed} states were wanted; {most} are taken"
 
 
 @dataclass(frozen=True)

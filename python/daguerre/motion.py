@@ -32,6 +32,17 @@ MAX_SPEED = 1e9  # revolutions per second
 MAX_DISTANCE = 1e15  # of pivots and centres, m
 
 
+class Blending(Protocol):
+    """A value that is no number but has some, such as a projection: what keys may hold, too."""
+
+    @property
+    def form(self) -> tuple[Any, ...]:
+        """What all keys have in common."""
+
+    def blended(self, other: Any, share: float) -> Any:
+        """What lies between it and another of the same form, that share of the way."""
+
+
 class Dynamic(Protocol):
     """A value that changes over time."""
 
@@ -48,7 +59,7 @@ class Keys:
 
     Attributes:
         times: Rising, shape (K,), s.
-        values: K numbers, tuples or arrays of one shape, names or flags.
+        values: K numbers, tuples or arrays of one shape, names or flags, or projections.
         interpolation: Of matrices (4, 4) one of ``OF_MATRICES``, of all else of ``OF_NUMBERS``.
         pivot: Point in local space about which decomposed matrices turn, m.
     """
@@ -146,7 +157,8 @@ def keys(
 
     Args:
         pairs: (time in s, value), times rising strictly. Values are numbers, tuples or arrays of
-            numbers of one shape, or names and flags, which step.
+            numbers of one shape, projections of one model and size, or names and flags, which
+            step.
         interpolation: Of matrices (4, 4): decomposed (default), linear, twist or slerp. Of other
             numbers: linear (default) or step.
         pivot: Point in local space, m, about which decomposed matrices turn; absent: the origin.
@@ -277,6 +289,8 @@ def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
 
 def _value(value: Any, where: str, interpolation: str | None) -> Any:
     """A number, a tuple of floats, a read-only array, a name or a flag; finite."""
+    if _blends(value):
+        return value
     if isinstance(value, str | bool | np.bool_ | None):
         return bool(value) if isinstance(value, np.bool_) else value
     if isinstance(value, int | float):
@@ -298,7 +312,13 @@ def _time(value: Any, where: str) -> float:
     return number(value, where, -MAX_TIME, MAX_TIME, error=InputError)
 
 
-def _shape(value: Any) -> tuple[int, ...]:
+def _blends(value: Any) -> bool:
+    return hasattr(type(value), "blended")
+
+
+def _shape(value: Any) -> tuple[Any, ...]:
+    if _blends(value):
+        return tuple(value.form)
     if isinstance(value, np.ndarray):
         return tuple(int(n) for n in value.shape)
     return (len(value),) if isinstance(value, tuple) else ()
@@ -333,6 +353,8 @@ def _in_core(made: Keys | Spin, where: str) -> None:
 
 
 def _lerp(a: Any, b: Any, s: float) -> Any:
+    if _blends(a):
+        return a.blended(b, s)
     if isinstance(a, tuple):
         return tuple(x + s * (y - x) for x, y in zip(a, b, strict=True))
     if isinstance(a, np.ndarray):

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -162,6 +163,24 @@ class Projection:
         angles = np.degrees(np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2]))
         across, down, diagonal = (float(a) for a in angles.reshape(3, 2).sum(axis=1))
         return across, down, diagonal
+
+    @property
+    def form(self) -> tuple[str, tuple[int, int]]:
+        """Model and size: what all keys of a projection over time have in common."""
+        return self.model, self.size
+
+    def blended(self, other: Projection, share: float) -> Projection:
+        """What lies between it and another of the same form, number by number."""
+
+        def mix(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
+            both = zip_longest(a, b, fillvalue=0.0)  # parameters that are not given are 0
+            return tuple(x + share * (y - x) for x, y in both)
+
+        focal, center = mix(self.focal, other.focal), mix(self.center, other.center)
+        parameters = mix(self.parameters, other.parameters)
+        return Projection(
+            *(self.model, self.size, (focal[0], focal[1]), (center[0], center[1]), parameters)
+        )
 
     def project(self, points: ArrayLike) -> FloatArray:
         """Pixels of points of the camera's own frame as OpenCV has it: x right, y down, z ahead.

@@ -64,7 +64,7 @@ class Sight:
         else:
             if model["model"] == "cube":
                 raise UsageError("stmap: a cube has no picture that could be straightened")
-            film = camera.projection.film(self.setup.frame_size[0])  # type: ignore[union-attr]
+            film = still.projection.film(self.setup.frame_size[0])  # type: ignore[union-attr]
             self._focal, self._principal = map(np.array, (film["focal_mm"], film["principal_mm"]))
 
     @cached_property
