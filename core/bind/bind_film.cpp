@@ -84,6 +84,7 @@ void bind_film(nb::module_& m) {
              "curves"_a, "What the channels see: (channels, 401) weights per nm, 380 to 780 nm.")
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
+        .def("place", &Film::place, "offset_x"_a, "offset_y"_a, "Where its first pixel lies in the frame.")
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })

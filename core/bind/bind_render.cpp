@@ -65,6 +65,10 @@ auto draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
                       counters.scatter_hits};
 }
 
+using Corners = std::tuple<int, int, int, int>;
+Corners corners(const dg::PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
+dg::PixelBox box_of(const Corners& c) { return {std::get<0>(c), std::get<1>(c), std::get<2>(c), std::get<3>(c)}; }
+
 using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 /// Counts per pixel of the film's region.
@@ -111,6 +115,12 @@ void bind_render(nb::module_& m) {
                      [](RenderSettings& s, std::tuple<double, double> v) {
                          s.sensor.center_mm = {std::get<0>(v), std::get<1>(v)};
                      })
+        .def_prop_rw("window", [](const RenderSettings& s) { return corners(s.window); },
+                     [](RenderSettings& s, Corners box) { s.window = box_of(box); },
+                     "Of the film only these pixels (x0, y0, x1, y1) are drawn; all 0: each.")
+        .def_prop_rw("hole", [](const RenderSettings& s) { return corners(s.hole); },
+                     [](RenderSettings& s, Corners box) { s.hole = box_of(box); },
+                     "Of the film these pixels (x0, y0, x1, y1) are not drawn.")
         .def_rw("seed", &RenderSettings::seed)
         .def_rw("threads", &RenderSettings::threads)
         .def_rw("shutter", &RenderSettings::shutter)

@@ -52,6 +52,8 @@ void bind_shutter(nb::module_& m) {
                                  std::get<0>(resolution), std::get<1>(resolution));
              },
              "exposure_s"_a, "curve"_a, "scan"_a, "line_time_s"_a, "leaf"_a, "resolution"_a)
+        .def("within", &Shutter::within, "pixels_left"_a, "pixels_above"_a,
+             "That of a larger frame around this one, whose other pixels are exposed with the nearest line.")
         .def_prop_ro("duration_s", &Shutter::duration_s)
         .def_prop_ro("weight", &Shutter::weight)
         .def("moment",

@@ -90,14 +90,20 @@ Shutter::Shutter(const ShutterSettings& settings, int width, int height) : setti
     if (scans) line_ = settings.line_time_s / duration_s_;
 }
 
+Shutter Shutter::within(int pixels_left, int pixels_above) const {
+    Shutter larger = *this;
+    larger.before_ = scans_columns() ? pixels_left : pixels_above;
+    return larger;
+}
+
 double Shutter::opens_at(Vec2d px) const {
-    const double line = (scans_columns() ? px.x : px.y) - 0.5;   // lines have their middles there
+    const double line = (scans_columns() ? px.x : px.y) - 0.5 - std::max(0, before_);   // lines have their middles there
     return line_ > 0 ? open_of(std::clamp(line, 0.0, lines_ - 1.0)) : 0;
 }
 
 Moment Shutter::draw(int x, int y, float u) const {
     if (settings_.leaf) return {float(exposure_ * u), float(settings_.curve.at(u))};
-    const double open = line_ > 0 ? open_of(scans_columns() ? x : y) : 0;
+    const double open = line_ > 0 ? open_of(line_of(scans_columns() ? x : y)) : 0;
     return {float(open + exposure_ * settings_.curve.sample(u))};
 }
 
@@ -109,6 +115,7 @@ Moment Shutter::draw_any(float u) const {
 }
 
 float Shutter::opening(int row, float time) const {
+    row = line_of(row);
     if (row < 0 || row >= lines_) return 0;
     const double open = open_of(row);
     if (!(exposure_ > 0)) return time == float(open) ? 1.f : 0.f;

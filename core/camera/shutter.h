@@ -64,6 +64,10 @@ class Shutter {
     /// For a frame of so many pixels. Throws Error for times that are negative or not finite.
     Shutter(const ShutterSettings& settings, int width, int height);
 
+    /// The same for a larger frame around this one, which begins so many pixels before it: what lies beside
+    /// this one is exposed with the line that is nearest.
+    Shutter within(int pixels_left, int pixels_above) const;
+
     /// From the first light on the first line to the last on the last one.
     double duration_s() const { return duration_s_; }
     const ShutterSettings& settings() const { return settings_; }
@@ -92,12 +96,15 @@ class Shutter {
     float opening(int row, float time) const;
 
   private:
+    /// The line of a row or column of the frame.
+    int line_of(int i) const { return before_ < 0 ? i : std::clamp(i - before_, 0, lines_ - 1); }
     double open_of(double line) const { return line_ * (backward_ ? lines_ - 1 - line : line); }
 
     ShutterSettings settings_;
     double duration_s_ = 0;
     double exposure_ = 0, line_ = 0;   // fractions of the duration
     int lines_ = 1;
+    int before_ = -1;   // lines of a larger frame before the first; < 0: it is this one
     bool backward_ = false;
 };
 

@@ -141,4 +141,23 @@ TEST_CASE("a leaf's moments are even, and know how far the iris is open") {
     CHECK(s.draw(1, 1, 0.5f).iris_opening == 1);
 }
 
+TEST_CASE("beside the frame lines are exposed as the nearest one of it") {
+    for (const ScanOrder scan : {ScanOrder::top, ScanOrder::bottom, ScanOrder::left, ScanOrder::right}) {
+        const Shutter own({1e-3, {}, scan, 1e-3}, 6, 8);
+        const Shutter larger = own.within(3, 2);
+        const bool columns = own.scans_columns();
+        const int lines = columns ? 6 : 8, before = columns ? 3 : 2;
+        CHECK(larger.duration_s() == own.duration_s());
+        for (int line = 0; line < lines + before + 4; ++line) {
+            const int nearest = std::clamp(line - before, 0, lines - 1);
+            const Moment there = larger.draw(line, line, 0.3f), here = own.draw(nearest, nearest, 0.3f);
+            CHECK(there.time == here.time);
+            CHECK(larger.opening(line, there.time) == 1);
+            const float middle = own.draw(lines / 2, lines / 2, 0.5f).time;
+            CHECK(larger.opening(line, middle) == own.opening(nearest, middle));
+            CHECK(larger.opens_at({line + 0.5, line + 0.5}) == own.opens_at({nearest + 0.5, nearest + 0.5}));
+        }
+    }
+}
+
 }  // namespace dg

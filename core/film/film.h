@@ -43,6 +43,13 @@ struct FilmLayout {
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };
 
+/// Pixels [x0, x1) x [y0, y1) of the full frame.
+struct PixelBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool empty() const { return x0 >= x1 || y0 >= y1; }
+    bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
 /// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band, 16 with each
 /// channel and as much again if there are splats or flare.
 class Film {
@@ -51,6 +58,8 @@ class Film {
     /// channels is 0 .. Responses::kMost.
     explicit Film(FilmLayout layout);
     const FilmLayout& layout() const { return layout_; }
+    /// Says where its region lies from now on: in a frame that begins elsewhere.
+    void place(int offset_x, int offset_y) { layout_.offset_x = offset_x, layout_.offset_y = offset_y; }
     /// What the channels are made of light by; to be set before a film with channels is drawn into. Throws
     /// Error for another number of channels.
     void set_responses(Responses responses);

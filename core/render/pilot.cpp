@@ -40,6 +40,7 @@ int block_side(const Sensor& sensor) {
 /// The picture in larger pixels.
 RenderSettings coarse(const RenderSettings& picture, int side) {
     RenderSettings s = picture;
+    s.window = s.hole = {};
     s.sensor.width = (picture.sensor.width + side - 1) / side;
     s.sensor.height = (picture.sensor.height + side - 1) / side;
     s.sample_begin = 0, s.sample_end = kSamples;

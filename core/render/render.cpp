@@ -68,13 +68,33 @@ struct LightTasks {
     }
 };
 
-/// Sums of a round over the pixels of the region.
+/// The part of a film's region that is drawn.
+FilmLayout cut(FilmLayout region, const PixelBox& window) {
+    if (window.empty()) return region;
+    const int x0 = std::max(region.offset_x, window.x0), x1 = std::min(region.offset_x + region.width, window.x1),
+              y0 = std::max(region.offset_y, window.y0), y1 = std::min(region.offset_y + region.height, window.y1);
+    region.offset_x = x0, region.offset_y = y0;
+    region.width = std::max(0, x1 - x0), region.height = std::max(0, y1 - y0);
+    return region;
+}
+
+/// Calls use(pixel, its index in the film) for the pixels of a region that are not in the hole.
+template <typename Use>
+void for_each_drawn(const FilmLayout& region, const FilmLayout& film, const PixelBox& hole, const Use& use) {
+    for (int y = region.offset_y; y < region.offset_y + region.height; ++y)
+        for (int x = region.offset_x; x < region.offset_x + region.width; ++x)
+            if (!hole.contains(x, y))
+                use(Pixel{x, y}, std::size_t(y - film.offset_y) * film.width + (x - film.offset_x));
+}
+
+/// Sums of a round over the pixels that are drawn.
 struct RoundSums {
     UInt128 begin = 0, count = 0;
     std::size_t pixels = 0;
-    explicit RoundSums(const SampleRound& round) : pixels(round.count.size()) {
-        for (const std::uint32_t n : round.begin) begin += n;
-        for (const std::uint32_t n : round.count) count += n;
+    RoundSums(const RenderSettings& settings, const FilmLayout& region, const FilmLayout& film) {
+        for_each_drawn(region, film, settings.hole, [&](Pixel, std::size_t i) {
+            begin += settings.round.begin[i], count += settings.round.count[i], ++pixels;
+        });
     }
     double mean_count() const { return double(count) / double(pixels); }
     /// Mean sample index up to which a part is drawn: the same number, to the bit, at the end of one round
@@ -93,8 +113,9 @@ class Renderer {
                      : nullptr),
           end_secondary_(settings.dispersion == Dispersion::end_secondary &&
                          std::holds_alternative<ExactLens>(camera.lens)),
-          density_(settings.filter, film.layout(), uneven(settings.round.count),
-                   &settings.shutter),
+          region_(cut(film.layout(), settings.window)),
+          counts_(counts_of(settings, region_, film.layout())),
+          density_(settings.filter, region_, uneven(counts_), &settings.shutter),
           weight_(scene, camera, settings.sensor, density_, plan(), settings.technique,
                   settings.light_guide) {
         if (film.responses().count() != film.layout().channels)
@@ -123,11 +144,13 @@ class Renderer {
         const SampleRound& round = settings_.round;
         double begin = settings_.sample_begin, end = settings_.sample_end;
         if (!round.count.empty()) {
-            const RoundSums sums(round);
+            const RoundSums sums = round_sums();
             begin = sums.until(round.first), end = sums.until(round.last);
         }
         return light_path_range(begin, end, per_sample, settings_.seed);
     }
+    /// What is drawn of the film's region, but for the hole.
+    const FilmLayout& region() const { return region_; }
     void draw_light(Workspace& work, std::uint64_t first, std::uint64_t last, bool bounced) const {
         if (bounced)
             light_->draw_bounced(work.light, first, last);
@@ -162,9 +185,23 @@ class Renderer {
         return even ? std::span<const std::uint32_t>{} : counts;
     }
 
+    /// Samples of each pixel of the region, where they may differ: of a round, or of a region with a hole, 1 and 0.
+    static std::vector<std::uint32_t> counts_of(const RenderSettings& settings, const FilmLayout& region,
+                                                const FilmLayout& film) {
+        const SampleRound& round = settings.round;
+        if (round.count.empty() && settings.hole.empty()) return {};
+        std::vector<std::uint32_t> counts(std::size_t(region.width) * region.height);
+        for_each_drawn(region, film, settings.hole, [&](Pixel p, std::size_t i) {
+            counts[std::size_t(p.y - region.offset_y) * region.width + (p.x - region.offset_x)] =
+                round.count.empty() ? 1 : round.count[i];
+        });
+        return counts;
+    }
+    RoundSums round_sums() const { return {settings_, region_, film_.layout()}; }
+
     /// Sample indices per unit of the density's counts, which are those of a whole round.
     double samples_per_count() const {
-        return density_.even() ? 1 : RoundSums(settings_.round).mean_count();
+        return density_.even() || settings_.round.count.empty() ? 1 : round_sums().mean_count();
     }
     LightPlan plan() const {
         return {settings_.light.m1 * samples_per_count(), settings_.light.m2 * samples_per_count()};
@@ -197,6 +234,7 @@ class Renderer {
 
     /// Samples [begin, end) that this call draws of a pixel.
     std::array<std::uint32_t, 2> samples_of(Pixel pixel) const {
+        if (settings_.hole.contains(pixel.x, pixel.y)) return {0, 0};
         if (settings_.round.count.empty()) return {settings_.sample_begin, settings_.sample_end};
         const FilmLayout& region = film_.layout();
         return settings_.round.samples(std::size_t(pixel.y - region.offset_y) * region.width +
@@ -317,6 +355,8 @@ class Renderer {
     const RenderSettings& settings_;
     const ExactLens* exact_;   // the lens whose wavelengths are reprojected, else null
     bool end_secondary_;
+    FilmLayout region_;
+    std::vector<std::uint32_t> counts_;   // of its pixels, unless all are alike
     FilmDensity density_;
     LightWeight weight_;
     PixelCone cone_;           // none where the scene has no textures
@@ -333,11 +373,11 @@ class Renderer {
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
                       const RenderSettings& settings,
                       const std::function<bool(double)>& progress) {
-    const FilmLayout& region = film.layout();
+    const Renderer renderer(scene, camera, film, settings);
+    const FilmLayout& region = renderer.region();
     const int x0 = region.offset_x, y0 = region.offset_y;
     const int columns = (region.width + kTileSize - 1) / kTileSize;
     const int rows = (region.height + kTileSize - 1) / kTileSize;
-    const Renderer renderer(scene, camera, film, settings);
     oneapi::tbb::enumerable_thread_specific<Workspace> workspaces;
     const LightTasks straight(renderer.light_paths(settings.light.m1), kLightBlock),
         bounced(renderer.light_paths(settings.light.m2), kLightBlock),

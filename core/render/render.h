@@ -64,6 +64,7 @@ struct RenderSettings {
     Sensor sensor;
     std::uint32_t sample_begin = 0, sample_end = 1;
     SampleRound round;                          // instead of these, unless empty
+    PixelBox window, hole;                      // of the film only what lies in one and not in the other; empty: all
     std::uint64_t seed = 0;
     int threads = 0;                            // 0: all
     Shutter shutter;                            // its duration is the scene's interval

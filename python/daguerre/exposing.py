@@ -61,6 +61,7 @@ def expose(
     temperature: float | None = None,
 ) -> Raw:
     """See :meth:`daguerre.Frame.expose`."""
+    frame = frame.without_overscan()
     body = chosen_sensor(frame, sensor)
     notes: list[str] = []
     speed = chosen_iso(frame, body, iso, notes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +107,30 @@ class Frame:
             return None
         return np.stack([self.aovs[n] for n in names], axis=2)
 
+    def without_overscan(self) -> Frame:
+        """The pixels of the picture alone, without those beside it: what a sensor records.
+
+        Raises:
+            UsageError: The frame is a crop that has none of them.
+        """
+        width, height = self.metadata.get("resolution") or (self.width, self.height)
+        left, top = (self.metadata.get("crop") or (0, 0))[:2]
+        x0, y0 = max(left, 0), max(top, 0)
+        x1, y1 = min(left + self.width, width), min(top + self.height, height)
+        if (x0, y0, x1, y1) == (left, top, left + self.width, top + self.height):
+            return self
+        if x0 >= x1 or y0 >= y1:
+            raise UsageError("frame: wanted some pixel of the picture, got overscan alone")
+        rows, columns = slice(y0 - top, y1 - top), slice(x0 - left, x1 - left)
+        cut: dict[str, Any] = {
+            f.name: value[rows, columns]
+            for f in fields(self)
+            if isinstance(value := getattr(self, f.name), np.ndarray)
+        }
+        aovs = {name: plane[rows, columns] for name, plane in self.aovs.items()}
+        facts = {k: v for k, v in self.metadata.items() if k != "overscan"}
+        return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
+
     def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
         """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
 
@@ -145,7 +169,8 @@ class Frame:
         Args:
             path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
                 ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. What an
-                exposure makes of it is ``expose``, and ``daguerre.development.develop``.
+                exposure makes of it is ``expose``, and ``daguerre.development.develop``. They have
+                no overscan.
             tone: For those; see :meth:`display`.
 
         Raises:
@@ -160,11 +185,12 @@ class Frame:
         elif suffix == ".png":
             from .io.png import write_png
 
-            write_png(path, self, tone)
+            write_png(path, self.without_overscan(), tone)
         else:
             from .development import Picture
 
-            Picture(self._encoded(tone), "srgb", self.metadata).save(path)
+            shown = self.without_overscan()
+            Picture(shown._encoded(tone), "srgb", shown.metadata).save(path)
 
     def expose(
         self,
@@ -232,7 +258,7 @@ class Frame:
     def _repr_png_(self) -> bytes:
         from .io.png import png_bytes
 
-        return png_bytes(self)
+        return png_bytes(self.without_overscan())
 
     def _repr_html_(self) -> str:
         from base64 import b64encode

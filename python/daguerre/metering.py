@@ -95,6 +95,7 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
         InputError: Nothing there is bright, or the frame's facts do not tell its exposure.
     """
     mode = check_mode(mode)
+    frame = frame.without_overscan()
     unit = luminance_exposure(frame.metadata)
     place = _Place.of(frame, at)
     if mode == "matrix":

@@ -29,15 +29,17 @@ from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
 from .exposure import without_exposure
 from .film_channels import check_bands, responses, sensor_metadata
+from .film_parts import Box, FilmPart, area, core_settings, frame_around, inside
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
-from .overscan import NONE
+from .overscan import NONE, Overscan, check_overscan, to_undistort
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
+from .sight import Sight
 from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves
@@ -61,6 +63,9 @@ class Session:
         filter: box, gaussian, blackman_harris or mitchell; ``"name:radius"`` sets the radius in px.
         aovs: Keep depth, normal, position, albedo and object id.
         crop: Pixel region (x0, y0, x1, y1) to draw, end exclusive; None: all.
+        overscan: Pixels beside the picture that are drawn, too (``docs/plates.md``): a number for
+            all sides, ``"10%"``, (left, top, right, bottom), or ``"undistort"``: what a later
+            straightening needs. The picture keeps its bits.
         threads: 0: all cores.
         max_depth: Largest number of surfaces at which a path scatters.
         strategy: mis, or light or bsdf alone (to check one against the other).
@@ -111,6 +116,7 @@ class Session:
         gt_rays: int | None = None,
         motion: bool = False,
         crop: tuple[int, int, int, int] | None = None,
+        overscan: Any = None,
         threads: int = 0,
         max_depth: int = 16,
         strategy: str = "mis",
@@ -125,8 +131,8 @@ class Session:
         bands: int = 0,
         built: BuiltScene | None = None,
     ) -> None:
-        self.width, self.height = check_resolution(resolution)
-        self.crop = _crop(crop, self.width, self.height)
+        self.width, self.height = size = check_resolution(resolution)
+        wanted_overscan = check_overscan(overscan, size)
         kind, radius = _filter(filter)
         seed = whole(seed, "seed", 0, (1 << 64) - 1, "0 .. 2^64 - 1")
         threads = whole(threads, "threads", 0, 1024, "0 (all) .. 1024")
@@ -150,7 +156,6 @@ class Session:
             raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
         self.scene = scene
         self.camera = camera if isinstance(camera, Camera) else scene.camera(camera)
-        self.overscan = NONE
         if not isinstance(aovs, bool | np.bool_):
             raise UsageError(f"aovs: wanted True or False (all of them or none), got {short(aovs)}")
         self.aovs = bool(aovs)
@@ -163,36 +168,41 @@ class Session:
             built = BuiltScene(scene, self.interval)
         self.built, self._core_scene = built, built.core
         self.warnings = list(built.warnings)
-        self._setup = set_up(scene, self.camera, (self.width, self.height), self._core_scene)
+        self._setup = set_up(scene, self.camera, size, self._core_scene)
+        self.notes = list(self._setup.notes)
+        self.overscan = self._to_undistort() if wanted_overscan is None else wanted_overscan
+        self.crop = _crop(crop, self.overscan.region(size))
         self.sensor = None if self.camera.sensor is None else sensors.load(self.camera.sensor)
         self._pupils = self._plan_waves()
         self.setup_seconds = time.perf_counter() - started
-        self.notes = list(self._setup.notes)
-        self._settings = _core.RenderSettings()
-        self._settings.resolution = (self.width, self.height)
-        self._settings.sensor_size_mm = self._setup.frame_size
-        shift_x, shift_y = self._setup.facts["shift_mm"]  # at mid-exposure
-        self._settings.sensor_center_mm = (shift_x, shift_y)
-        self._settings.shutter = shutter.core_shutter(self.camera, (self.width, self.height))
-        self._settings.seed = seed
-        self._settings.threads = threads
-        self._settings.filter = _core.Filter(kind, radius)
-        self._settings.max_depth = max_depth
+        options = {
+            "seed": seed,
+            "threads": threads,
+            "filter": _core.Filter(kind, radius),
+            "max_depth": max_depth,
+            "strategy": strategy,
+            "dispersion": dispersion,
+            "technique": technique,
+            "flare_order": flare_order,
+            "flare_highlights": flare_highlights,
+        }
+        core_shutter = shutter.core_shutter(self.camera, size)
         try:
-            self._settings.strategy = strategy
-            self._settings.dispersion = dispersion
+            self._settings = core_settings(self._setup, size, core_shutter, NONE, options)
         except ValueError as error:
             raise UsageError(str(error)) from None
-        self._settings.technique = technique
-        self.light_paths = self._plan() if wanted is None else wanted
+        self._window = inside(self.crop, size)
+        plan = self._plan() if wanted is None else wanted
+        # What pays is judged by the frame; a crop gets the share that it has of its pixels.
+        shared = self._share(area(self._window)) if wanted is None else 1.0
+        self.light_paths = (plan[0] * shared, plan[1] * shared)
         self._settings.light_paths = self.light_paths
         self._settings.prepare_light(self._core_scene, self._setup.core)
-        self._settings.flare_order = flare_order
-        self._settings.flare_highlights = flare_highlights
         dark = "no light of this scene makes a ghost in this lens"
         self.flare = self._prepare("flare", flare_paths, FLARE_PER_PIXEL, dark)
         dark = "nothing shines in this scene, or the lens scatters nothing"
         self.scatter = self._prepare("scatter", scatter_paths, SCATTER_PER_PIXEL, dark)
+        self._parts = self._parts_of(plan, wanted is None, core_shutter, options)
         self._film = self._new_film()
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
@@ -227,6 +237,8 @@ class Session:
             self._identity["sensor"] = self.sensor.hash
         if self.bands:
             self._identity["bands"] = self.bands
+        if self.overscan:
+            self._identity["overscan"] = str(self.overscan)
 
     @property
     def focused_camera(self) -> Camera:
@@ -234,11 +246,45 @@ class Session:
         return focused(self.camera, self._setup.facts)
 
     def _plan(self) -> Plan:
-        """What pays in this scene; a crop gets the share that it has of the frame's pixels."""
+        """What pays in this scene."""
         m1, m2 = _core.pilot(self._core_scene, self._setup.core, self._settings)
-        x0, y0, x1, y1 = self.crop
-        share = (x1 - x0) * (y1 - y0) / (self.width * self.height)
-        return m1 * share, m2 * share
+        return m1, m2
+
+    def _share(self, pixels: int) -> float:
+        return pixels / (self.width * self.height)
+
+    def _to_undistort(self) -> Overscan:
+        size = (self.width, self.height)
+        found = to_undistort(Sight(self.focused_camera, size, scene=self.scene))
+        told = f"{found} px" if found else "none is needed"
+        self.notes.append(f"overscan (left, top, right, bottom) to straighten the picture: {told}")
+        return found
+
+    def _parts_of(
+        self, plan: Plan, shared: bool, core_shutter: _core.Shutter, options: dict[str, Any]
+    ) -> list[FilmPart]:
+        """The picture, and what lies around it, where the crop has any of them."""
+        size, inner = (self.width, self.height), area(self._window)
+        parts = []
+        if inner:
+            if self.overscan:
+                self._settings.window = self._window
+            parts.append(FilmPart(self._setup.core, self._settings, (0, 0), inner))
+        outer = area(self.crop) - inner
+        if not outer:
+            return parts
+        setup = set_up(self.scene, self.focused_camera, size, self._core_scene, self.overscan)
+        settings = core_settings(setup, size, core_shutter, self.overscan, options)
+        grown = self._share(area(self.overscan.region(size)))
+        times = self._share(outer) if shared else grown
+        settings.light_paths = (plan[0] * times, plan[1] * times)
+        settings.prepare_light(self._core_scene, setup.core)
+        for name in ("flare", "scatter"):
+            paths = getattr(self, name)
+            if paths and getattr(settings, f"prepare_{name}")(self._core_scene, setup.core):
+                setattr(settings, name, paths * grown)
+        parts.append(FilmPart(setup.core, settings, (self.overscan.left, self.overscan.top), outer))
+        return parts
 
     def _prepare(self, name: str, paths: float | None, per_pixel: float, dark: str) -> float:
         """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
@@ -267,11 +313,16 @@ class Session:
             return None
         camera = self.camera.at(0.5 * (self.interval[0] + self.interval[1]))
         resolution = (self.width, self.height)
-        return plan_waves(self.diffraction, camera, self._setup, resolution, self.sensor)
+        frame, middle = frame_around(self._setup, resolution, self.overscan)
+        facts = self._setup.facts | {"shift_mm": middle}
+        setup = replace(self._setup, frame_size=frame, facts=facts)
+        grown = self.overscan.grown(resolution)
+        return plan_waves(self.diffraction, camera, setup, grown, self.sensor)
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
-        layers = (self.aovs, self.light_paths != OFF, self.flare > 0 or self.scatter > 0)
+        followed = any(part.settings.light_paths != OFF for part in self._parts)
+        layers = (self.aovs, followed, self.flare > 0 or self.scatter > 0)
         bands = self.diffraction.bands if self.diffraction is not None else self.bands
         region = (x1 - x0, y1 - y0, x0, y0)
         if self.sensor is None:
@@ -334,12 +385,17 @@ class Session:
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
-        complete, camera_rays, stopped, rays, light_paths, off_film, *flare = draw(
-            self._core_scene, self._setup.core, film, self._settings, *which, progress
-        )
-        if not complete:
-            return False
+        all_pixels, done, counts = area(self.crop), 0, np.zeros(10, np.int64)
+        for part in self._parts:
+            told = _share_of(progress, done / all_pixels, part.pixels / all_pixels)
+            corner = self.crop[0], self.crop[1]
+            complete, found = part.draw(draw, self._core_scene, film, corner, which, told)
+            if not complete:
+                return False
+            done += part.pixels
+            counts += found
         self._torn = False
+        camera_rays, stopped, rays, light_paths, off_film, *flare = counts.tolist()
         self.camera_rays += camera_rays
         self.stopped_rays += stopped
         self.rays += rays
@@ -376,21 +432,32 @@ class Session:
     @cached_property
     def ground_truth(self) -> GroundTruth:
         """What is known of scene and camera without samples: of ``gt_time``, or of mid."""
+        return self._truth_of(self.crop, self.overscan)
+
+    def _truth_of(self, region: Box, overscan: Overscan) -> GroundTruth:
         return GroundTruth(
             self.scene,
             self.focused_camera,
             (self.width, self.height),
-            self.crop,
+            region,
             self.gt_time or "mid",
             self.gt_lens,
             self.gt_rays,
             self._settings.threads,
             None if self.scene.motion else self._core_scene,
+            overscan,
         )
 
     @cached_property
     def _truth(self) -> dict[str, NDArray[Any]]:
-        return self.ground_truth.planes(motion=self.motion)
+        planes = self.ground_truth.planes(motion=self.motion)
+        if self.overscan and area(self._window):  # has the bits that it has without overscan
+            (left, top), (x0, y0, x1, y1) = self.crop[:2], self._window
+            part = np.s_[y0 - top : y1 - top, x0 - left : x1 - left]
+            own = self._truth_of(self._window, NONE).planes(motion=self.motion)
+            for name, plane in own.items():
+                planes[name][part] = plane
+        return planes
 
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """Of ground truth: index + 1 of the instance that a pixel sees, (H, W); 0: none.
@@ -458,6 +525,7 @@ class Session:
             **self._sample_facts(),
             "resolution": (self.width, self.height),
             "crop": self.crop,
+            "overscan": str(self.overscan) if self.overscan else None,
             "filter": self._identity["filter"],
             "light_paths": show_plan(self.light_paths),
             "flare": f"{self.flare:.17g}" if self.flare else None,
@@ -576,20 +644,25 @@ def check_resolution(resolution: tuple[int, int]) -> tuple[int, int]:
     return size[0], size[1]
 
 
-def _crop(
-    crop: tuple[int, int, int, int] | None, width: int, height: int
-) -> tuple[int, int, int, int]:
+def _share_of(progress: Progress | None, done: float, share: float) -> Progress | None:
+    """Of a part of what is drawn."""
+    return None if progress is None else lambda fraction: progress(done + share * fraction)
+
+
+def _crop(crop: Box | None, region: Box) -> Box:
     if crop is None:
-        return 0, 0, width, height
+        return region
+    left, top, right, bottom = region
     try:
         x0, y0, x1, y1 = (operator.index(v) for v in crop)
     except (TypeError, ValueError):
         raise UsageError(
             f"crop: wanted whole numbers (x0, y0, x1, y1), got {short(crop)}"
         ) from None
-    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
+    if not (left <= x0 < x1 <= right and top <= y0 < y1 <= bottom):
+        within = f"{right}x{bottom}" if left == top == 0 else f"({left}, {top}, {right}, {bottom})"
         raise UsageError(
-            f"crop: wanted (x0, y0, x1, y1) with x0 < x1 and y0 < y1 within {width}x{height}, "
+            f"crop: wanted (x0, y0, x1, y1) with x0 < x1 and y0 < y1 within {within}, "
             f"got ({x0}, {y0}, {x1}, {y1})"
         )
     return x0, y0, x1, y1

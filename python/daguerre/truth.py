@@ -21,6 +21,7 @@ from .camera import Camera
 from .camera_setup import CameraSetup, set_up
 from .checks import short, whole
 from .errors import UsageError, suggest
+from .overscan import NONE, Overscan
 from .scene import Scene
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
@@ -106,6 +107,7 @@ class GroundTruth:
         gt_rays: Of each pixel, for means.
         threads: 0: all cores.
         core_scene: The scene if it does not move, so that it need not be built again.
+        overscan: Pixels around the picture that the crop may have, too.
     """
 
     scene: Scene
@@ -117,6 +119,7 @@ class GroundTruth:
     gt_rays: int = GT_RAYS
     threads: int = 0
     core_scene: _core.Scene | None = None
+    overscan: Overscan = NONE
 
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
         """Channels (H, W) by name: ``PLANES``, and with ``motion`` also ``motion.U``, ... in px.
@@ -169,7 +172,7 @@ class GroundTruth:
         begin, end = begin, begin + shutter.core_shutter(camera, self.resolution).duration_s
         scene = self.scene.at(0.5 * (begin + end))
         core_scene = self.core_scene or build(scene, (begin, end))
-        setup = set_up(scene, camera, self.resolution, core_scene)
+        setup = set_up(scene, camera, self.resolution, core_scene, self.overscan)
         settings = _core.RenderSettings()
         settings.resolution = self.resolution
         settings.sensor_size_mm = setup.frame_size

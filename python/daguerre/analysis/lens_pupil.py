@@ -169,6 +169,8 @@ def zone_pupils(
         for y in share
     ]
     lit = [p for row in found for p in row if p is not None]
+    if not lit:  # corners alone, beyond the image circle
+        lit = [p for p in [lens_pupil(bench, center_mm, iris, wavelengths_nm)] if p is not None]
     if not lit:
         raise ValueError(f"{bench.lens.name}: no light arrives at the film")
     spare = found[zones // 2][zones // 2] or lit[0]

@@ -30,7 +30,11 @@ def coco_of(
         return None, None
     if path.suffix.lower() != ".json":
         raise UsageError(f"--coco: wanted a name ending in .json, got {path}")
-    taken = {file.resolve() for picture in wanted for file in picture.plan.files}
+    if not wanted[0].plan.outputs:
+        raise UsageError("--coco: wanted a picture with -o, got maps alone")
+    if wanted[0].plan.overscan is not None:
+        raise UsageError("--coco and --overscan: wanted one of them: pictures have no overscan")
+    taken = {file.resolve() for picture in wanted for file in picture.plan.written}
     if path.resolve() in taken or (
         categories is not None and path.resolve() == categories.resolve()
     ):

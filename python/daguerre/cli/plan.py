@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from daguerre.errors import UsageError, suggest
 
@@ -54,7 +53,7 @@ class Plan:
     gt_time: str | None = None
     gt_lens: str = "chief"
     gt_rays: int | None = None
-    overscan: Any = None
+    overscan: str | None = None
     maps: MapFlags = field(default_factory=MapFlags)
     photograph: Photograph = field(default_factory=Photograph)
     baseline: float = 0.0
@@ -66,7 +65,7 @@ class Plan:
     def of_view(self, view: View, resolution: tuple[int, int], *, several: bool) -> Plan:
         """The same for one camera, whose picture may have a size of its own."""
         if self.crop is not None:
-            check_crop(self.crop, resolution)
+            check_crop(self.crop, resolution, self.overscan)
         if DISPARITY in self.aovs and not view.shift:
             raise UsageError("--aov disparity: wanted --stereo, got no pair")
         made = self._renamed(lambda path: named(path, view, several=several))
@@ -75,6 +74,17 @@ class Plan:
     def _renamed(self, name: Callable[[Path], Path]) -> Plan:
         outputs = [name(path) for path in self.outputs]
         return replace(self, outputs=outputs, maps=self.maps.renamed(name))
+
+    def with_overscan(self, overscan: str | None) -> Plan:
+        """With pixels beside the picture."""
+        if overscan is None:
+            return self
+        from daguerre.overscan import check_overscan
+
+        check_overscan(overscan, self.resolution, "--overscan")
+        if self.outputs and not any(path.suffix.lower() == ".exr" for path in self.outputs):
+            raise UsageError("--overscan: wanted an .exr with -o: pictures for the eye have none")
+        return replace(self, overscan=overscan)
 
     def with_truth(self, gt_time: str | None, gt_lens: str, gt_rays: int | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
@@ -174,7 +184,7 @@ def make_plan(
     return Plan(
         output,
         resolution,
-        _crop(crop, resolution),
+        _crop(crop),
         wanted,
         noise,
         samples is not None,
@@ -196,22 +206,29 @@ def _ceiling(noise: float, spp: int | None, samples: str | None) -> int:
     return check_noise(noise, spp, "--noise")[1]
 
 
-def _crop(text: str | None, resolution: tuple[int, int]) -> tuple[int, int, int, int] | None:
+def _crop(text: str | None) -> tuple[int, int, int, int] | None:
     """Command line order x0, x1, y0, y1 to corners x0, y0, x1, y1; px, half open."""
     if text is None:
         return None
     x0, x1, y0, y1 = q.integers("--crop", text, 4, "100,400,50,300")
-    check_crop((x0, y0, x1, y1), resolution)
     return x0, y0, x1, y1
 
 
-def check_crop(crop: tuple[int, int, int, int], resolution: tuple[int, int]) -> None:
-    """It must lie within the picture."""
+def check_crop(
+    crop: tuple[int, int, int, int], resolution: tuple[int, int], overscan: str | None
+) -> None:
+    """It must lie within the picture and its overscan, as far as that is known yet."""
+    from daguerre.overscan import check_overscan
+
+    beside = check_overscan(overscan, resolution, "--overscan")
+    if beside is None:  # the camera decides
+        return
     x0, y0, x1, y1 = crop
-    if not (0 <= x0 < x1 <= resolution[0] and 0 <= y0 < y1 <= resolution[1]):
+    left, top, right, bottom = beside.region(resolution)
+    if not (left <= x0 < x1 <= right and top <= y0 < y1 <= bottom):
         raise UsageError(
-            f"--crop: wanted x0 < x1 within 0..{resolution[0]} and y0 < y1 within "
-            f"0..{resolution[1]}; got '{x0},{x1},{y0},{y1}'"
+            f"--crop: wanted x0 < x1 within {left}..{right} and y0 < y1 within "
+            f"{top}..{bottom}; got '{x0},{x1},{y0},{y1}'"
         )
 
 

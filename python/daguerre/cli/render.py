@@ -63,6 +63,16 @@ def render(
         str | None,
         option("--crop", metavar="X0,X1,Y0,Y1", help="Only these pixels.", panel=_OUTPUT),
     ] = None,
+    overscan: Annotated[
+        str | None,
+        option(
+            "--overscan",
+            metavar="PX|10%|L,T,R,B|undistort",
+            help="Pixels beside the picture, in the data window of the .exr: for all sides, for "
+            "left, top, right and bottom, or what a later straightening needs.",
+            panel=_OUTPUT,
+        ),
+    ] = None,
     aov: Annotated[
         list[str] | None,
         option(
@@ -315,6 +325,7 @@ def render(
         raise UsageError("-o, --output: wanted a file, which only maps (--export-...) do without")
     plan = make_plan(output, res, crop, aov or [], aovs, tone, denoise, *sampling, checkpoint)
     plan = replace(plan, maps=map_flags)
+    plan = plan.with_overscan(overscan)
     plan = plan.with_truth(gt_time, gt_lens, gt_rays)
     numbers = frame_numbers("--frames", frames) if frames is not None else None
     map_flags.check()

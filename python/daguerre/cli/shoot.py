@@ -183,8 +183,9 @@ class Shoot:
         """The maps of a camera, without its picture."""
         from daguerre.build import build
         from daguerre.camera_setup import set_up
-        from daguerre.overscan import NONE
+        from daguerre.overscan import check_overscan, to_undistort
         from daguerre.shutter import interval
+        from daguerre.sight import Sight
         from daguerre.truth import focused
 
         plan, scene = picture.plan, self._scene_of(picture)
@@ -194,7 +195,10 @@ class Shoot:
             # Nothing is drawn, but what is in focus may have to be found.
             setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
             camera = focused(camera, setup.facts)
-            plan.maps.write(scene, camera, size, NONE, plan.gt_time)
+            overscan = check_overscan(plan.overscan, size, "--overscan")
+            if overscan is None:
+                overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+            plan.maps.write(scene, camera, size, overscan, plan.gt_time)
 
     def describe(self, wanted: list[Picture]) -> int:
         """What would be drawn, on stdout: of a sequence its first frame, of a rig each camera."""
@@ -244,6 +248,9 @@ class Shoot:
         if new:
             for warning in camera_warnings(camera):
                 console.warn(which + warning)
+        settings = dict(self.settings)
+        if plan.overscan is not None:
+            settings["overscan"] = plan.overscan
         with core_errors("render"):
             session = Session(
                 scene,
@@ -256,7 +263,7 @@ class Shoot:
                 motion=plan.motion,
                 crop=plan.crop,
                 built=self._built,
-                **self.settings,
+                **settings,
             )
         self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)

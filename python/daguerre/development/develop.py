@@ -140,7 +140,7 @@ def _channels(source: Any, demosaic: Demosaic) -> Channels:
     if isinstance(source, Channels):
         return source
     if isinstance(source, Frame):
-        return of_frame(source)
+        return of_frame(source.without_overscan())
     raise UsageError(f"develop: source: wanted a raw picture or a frame, got {source!r:.60}")
 
 

@@ -98,12 +98,10 @@ def _own(name: str, value: Any) -> Any:
 
 
 def _place(reader: ExrReader) -> dict[str, Any]:
-    """Size of the whole picture and the part of it that is there; overscan is all of it."""
+    """Size of the whole picture and the part of it that is there; overscan lies beside it."""
     (x, y), (left, top) = reader.corner, reader.full_corner
     x0, y0 = x - left, y - top
     width, height = reader.full_size
-    if x0 < 0 or y0 < 0 or x0 + reader.width > width or y0 + reader.height > height:
-        x0, y0, width, height = 0, 0, reader.width, reader.height
     crop = (x0, y0, x0 + reader.width, y0 + reader.height)
     return {"resolution": (width, height), "crop": crop}
 

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
+from daguerre.errors import UsageError
+from daguerre.overscan import NONE, check_overscan
 
 from . import exr
 
@@ -41,7 +43,9 @@ def _is_size(value: Any) -> bool:
 
 
 def _is_crop(value: Any) -> bool:
-    if not (_are_numbers(value, 4) and all(_is_whole(v, 0, MAX_RESOLUTION) for v in value)):
+    if not (
+        _are_numbers(value, 4) and all(_is_whole(v, -MAX_RESOLUTION, MAX_RESOLUTION) for v in value)
+    ):
         return False
     x0, y0, x1, y1 = value
     return bool(x0 < x1 and y0 < y1)
@@ -73,7 +77,14 @@ def bad_fact(metadata: Mapping[str, Any]) -> str | None:
         if value is not None and not check(value):
             return name
     size, crop = metadata.get("resolution"), metadata.get("crop")
-    if size and crop and (crop[2] > size[0] or crop[3] > size[1]):
+    if not (size and crop):
+        return None
+    try:
+        overscan = check_overscan(metadata.get("overscan"), (size[0], size[1]))
+    except UsageError:
+        return "overscan"
+    left, top, right, bottom = (overscan or NONE).region((size[0], size[1]))
+    if crop[0] < left or crop[1] < top or crop[2] > right or crop[3] > bottom:
         return "crop"
     return None
 

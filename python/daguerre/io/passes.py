@@ -55,7 +55,7 @@ WORDS = {
     "build": "the build of daguerre",
 }
 #: Of the settings, what a header tells as it is.
-SETTINGS = ("resolution", "crop", "seed", "filter", "light_paths")
+SETTINGS = ("resolution", "crop", "overscan", "seed", "filter", "light_paths")
 
 
 @dataclass(frozen=True)

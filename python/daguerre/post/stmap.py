@@ -160,7 +160,9 @@ def write_stmap(
     canvas: Canvas,
     attributes: Mapping[str, str] = {},
 ) -> None:
-    """Writes a map for a picture, in bands, whole or not at all: R is s, G is t, B is 0.
+    """Writes a map for a picture, in bands, whole or not at all: R is s, G is t.
+
+    B is 1 where there is something, and 0 elsewhere, as in the UV passes of renderers.
 
     Args:
         path: An .exr.
@@ -178,4 +180,5 @@ def write_stmap(
         for begin in range(0, canvas.height, BLOCK):
             rows = Rows(begin, min(begin + BLOCK, canvas.height))
             st = st_rows(warp, canvas, rows)
-            writer.write({"R": st[:, :, 0], "G": st[:, :, 1], "B": np.zeros_like(st[:, :, 0])})
+            there = np.asarray(np.isfinite(st[:, :, 0]) & np.isfinite(st[:, :, 1]), np.float32)
+            writer.write({"R": st[:, :, 0], "G": st[:, :, 1], "B": there})

@@ -1,0 +1,129 @@
+"""What draws a film: the picture, and with overscan the pixels around it.
+
+The picture is drawn as it is without overscan, so it keeps its bits: tables of a lens, aims of
+light paths and ghosts, and weights of wavelengths that glass sends to other pixels know nothing of
+what lies around it. Those pixels are drawn by the same camera with a larger sensor, into the same
+film.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import daguerre._core as _core
+
+from .overscan import Overscan
+
+if TYPE_CHECKING:
+    from .camera_setup import CameraSetup
+
+Box = tuple[int, int, int, int]
+Counts = tuple[int, ...]
+NOWHERE: Box = (0, 0, 0, 0)
+#: What is around the picture has random numbers of its own.
+_SEED = 0x9E3779B97F4A7C15
+
+
+@dataclass
+class FilmPart:
+    """Pixels of a film that are drawn together.
+
+    Attributes:
+        camera: The core's.
+        settings: Of the frame that they are of: the picture, or the larger one around it.
+        before: Columns and rows of that frame before the picture.
+        pixels: How many.
+    """
+
+    camera: _core.Camera
+    settings: _core.RenderSettings
+    before: tuple[int, int]
+    pixels: int
+
+    def draw(
+        self,
+        draw: Callable[..., Any],
+        scene: _core.Scene,
+        film: _core.Film,
+        corner: tuple[int, int],
+        which: tuple[Any, ...],
+        progress: Any,
+    ) -> tuple[bool, Counts]:
+        """Draws samples; whether all of them were, and what was counted.
+
+        Args:
+            draw: The core's ``render`` or ``render_round``.
+            scene: What is seen.
+            film: All pixels.
+            corner: The first of them in the picture, px.
+            which: Samples, as ``draw`` takes them.
+            progress: As of ``Session.draw``.
+        """
+        film.place(corner[0] + self.before[0], corner[1] + self.before[1])
+        try:
+            complete, *counts = draw(scene, self.camera, film, self.settings, *which, progress)
+        finally:
+            film.place(*corner)
+        return bool(complete), tuple(counts)
+
+
+def inside(region: Box, resolution: tuple[int, int]) -> Box:
+    """What of a region lies in the picture; ``NOWHERE`` if nothing does."""
+    x0, y0, x1, y1 = region
+    cut = (max(x0, 0), max(y0, 0), min(x1, resolution[0]), min(y1, resolution[1]))
+    return cut if cut[0] < cut[2] and cut[1] < cut[3] else NOWHERE
+
+
+def area(box: Box) -> int:
+    """Pixels."""
+    return (box[2] - box[0]) * (box[3] - box[1])
+
+
+def core_settings(
+    setup: CameraSetup,
+    resolution: tuple[int, int],
+    core_shutter: _core.Shutter,
+    overscan: Overscan,
+    options: dict[str, Any],
+) -> _core.RenderSettings:
+    """Of the picture, or with ``overscan`` of the larger frame around it.
+
+    Args:
+        setup: The camera.
+        resolution: Of the picture, px.
+        core_shutter: Its.
+        overscan: Around it.
+        options: Other settings of the core, by name.
+    """
+    settings = _core.RenderSettings()
+    size, center = frame_around(setup, resolution, overscan)
+    settings.resolution = overscan.grown(resolution)
+    settings.sensor_size_mm = size
+    settings.sensor_center_mm = center
+    settings.shutter = core_shutter
+    for name, value in options.items():
+        setattr(settings, name, value)
+    if overscan:
+        settings.shutter = core_shutter.within(overscan.left, overscan.top)
+        settings.seed = options["seed"] ^ _SEED
+        left, top, (width, height) = overscan.left, overscan.top, resolution
+        settings.hole = (left, top, left + width, top + height)
+    return settings
+
+
+def frame_around(
+    setup: CameraSetup, resolution: tuple[int, int], overscan: Overscan
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Size and middle (mm, upright) of the film that a picture with its overscan covers."""
+    right, up = setup.facts["shift_mm"]  # at mid-exposure
+    if not overscan:
+        return setup.frame_size, (right, up)
+    across, along = (mm / n for mm, n in zip(setup.frame_size, resolution, strict=True))
+    columns, rows = overscan.grown(resolution)
+    center = (
+        right + across * (overscan.right - overscan.left) / 2,
+        up + along * (overscan.top - overscan.bottom) / 2,
+    )
+    return (columns * across, rows * along), center
