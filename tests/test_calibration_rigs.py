@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from contextlib import suppress
 from pathlib import Path
@@ -271,6 +272,57 @@ def test_bad_pictures_of_colmap(tmp_path: Path) -> None:
         calibration.read_all(tmp_path / "cameras" / "cameras.txt")
 
 
+def transforms(**more: Any) -> dict[str, Any]:
+    """Pictures of ``CAMERAS`` 1 and 8 as Nerfstudio has them: OpenGL's axes, world from camera."""
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, :3] = R.T
+    world_from_camera[:3, 3:] = -R.T @ T
+    lens = {"w": 640, "h": 480, "fl_x": 520, "fl_y": 515, "cx": 331.8, "cy": 237.3}
+    bent = {"k1": -0.28, "k2": 0.09, "p1": 1e-3, "p2": -2e-3}
+    one = {"file_path": "images/a.jpg", "transform_matrix": world_from_camera @ FLIP, **bent}
+    two = {"file_path": "images/c.jpg", "transform_matrix": FLIP, "is_fisheye": True}
+    two |= {"k1": 0.01, "k2": -0.003, "k3": 0.001, "k4": -2e-4}
+    return {**lens, "frames": [one, two], **more}
+
+
+def test_transforms_are_colmaps_cameras_in_opengls_axes(tmp_path: Path) -> None:
+    truth = calibration.read_all(colmap(tmp_path))
+    found = calibration.read_all(transforms())
+    for name, same in (("images/a.jpg", "a/plate one.jpg"), ("images/c.jpg", "c.jpg")):
+        one, other = found[name], truth[same]
+        moved = one.camera().transform
+        np.testing.assert_allclose(moved, other.camera().transform, atol=1e-12)
+        np.testing.assert_allclose(
+            one.projection.project(POINTS), other.projection.project(POINTS), atol=1e-9
+        )
+    half = calibration.read(transforms(), "images/a.jpg", unit_m=0.5).camera()
+    np.testing.assert_allclose(half.transform[:3, 3], 0.5 * (-R.T @ T).ravel(), atol=1e-12)
+    plain = {"file_path": "a", "transform_matrix": np.eye(4)}
+    angles = {"camera_angle_x": np.pi / 2, "frames": [plain]}
+    made = calibration.read(angles, size=(800, 600)).projection
+    assert (made.model, made.center) == ("rectilinear", (399.5, 299.5))
+    assert made.focal == pytest.approx((400, 400))
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"frames": []}, "wanted pictures"),
+        ({"frames": [{}]}, r"frames\[0\].file_path: missing"),
+        ({"w": None}, "w: wrong type"),
+        ({"w": 640.5}, "whole number"),
+        ({"fl_x": 0}, "above 0"),
+        ({"k4": 0.1}, "k4: wanted k1, k2, p1, p2, k3 of opencv, got k4"),
+        ({"camera_model": "OPENC"}, "'OPENCV'"),
+        ({"frames": [{"file_path": "a", "transform_matrix": 2 * np.eye(4)}]}, "a rotation"),
+        ({"frames": [{"file_path": "a", "transform_matrix": np.eye(4)}] * 2}, "'a' twice"),
+    ],
+)
+def test_bad_transforms(more: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        calibration.read_all(transforms(**more))
+
+
 XML = '<?xml version="1.0"?>\n{}<opencv_storage>{}</opencv_storage>\n'
 
 
@@ -343,10 +395,14 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path) -> None:
     texts = [store(tmp_path / f"a.{suffix}", made).read_text() for suffix in ("xml", "yml", "json")]
     folder = colmap(tmp_path)
     texts += [(folder / name).read_text() for name in ("cameras.txt", "images.txt")]
-    names = ["fuzz.xml", "fuzz.yml", "fuzz.json", "cameras.txt", "images.txt"]
+    given = transforms()
+    for frame in given["frames"]:
+        frame["transform_matrix"] = frame["transform_matrix"].tolist()
+    texts.append(json.dumps(given))
+    names = ["a.xml", "a.yml", "a.json", "cameras.txt", "images.txt", "transforms.json"]
     dice, read = random.Random(2), 0
     for i in range(300):
-        text, name = texts[i % 5], names[i % 5]
+        text, name = texts[i % 6], names[i % 6]
         for _ in range(dice.randint(1, 3)):
             at, length = dice.randrange(len(text)), dice.choice((0, 1, 1, 7))
             text = (
@@ -356,7 +412,12 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path) -> None:
             )
         (tmp_path / name).write_text(text)
         with suppress(DaguerreError):  # and nothing else
-            calibration.read_all(tmp_path / name, rectified=i % 2 == 0 and i % 5 < 3)
+            calibration.read_all(tmp_path / name, rectified=i % 4 == 0 and i % 6 < 3)
             read += 1
         (folder / "cameras.txt").write_text(CAMERAS)
     assert 5 < read < 280
+
+
+def test_a_coefficient_of_the_name_of_a_matrix_makes_no_pair() -> None:
+    given = {"K": K1, "image_size": SIZE, "K1": -0.1, "K2": 0.02}
+    assert list(calibration.read_all(given)) == ["camera"]

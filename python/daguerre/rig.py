@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -103,7 +104,8 @@ def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
     if (lens := frame.metadata.get("gt_lens", "chief")) != "chief":
         raise InputError(f"disparity: wanted gt_lens='chief', got {lens!r}")
     focal = frame.metadata["pinholeFocalLength"] / frame.metadata["sensorPhotositePitch"] * 1e3
-    if projection:  # it may have another one downward
-        focal = projection["focal_px"][0] * frame.metadata["resolution"][0] / projection["size"][0]
+    if projection:  # the one of both axes is their geometric mean
+        across, down = projection["focal_px"]
+        focal *= math.sqrt(across / down)
     apart = focal * baseline
     return np.where(depth > 0, apart / np.maximum(depth, 1e-30), 0).astype(np.float32)

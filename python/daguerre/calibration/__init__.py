@@ -1,4 +1,4 @@
-"""Calibration files in and out: OpenCV, ROS, Kalibr, OpenTrackIO; in also COLMAP."""
+"""Calibration files: OpenCV, ROS, Kalibr, OpenTrackIO; in only COLMAP and transforms.json."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from .opencv import read_opencv
 from .opentrackio import read_opentrackio
 from .ros import read_ros
 from .stereo import read_stereo
+from .transforms import read_transforms
 
 __all__ = [
     "FORMATS",
@@ -24,5 +25,6 @@ __all__ = [
     "read_opentrackio",
     "read_ros",
     "read_stereo",
+    "read_transforms",
     "write",
 ]

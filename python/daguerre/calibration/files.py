@@ -8,11 +8,11 @@ from typing import Any
 
 from daguerre.errors import UsageError, suggest
 
-from . import colmap, kalibr, opencv, opentrackio, ros, stereo
+from . import colmap, kalibr, opencv, opentrackio, ros, stereo, transforms
 from .calibration import Calibration
 from .source import Source, load
 
-FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap")
+FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms")
 WRITTEN = FORMATS[:4]
 
 
@@ -25,6 +25,8 @@ def format_of(source: Source) -> str:
         return "kalibr"
     if {"static", "lens"} <= names or "protocol" in names:
         return "opentrackio"
+    if "frames" in names:
+        return "transforms"
     if "msg" in names or "distortion_model" in names:
         return "ros"
     return "ros" if {"rectification_matrix", "projection_matrix"} & names else "opencv"
@@ -50,7 +52,7 @@ def read(
         size: Of the picture, px, where the file does not say it.
         rectified: The picture after rectification, of ROS and of OpenCV's stereo pairs.
         unit_m: What a length of 1 in the file is, m, of formats that do not say it: OpenCV's stereo
-            pairs, COLMAP.
+            pairs, COLMAP, ``transforms.json``.
 
     Raises:
         InputError: The file cannot be used; the message names the place.
@@ -81,8 +83,10 @@ def read_all(
     where = "calibration" if isinstance(source, dict) else str(source)
     if rectified and not (pair or kind == "ros"):
         raise UsageError(f"{where}: rectified: wanted ROS or a stereo pair of OpenCV, got {kind}")
-    if unit_m != 1 and not (pair or kind == "colmap"):
-        raise UsageError(f"{where}: unit: wanted COLMAP or a stereo pair of OpenCV, got {kind}")
+    if unit_m != 1 and not (pair or kind in ("colmap", "transforms")):
+        raise UsageError(
+            f"{where}: unit: wanted COLMAP, transforms.json or a stereo pair of OpenCV, got {kind}"
+        )
     if model is not None and kind != "opencv":
         raise UsageError(f"{where}: model: wanted none, as {kind} says it; got {model!r}")
     if kind == "kalibr":
@@ -91,6 +95,8 @@ def read_all(
         if isinstance(source, dict):
             raise UsageError("calibration: colmap: wanted a folder, got a dict")
         return colmap.read_colmap(source, unit_m=unit_m)
+    if kind == "transforms":
+        return transforms.read_transforms(source, size=size, unit_m=unit_m)
     if pair:
         return stereo.read_stereo(
             source, model=model, size=size, rectified=rectified, unit_m=unit_m

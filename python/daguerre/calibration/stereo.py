@@ -30,7 +30,8 @@ LONGEST_M = 20.0
 
 def is_stereo(root: Item) -> bool:
     """Whether it is about two cameras."""
-    return first(root, *_matrices(2)) is not None
+    found = first(root, *_matrices(2))
+    return found is not None and isinstance(found.value, dict | list)  # K2 may be a coefficient
 
 
 def read_stereo(
