@@ -15,6 +15,7 @@ import pytest
 import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
+from daguerre.calibration.calibration import field_notes
 from daguerre.errors import DaguerreError, InputError, UsageError
 from daguerre.projection import Projection
 
@@ -325,6 +326,32 @@ def test_bad_calibrations_say_what_is_wrong(
     with pytest.raises(InputError, match=message) as error:
         read(given)
     assert "\n" not in str(error.value)
+
+
+def test_a_fisheye_whose_circle_lies_within_its_picture_is_no_error() -> None:
+    """Beyond 90 degrees a polynomial may end: the calibrations of circular fisheyes do."""
+    fisheye = {
+        **opencv(camera_matrix=[[430, 0, 959.5], [0, 430, 759.5], [0, 0, 1]]),
+        "fisheye_model": 1,
+    }
+    fisheye |= {"image_width": 1920, "image_height": 1520, "dist_coeffs": [0.06, -0.03, 0.0, 0.0]}
+    made = calibration.read_opencv(fisheye).projection
+    assert 90 < made.largest_angle < 180
+    radius = float(made.core.largest_radius) * 430
+    assert radius < 759
+    assert any(f"circle of {radius:.4g} px" in note for note in field_notes(made))
+    with pytest.raises(InputError, match="folds at"):
+        calibration.read_opencv({**fisheye, "dist_coeffs": [0.06, -0.3, 0.0, 0.0]})
+
+
+def test_width_and_height_that_are_exchanged_are_noticed() -> None:
+    exchanged = opencv(
+        camera_matrix=[500, 0, 322, 0, 500, 238, 0, 0, 1], image_width=480, image_height=640
+    )
+    assert "exchanged" in field_notes(calibration.read_opencv(exchanged).projection)[0]
+    for x, y in ((322, 238), (322, 200), (100, 238), (322, 400)):
+        right = opencv(camera_matrix=[500, 0, x, 0, 500, y, 0, 0, 1])
+        assert field_notes(calibration.read_opencv(right).projection) == []
 
 
 def test_a_chain_with_a_model_outside_its_field(chain: Path) -> None:

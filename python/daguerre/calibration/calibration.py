@@ -21,6 +21,8 @@ FloatArray = NDArray[np.float64]
 FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
 #: Models of whose picture no corner may stay dark, and those with polynomials of which some may.
 WHOLE, FISHEYES = ("opencv", "opencv_inverse"), ("kannala_brandt", "omni")
+#: From the axis, degrees: who sees so far has a picture that ends in a circle, wherever it folds.
+SIDEWAYS = 90.0
 #: Of a lens; a projection stands in its place.
 OF_LENSES: dict[str, Any] = {
     **dict.fromkeys(("lens", "lens_model", "degree", "fit_tolerance", "focal_length", "zoom")),
@@ -109,7 +111,8 @@ def projection(where: str, *values: Any) -> Projection:
 def check_field(made: Projection, where: str) -> None:
     """A lens images nothing twice: where its polynomial turns back, numbers are wrong.
 
-    Fisheyes may leave the corners dark, so of theirs the nearest edge counts.
+    Fisheyes may leave the corners dark, so of theirs the nearest edge counts, and nothing if they
+    see to the side: then the circle of their picture may lie within it.
 
     Raises:
         InputError: The model ends within the picture.
@@ -131,7 +134,7 @@ def check_field(made: Projection, where: str) -> None:
         reach, what = min(x, y, width - 1 - x, height - 1 - y), "nearest edge"
         last = made.unproject([[x + 0.999 * fold * math.sqrt(fx / fy), y]])[0]
         angle = math.degrees(math.acos(min(max(last[2], -1), 1)))
-        if fold >= reach or math.isnan(angle) or angle > 179.8:  # it sees no farther anyway
+        if fold >= reach or math.isnan(angle) or angle >= SIDEWAYS:
             return
     else:
         return
@@ -140,6 +143,28 @@ def check_field(made: Projection, where: str) -> None:
         f"point ({angle:.4g} degrees): wanted it to rise up to the {what} of the picture, "
         f"{reach:.4g} px"
     )
+
+
+def field_notes(made: Projection) -> list[str]:
+    """What is allowed, and may be meant otherwise, a sentence each."""
+    notes = []
+    (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
+    ends = np.array([[0, y], [width - 1, y], [x, 0], [x, height - 1]])
+    if made.model in FISHEYES and not np.isfinite(made.unproject(ends)).all():
+        fold = made.core.largest_radius * math.sqrt(fx * fy)
+        if math.isfinite(fold):
+            notes.append(f"its picture is a circle of {fold:.4g} px around the principal point")
+    away = _from_middle(x / width, y / height)
+    if away > 0.1 > 3 * _from_middle(x / height, y / width):
+        notes.append(
+            f"the principal point is ({x:.4g}, {y:.4g}) in {width} x {height} px, near the middle "
+            f"of {height} x {width} px: are width and height exchanged?"
+        )
+    return notes
+
+
+def _from_middle(x: float, y: float) -> float:
+    return max(abs(x - 0.5), abs(y - 0.5))
 
 
 def _border(width: int, height: int) -> FloatArray:

@@ -178,7 +178,9 @@ class CalibrationFlags:
         """What was decided, a sentence each."""
         if calibration is None:
             return []
-        notes = list(calibration.notes)
+        from daguerre.calibration.calibration import field_notes
+
+        notes = [*calibration.notes, *field_notes(calibration.projection)]
         if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
                 f"no --pixel-pitch: blur is that of a sensor {camera.sensor_size[0]:g} mm wide"
