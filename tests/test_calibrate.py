@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.analysis.calibrate import directions_seen, fit_projection
+from daguerre.analysis.calibrate import calibrate_all, directions_seen, fit_projection
 from daguerre.analysis.chief import chief_rays
 from daguerre.cli import main
 from daguerre.errors import InputError, UsageError
@@ -74,6 +74,31 @@ def test_focal_lengths_are_those_of_the_lens() -> None:
     assert near.projection.focal[0] * pitch == pytest.approx(wanted, rel=2e-5)
 
 
+def test_a_zoom_has_the_focal_length_that_it_is_set_to() -> None:
+    fit = dg.calibrate("nikon-ai-25-50mm-f4", resolution=(1920, 1280), focal_length=35.0)
+    assert fit.projection.focal[0] * 36 / 1920 == pytest.approx(35.0, rel=1e-4)
+
+
+def test_wavelengths_differ_by_the_lateral_colour_of_the_bench() -> None:
+    blue, red = (
+        dg.calibrate(NIKKOR, "fisheye", resolution=(1920, 1280), wavelength_nm=nm)
+        for nm in (486.13, 656.27)
+    )
+    # Chief rays of the design wavelength in the middle of the field, and where others put them.
+    (angle,) = chief_rays(blue.bench, [[-15.0, 0.0]]).angles
+    seen = np.array([[np.sin(angle), 0, np.cos(angle)]])
+    ((x, _),) = blue.projection.project(seen) - red.projection.project(seen)
+    heights = np.linspace(14.95, 15.05, 11)
+    film = np.column_stack([-heights, np.zeros(11)])
+    at = [
+        np.interp(angle, chief_rays(blue.bench, film, nm).angles, heights)
+        for nm in (486.13, 656.27)
+    ]
+    wanted = (at[0] - at[1]) * 1920 / 36
+    assert abs(wanted) > 0.1
+    assert x == pytest.approx(wanted, abs=2e-3)
+
+
 @pytest.mark.parametrize(
     ("lens", "model", "focus", "angle"),
     [(GAUSS, "opencv", 1.0, 18.0), (FISHEYE, "fisheye", 2.0, 70.0)],
@@ -103,6 +128,47 @@ def test_rendered_lamps_land_where_the_projection_says(
         rows, columns = np.indices(light.shape)
         got = [(light * k).sum() / light.sum() for k in (columns + x - 9, rows + y - 9)]
         np.testing.assert_allclose(got, wanted, atol=0.1)
+
+
+def test_a_shifted_sensor_has_its_principal_point_elsewhere() -> None:
+    """Right and up, mm: the axis meets the picture to the left of its middle, and below."""
+    fit = dg.calibrate(GAUSS, resolution=(960, 640), shift=(3.0, 2.0), f_stop=16, focus_distance=1)
+    assert fit.projection.center == pytest.approx((479.5 - 80, 319.5 + 160 / 3), abs=0.01)
+    assert fit.projection.focal[0] == pytest.approx(fit.projection.focal[1], rel=1e-5)
+    scene, place = dg.Scene(), np.eye(4)
+    place[:3, 3] = point = np.array([0.1, 0.08, -1.0])
+    scene.add_light(dg.SphereLight((1e5, 1e5, 1e5), 2e-3), place)
+    x, y = wanted = fit.projection.project([point * (1, -1, -1)])[0]
+    crop = (int(x) - 9, int(y) - 9, int(x) + 10, int(y) + 10)
+    frame = dg.render(scene, fit.camera, resolution=(960, 640), crop=crop, spp=64, filter="box")
+    light = np.maximum(frame.xyz[..., 1], 0)
+    rows, columns = np.indices(light.shape)
+    got = [(light * k).sum() / light.sum() for k in (columns + crop[0], rows + crop[1])]
+    np.testing.assert_allclose(got, wanted, atol=0.1)
+
+
+def test_models_are_compared_by_what_they_leave() -> None:
+    fits = calibrate_all(FISHEYE, resolution=(960, 640), focus_distance=3.0)
+    names = [fit.projection.model for fit in fits]
+    assert names[0] == "kannala_brandt"
+    assert "opencv" not in names  # which sees up to 90 degrees
+    assert [fit.rms for fit in fits] == sorted(fit.rms for fit in fits)
+    alone = dg.calibrate(FISHEYE, "equisolid", resolution=(960, 640), focus_distance=3.0)
+    assert fits[names.index("equisolid")].projection == alone.projection
+
+
+def test_the_command_compares_models_and_says_what_fits_badly(capsys: Any) -> None:
+    command = ["calibrate", FISHEYE, "--focus", "3", "--res", "960x640"]
+    assert main([*command, "--model", "all"]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert rows[0].split()[0] == "model"
+    assert rows[1].split()[:2] == ["kannala_brandt", "4"]
+    assert main([*command, "--model", "all", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)[0]["model"] == "kannala_brandt"
+    assert main([*command, "--model", "equisolid"]) == 0
+    assert "px off; --model all" in capsys.readouterr().err
+    assert main([*command, "--model", "fisheye"]) == 0
+    assert "px off" not in capsys.readouterr().err
 
 
 def test_rays_meet_what_is_in_focus() -> None:
@@ -186,6 +252,9 @@ def test_every_format_says_where_the_lens_puts_things(kind: str, tmp_path: Path)
         (["--model", "fishey"], 2, "did you mean 'fisheye'"),
         (["--model", "cube"], 2, "model"),
         (["--terms", "15"], 2, "terms of opencv"),
+        (["--model", "all", "--terms", "4"], 2, "no --terms"),
+        (["--model", "all", "-o", "x.yaml"], 2, "no file"),
+        (["--shift", "3"], 2, "--shift"),
         (["--focus-by", "eye"], 2, "--focus-by"),
         (["--format", "rost", "-o", "x.yaml"], 2, "did you mean 'ros'"),
         (["--format", "ros"], 2, "-o FILE"),

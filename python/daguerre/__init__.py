@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         sensors,
         stocks,
     )
-    from .analysis.calibrate import calibrate
+    from .analysis.calibrate import calibrate, calibrate_all
     from .annotations import annotate
     from .categories import Categories
     from .frame import Frame
@@ -76,6 +76,7 @@ __all__ = [
     "__version__",
     "annotate",
     "calibrate",
+    "calibrate_all",
     "calibration",
     "charts",
     "development",
@@ -104,6 +105,7 @@ _LAZY = {
     "Categories": "categories",
     "annotate": "annotations",
     "calibrate": "analysis.calibrate",
+    "calibrate_all": "analysis.calibrate",
     "Diffraction": "waves",
     "Frame": "frame",
     "Raw": "raw",

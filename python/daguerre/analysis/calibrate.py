@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +31,8 @@ OTHER_NAMES = {
 }
 #: As OpenCV's own calibration has it, unless more are asked for.
 PARAMETERS = {"opencv": 5}
+#: What is compared.
+COUNTS = {"opencv": (4, 5, 8, 12)}
 ACROSS = 41  # chief rays across the picture
 LEAST = 50  # chief rays that a fit needs
 NOTHING = 1e-13  # what is left of parameters that symmetry forbids
@@ -83,6 +87,7 @@ def calibrate(
     focus_distance: float = math.inf,
     focal_length: float | None = None,
     focus_by: By = "paraxial",
+    shift: tuple[float, float] = (0.0, 0.0),
     terms: int | None = None,
     wavelength_nm: float = DESIGN_WAVELENGTH_NM,
 ) -> ProjectionFit:
@@ -97,6 +102,7 @@ def calibrate(
         focus_distance: m from the entrance pupil; may be infinite.
         focal_length: Of a zoom, mm.
         focus_by: As of ``Camera``.
+        shift: Of the sensor, mm, as of ``Camera``.
         terms: How many parameters of the model are fitted, from the first; None: 5 of ``opencv``,
             all of others.
         wavelength_nm: nm.
@@ -107,38 +113,117 @@ def calibrate(
     """
     model = OTHER_NAMES.get(model, model)
     count = _count(model, terms)
-    width, height = numbers(resolution, "calibrate: resolution", 2, "two whole numbers of pixels")
-    for side in (width, height):
-        whole(int(side) if side == int(side) else side, "calibrate: resolution", 2, 65536)
-    for side in numbers(sensor_size, "calibrate: sensor_size", 2, "width and height, mm"):
-        number(side, "calibrate: sensor_size", 0, 1e5, above=0)
-    item = load(lens) if isinstance(lens, str) else lens
-    bench = set_up(
-        item,
+    seen = _see(
+        lens,
+        resolution,
+        sensor_size,
+        shift,
+        wavelength_nm,
         f_stop=f_stop,
         focus_m=focus_distance,
         zoom_mm=focal_length,
         by=focus_by,
     )
-    size = (int(width), int(height))
-    pixels, film = _grid(bench, size, sensor_size[0] / width)
+    return seen.fitted(model, count)
+
+
+def calibrate_all(
+    lens: Lens | str,
+    *,
+    resolution: tuple[int, int],
+    sensor_size: tuple[float, float] = (36.0, 24.0),
+    f_stop: float | None = None,
+    focus_distance: float = math.inf,
+    focal_length: float | None = None,
+    focus_by: By = "paraxial",
+    shift: tuple[float, float] = (0.0, 0.0),
+    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+) -> list[ProjectionFit]:
+    """Fits every model that can show what the lens sees, the best (by RMS) first.
+
+    Args: as of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
+
+    Raises:
+        UsageError: Numbers that are no picture's.
+        InputError: The lens sees nothing.
+    """
+    seen = _see(
+        lens,
+        resolution,
+        sensor_size,
+        shift,
+        wavelength_nm,
+        f_stop=f_stop,
+        focus_m=focus_distance,
+        zoom_mm=focal_length,
+        by=focus_by,
+    )
+    found = []
+    for model in MODELS:
+        for count in COUNTS.get(model, (len(MODELS[model]),)) if model not in UNFIT else ():
+            with contextlib.suppress(InputError):  # too small a field
+                found.append(seen.fitted(model, count))
+    return sorted(found, key=lambda fit: fit.rms)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What the chief rays of a lens are, before a model is fitted."""
+
+    bench: Bench
+    size: tuple[int, int]
+    pixels: FloatArray
+    directions: FloatArray
+    unseen: int
+    axis: FloatArray  # where it meets the picture, px
+    camera: Camera
+
+    def fitted(self, model: str, count: int) -> ProjectionFit:
+        name = self.bench.lens.name
+        made = fit_projection(
+            model, self.size, self.pixels, self.directions, count, name, self.axis
+        )
+        pitch_um = 1e3 * self.camera.sensor_size[0] / self.size[0]
+        return ProjectionFit(
+            *(made, self.bench, pitch_um, self.pixels, self.directions, self.unseen, self.camera)
+        )
+
+
+def _see(
+    lens: Lens | str,
+    resolution: tuple[int, int],
+    sensor_size: tuple[float, float],
+    shift: tuple[float, float],
+    wavelength_nm: float,
+    **use: Any,
+) -> _Seen:
+    width, height = numbers(resolution, "calibrate: resolution", 2, "two whole numbers of pixels")
+    for side in (width, height):
+        whole(int(side) if side == int(side) else side, "calibrate: resolution", 2, 65536)
+    for side in numbers(sensor_size, "calibrate: sensor_size", 2, "width and height, mm"):
+        number(side, "calibrate: sensor_size", 0, 1e5, above=0)
+    for side in numbers(shift, "calibrate: shift", 2, "right and up, mm"):
+        number(side, "calibrate: shift", -1e5, 1e5)
+    item = load(lens) if isinstance(lens, str) else lens
+    bench = set_up(item, **use)
+    size, pitch = (int(width), int(height)), sensor_size[0] / width
+    axis = (np.array(size) - 1) / 2 + np.array(shift) / pitch * (-1, 1)
+    pixels, film = _grid(bench, size, pitch, axis)
     directions = directions_seen(bench, chief_rays(bench, film, wavelength_nm))
     known = np.isfinite(directions).all(axis=1)
     if known.sum() < LEAST:
         raise InputError(f"{bench.lens.name}: calibrate: wanted chief rays, got too few")
-    pixels, directions = pixels[known], directions[known]
-    made = fit_projection(model, size, pixels, directions, count, bench.lens.name)
-    pitch = sensor_size[0] / width
     camera = Camera(
         lens=item,
         f_stop=bench.f_stop,
-        focus_distance=focus_distance,
-        focus_by=focus_by,
-        zoom=focal_length,
+        focus_distance=use["focus_m"],
+        focus_by=use["by"],
+        zoom=use["zoom_mm"],
         sensor_size=(width * pitch, height * pitch),
+        shift=(float(shift[0]), float(shift[1])),
     )
     unseen = int((~known).sum())
-    return ProjectionFit(made, bench, 1e3 * pitch, pixels, directions, unseen, camera)
+    return _Seen(bench, size, pixels[known], directions[known], unseen, axis, camera)
 
 
 def fit_projection(
@@ -148,6 +233,7 @@ def fit_projection(
     directions: FloatArray,
     terms: int,
     name: str = "calibrate",
+    axis: FloatArray | None = None,
 ) -> Projection:
     """The model that puts directions closest to pixels.
 
@@ -158,11 +244,12 @@ def fit_projection(
         directions: Shape (N, 3), x right, y down, z ahead.
         terms: Parameters of the model that are fitted.
         name: Of the lens, for messages.
+        axis: About where the principal point is, px; None: the middle.
 
     Raises:
         InputError: Directions are outside of the model's field.
     """
-    middle = (np.array(size) - 1) / 2
+    middle = (np.array(size) - 1) / 2 if axis is None else axis
     start = np.array([*STARTS.get(model, ()), *[0.0] * terms][:terms])
     unit = Projection(model, size, (1.0, 1.0), (0.0, 0.0), tuple(start))
     flat = unit.project(directions)
@@ -219,14 +306,16 @@ def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
     return np.asarray(seen * (1, -1, -1))
 
 
-def _grid(bench: Bench, size: tuple[int, int], pitch: float) -> tuple[FloatArray, FloatArray]:
+def _grid(
+    bench: Bench, size: tuple[int, int], pitch: float, axis: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Pixels evenly over the picture, corners included, and their places on the film, mm."""
     width, height = size
     rows = max(3, round((ACROSS - 1) * height / width) + 1)
     x, y = np.linspace(-0.5, width - 0.5, ACROSS), np.linspace(-0.5, height - 0.5, min(rows, 101))
     pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     # The picture stands upside down on the film, whose y is up.
-    film = (pixels - (np.array(size) - 1) / 2) * pitch * (-1, 1)
+    film = (pixels - axis) * pitch * (-1, 1)
     if bench.is_fisheye:  # around its circle there is nothing but the barrel
         inside = np.hypot(*film.T) <= bench.field_mm * (1 + 1e-9)
         pixels, film = pixels[inside], film[inside]

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
 PICTURES = (".png", ".svg", ".pdf")
+ALL = "all"
+WELL = 1.0  # px: what is worse is told
 
 
 @with_flags(map_flags=MapFlags)
@@ -28,7 +30,12 @@ def calibrate(
     name: Annotated[str, typer.Argument(metavar="LENS", help="Of the library, or a file.")],
     map_flags: MapFlags,
     model: Annotated[
-        str, option("--model", metavar="NAME", help="opencv, fisheye, double_sphere, ... [opencv].")
+        str,
+        option(
+            "--model",
+            metavar="NAME",
+            help="opencv, fisheye, double_sphere, ...; all: how well each fits [opencv].",
+        ),
     ] = "opencv",
     terms: Annotated[
         int | None,
@@ -56,6 +63,9 @@ def calibrate(
     resolution: Annotated[
         str, option("--res", metavar="WxH", help="Of the picture, px [1920x1280].")
     ] = "1920x1280",
+    shift: Annotated[
+        str | None, option("--shift", metavar="X,Y", help="Film shift right and up, mm [0,0].")
+    ] = None,
     wavelength: Annotated[
         float, option("--wavelength", metavar="NM", help="nm [587.56].")
     ] = 587.56,
@@ -78,6 +88,7 @@ def calibrate(
 ) -> int:
     """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
     from daguerre.analysis.calibrate import calibrate as fit
+    from daguerre.analysis.calibrate import calibrate_all
     from daguerre.io.atomic import check_writable
 
     if focus_by not in ("paraxial", "best"):
@@ -88,18 +99,27 @@ def calibrate(
         check_writable(path)
     if terms is None and file_format == "kalibr" and model == "opencv":
         terms = 4  # Kalibr's radtan has no k3
-    made = fit(
-        name,
-        model,
-        resolution=q.resolution("--res", resolution, (1920, 1280)),
-        sensor_size=q.sensor_mm("--sensor", sensor),
-        f_stop=None if f_stop is None else q.f_number("--f-stop", f_stop),
-        focus_distance=math.inf if focus is None else q.distance_m("--focus", focus),
-        focal_length=None if zoom is None else q.length_mm("--zoom", zoom),
-        focus_by="best" if focus_by == "best" else "paraxial",
-        terms=terms,
-        wavelength_nm=wavelength,
-    )
+    use: dict[str, Any] = {
+        "resolution": q.resolution("--res", resolution, (1920, 1280)),
+        "sensor_size": q.sensor_mm("--sensor", sensor),
+        "f_stop": None if f_stop is None else q.f_number("--f-stop", f_stop),
+        "focus_distance": math.inf if focus is None else q.distance_m("--focus", focus),
+        "focal_length": None if zoom is None else q.length_mm("--zoom", zoom),
+        "focus_by": focus_by,
+        "shift": (0.0, 0.0) if shift is None else q.numbers("--shift", shift, 2, "0,8.5"),
+        "wavelength_nm": wavelength,
+    }
+    if model == ALL:
+        if terms is not None or output or residuals or map_flags.files:
+            raise UsageError("--model all compares models: wanted no file and no --terms with it")
+        _compare(calibrate_all(name, **use), json=json)
+        return 0
+    made = fit(name, model, terms=terms, **use)
+    if made.largest > WELL:
+        console.note(
+            f"note: {made.projection.model} is up to {made.largest:.3g} px off; --model all says "
+            "how well others fit"
+        )
     _write(made, output, file_format or FORMATS[0], residuals)
     if map_flags.files:
         _write_maps(map_flags, made)
@@ -110,6 +130,19 @@ def calibrate(
     else:
         _print(made)
     return 0
+
+
+def _compare(fits: list[ProjectionFit], *, json: bool) -> None:
+    """The best first."""
+    if json:
+        from json import dumps
+
+        print(dumps([_facts(made) for made in fits], indent=2))
+        return
+    print(f"{'model':16} {'terms':>5} {'RMS, px':>9} {'at most':>9}")
+    for made in fits:
+        model = made.projection
+        print(f"{model.model:16} {len(model.parameters):5} {made.rms:9.3g} {made.largest:9.3g}")
 
 
 def _check_files(output: Path | None, file_format: str | None, residuals: Path | None) -> None:
