@@ -15,6 +15,8 @@ import daguerre._core as _core
 
 from .camera import Camera
 from .camera_parts import rigid
+from .checks import short
+from .errors import UsageError
 from .motion import Dynamic, Keys, Spin
 from .projection import Projection
 from .resample import resample_transform
@@ -62,6 +64,9 @@ def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
         camera: It gives all else.
         place: Of the new one in this one's frame, rigid, m; shape (4, 4).
     """
+    given: Any = camera
+    if not isinstance(given, Camera):
+        raise UsageError(f"camera: wanted a Camera, got {short(given)}")
     moving = camera.motion.get("transform")
     if moving is not None:
         return camera.with_(transform=_Mounted(moving, place))

@@ -36,10 +36,10 @@ class OutputError(DaguerreError):
     exit_code = 5
 
 
-def suggest(name: str, known: Iterable[str]) -> str:
+def suggest(name: object, known: Iterable[str]) -> str:
     """``" (did you mean 'a' or 'b'?)"`` with the nearest known names, or all of a short list."""
     names = sorted(known)
-    near = difflib.get_close_matches(name, names, n=3, cutoff=0.5) or (
+    near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.5) or (
         names if len(names) <= 8 else []
     )
     if not near:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from daguerre import shutter
 from daguerre.camera import Camera
 from daguerre.camera_pose import mounted
-from daguerre.checks import number
+from daguerre.checks import number, short
 from daguerre.errors import InputError, UsageError
 from daguerre.projection import Projection
 
@@ -70,7 +70,9 @@ class Calibration:
                 of blur depends. None: the file's, else the camera's ``sensor_size``.
             timeshift: Its shutter opens ``delay_s`` later.
         """
-        given = Camera() if camera is None else camera
+        given: Any = Camera() if camera is None else camera
+        if not isinstance(given, Camera):
+            raise UsageError(f"calibration: camera: wanted a Camera or None, got {short(given)}")
         pitch = self.pixel_pitch if pixel_pitch is None else pixel_pitch
         changes: dict[str, Any] = {**OF_LENSES, "projection": self.projection, **self.settings}
         if pitch is not None:
