@@ -109,6 +109,11 @@ def test_disparity_of_a_pair(capsys: pytest.CaptureFixture[str]) -> None:
     ):
         assert render("-o", "x.exr", *flags, *more) == 2
         assert message in capsys.readouterr().err
+    exact = [*flags, "--lens", "nikon-28mm-f2.8", "--stereo", "1", "-c", "A"]
+    assert render("-o", "x.exr", *exact, "--json-progress") == 3
+    out, err = capsys.readouterr()
+    assert "got exact" in err
+    assert "progress" not in out  # said before anything is drawn
 
 
 def test_cameras_of_a_chain_have_sizes_of_their_own(built: list[int]) -> None:

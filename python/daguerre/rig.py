@@ -74,6 +74,20 @@ def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
     }
 
 
+def check_straight(metadata: dict[str, Any]) -> None:
+    """Disparity by depth is of cameras whose pictures of straight lines are straight.
+
+    Raises:
+        InputError: The camera is another one.
+    """
+    facts = metadata.get("camera", {})
+    kind = facts.get("projection", {}).get("model") or facts.get("lens_model")
+    if kind not in ("pinhole", "thin", "rectilinear"):
+        raise InputError(
+            f"disparity: wanted a pinhole, a thin lens or a rectilinear projection, got {kind}"
+        )
+
+
 def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
     """How far what a pixel shows lies apart in the two pictures of a stereo pair, px.
 
@@ -91,13 +105,8 @@ def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
         InputError: The picture is another one.
     """
     number(baseline, "disparity: baseline", above=0)
-    facts = frame.metadata.get("camera", {})
-    projection = facts.get("projection", {})
-    kind = projection.get("model") or facts.get("lens_model")
-    if kind not in ("pinhole", "thin", "rectilinear"):
-        raise InputError(
-            f"disparity: wanted a pinhole, a thin lens or a rectilinear projection, got {kind}"
-        )
+    check_straight(frame.metadata)
+    projection = frame.metadata["camera"].get("projection")
     depth = frame.aovs.get("depth.Z")
     if depth is None or "gt_time" not in frame.metadata:
         raise InputError("disparity: wanted exact depth, got none; gt_time='mid' makes it")

@@ -13,6 +13,7 @@ from daguerre.errors import UsageError
 
 from . import console
 from .job import INTERRUPTED, Job, core_errors
+from .plan import DISPARITY
 
 if TYPE_CHECKING:
     from daguerre.built_scene import BuiltScene
@@ -267,6 +268,10 @@ class Shoot:
             )
         self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)
+        if DISPARITY in plan.aovs:
+            from daguerre.rig import check_straight
+
+            check_straight(session.metadata)
         if plan.exposed:
             from daguerre.exposure import luminance_exposure
 

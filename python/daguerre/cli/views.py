@@ -77,7 +77,7 @@ def views_of(
     if stereo is not None:
         baseline = q.distance_m("--stereo", stereo)
         if not 0 < baseline < 1e6:
-            raise UsageError(f"--stereo: wanted a distance above 0, m; got {stereo!r}")
+            raise UsageError(f"--stereo: wanted a distance above 0 and below 1e6 m, got {stereo!r}")
         only = next(iter(calibrations.values()), None)
         return [View(name, names[0], only, side * baseline) for name, side in SIDES.items()]
     if len(calibrations) > 1:
