@@ -144,6 +144,19 @@ void ProjectionModel::find_fold() {
     case Kind::equidistant: largest_radius_ = kPiD; return;
     case Kind::equisolid: largest_radius_ = 2; return;
     case Kind::fov: largest_angle_ = kPiD / 2, largest_radius_ = kPiD / 2 / k_[0]; return;
+    case Kind::eucm: {
+        const double w = widest(k_[0]);
+        largest_angle_ = std::atan2(std::sqrt(1 - w * w), -w * std::sqrt(k_[1]));
+        return;
+    }
+    case Kind::double_sphere: {
+        // Along the line from the second sphere's middle that touches its end, to the first sphere.
+        const double xi = k_[0], w = widest(k_[1]), inside = 1 - xi * xi * (1 - w * w);
+        double z = inside >= 0 ? w * (w * xi - std::sqrt(inside)) - xi : -1;
+        if (xi > 1) z = std::max(z, -1 / xi);
+        largest_angle_ = std::acos(std::clamp(z, -1.0, 1.0));
+        return;
+    }
     case Kind::kannala_brandt: {
         for (int i = 1; i <= kFoldSteps; ++i) {
             const double t = kPiD * i / kFoldSteps, t2 = t * t;
@@ -170,6 +183,12 @@ void ProjectionModel::find_fold() {
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
         largest_radius_ = last < kInfinity ? bent({last, 0}).point.x : kInfinity;
+        if (kind_ == Kind::omni) {
+            const double xi = k_[0], inside = 1 + (1 - xi * xi) * last * last;   // of the sphere's points there
+            largest_angle_ = std::acos(xi <= 1 ? -xi : -1 / xi);
+            if (last < kInfinity && inside >= 0)
+                largest_angle_ = std::acos((xi + std::sqrt(inside)) / (1 + last * last) - xi);
+        }
         if (kind_ != Kind::opencv_inverse) return;
         largest_angle_ = std::atan(largest_radius_);
         largest_radius_ = last;
@@ -304,10 +323,11 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
         return distorted({d.x / z, d.y / z});
     }
     case Kind::double_sphere: {
-        const double xi = k_[0], alpha = k_[1], w1 = widest(alpha);
-        const double w2 = (w1 + xi) / std::sqrt(2 * w1 * xi + xi * xi + 1);
-        if (!(d.z > -w2 * norm)) return std::nullopt;
+        const double xi = k_[0], alpha = k_[1];
         const double z = xi * norm + d.z, d2 = std::hypot(std::hypot(d.x, d.y), z);
+        // The second sphere ends where a unified model does. (Equation 43 says it of the first one's angle, but
+        // ends some degrees before.) Beyond a second angle two directions share a point of it, as in omni.
+        if (!(z > -widest(alpha) * d2 && (xi <= 1 || d.z * xi > -norm))) return std::nullopt;
         const double scale = alpha * d2 + (1 - alpha) * z;
         return scale > 0 ? std::optional(Vec2d{d.x / scale, d.y / scale}) : std::nullopt;
     }
@@ -356,6 +376,7 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
         const double other = z * z + (1 - xi * xi) * r2;
         if (!(other >= 0)) return std::nullopt;
         const double scale = (z * xi + std::sqrt(other)) / (z * z + r2);
+        if (!(scale > 0)) return std::nullopt;   // of xi from 1 on: no direction has this point
         return normalize(Vec3d{scale * p.x, scale * p.y, scale * z - xi});
     }
     case Kind::eucm: {

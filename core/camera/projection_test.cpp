@@ -161,6 +161,39 @@ TEST_CASE("where tangential terms or a tilted sensor fold the picture, points ha
     }
 }
 
+TEST_CASE("models of one and two spheres see up to one edge, whichever way it is asked") {
+    const double kSets[][2] = {{-0.9, 0.9}, {-0.3, 0.7}, {0, 0.6}, {0.3, 0.4}, {0.9, 0.9},
+                               {1, 0.5},    {1, 1},      {1.5, 0.5}, {2, 0.3}};
+    for (const auto& set : kSets)
+        for (const Kind kind : {Kind::double_sphere, Kind::eucm, Kind::omni}) {
+            const ProjectionModel model = kind == Kind::double_sphere ? ProjectionModel(kind, {set[0], set[1]})
+                                          : kind == Kind::eucm ? ProjectionModel(kind, {set[1], 1.5 + set[0] / 2})
+                                                               : ProjectionModel(kind, {std::abs(set[0])});
+            CAPTURE(int(kind));
+            CAPTURE(set[0]);
+            CAPTURE(set[1]);
+            for (int i = 0; i < 4000; ++i) {
+                const double r = 0.001 * (i + 0.5);   // rings of the picture
+                const auto d = model.unproject({0.6 * r, 0.8 * r});
+                if (!d) continue;
+                const auto p = model.project(*d);
+                REQUIRE(p.has_value());
+                CHECK(length(*p - Vec2d{0.6 * r, 0.8 * r}) < 1e-6 * std::max(r, 1.0));
+            }
+            for (int i = 0; i < 1000; ++i) {
+                const Vec3d d = direction(kPiD * (i + 0.5) / 1000, 0.7);   // and of the world
+                const auto p = model.project(d);
+                if (!p) continue;
+                const auto back = model.unproject(*p);
+                REQUIRE(back.has_value());
+                CHECK(length(*back - d) < 1e-6);
+                CHECK(kPiD * (i + 0.5) / 1000 <= model.largest_angle());
+            }
+            const double near = model.largest_angle() - 1e-4;
+            if (near < 3.14) CHECK(model.project(direction(near, 0.7)).has_value());
+        }
+}
+
 TEST_CASE("parameters that make no model are named") {
     const auto message = [](Kind kind, std::array<double, 14> k) {
         try {
