@@ -237,6 +237,36 @@ def test_opentrackio_stands_where_it_is_tracked() -> None:
     assert camera.sensor_size == pytest.approx((640 * PITCH, 480 * PITCH))
 
 
+def tracked(seconds: int, nanoseconds: int, **lens: Any) -> dict[str, Any]:
+    stamp = {"seconds": seconds, "nanoseconds": nanoseconds}
+    return sample(**lens) | {"timing": {"sampleTimestamp": stamp}}
+
+
+def test_samples_of_opentrackio_make_keys() -> None:
+    """A zoom whose focus and place stay, and a static part that only the first sample has."""
+    first = tracked(1_700_000_000, 980_000_000, pinholeFocalLength=3.0, fStop=2.8)
+    last = tracked(1_700_000_001, 20_000_000, pinholeFocalLength=5.0, fStop=4.0)
+    del last["static"]
+    camera = dg.Camera.from_opentrackio([first, last])
+    assert set(camera.motion) == {"projection", "f_stop"}
+    now = camera.at(0.01)
+    alone = dg.Camera.from_opentrackio(first).projection
+    assert now.f_stop == pytest.approx(3.1, abs=1e-4)
+    assert now.projection is not None
+    assert alone is not None
+    assert now.projection.focal[0] == pytest.approx(alone.focal[0] * 3.5 / 3.0, rel=1e-4)
+    assert camera.at(-1).projection == alone
+    rated = [{**first, "timing": {"sampleRate": {"num": 25}}}, last | {"timing": {}}]
+    with pytest.raises(InputError, match=r"samples\[1\].*sampleTimestamp or timing.sampleRate"):
+        dg.Camera.from_opentrackio(rated)
+    rated[1]["timing"] = rated[0]["timing"]
+    assert dg.Camera.from_opentrackio(rated).at(0.02).f_stop == pytest.approx(3.4)
+    with pytest.raises(InputError, match="times that rise"):
+        dg.Camera.from_opentrackio([last | {"static": first["static"]}, first])
+    with pytest.raises(InputError, match="at least one"):
+        dg.Camera.from_opentrackio([])
+
+
 MADE = {
     "opencv": Projection("opencv", SIZE, (520, 515), (331.3, 236.8), BROWN),
     "rational": Projection("opencv", SIZE, (520, 515), (331.3, 236.8), RATIONAL),

@@ -307,18 +307,20 @@ class Camera:
     @classmethod
     def from_opentrackio(
         cls,
-        calibration: Source,
+        calibration: Source | list[Source],
         *,
         size: tuple[int, int] | None = None,
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A tracked camera: lens, f-stop, focus and pose of an OpenTrackIO sample.
+        """A tracked camera: lens, f-stop, focus and pose of an OpenTrackIO sample, or of several.
 
-        Args: as of :meth:`from_opencv`.
+        Args: as of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
         """
-        from .calibration import read_opentrackio
+        from .calibration import read_opentrackio, read_track
 
+        if isinstance(calibration, list):
+            return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
         return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
 
     def at(self, time: float) -> Camera:

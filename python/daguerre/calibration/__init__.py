@@ -10,6 +10,7 @@ from .opencv import read_opencv
 from .opentrackio import read_opentrackio
 from .ros import read_ros
 from .stereo import read_stereo
+from .track import read_track
 from .transforms import read_transforms
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "read_opentrackio",
     "read_ros",
     "read_stereo",
+    "read_track",
     "read_transforms",
     "write",
 ]
