@@ -317,3 +317,20 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     ):
         assert main([*words, *wrong]) == 2
         assert word in capsys.readouterr().err
+
+
+def test_passes_of_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = triangle().glb(tmp_path / "a.glb")
+    file, words = tmp_path / "o.exr", ["render", str(scene), "--res", "40x20"]
+    whole, passes = tmp_path / "whole.exr", [tmp_path / f"{n}.exr" for n in "ab"]
+    assert main([*words, "--spp", "3", "--overscan", "4", "-o", str(whole)]) == 0
+    for path, samples in zip(passes, ("0:1", "1:3"), strict=True):
+        assert main([*words, "--samples", samples, "--overscan", "4", "-o", str(path)]) == 0
+    assert main(["merge", *map(str, passes), "-o", str(file)]) == 0
+    merged = dg.load_frame(file)
+    assert np.array_equal(merged.rgb, dg.load_frame(whole).rgb)
+    assert merged.metadata["overscan"] == "4,4,4,4"
+    assert main([*words, "--samples", "3:4", "--overscan", "5", "-o", str(file)]) == 0
+    capsys.readouterr()
+    assert main(["merge", str(passes[0]), str(file), "-o", str(whole)]) == 4
+    assert "overscan 5,5,5,5 (wanted 4,4,4,4)" in capsys.readouterr().err
