@@ -136,6 +136,12 @@ def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
     return _reach(sight, sight.bent_from_straight, where)
 
 
+def note(overscan: Overscan) -> str:
+    """What ``"undistort"`` was found to be, for people."""
+    told = f"{overscan} px" if overscan else "none is needed"
+    return f"overscan (left, top, right, bottom) to straighten the picture: {told}"
+
+
 def to_redistort(sight: Sight) -> Overscan | None:
     """What an ideal picture needs beside it to be bent into one without holes; None: no bounds."""
 

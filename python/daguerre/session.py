@@ -36,6 +36,7 @@ from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
 from .overscan import NONE, Overscan, check_overscan, to_undistort
+from .overscan import note as overscan_note
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
@@ -256,8 +257,7 @@ class Session:
     def _to_undistort(self) -> Overscan:
         size = (self.width, self.height)
         found = to_undistort(Sight(self.focused_camera, size, scene=self.scene))
-        told = f"{found} px" if found else "none is needed"
-        self.notes.append(f"overscan (left, top, right, bottom) to straighten the picture: {told}")
+        self.notes.append(overscan_note(found))
         return found
 
     def _parts_of(

@@ -184,7 +184,7 @@ class Shoot:
         """The maps of a camera, without its picture."""
         from daguerre.build import build
         from daguerre.camera_setup import set_up
-        from daguerre.overscan import check_overscan, to_undistort
+        from daguerre.overscan import check_overscan, note, to_undistort
         from daguerre.shutter import interval
         from daguerre.sight import Sight
         from daguerre.truth import focused
@@ -199,6 +199,7 @@ class Shoot:
             overscan = check_overscan(plan.overscan, size, "--overscan")
             if overscan is None:
                 overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+                console.note(note(overscan))
             plan.maps.write(scene, camera, size, overscan, plan.gt_time)
 
     def describe(self, wanted: list[Picture]) -> int:
