@@ -102,6 +102,16 @@ def test_boxes_are_those_of_opencv(camera: dg.Camera, crop: tuple[int, int, int,
     assert y + height <= top + down + 0.5
 
 
+@pytest.mark.parametrize("size", [(50, 37), (50, 38), (101, 76)])  # of 96 x 72: half a row off
+def test_intrinsics_of_a_picture_whose_rows_are_rounded(size: tuple[int, int]) -> None:
+    scene = dg.Scene()
+    cube(scene, POSE)
+    seen = dg.annotate(scene, dg.Camera(projection=BROWN, shutter_time=0.0), resolution=size)
+    edges = [a + (b - a) * t for a in CUBE for b in CUBE for t in np.linspace(0, 1, 60)]
+    points = in_opencv(seen, np.array(edges) @ POSE[:3, :3].T + POSE[:3, 3])
+    np.testing.assert_allclose(only(seen).full_box, box_of(points), atol=0.06)
+
+
 def test_boxes_in_space_are_those_of_the_node() -> None:
     scene = dg.Scene()
     cube(scene, POSE)

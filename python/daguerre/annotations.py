@@ -224,7 +224,8 @@ def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
         made = camera.projection
         scale = width / made.size[0]
         focal = [scale * f for f in made.focal]
-        center = [scale * (c + 0.5) - 0.5 for c in made.center]
+        (x, y), rows = made.center, made.size[1]  # middles coincide: a shape's rows may be rounded
+        center = [scale * (x + 0.5) - 0.5, scale * (y + 0.5 - rows / 2) + height / 2 - 0.5]
         named: dict[str, Any] = {"model": made.model, "parameters": list(made.parameters)}
     elif model in ("pinhole", "thin") and not any(camera.tilt):
         right, up = setup.facts["shift_mm"]
