@@ -477,3 +477,16 @@ TEST_CASE("channels beside bands, and XYZ beside both, are the same bits in any 
     CHECK(forward.mean_xyz() == plain.mean_xyz());
     CHECK(forward.variance_rgb() == plain.variance_rgb());
 }
+
+TEST_CASE("a film that is placed elsewhere keeps its sums and takes other pixels") {
+    Film film({3, 2, -1, 0});
+    film.count(-1, 0);
+    film.add(-1, 0, 0, Vec3f{1, 2, 3});
+    film.place(4, 5);
+    film.count(4, 5);
+    film.count(6, 6);
+    film.count(-1, 0);  // outside now
+    film.place(-1, 0);
+    CHECK(film.sample_counts() == std::vector<std::uint32_t>{2, 0, 0, 0, 0, 1});
+    CHECK(film.mean_xyz()[1] == 1);
+}
