@@ -17,6 +17,7 @@ import pytest
 import daguerre as dg
 from daguerre import built_scene
 from daguerre.cli import main
+from daguerre.errors import InputError
 
 from .make_gltf import Builder
 
@@ -114,6 +115,16 @@ def test_disparity_of_a_pair(capsys: pytest.CaptureFixture[str]) -> None:
     out, err = capsys.readouterr()
     assert "got exact" in err
     assert "progress" not in out  # said before anything is drawn
+
+
+def test_samples_are_kept_when_a_channel_cannot_be_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*given: object) -> None:
+        raise InputError("disparity: no")
+
+    monkeypatch.setattr("daguerre.rig.disparity", fails)
+    flags = ["--res", "20x12", "--aov", "disparity", *QUICK]
+    assert render("-o", "x.exr", "--stereo", "0.2", "-c", "A", *flags) == 3
+    assert [str(path) for path in Path().glob("x.*")] == ["x.left.checkpoint.exr"]
 
 
 def test_cameras_of_a_chain_have_sizes_of_their_own(built: list[int]) -> None:

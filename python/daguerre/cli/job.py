@@ -71,11 +71,11 @@ class Job:
         return 0
 
     def _finish(self) -> None:
-        frame = self._frame()
         try:
+            frame = self._frame()
             self._write(frame, self.plan.outputs)
         except BaseException:
-            # Hours of work must not die with a full disk.
+            # Hours of work must not die with a full disk, or with a channel that cannot be made.
             if not self.plan.checkpoint.exists() and self.loop.save():
                 console.say(f"daguerre: the samples are kept in {self.plan.checkpoint}")
             raise
