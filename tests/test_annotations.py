@@ -112,6 +112,19 @@ def test_intrinsics_of_a_picture_whose_rows_are_rounded(size: tuple[int, int]) -
     np.testing.assert_allclose(only(seen).full_box, box_of(points), atol=0.06)
 
 
+def test_intrinsics_are_those_of_the_moment() -> None:
+    scene = dg.Scene()
+    cube(scene, POSE)
+    later = Projection("opencv", (96, 72), (80.0, 86.0), (44.0, 39.0), (-0.1, 0.02, 0.0, 0.002))
+    camera = dg.Camera(projection=dg.keys([(0.0, BROWN), (1.0, later)]), shutter_time=0.0)
+    edges = [a + (b - a) * t for a in CUBE for b in CUBE for t in np.linspace(0, 1, 60)]
+    world = np.array(edges) @ POSE[:3, :3].T + POSE[:3, 3]
+    for time in (0.0, 0.4, 1.0):
+        seen = dg.annotate(scene.at(time), camera, resolution=(96, 72))
+        wanted = box_of(np.clip(in_opencv(seen, world), 0, (96, 72)))
+        np.testing.assert_allclose(only(seen).full_box, wanted, atol=0.06)
+
+
 def test_boxes_in_space_are_those_of_the_node() -> None:
     scene = dg.Scene()
     cube(scene, POSE)
