@@ -348,6 +348,14 @@ def opencv(**changes: Any) -> dict[str, Any]:
         (calibration.read, sample(distortion=[{"radial": [1], "model": "Brown"}]), "Brown-Conrady"),
         (calibration.read, sample(distortion=[{"radial": [-0.2]}]), "opencv_inverse: .* folds at"),
         (calibration.read_opencv, opencv(dist_coeffs="abc"), "a list"),
+        (calibration.read_opencv, opencv(distortion_coefficents=BROWN), "did you mean 'distortion"),
+        (calibration.read_opencv, opencv(dist_coefs=BROWN), "did you mean 'dist_coeff"),
+        (calibration.read_ros, ros("plumb_bob", BROWN, R=[1] * 9), r"rotation, got \[\[1"),
+        (
+            calibration.read_ros,
+            ros("plumb_bob", BROWN, roi={"y_offset": 9, "height": 475}),
+            r"got columns and rows 0 \.\. \d+ and 9 \.\. 484",
+        ),
     ],
 )
 def test_bad_calibrations_say_what_is_wrong(
@@ -449,6 +457,16 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path, chain: Path) -> None:
             calibration.read(path)
             read += 1
     assert 5 < read < 220
+
+
+def test_a_size_that_the_file_contradicts(chain: Path) -> None:
+    assert calibration.read(opencv(), size=(640, 480)).projection.size == (640, 480)
+    with pytest.raises(InputError, match="says 640 x 480; got 320 x 240"):
+        calibration.read(opencv(), size=(320, 240))
+    with pytest.raises(UsageError, match="as kalibr says it"):
+        calibration.read(chain, size=(640, 480))
+    with pytest.raises(UsageError, match="as ros says it"):
+        calibration.read(ros("plumb_bob", BROWN), size=(640, 480))
 
 
 def test_the_wrong_arguments_are_errors() -> None:

@@ -230,6 +230,8 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         (["-o", "x.exr", "--calibration", "chain.yaml:cam1,cam1"], 2, "'cam1' twice"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--rectified"], 2, "rectified: wanted ROS"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "1kg"], 2, "a unit"),
+        (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "kg"], 2, "got 'kg'"),
+        (["-o", "x.exr", "--calibration", ""], 2, "--calibration: wanted a file, got ''"),
         (
             ["-o", "x.exr", "--calibration-unit", "mm"],
             2,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.checks import short
 from daguerre.errors import UsageError, suggest
 
 from . import colmap, kalibr, opencv, opentrackio, ros, stereo, transforms
@@ -89,6 +90,8 @@ def read_all(
         )
     if model is not None and kind != "opencv":
         raise UsageError(f"{where}: model: wanted none, as {kind} says it; got {model!r}")
+    if size is not None and kind in ("kalibr", "ros", "colmap"):
+        raise UsageError(f"{where}: size: wanted none, as {kind} says it; got {short(size)}")
     if kind == "kalibr":
         return kalibr.read_kalibr(source)
     if kind == "colmap":

@@ -10,6 +10,7 @@ and ``cv::fisheye::calibrate`` for the order of the coefficients.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.io.json_item import Item
@@ -24,6 +25,8 @@ COEFFICIENTS = (
     *("D", "dist", "D1"),
 )
 SIZES = ("image_size", "imageSize", "img_size", "resolution", "size")
+#: Names of so few letters are near to too many others.
+SHORT = 5
 #: How many coefficients there may be.
 COUNTS = (0, 4, 5, 8, 12, 14)
 #: A file's own word for its model -> ours.
@@ -53,13 +56,24 @@ def read_opencv(
     kind = model_of(root, model)
     found = first(root, *COEFFICIENTS)
     values: tuple[float, ...] = ()
-    if found is not None:
+    if found is None:
+        _check_spelling(root)
+    else:
         values = row(found, (0, 4) if kind == "kannala_brandt" else COUNTS)
     if not values and kind == "opencv":
         kind = "rectilinear"
-    made = projection(where, kind, size or size_of(root), focal, principal, values)
+    made = projection(where, kind, size_of(root, size), focal, principal, values)
     name = root.get("camera_name")
     return Calibration(made, "" if name is None else name.text())
+
+
+def _check_spelling(root: Item) -> None:
+    """A name that is misspelt would be a camera without distortion, and nobody would know."""
+    for item in root.members():
+        name = str(item.key)
+        near = [one for one in COEFFICIENTS if len(one) > SHORT]
+        if len(name) > SHORT and get_close_matches(name, near, cutoff=0.8):
+            item.fail(f"wanted {COEFFICIENTS[0]}, or no such name{suggest(name, near)}")
 
 
 def model_of(root: Item, model: str | None = None) -> str:
@@ -78,8 +92,21 @@ def model_of(root: Item, model: str | None = None) -> str:
     return "kannala_brandt" if flag is not None and flag.value in (1, True) else "opencv"
 
 
-def size_of(root: Item) -> tuple[int, int]:
-    """Of the picture, px."""
+def size_of(root: Item, given: tuple[int, int] | None = None) -> tuple[int, int]:
+    """Of the picture, px: as the file says it, else as it is given."""
+    names = ("image_width", "width"), ("image_height", "height"), SIZES
+    if given is not None and not any(first(root, *some) is not None for some in names):
+        return given
+    said = _said_size(root)
+    if given is not None and tuple(given) != said:
+        wide, high = said
+        root.fail(
+            f"size: wanted none, as the file says {wide} x {high}; got {given[0]} x {given[1]}"
+        )
+    return said
+
+
+def _said_size(root: Item) -> tuple[int, int]:
     width, height = first(root, "image_width", "width"), first(root, "image_height", "height")
     if width is not None and height is not None:
         return width.integer(1, 65536), height.integer(1, 65536)

@@ -87,7 +87,8 @@ def _read_out(
         given = [_or_0(roi, name, n) for name, n in zip(SIDES, sides, strict=True)]
         size = [a or n - c for a, n, c in zip(given, sides, corner, strict=True)]
         if any(c + a > n for c, a, n in zip(corner, size, sides, strict=True)):
-            roi.fail(f"wanted a region within {sides[0]} x {sides[1]}")
+            ends = " and ".join(f"{c} .. {c + a}" for c, a in zip(corner, size, strict=True))
+            roi.fail(f"wanted a region within {sides[0]} x {sides[1]}, got columns and rows {ends}")
         if whole and size != sides:
             roi.fail("wanted the whole picture, as a region's rectified picture is not told")
     bins = [max(_or_0(root, name, 1024), 1) for name in ("binning_x", "binning_y")]

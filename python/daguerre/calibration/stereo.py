@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.checks import short
 from daguerre.io.json_item import Item
 from daguerre.projection import Projection
 
@@ -56,7 +57,7 @@ def read_stereo(
         InputError: The file cannot be used; the message names the place.
     """
     root = load(source)
-    pixels = size or size_of(root)
+    pixels = size_of(root, size)
     pose = _with_pose(root, source, rectified=rectified)
     made = {}
     for number, name in enumerate(SIDES, 1):
@@ -142,7 +143,7 @@ def rotation(item: Item) -> FloatArray:
     """A rotation, shape (3, 3)."""
     turn = matrix(item, 3, 3)
     if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turn) < 0:
-        item.fail("wanted a rotation")
+        item.fail(f"wanted a rotation, got {short(turn.tolist())}")
     return turn
 
 

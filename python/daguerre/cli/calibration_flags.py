@@ -193,6 +193,9 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     from daguerre.calibration import pick, read_all
     from daguerre.errors import UsageError
 
+    if not text:  # as of a variable of a shell that is not set: not the folder, which "" is, too
+        raise UsageError("--calibration: wanted a file, got ''")
+
     file, _, names = text.rpartition(":")
     if not file or Path(text).exists() or not Path(file).exists():
         file, names = text, ""

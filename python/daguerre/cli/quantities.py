@@ -64,6 +64,8 @@ def distance_m(flag: str, text: str) -> float:
 def unit_m(flag: str, text: str) -> float:
     """What a length of 1 is, m: ``mm``, ``25mm``."""
     wanted = "a unit such as mm, 25mm or 0.001"
+    if text.isalpha() and text not in LENGTHS:
+        raise _bad(flag, wanted, text)
     value = _quantity(flag, f"1{text}" if text.isalpha() else text, LENGTHS, "m", wanted)
     if not 1e-9 <= value <= 1e9:
         raise _bad(flag, wanted, text)
