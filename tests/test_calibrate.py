@@ -261,6 +261,10 @@ def test_every_format_says_where_the_lens_puts_things(kind: str, tmp_path: Path)
         (["--model", "equisolid", "-o", "/no/such/x"], 5, "/no/such"),
         (["--residuals", "x.bmp"], 2, "--residuals"),
         (["--f-stop", "1"], 3, "f"),
+        (["--wavelength", "nan"], 2, "wavelength_nm"),
+        (["--wavelength", "5000"], 2, "at most 2500"),
+        (["--sensor", "1000x1000"], 3, "image circle"),
+        (["-o", "same.png", "--residuals", "./same.png"], 2, "named twice"),
     ],
 )
 def test_bad_wishes_are_one_line(options: list[str], code: int, message: str, capsys: Any) -> None:

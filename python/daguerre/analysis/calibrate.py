@@ -35,6 +35,7 @@ PARAMETERS = {"opencv": 5}
 COUNTS = {"opencv": (4, 5, 8, 12)}
 ACROSS = 41  # chief rays across the picture
 LEAST = 50  # chief rays that a fit needs
+WAVELENGTHS_NM = 300, 2500  # beyond, formulas of glasses are no glasses
 NOTHING = 1e-13  # what is left of parameters that symmetry forbids
 NEAR = 0.25  # of the picture's half, for the first guess of the focal length
 
@@ -204,6 +205,7 @@ def _see(
         number(side, "calibrate: sensor_size", 0, 1e5, above=0)
     for side in numbers(shift, "calibrate: shift", 2, "right and up, mm"):
         number(side, "calibrate: shift", -1e5, 1e5)
+    number(wavelength_nm, "calibrate: wavelength_nm", *WAVELENGTHS_NM)
     item = load(lens) if isinstance(lens, str) else lens
     bench = set_up(item, **use)
     size, pitch = (int(width), int(height)), sensor_size[0] / width
@@ -212,7 +214,11 @@ def _see(
     directions = directions_seen(bench, chief_rays(bench, film, wavelength_nm))
     known = np.isfinite(directions).all(axis=1)
     if known.sum() < LEAST:
-        raise InputError(f"{bench.lens.name}: calibrate: wanted chief rays, got too few")
+        raise InputError(
+            f"{bench.lens.name}: calibrate: wanted {LEAST} chief rays or more, got {known.sum()} "
+            f"at {len(known)} points of a sensor of {sensor_size[0]:g} x {sensor_size[1]:g} mm: is "
+            "it much larger than the image circle?"
+        )
     camera = Camera(
         lens=item,
         f_stop=bench.f_stop,

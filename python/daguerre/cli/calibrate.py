@@ -97,6 +97,9 @@ def calibrate(
     map_flags.check()
     for path in map_flags.files:
         check_writable(path)
+    written = [path.resolve() for path in (output, residuals, *map_flags.files) if path]
+    if len(set(written)) < len(written):
+        raise UsageError("-o: the same file is named twice")
     if terms is None and file_format == "kalibr" and model == "opencv":
         terms = 4  # Kalibr's radtan has no k3
     use: dict[str, Any] = {
