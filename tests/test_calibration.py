@@ -382,6 +382,30 @@ def test_a_fisheye_whose_circle_lies_within_its_picture_is_no_error() -> None:
         calibration.read_opencv({**fisheye, "dist_coeffs": [0.06, -0.3, 0.0, 0.0]})
 
 
+FRAME = {"file_path": "0.png", "transform_matrix": np.eye(4).tolist()}
+
+
+@pytest.mark.parametrize(
+    ("read", "given"),
+    [
+        (calibration.read_opencv, {"image_size": (640, 480), "camera_matrix": K}),
+        (calibration.read_opentrackio, sample()),
+        (
+            calibration.read_transforms,
+            {"w": 640, "h": 480, "fl_x": 500, "frames": [FRAME]},
+        ),
+    ],
+)
+def test_a_size_beside_the_files_own_is_the_same(
+    read: Callable[..., Any], given: dict[str, Any]
+) -> None:
+    made = read(given)
+    told = (next(iter(made.values())) if isinstance(made, dict) else made).projection.size
+    read(given, size=told)
+    with pytest.raises(InputError, match=f"{told[0]} x {told[1]} px: wanted no size.* got 641 x 7"):
+        read(given, size=(641, 7))
+
+
 def test_width_and_height_that_are_exchanged_are_noticed() -> None:
     exchanged = opencv(
         camera_matrix=[500, 0, 322, 0, 500, 238, 0, 0, 1], image_width=480, image_height=640
@@ -459,10 +483,7 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path, chain: Path) -> None:
     assert 5 < read < 220
 
 
-def test_a_size_that_the_file_contradicts(chain: Path) -> None:
-    assert calibration.read(opencv(), size=(640, 480)).projection.size == (640, 480)
-    with pytest.raises(InputError, match="says 640 x 480; got 320 x 240"):
-        calibration.read(opencv(), size=(320, 240))
+def test_formats_that_always_say_the_size_take_none(chain: Path) -> None:
     with pytest.raises(UsageError, match="as kalibr says it"):
         calibration.read(chain, size=(640, 480))
     with pytest.raises(UsageError, match="as ros says it"):

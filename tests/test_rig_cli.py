@@ -233,6 +233,11 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "kg"], 2, "got 'kg'"),
         (["-o", "x.exr", "--calibration", ""], 2, "--calibration: wanted a file, got ''"),
         (
+            ["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-size", "4x3"],
+            2,
+            "none, as",
+        ),
+        (
             ["-o", "x.exr", "--calibration-unit", "mm"],
             2,
             "--calibration-unit: wanted --calibration",
@@ -290,6 +295,12 @@ def test_a_chain_whose_cameras_are_triggered_apart(built: list[int]) -> None:
     assert len(built) == 1
     opens = {name: written(f"s.{name}.exr")["shutter"]["opens_s"] for name in ("cam0", "cam1")}
     assert opens == pytest.approx({"cam0": -0.005, "cam1": -0.001})
+
+
+def test_a_chain_without_times_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    flags = ["-c", "A", "--calibration", "chain.yaml", "--res", "25%", "--spp", "1"]
+    assert render("-o", "s.exr", *flags, "--timeshift") == 0
+    assert "no camera has another timeshift_cam_imu" in capsys.readouterr().err
 
 
 def test_info_shows_each_camera(capsys: pytest.CaptureFixture[str]) -> None:

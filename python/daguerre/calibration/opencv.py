@@ -17,7 +17,7 @@ from daguerre.io.json_item import Item
 from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
-from .source import Source, camera_matrix, choice, first, load, needed, row
+from .source import Source, agreed, camera_matrix, choice, first, load, needed, row
 
 MATRICES = ("camera_matrix", "cameraMatrix", "K", "mtx", "M1")
 COEFFICIENTS = (
@@ -92,30 +92,18 @@ def model_of(root: Item, model: str | None = None) -> str:
     return "kannala_brandt" if flag is not None and flag.value in (1, True) else "opencv"
 
 
-def size_of(root: Item, given: tuple[int, int] | None = None) -> tuple[int, int]:
-    """Of the picture, px: as the file says it, else as it is given."""
-    names = ("image_width", "width"), ("image_height", "height"), SIZES
-    if given is not None and not any(first(root, *some) is not None for some in names):
-        return given
-    said = _said_size(root)
-    if given is not None and tuple(given) != said:
-        wide, high = said
-        root.fail(
-            f"size: wanted none, as the file says {wide} x {high}; got {given[0]} x {given[1]}"
-        )
-    return said
+def size_of(root: Item, given: tuple[int, int] | None) -> tuple[int, int]:
+    """Of the picture, px; as given where the file does not say it."""
+    return agreed(root, "image_width and image_height", _size(root), given)
 
 
-def _said_size(root: Item) -> tuple[int, int]:
+def _size(root: Item) -> tuple[int, int] | None:
     width, height = first(root, "image_width", "width"), first(root, "image_height", "height")
     if width is not None and height is not None:
         return width.integer(1, 65536), height.integer(1, 65536)
     both = first(root, *SIZES)
     if both is None:
-        root.fail(
-            "missing: wanted the size of the picture (image_width and image_height), got none; "
-            "size=(W, H) or --calibration-size gives it"
-        )
+        return None
     across, down = row(both, (2,))
     if not (1 <= across == int(across) and 1 <= down == int(down)):
         both.fail(f"wanted two whole numbers of pixels, got {across:g}, {down:g}")

@@ -28,7 +28,7 @@ from daguerre.errors import InputError
 from daguerre.io.json_item import Item
 
 from .calibration import Calibration, FloatArray, projection
-from .source import Source, choice, load
+from .source import Source, agreed, choice, load
 
 DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED = "Brown-Conrady D-U", "Brown-Conrady U-D"
 #: World of OpenTrackIO (x right, y ahead, z up) as Daguerre has it (y up, z toward the viewer).
@@ -51,7 +51,7 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     still = root.need("static").need("camera")
     sensor = still.need("activeSensorPhysicalDimensions")
     film = sensor.need("width").number(above=0), sensor.need("height").number(above=0)
-    pixels = size or _resolution(still)
+    pixels = agreed(still, "activeSensorResolution", _resolution(still), size)
     named = "pinholeFocalLength" if lens.get("focalLength") is None else "focalLength"
     focal = lens.need(named).number(above=0)
     scale = pixels[0] / film[0], pixels[1] / film[1]  # px per mm
@@ -72,13 +72,10 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     return Calibration(made, "", np.eye(4), 1e3 / scale[0], settings)
 
 
-def _resolution(still: Item) -> tuple[int, int]:
+def _resolution(still: Item) -> tuple[int, int] | None:
     found = still.get("activeSensorResolution")
     if found is None:
-        still.fail(
-            "missing: wanted the size of the picture (activeSensorResolution), got none; "
-            "size=(W, H) or --calibration-size gives it"
-        )
+        return None
     return found.need("width").integer(1, 65536), found.need("height").integer(1, 65536)
 
 

@@ -123,6 +123,31 @@ def row(item: Item, counts: Iterable[int]) -> tuple[float, ...]:
     return tuple(element.number() for element in elements)
 
 
+def agreed(
+    item: Item, names: str, told: tuple[int, int] | None, given: tuple[int, int] | None
+) -> tuple[int, int]:
+    """The size of the picture, px: that of a file, or the one that is given where it tells none.
+
+    Args:
+        item: Of the file, for messages.
+        names: Which a file has for it.
+        told: By the file.
+        given: By who reads it.
+    """
+    size = told or given
+    if size is None:
+        item.fail(
+            f"missing: wanted the size of the picture ({names}), got none; size=(W, H) or "
+            "--calibration-size gives it"
+        )
+    if given is not None and size != tuple(given):
+        item.fail(
+            f"has pictures of {size[0]} x {size[1]} px: wanted no size or this one, got "
+            f"{given[0]} x {given[1]}"
+        )
+    return size
+
+
 def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]:
     """Focal lengths and principal point, px."""
     k = matrix(item, 3, 3)

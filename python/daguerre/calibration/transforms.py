@@ -17,7 +17,7 @@ from daguerre.io.json_item import Item
 from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
-from .source import Source, choice, load, rigid
+from .source import Source, agreed, choice, load, rigid
 
 #: camera_model -> ours, and the names of its coefficients in our order.
 MODELS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -72,7 +72,7 @@ def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Project
         found = told(name)
         return default if found is None else found.number()
 
-    width, height = size or _size(told("w"), told("h"), root)
+    width, height = agreed(item, "w and h", _size(told("w"), told("h")), size)
     fx = _focal(told, "x", width, root)
     fy = fx if told("fl_y") is None and told("camera_angle_y") is None else 0.0
     fy = fy or _focal(told, "y", height, root)
@@ -92,12 +92,9 @@ def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Project
     return projection(where, model, (width, height), (fx, fy), center, values)
 
 
-def _size(width: Item | None, height: Item | None, root: Item) -> tuple[int, int]:
+def _size(width: Item | None, height: Item | None) -> tuple[int, int] | None:
     if width is None or height is None:
-        root.fail(
-            "missing: wanted the size of the picture (w and h), got none; size=(W, H) or "
-            "--calibration-size gives it"
-        )
+        return None
     sides = []
     for side in (width, height):
         value = side.number(1, 65536)

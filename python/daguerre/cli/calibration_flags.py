@@ -181,6 +181,8 @@ class CalibrationFlags:
         from daguerre.calibration.calibration import field_notes
 
         notes = [*calibration.notes, *field_notes(calibration.projection)]
+        if self.timeshift and not any(one.delay_s for one in self.found.values()):
+            notes.append("--timeshift: no camera has another timeshift_cam_imu than the first")
         if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
                 f"no --pixel-pitch: blur is that of a sensor {camera.sensor_size[0]:g} mm wide"
