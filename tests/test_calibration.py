@@ -432,6 +432,9 @@ def test_a_chain_with_a_model_outside_its_field(chain: Path) -> None:
     chain.write_text(CHAIN.replace("distortion_model: none", "distortion_model: fov"))
     with pytest.raises(InputError, match="wanted none with camera_model ds"):
         calibration.read_kalibr(chain)
+    chain.write_text(CHAIN.replace("cam2:", "camera2:"))
+    with pytest.raises(InputError, match="camera2: wanted the name cam2"):
+        calibration.read_kalibr(chain)
     chain.write_text(CHAIN.replace("[1, 0, 0, -0.2]", "[2, 0, 0, -0.2]"))
     with pytest.raises(InputError, match=r"cam2.T_cn_cnm1: wanted a rotation"):
         calibration.read_kalibr(chain)

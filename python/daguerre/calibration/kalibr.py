@@ -54,6 +54,10 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
     )
     if [str(name) for name in names] != [f"cam{i}" for i in range(len(names))] or not names:
         root.fail(f"wanted cameras cam0, cam1, ..., got {', '.join(map(str, names)) or 'none'}")
+    for item in root.members():  # it would not be missed in a chain that ends before it
+        is_camera = isinstance(item.value, dict) and "camera_model" in item.value
+        if is_camera and item.key not in names:
+            item.fail(f"wanted the name cam{len(names)}, cam{len(names) + 1}, ... of a camera")
     found, camera_from_first = {}, np.eye(4)
     shifts = [root.need(str(name)).number_of("timeshift_cam_imu", 0.0) for name in names]
     for i, name in enumerate(map(str, names)):
