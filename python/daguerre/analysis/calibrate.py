@@ -216,7 +216,7 @@ def _see(
     if known.sum() < LEAST:
         raise InputError(
             f"{bench.lens.name}: calibrate: wanted {LEAST} chief rays or more, got {known.sum()} "
-            f"at {len(known)} points of a sensor of {sensor_size[0]:g} x {sensor_size[1]:g} mm: is "
+            f"at {known.size} points of a sensor of {sensor_size[0]:g} x {sensor_size[1]:g} mm: is "
             "it much larger than the image circle?"
         )
     camera = Camera(
