@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.annotations import Annotation, Annotations
-from daguerre.boxes import rotation_of
-from daguerre.categories import Categories, base_name
 from daguerre.errors import DaguerreError, UsageError
+from daguerre.labels.annotations import Annotation, Annotations
+from daguerre.labels.boxes import rotation_of
+from daguerre.labels.categories import Categories, base_name
 from daguerre.projection import Projection
 from daguerre.shutter import RollingShutter
 

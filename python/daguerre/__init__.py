@@ -33,14 +33,14 @@ if TYPE_CHECKING:
         stocks,
     )
     from .analysis.calibrate import calibrate, calibrate_all
-    from .annotations import annotate
-    from .categories import Categories
     from .frame import Frame
+    from .labels.annotations import annotate
+    from .labels.categories import Categories
+    from .maps.ray_map import RayMap, raymap
+    from .maps.st_maps import StMaps, stmaps
     from .raw import Raw
-    from .ray_map import RayMap, raymap
     from .rig import render_rig, stereo_pair
     from .session import Session, iter_render, render
-    from .st_maps import StMaps, stmaps
     from .waves import Diffraction
 
 __all__ = [
@@ -102,17 +102,17 @@ __all__ = [
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
 _LAZY = {
-    "Categories": "categories",
-    "annotate": "annotations",
+    "Categories": "labels.categories",
+    "annotate": "labels.annotations",
     "calibrate": "analysis.calibrate",
     "calibrate_all": "analysis.calibrate",
     "Diffraction": "waves",
     "Frame": "frame",
     "Raw": "raw",
-    "RayMap": "ray_map",
-    "raymap": "ray_map",
-    "StMaps": "st_maps",
-    "stmaps": "st_maps",
+    "RayMap": "maps.ray_map",
+    "raymap": "maps.ray_map",
+    "StMaps": "maps.st_maps",
+    "stmaps": "maps.st_maps",
     "Session": "session",
     "iter_render": "session",
     "render": "session",

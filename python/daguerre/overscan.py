@@ -17,7 +17,7 @@ from .checks import MAX_RESOLUTION, number, short, whole
 from .errors import UsageError, suggest
 
 if TYPE_CHECKING:
-    from .sight import Sight
+    from .maps.sight import Sight
 
 FloatArray = NDArray[np.float64]
 

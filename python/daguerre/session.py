@@ -35,12 +35,12 @@ from .flare import check_highlights, check_used
 from .frame import Frame, frame_of, set_film_state
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
+from .maps.sight import Sight
 from .overscan import NONE, Overscan, check_overscan, to_undistort
 from .overscan import note as overscan_note
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
-from .sight import Sight
 from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves

@@ -77,7 +77,7 @@ class MapFlags:
             UsageError: Another ending, or no such frame.
         """
         from daguerre.errors import UsageError
-        from daguerre.ray_map import check_frame
+        from daguerre.maps.ray_map import check_frame
 
         check_frame(self.raymap_frame, "--raymap-frame")
         if self.raymap_frame != "camera" and self.export_raymap is None:
@@ -103,7 +103,7 @@ class MapFlags:
             overscan: An ``Overscan``.
             gt_time: When in the exposure rays are seen.
         """
-        from daguerre.ray_map import rays_of
+        from daguerre.maps.ray_map import rays_of
 
         if self.export_raymap is not None:
             how = (gt_time or "mid", self.raymap_frame, overscan)
@@ -121,8 +121,8 @@ class MapFlags:
 def _write_stmaps(
     scene: Any, camera: Any, size: tuple[int, int], overscan: Any, files: dict[str, Path]
 ) -> None:
-    from daguerre.sight import Sight
-    from daguerre.st_maps import StMaps
+    from daguerre.maps.sight import Sight
+    from daguerre.maps.st_maps import StMaps
 
     maps = StMaps(Sight(camera, size, scene=scene, overscan=overscan), overscan)
     maps.save(**files)

@@ -17,8 +17,8 @@ from .plan import DISPARITY
 
 if TYPE_CHECKING:
     from daguerre.built_scene import BuiltScene
-    from daguerre.categories import Categories
     from daguerre.io.coco import CocoFile
+    from daguerre.labels.categories import Categories
     from daguerre.scene import Scene
     from daguerre.session import Session
 
@@ -171,7 +171,7 @@ class Shoot:
         """Notes what a picture shows, if that is wanted."""
         if self.coco is None:
             return
-        from daguerre.annotations import annotations_of
+        from daguerre.labels.annotations import annotations_of
 
         with core_errors("render"):
             seen = annotations_of(session, self.categories)
@@ -184,9 +184,9 @@ class Shoot:
         """The maps of a camera, without its picture."""
         from daguerre.build import build
         from daguerre.camera_setup import set_up
+        from daguerre.maps.sight import Sight
         from daguerre.overscan import check_overscan, note, to_undistort
         from daguerre.shutter import interval
-        from daguerre.sight import Sight
         from daguerre.truth import focused
 
         plan, scene = picture.plan, self._scene_of(picture)

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from .atomic import check_writable, write_bytes
 
 if TYPE_CHECKING:
-    from daguerre.annotations import Annotation, Annotations
-    from daguerre.boxes import Box3
-    from daguerre.categories import Category
+    from daguerre.labels.annotations import Annotation, Annotations
+    from daguerre.labels.boxes import Box3
+    from daguerre.labels.categories import Category
 
 
 class CocoFile:

@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.camera import Camera
+from daguerre.checks import short
+from daguerre.errors import UsageError
+from daguerre.scene import Scene
+from daguerre.session import Session
+from daguerre.truth import GroundTruth, Moment
 
 from .boxes import Box3, box_of
-from .camera import Camera
 from .categories import Categories, Category, Thing
-from .checks import short
-from .errors import UsageError
-from .scene import Scene
-from .session import Session
-from .truth import GroundTruth, Moment
 
 Box = tuple[float, float, float, float]
 NO_GROUP = 0xFFFFFFFF

@@ -15,18 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre import shutter
+from daguerre.camera_facts import camera_metadata
+from daguerre.camera_setup import set_up
+from daguerre.errors import UsageError, suggest
+from daguerre.overscan import NONE, Overscan, check_overscan, to_undistort
+from daguerre.scene import Scene
+from daguerre.truth import GT_TIMES, check_gt_time, instants
 
-from . import shutter
-from .camera_facts import camera_metadata
-from .camera_setup import set_up
-from .errors import UsageError, suggest
-from .overscan import NONE, Overscan, check_overscan, to_undistort
-from .scene import Scene
 from .sight import Sight
-from .truth import GT_TIMES, check_gt_time, instants
 
 if TYPE_CHECKING:
-    from .camera import Camera
+    from daguerre.camera import Camera
 
 FloatArray = NDArray[np.float64]
 #: What coordinates of rays are about.
@@ -63,7 +63,7 @@ class RayMap:
         Raises:
             OutputError: The file cannot be written.
         """
-        from .io.exr import attributes, write_planes
+        from daguerre.io.exr import attributes, write_planes
 
         planes = {
             f"{name}.{axis}": values[:, :, k].astype(np.float32)
@@ -103,14 +103,14 @@ def raymap(
     Raises:
         UsageError: A parameter is out of its range.
     """
-    from .session import check_resolution
+    from daguerre.session import check_resolution
 
     size = check_resolution(resolution)
     check_frame(frame)
     check_gt_time(gt_time, wanted=True)
     core_scene = None
     if scene is not None:
-        from .build import build
+        from daguerre.build import build
 
         core_scene = build(scene, shutter.interval(camera, scene.time, size))
     wanted = check_overscan(overscan, size)

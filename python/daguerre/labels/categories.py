@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from .errors import InputError, UsageError, suggest
-from .io.json_item import Item
-from .io.json_text import parse
-from .scene import Scene
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.io.json_item import Item
+from daguerre.io.json_text import parse
+from daguerre.scene import Scene
 
 #: What programs append to the names of copies.
 _COPY = re.compile(r"(?:[ ._-]\d+|\s*\(\d+\))$")

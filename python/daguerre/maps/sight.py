@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-
-from . import shutter
-from .camera import Camera
-from .camera_setup import set_up
-from .errors import UsageError
-from .overscan import NONE, Overscan
-from .scene import Scene
+from daguerre import shutter
+from daguerre.camera import Camera
+from daguerre.camera_setup import set_up
+from daguerre.errors import UsageError
+from daguerre.overscan import NONE, Overscan
+from daguerre.scene import Scene
 
 FloatArray = NDArray[np.float64]
 

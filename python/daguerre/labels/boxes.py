@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from .scene import Scene
+from daguerre.scene import Scene
 
 FloatArray = NDArray[np.float64]
 

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .overscan import NONE, Overscan, check_overscan, to_redistort, to_undistort
+from daguerre.overscan import NONE, Overscan, check_overscan, to_redistort, to_undistort
+
 from .sight import Sight
 
 if TYPE_CHECKING:
-    from .camera import Camera
-    from .post.warp import Warp
-    from .scene import Scene
+    from daguerre.camera import Camera
+    from daguerre.post.warp import Warp
+    from daguerre.scene import Scene
 
 Image = NDArray[np.float32]
 
@@ -59,7 +60,7 @@ class StMaps:
         Raises:
             OutputError: A file cannot be written.
         """
-        from .post.stmap import write_stmap
+        from daguerre.post.stmap import write_stmap
 
         for path, warp in ((undistort, "_undistort"), (redistort, "_redistort")):
             if path is not None:
@@ -81,7 +82,7 @@ class StMaps:
 
     @cached_property
     def _canvas(self) -> Any:
-        from .post.picture import Canvas
+        from daguerre.post.picture import Canvas
 
         size = self.sight.resolution
         corner = -self.overscan.left, -self.overscan.top
@@ -89,19 +90,19 @@ class StMaps:
 
     @cached_property
     def _undistort(self) -> Warp:
-        from .post.warp import Warp
+        from daguerre.post.warp import Warp
 
         return Warp.of(self._canvas, self.sight.bent_from_straight)
 
     @cached_property
     def _redistort(self) -> Warp:
-        from .post.warp import Warp
+        from daguerre.post.warp import Warp
 
         return Warp.of(self._canvas, self.sight.straight_from_bent)
 
     def _values(self, warp: Warp) -> Image:
-        from .post.picture import Rows
-        from .post.stmap import st_rows
+        from daguerre.post.picture import Rows
+        from daguerre.post.stmap import st_rows
 
         return st_rows(warp, self._canvas, Rows(0, self._canvas.height))
 
@@ -127,13 +128,13 @@ def stmaps(
     Raises:
         UsageError: A cube, which cannot be straightened; or a parameter of the camera.
     """
-    from .session import check_resolution
+    from daguerre.session import check_resolution
 
     size = check_resolution(resolution)
     focused, core_scene = camera, None
     if scene is not None:
-        from .build import build
-        from .shutter import interval
+        from daguerre.build import build
+        from daguerre.shutter import interval
 
         core_scene = build(scene, interval(camera, scene.time, size))
     wanted = check_overscan(overscan, size)

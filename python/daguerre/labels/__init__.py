@@ -1,0 +1,1 @@
+"""What a picture shows: things, their categories, masks, and boxes in the picture and in space."""
