@@ -486,6 +486,11 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path, chain: Path) -> None:
     assert 5 < read < 220
 
 
+def test_a_take_is_no_calibration(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="from_opentrackio"):
+        calibration.read(tmp_path / "take.jsonl")
+
+
 def test_formats_that_always_say_the_size_take_none(chain: Path) -> None:
     with pytest.raises(UsageError, match="as kalibr says it"):
         calibration.read(chain, size=(640, 480))

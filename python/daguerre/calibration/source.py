@@ -34,6 +34,11 @@ def load(source: Source) -> Item:
     if not isinstance(source, str | os.PathLike):
         raise UsageError(f"calibration: wanted a file or a dict, got {short(source)}")
     path = Path(source)
+    if path.suffix.lower() == ".jsonl":
+        raise InputError(
+            f"{path}: wanted one calibration, got lines of several: a take of OpenTrackIO is read "
+            "by Camera.from_opentrackio, as a list of its samples"
+        )
     data = read_bytes(path)
     parse = json_text.parse if path.suffix.lower() == ".json" else yaml_text.parse
     if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
