@@ -28,6 +28,32 @@ def put(stage: Stage, name: str, parts: Sequence[tuple[Shape, int]], **node: Any
     return stage.glb.add_node(name, mesh=stage.glb.add_parts(name, shapes.by_matter(parts)), **node)
 
 
+def translucent(
+    stage: Stage,
+    name: str,
+    color: Sequence[float],
+    roughness: float,
+    share: float,
+    tint: Sequence[float],
+) -> int:
+    """Something thin, a leaf or linen: a share of the light comes through, in its own tint."""
+    return stage.glb.add_material(
+        name,
+        doubleSided=True,
+        pbrMetallicRoughness={
+            "baseColorFactor": [*color, 1],
+            "metallicFactor": 0.0,
+            "roughnessFactor": roughness,
+        },
+        extensions={
+            "KHR_materials_diffuse_transmission": {
+                "diffuseTransmissionFactor": share,
+                "diffuseTransmissionColorFactor": [*tint],
+            }
+        },
+    )
+
+
 def about_x(degrees: float) -> NDArray[np.float64]:
     """A rotation matrix: y toward z."""
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from calibrated import pictures
-from calibrated.place import BACK, about_x, about_y, about_z, put
+from calibrated.place import BACK, about_x, about_y, about_z, put, translucent
 from kit import shapes, textures
 from night.stage import Stage
 
@@ -94,21 +94,7 @@ def add_window(stage: Stage) -> None:
 
 def _add_curtains(stage: Stage) -> None:
     """Linen at both sides, through which a part of the light comes."""
-    linen = stage.glb.add_material(
-        "linen",
-        doubleSided=True,
-        pbrMetallicRoughness={
-            "baseColorFactor": [0.80, 0.74, 0.62, 1],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 0.95,
-        },
-        extensions={
-            "KHR_materials_diffuse_transmission": {
-                "diffuseTransmissionFactor": 0.45,
-                "diffuseTransmissionColorFactor": [0.80, 0.70, 0.55],
-            }
-        },
-    )
+    linen = translucent(stage, "linen", (0.80, 0.74, 0.62), 0.95, 0.45, (0.80, 0.70, 0.55))
     z0, z1, _, y1 = WINDOW
     t, y = np.meshgrid(np.linspace(0, 1, 73), np.linspace(0, 1, 13))
     for z, sign in ((z0 - 0.02, 1), (z1 + 0.02, -1)):

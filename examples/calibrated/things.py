@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from calibrated.place import about_x, about_y, about_z, on_desk, put
+from calibrated.place import about_x, about_y, about_z, on_desk, put, translucent
 from daguerre.io.glb_writer import Shape
 from kit import shapes
 from kit.moves import spinning
@@ -146,7 +146,7 @@ def _add_plant(stage: Stage) -> None:
     pot += [(0.076, 0.135), (0.070, 0.133), (0.068, 0.112)]
     parts = [(shapes.lathe(pot, 64), clay), (shapes.lathe([(0.069, 0.116), (0, 0.120)], 48), soil)]
     rng = np.random.default_rng(31)
-    green = _leaf_matter(stage)
+    green = translucent(stage, "leaf", (0.035, 0.11, 0.03), 0.28, 0.3, (0.16, 0.30, 0.03))
     for lean, high in (((0.05, 0.02), 0.34), ((-0.07, 0.03), 0.27), ((0.01, -0.05), 0.40)):
         t = np.linspace(0, 1, 12)[:, None]
         stem = np.hstack([lean[0] * t**1.4, 0.115 + high * t, lean[1] * t**1.4])
@@ -158,25 +158,6 @@ def _add_plant(stage: Stage) -> None:
             leaf = _leaf(rng.uniform(0.10, 0.15) * (1.15 - 0.35 * at), rise)
             parts.append((shapes.moved(shapes.turned(leaf, about_y(heading)), foot), green))
     put(stage, "plant", parts, translation=on_desk(-0.74, -0.26))
-
-
-def _leaf_matter(stage: Stage) -> int:
-    """Glossy above; a part of the light comes through."""
-    return stage.glb.add_material(
-        "leaf",
-        doubleSided=True,
-        pbrMetallicRoughness={
-            "baseColorFactor": [0.035, 0.11, 0.03, 1],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 0.28,
-        },
-        extensions={
-            "KHR_materials_diffuse_transmission": {
-                "diffuseTransmissionFactor": 0.3,
-                "diffuseTransmissionColorFactor": [0.16, 0.30, 0.03],
-            }
-        },
-    )
 
 
 def _leaf(long: float, rise_deg: float) -> Shape:

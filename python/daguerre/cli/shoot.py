@@ -115,10 +115,9 @@ class Shoot:
 
     def draw_all(self, wanted: list[Picture], launched: float, **how: bool) -> int:
         """Draws pictures one after the other; the exit code of the first that is not complete."""
+        # An error comes before hours are spent, not after.
         for view in {picture.view.name: picture.view for picture in wanted}.values():
-            view.of(
-                self.scene, self.calibrations, self.changes
-            )  # or an error before hours are spent
+            view.of(self.scene, self.calibrations, self.changes)
         if self.categories is not None:
             self.categories.things(self.scene)
         for i, picture in enumerate(wanted):

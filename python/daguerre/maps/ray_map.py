@@ -19,11 +19,11 @@ from daguerre import shutter
 from daguerre.camera_facts import camera_metadata
 from daguerre.camera_setup import set_up
 from daguerre.errors import UsageError, suggest
-from daguerre.overscan import NONE, Overscan, check_overscan, to_undistort
+from daguerre.overscan import NONE, Overscan
 from daguerre.scene import Scene
 from daguerre.truth import GT_TIMES, check_gt_time, instants
 
-from .sight import Sight
+from .sight import built, overscan_of
 
 if TYPE_CHECKING:
     from daguerre.camera import Camera
@@ -108,14 +108,8 @@ def raymap(
     size = check_resolution(resolution)
     check_frame(frame)
     check_gt_time(gt_time, wanted=True)
-    core_scene = None
-    if scene is not None:
-        from daguerre.build import build
-
-        core_scene = build(scene, shutter.interval(camera, scene.time, size))
-    wanted = check_overscan(overscan, size)
-    if wanted is None:
-        wanted = to_undistort(Sight(camera, size, scene=scene, core_scene=core_scene))
+    core_scene = built(scene, camera, size)
+    wanted = overscan_of(overscan, camera, size, scene, core_scene)
     return rays_of(camera, size, scene or Scene(), core_scene, gt_time, frame, wanted)
 
 

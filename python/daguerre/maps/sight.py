@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from daguerre import shutter
 from daguerre.camera import Camera
 from daguerre.camera_setup import set_up
 from daguerre.errors import UsageError
-from daguerre.overscan import NONE, Overscan
+from daguerre.overscan import NONE, Overscan, check_overscan, to_undistort
 from daguerre.scene import Scene
 
 FloatArray = NDArray[np.float64]
@@ -105,3 +106,26 @@ class Sight:
     def _pixels(self, film: FloatArray) -> FloatArray:
         away = (film - self._center) * (1, -1) / self._pitch
         return np.asarray(away + np.array(self.resolution) / 2)
+
+
+def built(scene: Scene | None, camera: Camera, resolution: tuple[int, int]) -> _core.Scene | None:
+    """The scene as a camera sees it, for autofocus; None where there is none."""
+    if scene is None:
+        return None
+    from daguerre.build import build
+
+    return build(scene, shutter.interval(camera, scene.time, resolution))
+
+
+def overscan_of(
+    wanted: Any,
+    camera: Camera,
+    resolution: tuple[int, int],
+    scene: Scene | None,
+    core_scene: _core.Scene | None,
+) -> Overscan:
+    """Pixels beside the picture that are asked for; ``"undistort"``: as the camera needs them."""
+    found = check_overscan(wanted, resolution)
+    if found is not None:
+        return found
+    return to_undistort(Sight(camera, resolution, scene=scene, core_scene=core_scene))

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.overscan import NONE, Overscan, check_overscan, to_redistort, to_undistort
+from daguerre.overscan import NONE, Overscan, to_redistort, to_undistort
 
-from .sight import Sight
+from .sight import Sight, built, overscan_of
 
 if TYPE_CHECKING:
     from daguerre.camera import Camera
@@ -131,14 +131,7 @@ def stmaps(
     from daguerre.session import check_resolution
 
     size = check_resolution(resolution)
-    focused, core_scene = camera, None
-    if scene is not None:
-        from daguerre.build import build
-        from daguerre.shutter import interval
-
-        core_scene = build(scene, interval(camera, scene.time, size))
-    wanted = check_overscan(overscan, size)
-    if wanted is None:
-        wanted = to_undistort(Sight(focused, size, scene=scene, core_scene=core_scene))
-    sight = Sight(focused, size, scene=scene, core_scene=core_scene, overscan=wanted)
+    core_scene = built(scene, camera, size)
+    wanted = overscan_of(overscan, camera, size, scene, core_scene)
+    sight = Sight(camera, size, scene=scene, core_scene=core_scene, overscan=wanted)
     return StMaps(sight, wanted)
