@@ -218,11 +218,8 @@ def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
 
 def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
     """Empty where the camera has none: of glass, tilted lenses, shifts that change."""
-    camera, setup, (width, height) = (
-        truth.camera.at(moment.scene.time),
-        moment.setup,
-        truth.resolution,
-    )
+    camera, setup = truth.camera.at(moment.scene.time), moment.setup
+    width, height = truth.resolution
     (x0, y0), model = truth.crop[:2], setup.facts["lens_model"]
     if camera.projection is not None:
         made = camera.projection
