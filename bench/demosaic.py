@@ -20,8 +20,8 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
+from daguerre.color import spaces
 from daguerre.development.channels import LEAST_XTRANS, Demosaic
-from daguerre.io import icc
 from daguerre.io.tiff import CFA, TiffImage, write_tiff
 from daguerre.sensors.mosaic import Mosaic as Pattern
 
@@ -56,7 +56,7 @@ def half_size(file: Path) -> NDArray[np.float64]:
     source = oiio.ImageInput.open(str(file))
     pixels = source.read_image("float")[:, :, :3]
     source.close()
-    linear = icc.decoded(pixels, "srgb")
+    linear = spaces.decoded(pixels, "srgb")
     height, width = (side // 4 * 2 for side in linear.shape[:2])
     cells = linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3)
     return np.asarray(cells.mean(axis=(1, 3)), np.float64)
@@ -89,7 +89,7 @@ def judged(got: NDArray[np.float64], truth: NDArray[np.float64]) -> tuple[float,
     """PSNR in sRGB, dB, and the RMS error of chroma, without the border."""
     inner = (slice(8, -8), slice(8, -8))
     pair = [np.clip(light[inner], 0, 1) for light in (got, truth)]
-    one, other = (icc.encoded(light, "srgb") for light in pair)
+    one, other = (spaces.encoded(light, "srgb") for light in pair)
     chroma = [lab(light)[..., 1:] for light in pair]
     psnr = -10 * np.log10(np.mean((one - other) ** 2))
     return float(psnr), float(np.sqrt(np.sum((chroma[0] - chroma[1]) ** 2, axis=-1).mean()))
@@ -97,7 +97,7 @@ def judged(got: NDArray[np.float64], truth: NDArray[np.float64]) -> tuple[float,
 
 def lab(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     """CIE L*a*b* of linear sRGB."""
-    matrix = icc.xyz_from_rgb(icc.COLOUR_SPACES["srgb"])
+    matrix = spaces.xyz_from_rgb(spaces.COLOUR_SPACES["srgb"])
     t = rgb @ matrix.T / matrix.sum(axis=1)
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t / (3 * (6 / 29) ** 2) + 4 / 29)
     x, y, z = np.moveaxis(f, -1, 0)

@@ -23,8 +23,8 @@ from daguerre import analysis, lenses, pupil_files, waves
 from daguerre.analysis.diffraction import PlainPupil, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import zone_pupils
-from daguerre.colour import band_colours
-from daguerre.post.convolution import convolve
+from daguerre.color.spectra import band_colours
+from daguerre.convolution.convolve import convolve
 from daguerre.post.starburst import starburst
 
 PITCH_MM = 0.006

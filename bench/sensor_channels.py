@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import sensors
-from daguerre.colour import FIRST_NM, LAST_NM, unit_d65
-from daguerre.film_channels import weights_of_bands
-from daguerre.sensors import illuminants
+from daguerre.color import illuminants
+from daguerre.color.spectra import FIRST_NM, LAST_NM, unit_d65
+from daguerre.sensors.bands import weights_of_bands
 from daguerre.session import Session
 
 BANDS = (4, 8, 16, 32, 64)

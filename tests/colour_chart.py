@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from daguerre.colour import rgb_from_xyz
+from daguerre.color import illuminants
+from daguerre.color.adaptation import adaptation
+from daguerre.color.spectra import rgb_from_xyz
 from daguerre.raw import Raw
-from daguerre.sensors import illuminants, load
-from daguerre.sensors.fit import adaptation
+from daguerre.sensors import load
 
 _DATA = json.loads((Path(__file__).parent / "data" / "colour_chart.json").read_text())
 ROWS, COLUMNS, PATCH = 4, 6, 24

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.color import illuminants
 from daguerre.frame import Frame
-from daguerre.sensors import Sensor, illuminants, load
+from daguerre.sensors import Sensor, load
 
 
 def flat(lux_s: float, shape: tuple[int, int] = (64, 64), **facts: Any) -> Frame:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from daguerre import info
+from daguerre import units as q
 from daguerre.camera import Camera
-from daguerre.cli import quantities as q
 from daguerre.errors import UsageError
 
 GOOD: list[tuple[Callable[[str, str], object], str, object]] = [

@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
+from daguerre.convolution import overlap
+from daguerre.convolution.convolve import convolve, spread
 from daguerre.errors import InputError, UsageError
-from daguerre.post import kernels, overlap
-from daguerre.post.convolution import convolve, spread
+from daguerre.post import kernels
 
 RNG = np.random.default_rng(7)
 

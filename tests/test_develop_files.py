@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.color import spaces
 from daguerre.development import Picture
 from daguerre.errors import OutputError
 from daguerre.io import exif, icc
@@ -38,7 +39,7 @@ def picture(space="srgb"):
     return Picture(np.concatenate([pixels, blue], axis=2), space, dict(FACTS))
 
 
-@pytest.mark.parametrize("space", icc.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
 @pytest.mark.parametrize("ending", ["jpg", "png", "tif"])
 def test_files_say_colours_and_exposure(tmp_path, space, ending):
     path = tmp_path / f"x.{ending}"
@@ -55,20 +56,20 @@ def test_files_say_colours_and_exposure(tmp_path, space, ending):
     with Image.open(path) as image:
         profile = ImageCms.ImageCmsProfile(io.BytesIO(image.info["icc_profile"]))
         title = ImageCms.getProfileDescription(profile).strip()
-        assert title == icc.COLOUR_SPACES[space].title
+        assert title == spaces.COLOUR_SPACES[space].title
         if ending != "tif":  # Pillow reads no 16 bits of three colours
             got = np.asarray(image).astype(int)
             assert np.abs(got - picture(space).bytes8()).max() <= (4 if ending == "jpg" else 0)
             assert image.getexif().get_ifd(0x8769)[0x829A] == Fraction(1, 48)
 
 
-@pytest.mark.parametrize("space", icc.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
 def test_profiles_mean_the_colours_that_we_encode(space):
     """lcms, through Pillow, turns numbers of a space into sRGB as our own matrices do."""
     light = np.array([[0.2, 0.5, 0.3], [0.18, 0.18, 0.18], [0.6, 0.4, 0.35], [1, 1, 1]])
-    of, srgb = icc.COLOUR_SPACES[space], icc.COLOUR_SPACES["srgb"]
-    inside = light @ np.linalg.solve(icc.xyz_from_rgb(of), icc.xyz_from_rgb(srgb)).T
-    numbers = np.rint(icc.encoded(inside, space) * 255).astype(np.uint8)
+    of, srgb = spaces.COLOUR_SPACES[space], spaces.COLOUR_SPACES["srgb"]
+    inside = light @ np.linalg.solve(spaces.xyz_from_rgb(of), spaces.xyz_from_rgb(srgb)).T
+    numbers = np.rint(spaces.encoded(inside, space) * 255).astype(np.uint8)
     transform = ImageCms.buildTransform(
         ImageCms.ImageCmsProfile(io.BytesIO(icc.profile(space))),
         ImageCms.createProfile("sRGB"),
@@ -77,15 +78,15 @@ def test_profiles_mean_the_colours_that_we_encode(space):
         renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
     )
     shown = np.asarray(ImageCms.applyTransform(Image.fromarray(numbers[None]), transform))[0]
-    wanted = np.rint(icc.encoded(light, "srgb") * 255)
+    wanted = np.rint(spaces.encoded(light, "srgb") * 255)
     assert np.abs(shown - wanted).max() <= 2
 
 
-@pytest.mark.parametrize("space", icc.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
 def test_curves_turn_around(space):
     light = np.geomspace(1e-5, 1, 300)
-    encoded = icc.encoded(light, space)
-    np.testing.assert_allclose(icc.decoded(encoded.astype(np.float32), space), light, rtol=2e-5)
+    encoded = spaces.encoded(light, space)
+    np.testing.assert_allclose(spaces.decoded(encoded.astype(np.float32), space), light, rtol=2e-5)
     assert (np.diff(encoded) > 0).all()
     assert encoded[-1] == pytest.approx(1)
 

@@ -12,12 +12,13 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre import analysis, colour, lenses
+from daguerre import analysis, lenses
 from daguerre.analysis import diffraction
 from daguerre.analysis.diffraction import PlainPupil, far_field, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import lens_pupil, zone_pupils
 from daguerre.analysis.psf import psf_of
+from daguerre.color import spectra as colour
 from daguerre.errors import UsageError
 from daguerre.post.starburst import starburst
 

@@ -9,8 +9,9 @@ import pytest
 from scipy import stats
 
 import daguerre as dg
+from daguerre.color import illuminants
 from daguerre.frame import Frame
-from daguerre.sensors import DarkCurrent, HotPixels, illuminants, load
+from daguerre.sensors import DarkCurrent, HotPixels, load
 
 from .flats import flat, lux_s_for, mono
 

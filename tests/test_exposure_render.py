@@ -13,7 +13,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.io import icc
+from daguerre.color import spaces
 
 from .make_gltf import Builder
 
@@ -45,7 +45,7 @@ def render(*outputs: str, more: tuple[str, ...] = (), **flags: str) -> int:
 def linear(path: str) -> float:
     """Mean light of a picture in sRGB."""
     pixels = oiio.ImageBuf(path).get_pixels(oiio.FLOAT)
-    return float(icc.decoded(np.asarray(pixels, np.float32), "srgb").mean())
+    return float(spaces.decoded(np.asarray(pixels, np.float32), "srgb").mean())
 
 
 def exif(path: str) -> dict[str, str]:

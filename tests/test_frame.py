@@ -15,8 +15,8 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre.errors import OutputError, UsageError
+from daguerre.files import atomic
 from daguerre.frame import Frame
-from daguerre.io import atomic
 
 METADATA = {
     "isoSpeed": 400.0,

@@ -11,7 +11,7 @@ import pytest
 
 from daguerre import _core, lenses
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
 from daguerre.lenses import glasses
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.glass_json import glass_from_json

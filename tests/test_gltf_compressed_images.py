@@ -12,7 +12,8 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre.errors import InputError
-from daguerre.io import extras, gltf, images
+from daguerre.files import extras
+from daguerre.io import gltf, images
 
 from .make_gltf import Builder, png, triangle
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from daguerre.errors import InputError
-from daguerre.io import extras, gltf
+from daguerre.files import extras
+from daguerre.io import gltf
 
 from .make_gltf import Builder
 

@@ -11,9 +11,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from daguerre.errors import InputError
+from daguerre.files.json_item import Item
 from daguerre.io import gltf
 from daguerre.io.gltf_pointers import parse
-from daguerre.io.json_item import Item
 
 from .make_gltf import CORNERS, Builder, png, triangle
 

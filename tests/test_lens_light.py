@@ -9,10 +9,11 @@ import daguerre as dg
 from daguerre import lenses
 from daguerre.analysis.bench import set_up
 from daguerre.analysis.illumination import relative_illumination, spectral_illumination
+from daguerre.convolution.rows import Rows
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.post import lens_light
 from daguerre.post.optics import Plane
-from daguerre.post.picture import Canvas, Rows
+from daguerre.post.picture import Canvas
 
 SQUEEZED, LENS = "schneider-anamorphic-60mm", "double-gauss-50mm-f2"
 SIZE, BLOCK = (60, 40), 10

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from daguerre.io import gltf
-from daguerre.resample import resample
+from daguerre.motion.resample import resample
 from daguerre.resample_vertices import resample_vertices
 
 from .make_gltf import CORNERS, Builder, png, triangle

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.motion import Composite
-from daguerre.resample import BOUND, resample, resample_shown, resample_transform
+from daguerre.motion.resample import BOUND, resample, resample_shown, resample_transform
+from daguerre.motion.values import Composite
 from daguerre.resample_vertices import resample_vertices
 from daguerre.scene_motion import Vertices
 

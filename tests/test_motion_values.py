@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 from daguerre.errors import InputError
 from daguerre.materials import Gltf, TextureSlot
-from daguerre.motion import Composite, at, moves
+from daguerre.motion.values import Composite, at, moves
 
 
 def turned(degrees: float, x: float = 0.0) -> np.ndarray:

@@ -11,11 +11,12 @@ import OpenEXR
 import pytest
 
 from daguerre import cli
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
 from daguerre.post import effects, recipe, run, tiles
 from daguerre.post.effect import Effect, Step
 from daguerre.post.parameter import REQUIRED, Parameter
-from daguerre.post.picture import Band, Canvas, Rows
+from daguerre.post.picture import Band, Canvas
 
 NOTHING = "vignetting:model=polynomial"  # light times 1
 

@@ -8,10 +8,12 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from daguerre.post import lens_psf, overlap, run, spreading
-from daguerre.post.convolution import convolve, spreader_of
+from daguerre.convolution import overlap
+from daguerre.convolution.convolve import convolve, spreader_of
+from daguerre.convolution.rows import Rows
+from daguerre.post import lens_psf, run, spreading
 from daguerre.post.exr_picture import ExrPicture
-from daguerre.post.picture import Band, Rows
+from daguerre.post.picture import Band
 
 from .test_post import post, read, write
 

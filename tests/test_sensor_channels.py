@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import _core, adaptive, film_channels, sensors, waves
+from daguerre import _core, adaptive, sensors, waves
 from daguerre.errors import InputError, UsageError
-from daguerre.film_channels import channels_from_bands
 from daguerre.io.merging import merge
-from daguerre.sensors import Sensor
+from daguerre.sensors import Sensor, bands
+from daguerre.sensors.bands import channels_from_bands
 from daguerre.session import Session
 from daguerre.waves import Diffraction
 
@@ -269,7 +269,7 @@ def test_what_no_film_holds() -> None:
     ends = np.array([380.0, 780.0])
     blind = BODY.with_(infrared_cut=sensors.Curve(ends, np.zeros(2)))
     with pytest.raises(InputError, match="channel 0: wanted some sensitivity"):
-        film_channels.responses(blind)
+        bands.responses(blind)
 
 
 def test_merged_passes_with_damaged_channels_are_refused(tmp_path: Path) -> None:

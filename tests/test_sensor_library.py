@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from daguerre.cli import main
-from daguerre.sensors import illuminants, load, names
+from daguerre.color import illuminants
+from daguerre.sensors import load, names
 
 from .flats import flat
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.sensors import PATTERNS, Curve, Mosaic, illuminants, load
+from daguerre.color import illuminants
+from daguerre.sensors import PATTERNS, Curve, Mosaic, load
 
 PLANCK_LIGHT = 6.62607015e-34 * 299792458.0
 

@@ -13,11 +13,11 @@ import pytest
 
 from daguerre import stocks
 from daguerre.cli import main
+from daguerre.color import illuminants
+from daguerre.convolution.convolve import convolve
 from daguerre.development import develop
 from daguerre.errors import InputError, UsageError
 from daguerre.frame import Frame
-from daguerre.post.convolution import convolve
-from daguerre.sensors import illuminants
 from daguerre.stocks import Stock
 from daguerre.stocks.curve import GREY
 from daguerre.stocks.library import FOLDER

@@ -8,17 +8,13 @@ import pytest
 import daguerre as dg
 from daguerre import lenses
 from daguerre.analysis.bench import set_up
-from daguerre.distortion import (
-    BrownConrady,
-    Equidistant,
-    OpenCVFisheye,
-    Stereographic,
-)
+from daguerre.convolution.rows import Rows
+from daguerre.distortion import BrownConrady, Equidistant, OpenCVFisheye, Stereographic
 from daguerre.distortion.lens import LensDistortion
 from daguerre.errors import UsageError
 from daguerre.post import run, tiles
 from daguerre.post.distortion import CHANNEL_NM, point_map
-from daguerre.post.picture import Canvas, Rows
+from daguerre.post.picture import Canvas
 from daguerre.post.warp import Warp
 
 from .test_distortion import ALL, MODELS

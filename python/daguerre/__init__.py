@@ -12,7 +12,7 @@ from .camera import Camera
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
 from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
 from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
-from .motion import Keys, Spin, keys, spin
+from .motion.values import Keys, Spin, keys, spin
 from .projection import Projection
 from .scatter import LensScatter
 from .scene import Scene

@@ -14,7 +14,7 @@ from .build_motion import Moving
 from .build_shading import add_environment, add_lights, add_materials
 from .checks import frozen, short
 from .errors import DaguerreError, InputError, UsageError
-from .pieces import samples
+from .motion.subdivision import samples
 from .scene import Scene
 
 

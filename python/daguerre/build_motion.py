@@ -13,9 +13,9 @@ import daguerre._core as _core
 
 from .checks import given_matrix, given_up
 from .errors import InputError
-from .motion import Dynamic, Keys, Spin
-from .pieces import MAX_BREAKS, MAX_KEYS
-from .resample import resample_shown, resample_transform
+from .motion.resample import resample_shown, resample_transform
+from .motion.subdivision import MAX_BREAKS, MAX_KEYS
+from .motion.values import Dynamic, Keys, Spin
 from .resample_vertices import MAX_STEPS, resample_vertices, same_array
 from .scene import Instance, Mesh, Scene, vertices_of
 from .scene_motion import Vertices

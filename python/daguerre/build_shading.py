@@ -15,17 +15,9 @@ import daguerre._core as _core
 
 from .errors import InputError
 from .lights import DirectionalLight, Light, PointLight, SphereLight, SpotLight, check_light
-from .materials import (
-    Conductor,
-    Dielectric,
-    Diffuse,
-    Gltf,
-    Material,
-    TextureSlot,
-    check_material,
-)
-from .motion import Dynamic
-from .resample import resample
+from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot, check_material
+from .motion.resample import resample
+from .motion.values import Dynamic
 from .scene import Environment, Scene
 
 Interval = tuple[float, float]

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError, suggest
-from .motion import Composite, Dynamic, is_dynamic, moves
+from .motion.values import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
-    from .calibration.source import Source
+    from .files.source import Source
     from .lenses import Lens
     from .projection import Projection
     from .scatter import LensScatter

@@ -17,9 +17,9 @@ from .camera import Camera
 from .camera_parts import rigid
 from .checks import short
 from .errors import UsageError
-from .motion import Dynamic, Keys, Spin
+from .motion.resample import resample_transform
+from .motion.values import Dynamic, Keys, Spin
 from .projection import Projection
-from .resample import resample_transform
 
 #: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
 _STAY_RIGID = ("decomposed", "twist", "slerp")
@@ -84,7 +84,7 @@ def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
     """World from camera over an interval (s), in fractions of it; rigid.
 
     Keys and spins go to the core as they are; anything else as keys that keep the bound of
-    :func:`daguerre.resample.resample_transform`.
+    :func:`daguerre.motion.resample.resample_transform`.
 
     Raises:
         UsageError: A transform is singular.

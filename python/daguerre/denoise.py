@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .colour import xyz_of
+from .color.spectra import xyz_of
 from .errors import InputError, UsageError
 
 if TYPE_CHECKING:

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 
 from .checks import number, whole
-from .colour import rgb_from_xyz
+from .color import illuminants
+from .color.spectra import rgb_from_xyz
 from .errors import InputError, UsageError
 from .exposure import frame_iso, luminance_exposure
 from .film_channels import seen_of
 from .frame import Frame
 from .raw import Raw
-from .sensors import illuminants
 from .sensors.library import load
 from .sensors.sensor import Sensor
 

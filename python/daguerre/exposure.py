@@ -17,8 +17,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from .checks import number, short
+from .color.illuminants import white_xy
 from .errors import InputError
-from .sensors.illuminants import white_xy
 
 if TYPE_CHECKING:
     from .camera import Camera

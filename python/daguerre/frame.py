@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .color.display import _into_gamut, _shoulder, _srgb
 from .errors import InputError, MismatchError, UsageError, suggest
 
 if TYPE_CHECKING:
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
-#: Of linear Rec.709 (ITU-R BT.709-6).
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 #: Auxiliary channels of a film, in the names of the files.
 AOV_NAMES = (
     "depth.Z",
@@ -301,36 +300,6 @@ def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> st
             f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
         )
     return suffix
-
-
-def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The sRGB curve of IEC 61966-2-1, clipped to [0, 1]."""
-    x = np.clip(linear, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-8) ** (1 / 2.4) - 0.055)
-
-
-def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:
-    """Identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k), which joins smoothly.
-
-    Each channel by itself would shift hues, so the largest one sets the scale of its pixel. Colours
-    go to white with the light above 1, half way at 17.
-    """
-    peak = linear.max(axis=2, keepdims=True)
-    above = np.maximum(peak, knee)
-    rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
-    over = np.maximum(peak - 1, 0)
-    white = over / (over + 16)
-    return np.asarray(rolled * (linear / above * (1 - white) + white * (peak > 0)), np.float32)
-
-
-def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Negative colours mixed with the grey of their luminance until they are none."""
-    low = linear.min(axis=2, keepdims=True)
-    if (low >= 0).all():
-        return linear
-    grey = np.maximum(linear @ _LUMINANCE, 0)[..., None]
-    share = np.where(low < 0, grey / np.maximum(grey - low, 1e-30), 1)
-    return np.asarray(np.maximum(grey + share * (linear - grey), 0), np.float32)
 
 
 def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .checks import number
-from .colour import rgb_from_xyz
+from .color.spectra import rgb_from_xyz
 from .errors import InputError
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .framing import bounds
-from .pieces import some_breaks
+from .motion.subdivision import some_breaks
 
 if TYPE_CHECKING:
     from .camera import Camera

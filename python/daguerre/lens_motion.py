@@ -1,8 +1,8 @@
 """Focus, zoom, iris and film shift that change while the shutter is open.
 
 An ideal lens or a projection is keyed so that its numbers are within the bound of
-:mod:`daguerre.resample` at all times; the parameters of a projection's model change in steps that
-move nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in
+:mod:`daguerre.motion.resample` at all times; the parameters of a projection's model change in steps
+that move nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in
 states, each drawn by the samples that are nearest to it in time: so many that focusing and tilting
 blur by less than ``STATE_BLUR`` of a pixel from what it should be, and the iris turns and bends by
 less than 1 % of its radius. Its f-stop needs no states: the widest iris is closed as far as it is
@@ -24,7 +24,7 @@ import daguerre._core as _core
 
 from .camera import Camera
 from .errors import UsageError
-from .resample import resample
+from .motion.resample import resample
 
 #: Blur, px, by which the focus of a state may miss.
 STATE_BLUR = 0.1

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import numbers
-from .colour import rgb_from_xyz
+from .color.spectra import rgb_from_xyz
 from .errors import InputError, UsageError, suggest
 from .exposure import luminance_exposure
 from .frame import Frame

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .checks import array, optional_array, short, to_numbers
 from .errors import InputError
-from .motion import Dynamic, is_dynamic, keys
+from .motion.values import Dynamic, is_dynamic, keys
 from .scene_motion import Vertices
 
 FloatArray = NDArray[np.float32]

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .motion import Dynamic
-from .pieces import FIRST, some_breaks
-from .resample import BOUND, PATH_BOUND
+from .motion.resample import BOUND, PATH_BOUND
+from .motion.subdivision import FIRST, some_breaks
+from .motion.values import Dynamic
 from .scene_motion import Vertices
 
 #: Steps of a mesh (Embree has no more), and vertices in all steps of one together.

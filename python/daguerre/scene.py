@@ -22,7 +22,7 @@ from .errors import InputError, UsageError, suggest
 from .illuminance import scale_for
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
-from .motion import Composite, Dynamic, at, is_dynamic, moves
+from .motion.values import Composite, Dynamic, at, is_dynamic, moves
 from .point_cache import PointCache, steps_of
 from .scene_motion import SceneMotion, Vertices, scene_at
 

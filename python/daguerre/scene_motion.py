@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .motion import Dynamic
+from .motion.values import Dynamic
 
 if TYPE_CHECKING:
     from .scene import Scene

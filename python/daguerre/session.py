@@ -28,7 +28,7 @@ from .camera_setup import set_up
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from .errors import InputError, MismatchError, UsageError, suggest
 from .exposure import without_exposure
-from .film_channels import check_bands, responses, sensor_metadata
+from .film_channels import sensor_metadata
 from .film_parts import Box, FilmPart, area, core_settings, frame_around, inside
 from .flare import PER_PIXEL as FLARE_PER_PIXEL
 from .flare import check_highlights, check_used
@@ -41,6 +41,7 @@ from .overscan import note as overscan_note
 from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
 from .scatter import scatter_facts
 from .scene import Scene
+from .sensors.bands import check_bands, responses
 from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import whole
-from .colour import band_colours, band_wavelengths
+from .color.spectra import band_colours, band_wavelengths
 from .errors import InputError, UsageError
-from .film_channels import MOST_BANDS, weights_of_bands
+from .sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
     from .analysis.diffraction import Pupil
@@ -154,7 +154,7 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
     Raises:
         InputError: A plan out of a damaged file.
     """
-    from .post.convolution import spread
+    from .convolution.convolve import spread
     from .pupil_files import from_json
 
     bands = film.mean_bands()
@@ -209,7 +209,7 @@ def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[n
 
 def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
     """Linear Rec.709 of XYZ, shape (H, W, 3)."""
-    from .colour import rgb_from_xyz
+    from .color.spectra import rgb_from_xyz
 
     return np.asarray(xyz @ rgb_from_xyz().T.astype(np.float32))
 

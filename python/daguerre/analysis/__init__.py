@@ -5,13 +5,7 @@ Everything is made of exact rays through the prescription; docs/lens-bench.md ha
 
 from .bench import Bench, set_up
 from .chief import chief_rays, film_heights
-from .field import (
-    axial_colour,
-    distortion,
-    field_curvature,
-    lateral_colour,
-    spherical_aberration,
-)
+from .field import axial_colour, distortion, field_curvature, lateral_colour, spherical_aberration
 from .illumination import pupil_outline, relative_illumination, spectral_illumination
 from .mtf import diffraction_mtf, geometric_mtf, perfect_mtf
 from .pencils import Pencil, pencil

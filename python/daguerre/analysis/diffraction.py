@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import pixel_integrals
-from daguerre.fft import fast_sizes, fft, rfft, thread_count
+from daguerre.convolution.fft import fast_sizes, fft, rfft, thread_count
 
 from .iris import Floats, Iris
 

@@ -8,10 +8,11 @@ from typing import Any
 
 from daguerre.checks import short
 from daguerre.errors import UsageError, suggest
+from daguerre.files.source import Source
 
 from . import colmap, kalibr, opencv, opentrackio, ros, stereo, transforms
 from .calibration import Calibration
-from .source import Source, load
+from .source import load
 
 FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms")
 WRITTEN = FORMATS[:4]
@@ -138,7 +139,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
         InputError: The format does not have this model.
         OutputError: The file cannot be written.
     """
-    from daguerre.io.atomic import write_bytes
+    from daguerre.files.atomic import write_bytes
 
     kind = _format(format, WRITTEN)
     several = [calibration] if isinstance(calibration, Calibration) else list(calibration)

@@ -15,11 +15,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 from daguerre.projection import Projection
 
 from .calibration import FLIP, Calibration, FloatArray, projection
-from .source import Source, choice, load, rigid, row
+from .source import choice, load, rigid, row
 
 #: camera_model -> how many of its own parameters come before fu fv pu pv.
 CAMERAS = {"pinhole": 0, "omni": 1, "ds": 2, "eucm": 2}

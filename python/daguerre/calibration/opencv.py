@@ -13,11 +13,12 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
-from .source import Source, agreed, camera_matrix, choice, first, load, needed, row
+from .source import agreed, camera_matrix, choice, first, load, needed, row
 
 MATRICES = ("camera_matrix", "cameraMatrix", "K", "mtx", "M1")
 COEFFICIENTS = (

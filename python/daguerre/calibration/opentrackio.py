@@ -25,10 +25,11 @@ from typing import Any
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 
 from .calibration import Calibration, FloatArray, projection
-from .source import Source, agreed, choice, load
+from .source import agreed, choice, load
 
 DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED = "Brown-Conrady D-U", "Brown-Conrady U-D"
 #: World of OpenTrackIO (x right, y ahead, z up) as Daguerre has it (y up, z toward the viewer).

@@ -11,11 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .opencv import coefficients, matrix_of
-from .source import Source, camera_matrix, choice, first, load, matrix, needed, row
+from .source import camera_matrix, choice, first, load, matrix, needed, row
 from .stereo import rectified_of, rotation
 
 Pair = tuple[float, float]

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.io import json_text
-from daguerre.io.json_item import Item
-
-from . import xml_text, yaml_text
+from daguerre.files import json_text, xml_text, yaml_text
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 
 FloatArray = NDArray[np.float64]
-Source = str | os.PathLike[str] | dict[str, Any]
 #: A calibration has some thousand bytes: what is so large is another kind of file.
 MAX_BYTES = 1 << 20
 

@@ -17,12 +17,13 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.checks import short
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 from daguerre.projection import Projection
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .opencv import COUNTS, model_of, size_of
-from .source import Source, camera_matrix, first, load, matrix, needed, row
+from .source import camera_matrix, first, load, matrix, needed, row
 
 SIDES = ("left", "right")
 #: A longer baseline was hardly given in metres.

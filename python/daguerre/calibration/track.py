@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
-from daguerre.motion import keys
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
+from daguerre.motion.values import keys
 
 from .opentrackio import read_opentrackio
-from .source import Source, load
+from .source import load
 
 if TYPE_CHECKING:
     from daguerre.camera import Camera

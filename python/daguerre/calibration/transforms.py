@@ -13,11 +13,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
+from daguerre.files.source import Source
 from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
-from .source import Source, agreed, choice, load, rigid
+from .source import agreed, choice, load, rigid
 
 #: camera_model -> ours, and the names of its coefficients in our order.
 MODELS: dict[str, tuple[str, tuple[str, ...]]] = {

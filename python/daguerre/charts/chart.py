@@ -143,7 +143,7 @@ class Chart:
             OutputError: A file cannot be written.
         """
         from daguerre.checks import number
-        from daguerre.io.atomic import write_bytes
+        from daguerre.files.atomic import write_bytes
         from daguerre.io.glb_writer import Glb, Shape
 
         if Path(path).suffix.lower() != ".glb":

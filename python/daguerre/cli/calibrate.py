@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from daguerre import units as q
 from daguerre.errors import UsageError, suggest
 
 from . import console
-from . import quantities as q
 from .drawings import check_drawing
 from .flags import option, with_flags
 from .map_flags import MapFlags
@@ -89,7 +89,7 @@ def calibrate(
     """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
     from daguerre.analysis.calibrate import calibrate as fit
     from daguerre.analysis.calibrate import calibrate_all
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
 
     if focus_by not in ("paraxial", "best"):
         raise UsageError(f"--focus-by: wanted paraxial or best, got {focus_by!r}")
@@ -149,7 +149,7 @@ def _compare(fits: list[ProjectionFit], *, json: bool) -> None:
 
 
 def _check_files(output: Path | None, file_format: str | None, residuals: Path | None) -> None:
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
 
     if file_format is not None and file_format not in FORMATS:
         raise UsageError(
@@ -167,7 +167,7 @@ def _write(
     made: ProjectionFit, output: Path | None, file_format: str, residuals: Path | None
 ) -> None:
     from daguerre.calibration import Calibration, write
-    from daguerre.io.atomic import write_bytes
+    from daguerre.files.atomic import write_bytes
 
     if output is not None:
         write(output, Calibration(made.projection, pixel_pitch=made.pixel_pitch_um), file_format)

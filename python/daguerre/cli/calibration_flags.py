@@ -8,8 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 
+from daguerre import units as q
+
 from . import console
-from . import quantities as q
 from .flags import Text, option
 
 _CAMERA = "Camera"

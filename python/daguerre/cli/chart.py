@@ -9,10 +9,10 @@ from typing import Annotated, Any
 
 import typer
 
+from daguerre import units as q
 from daguerre.errors import UsageError
 
 from . import console
-from . import quantities as q
 from .flags import option
 
 

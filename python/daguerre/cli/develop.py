@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from daguerre import units as q
 from daguerre.errors import InputError, UsageError
 
 from . import console
-from . import quantities as q
 from .flags import option
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def _named(source: Path) -> Iterator[None]:
 
 def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
     """What can be refused before anything is read."""
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
     from daguerre.io.picture_files import ENDINGS, check_ending
 
     if not 1 <= quality <= 100:

@@ -21,7 +21,7 @@ def check_drawing(
         plotted: By the extra ``plot``, whatever the ending.
         formats: Endings that it may have.
     """
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
     from daguerre.lenses.plot import check_available
 
     if path is None:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from daguerre.errors import InputError, UsageError
+from daguerre.units import SENSORS, angle_deg, distance_m, f_number, length_mm
 
 from .console import note
 from .drawings import check_drawing
 from .flags import option
 from .lens_export import Export
 from .lens_flare import Flare
-from .quantities import SENSORS, angle_deg, distance_m, f_number, length_mm
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
@@ -228,7 +228,7 @@ def _point(text: str) -> tuple[float, bool, float]:
 
 
 def _write_drawing(bench: Bench, path: Path) -> None:
-    from daguerre.io.atomic import write_bytes
+    from daguerre.files.atomic import write_bytes
     from daguerre.lenses.plot import picture
 
     write_bytes(path, picture(bench, path.suffix.lower()))
@@ -243,7 +243,7 @@ def _write_figures(
     made = figures(bench)
     if plot is not None:
         from daguerre.analysis.sheet import page
-        from daguerre.io.atomic import write_bytes
+        from daguerre.files.atomic import write_bytes
 
         write_bytes(plot, page(made, plot.suffix.lower()[1:]))
     if json:

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import UsageError
-
-from .quantities import angle_deg, sensor_mm
+from daguerre.units import angle_deg, sensor_mm
 
 if TYPE_CHECKING:
     from daguerre._core import Iris
@@ -42,7 +41,7 @@ class Export:
                     raise UsageError(f"--{name.replace('_', '-')}: wanted with --export FILE")
             return
         from daguerre.export import check_suffix
-        from daguerre.io.atomic import check_writable
+        from daguerre.files.atomic import check_writable
 
         check_suffix(path, "--export")
         check_writable(path)

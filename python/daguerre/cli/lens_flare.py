@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import UsageError
-
-from .quantities import angle_deg, numbers, sensor_mm
+from daguerre.units import angle_deg, numbers, sensor_mm
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
@@ -104,7 +103,7 @@ def show_flare(
         _write_drawing(ghosts, ghosts.find(which) if which else _brightest(ghosts), drawing)
     if plot is not None:
         from daguerre.analysis.ghost_plot import plot_ghosts
-        from daguerre.io.atomic import write_bytes
+        from daguerre.files.atomic import write_bytes
 
         write_bytes(plot, plot_ghosts(ghosts, plot.suffix.lower()[1:]))
     if json:
@@ -131,7 +130,7 @@ def _brightest(ghosts: Ghosts) -> Ghost:
 
 
 def _write_drawing(ghosts: Ghosts, ghost: Ghost, path: Path) -> None:
-    from daguerre.io.atomic import write_bytes
+    from daguerre.files.atomic import write_bytes
     from daguerre.lenses.plot import drawn
 
     write_bytes(path, drawn(ghosts.drawing(ghost), path.suffix.lower()))

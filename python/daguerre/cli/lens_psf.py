@@ -41,7 +41,7 @@ def show_psf(
     made = series(light, STEPS if through_focus else 1)
     if plot is not None:
         from daguerre.analysis.through_focus import pictures
-        from daguerre.io.atomic import write_bytes
+        from daguerre.files.atomic import write_bytes
 
         write_bytes(plot, pictures(light, made, plot.suffix.lower()[1:]))
     rows = [step.facts for step in made]

@@ -31,8 +31,9 @@ def merge(
     quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
 ) -> int:
     """Adds passes to one picture, with the bits of a render in one go."""
+    from daguerre.files import atomic
     from daguerre.frame import TONES, check_format
-    from daguerre.io import atomic, merging
+    from daguerre.io import merging
     from daguerre.io.passes import write_pass
 
     console.quiet = quiet

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre import units as q
 from daguerre.errors import DaguerreError, UsageError
 
 from . import console
-from . import quantities as q
 
 if TYPE_CHECKING:
     from daguerre.frame import Frame

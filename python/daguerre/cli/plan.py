@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from daguerre import units as q
 from daguerre.errors import UsageError, suggest
 
-from . import quantities as q
 from .frames import numbered
 from .map_flags import MapFlags
 from .photograph import Photograph
@@ -249,7 +249,7 @@ def _aov_groups(names: list[str], everything: bool) -> list[str]:
 
 def check_outputs(plan: Plan) -> None:
     """Before hours are spent: can the files be written at all?"""
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
 
     names = [path.resolve() for path in plan.written]
     if len(set(names)) < len(names):

@@ -100,7 +100,7 @@ def _run(
     roles: dict[str, str],
     shown: progress.Silent,
 ) -> Report:
-    from daguerre.io.atomic import check_writable
+    from daguerre.files.atomic import check_writable
     from daguerre.post.run import process
 
     check_writable(output)

@@ -379,7 +379,7 @@ def render(
     if wanted_scatter != 0:
         settings["scatter"] = "auto" if wanted_scatter is None else wanted_scatter
     if bands:
-        from daguerre.film_channels import check_bands
+        from daguerre.sensors.bands import check_bands
 
         settings["bands"] = check_bands(bands, "--bands")
         if diffraction_bands not in (16, bands):

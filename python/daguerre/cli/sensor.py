@@ -34,7 +34,7 @@ def sensor(
     check_drawing("--plot", plot)
     item = load(name)
     if plot is not None:
-        from daguerre.io.atomic import write_bytes
+        from daguerre.files.atomic import write_bytes
         from daguerre.sensors.plot import page
 
         write_bytes(plot, page(item, plot.suffix.lower()[1:]))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from . import quantities as q
+from daguerre import units as q
+
 from .flags import Text, option
 
 _SHUTTER = "Shutter"

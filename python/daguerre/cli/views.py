@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre import units as q
 from daguerre.errors import UsageError, suggest
 
-from . import quantities as q
 from .frames import before_number
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import plain_light
+from daguerre.color import illuminants
 from daguerre.errors import UsageError, suggest
-from daguerre.sensors import illuminants
 from daguerre.sensors.sensor import GREY_LX_S
 
 from .binning import bayer_of, is_mono
@@ -146,7 +146,7 @@ def of_frame(frame: Frame) -> Channels:
 def _xyz(frame: Frame) -> NDArray[np.float32]:
     if frame.xyz is not None:
         return frame.xyz
-    from daguerre.colour import rgb_from_xyz
+    from daguerre.color.spectra import rgb_from_xyz
 
     matrix = np.linalg.inv(rgb_from_xyz()).T.astype(np.float32)
     with np.errstate(invalid="ignore"):  # infinite light

@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from daguerre._core import develop_picture
 from daguerre._core import sharpen as sharpen_picture
 from daguerre.checks import number, whole
-from daguerre.colour import rgb_from_xyz
+from daguerre.color import illuminants, spaces
+from daguerre.color.adaptation import adaptation
+from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import UsageError, suggest
-from daguerre.io import icc
-from daguerre.sensors import illuminants
-from daguerre.sensors.fit import adaptation
 
 from .channels import XY, Channels, Demosaic, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
@@ -51,7 +50,7 @@ class Recipe:
 
     def __post_init__(self) -> None:
         for name, value, known in (
-            ("colour_space", self.colour_space, tuple(icc.COLOUR_SPACES)),
+            ("colour_space", self.colour_space, tuple(spaces.COLOUR_SPACES)),
             ("highlights", self.highlights, HIGHLIGHTS),
         ):
             if value not in known:
@@ -173,12 +172,12 @@ def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
 
 
 def _space_from_709(space: str) -> FloatArray:
-    to, of = icc.COLOUR_SPACES[space], icc.COLOUR_SPACES["srgb"]
-    return np.asarray(np.linalg.solve(icc.xyz_from_rgb(to), icc.xyz_from_rgb(of)))
+    to, of = spaces.COLOUR_SPACES[space], spaces.COLOUR_SPACES["srgb"]
+    return np.asarray(np.linalg.solve(spaces.xyz_from_rgb(to), spaces.xyz_from_rgb(of)))
 
 
 def _luminance(space: str) -> FloatArray:
-    return np.asarray(icc.xyz_from_rgb(icc.COLOUR_SPACES[space])[1])
+    return np.asarray(spaces.xyz_from_rgb(spaces.COLOUR_SPACES[space])[1])
 
 
 def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:

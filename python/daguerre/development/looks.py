@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import curve_breakpoints
+from daguerre.color import spaces
 from daguerre.errors import UsageError, suggest
-from daguerre.io import icc
 
 FloatArray = NDArray[np.float64]
 #: What ISO 12232 calls middle grey: the developed value of 10 / S lux s.
@@ -84,7 +84,7 @@ def tone_table(look: Look, most: float) -> list[float] | None:
 @cache
 def encode_table(space: str) -> list[float]:
     """The curve of a colour space at the core's breakpoints."""
-    values: list[float] = np.minimum(icc.encoded(_breakpoints(), space), 1.0).tolist()
+    values: list[float] = np.minimum(spaces.encoded(_breakpoints(), space), 1.0).tolist()
     return values
 
 

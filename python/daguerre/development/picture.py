@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io import icc
+from daguerre.color import spaces
 
 if TYPE_CHECKING:
     import os
@@ -41,7 +41,7 @@ class Picture:
 
     def linear(self) -> NDArray[np.float32]:
         """Light of the display, linear in the primaries of the colour space, shape (H, W, 3)."""
-        return icc.decoded(self.pixels, self.colour_space)
+        return spaces.decoded(self.pixels, self.colour_space)
 
     def bytes8(self) -> NDArray[np.uint8]:
         """In 8 bits, shape (H, W, 3)."""

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color import illuminants
 from daguerre.errors import UsageError
-from daguerre.sensors import illuminants
 
 from .channels import XY, Channels
 

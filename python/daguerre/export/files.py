@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import UsageError, suggest
-from daguerre.io.atomic import write_bytes
+from daguerre.files.atomic import write_bytes
 
 from .aim import with_aim
 from .facts import facts

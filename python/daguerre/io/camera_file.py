@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color import illuminants
 from daguerre.development.channels import LEAST_XTRANS, USUAL, XY, Channels, Demosaic
 from daguerre.errors import InputError
-from daguerre.sensors import illuminants
 
 FloatArray = NDArray[np.float64]
 Matrix = Callable[[XY], FloatArray]

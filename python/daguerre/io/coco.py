@@ -13,11 +13,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import daguerre._core as _core
 import numpy as np
 from numpy.typing import NDArray
 
-from .atomic import check_writable, write_bytes
+import daguerre._core as _core
+from daguerre.files.atomic import check_writable, write_bytes
 
 if TYPE_CHECKING:
     from daguerre.labels.annotations import Annotation, Annotations

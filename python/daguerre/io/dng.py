@@ -15,14 +15,14 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color import illuminants
 from daguerre.development.binning import bayer_of, is_mono
 from daguerre.development.channels import LEAST_XTRANS
 from daguerre.development.looks import GREY
-from daguerre.sensors import illuminants
+from daguerre.files.atomic import atomic_path
 from daguerre.sensors.sensor import GREY_LX_S
 
 from . import exif
-from .atomic import atomic_path
 from .exif import Tags
 from .tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
 

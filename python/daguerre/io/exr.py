@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import OutputError
-
-from .atomic import atomic_path
+from daguerre.files.atomic import atomic_path
 
 if TYPE_CHECKING:
     from daguerre.frame import Frame
@@ -113,7 +112,7 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
 
 def band_names(count: int) -> list[str]:
     """First and last wavelength of each band in whole nm, such as 0380-0405."""
-    from daguerre.colour import FIRST_NM, LAST_NM
+    from daguerre.color.spectra import FIRST_NM, LAST_NM
 
     edges = np.rint(np.linspace(FIRST_NM, LAST_NM, count + 1)).astype(int).tolist()
     return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]

@@ -113,7 +113,7 @@ class ExrWriter:
         """Begins a file.
 
         Args:
-            path: Where; put :func:`daguerre.io.atomic.atomic_path` around it.
+            path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
             source: Its attributes are kept, but for how pixels are packed.
             attributes: Texts to add.
         """

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.colour import rgb_from_xyz, xyz_of
+from daguerre.color.spectra import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
 from daguerre.frame import Frame
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .atomic import write_bytes
+from daguerre.files.atomic import write_bytes
 
 I8, U8, I16, U16, U32, FLOAT = 5120, 5121, 5122, 5123, 5125, 5126
 DTYPES = {I8: "i1", U8: "u1", I16: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}

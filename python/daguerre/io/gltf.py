@@ -15,11 +15,14 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.errors import InputError, UsageError
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+from daguerre.files.uris import Folder
 from daguerre.scene import Scene
 
 from .gltf_accessors import Accessors
 from .gltf_animation import Animations
-from .gltf_budget import Budget
 from .gltf_cameras import read_camera
 from .gltf_extensions import check_extensions
 from .gltf_file import load_buffers, open_document
@@ -35,9 +38,6 @@ from .gltf_skins import Skins
 from .gltf_textures import Textures
 from .gltf_transforms import without_scale
 from .gltf_variants import Variants
-from .json_item import Item
-from .notes import Notes
-from .uris import Folder
 
 # Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.
 _MAX_NODE_ENTRIES = 4_000_000

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.files.json_item import Item, clean, short
+from daguerre.files.notes import Notes
+
 from .gltf_accessors import Accessors
 from .gltf_pointers import Pointers, Target, parse
 from .gltf_samplers import FloatArray, Samplers, Track
-from .json_item import Item, clean, short
-from .notes import Notes
 
 _PATHS = ("translation", "rotation", "scale", "weights")
 #: Where something stands in a file, such as ("nodes", "3").

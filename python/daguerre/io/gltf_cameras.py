@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera import IDEAL, LIMITS, Camera
+from daguerre.files.json_item import Item, clean, short
+from daguerre.files.notes import Notes
 from daguerre.lenses import library
 
 from .gltf_shutter import SHUTTER
-from .json_item import Item, clean, short
-from .notes import Notes
 
 _SENSOR_HEIGHT_MM = 24.0
 _SENSOR_WIDTH_MM = 36.0

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.notes import Notes
 from daguerre.scene_motion import Vertices
 
 from .gltf_accessors import Accessors
@@ -17,7 +18,6 @@ from .gltf_morphs import morph
 from .gltf_normals import unit_normals, unit_tangents
 from .gltf_over_time import PartOverTime
 from .gltf_skins import Influences, Skins, skin
-from .notes import Notes
 
 FloatArray = NDArray[np.float32]
 Arrays = dict[str, FloatArray]

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files import extras
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
 
-from . import extras
 from .gltf_accessors import Accessors
-from .json_item import Item
-from .notes import Notes
 
 NAME = "KHR_draco_mesh_compression"
 _MAX_BYTES = 8 << 30

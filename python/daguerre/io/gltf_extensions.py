@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import extras
-from .json_item import Item, clean, short
-from .notes import Notes
+from daguerre.files import extras
+from daguerre.files.json_item import Item, clean, short
+from daguerre.files.notes import Notes
 
 KNOWN = frozenset(
     {

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from daguerre.files.json_item import Item
 from daguerre.materials import Color
-
-from .json_item import Item
 
 #: Exporters round: a factor may stand this far beyond 1.
 SLACK = 1e-3

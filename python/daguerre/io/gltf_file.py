@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import NoReturn
 
 from daguerre.errors import InputError
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, short
+from daguerre.files.json_text import parse
+from daguerre.files.uris import Folder, data_bytes, is_data
 
-from .gltf_budget import Budget
 from .gltf_meshopt import placeholders
-from .json_item import Item, short
-from .json_text import parse
-from .uris import Folder, data_bytes, is_data
 
 _JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
 #: Of a .gltf, and of all buffers of a file together.

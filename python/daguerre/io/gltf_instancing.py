@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.json_item import Item, clean
+from daguerre.files.notes import Notes
+
 from .gltf_accessors import Accessors
 from .gltf_transforms import compose
-from .json_item import Item, clean
-from .notes import Notes
 
 _COLUMNS = ("TRANSLATION", "ROTATION", "SCALE")
 #: Instances of a scene; an accessor without bytes could ask for any number of them.

@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from daguerre.files.json_item import Item
+
 from .gltf_factors import fraction, unit_color
 from .gltf_textures import Textures
-from .json_item import Item
 
 
 def read_layers(item: Item, textures: Textures, values: dict[str, Any]) -> None:

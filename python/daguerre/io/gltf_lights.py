@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
+from daguerre.files.json_item import Item
 from daguerre.lights import DirectionalLight, PointLight, SpotLight
-
-from .json_item import Item
 
 
 def light_items(root: Item) -> list[Item]:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+
 from .gltf_factors import SLACK, fraction, unit_color
 from .gltf_textures import Textures
-from .json_item import Item
-from .notes import Notes
 
 _SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness"
 #: Extensions of metallic-roughness that have no meaning beside specular-glossiness.

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
 from daguerre.materials import Gltf, Material
 
 from .gltf_factors import color_of, fraction, unit_color
@@ -21,8 +23,6 @@ from .gltf_material_models import (
     read_specular_glossiness,
 )
 from .gltf_textures import Textures
-from .json_item import Item
-from .notes import Notes
 
 # KHR_materials_ior: 0 asks for a Fresnel term of 1 at every angle, the limit of a large index.
 _IOR_OF_ZERO = 1e4

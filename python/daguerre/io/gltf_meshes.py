@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import given_up
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, clean
+from daguerre.files.notes import Notes
 from daguerre.scene import Scene
 
 from . import gltf_draco
 from .gltf_accessors import Accessors
 from .gltf_animation import Animations
-from .gltf_budget import Budget
 from .gltf_deforming import MeshOverTime, finished
 from .gltf_morphs import Displacement, displacements, morph, weights_of
 from .gltf_nodes import MAX_SIZE
@@ -27,8 +29,6 @@ from .gltf_over_time import PartOverTime
 from .gltf_skins import Influences, Skins, skin
 from .gltf_triangles import triangles_of
 from .gltf_variants import Variants
-from .json_item import Item, clean
-from .notes import Notes
 
 FloatArray = NDArray[np.float32]
 _MODES = ("points", "lines", "a line loop", "a line strip", "list", "strip", "fan")

@@ -11,13 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import daguerre._core as _core
 import numpy as np
 from numpy.typing import NDArray
 
+import daguerre._core as _core
 from daguerre.errors import InputError
-
-from .json_item import Item, short
+from daguerre.files.json_item import Item, short
 
 NAMES = ("KHR_meshopt_compression", "EXT_meshopt_compression")
 

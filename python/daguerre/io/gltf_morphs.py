@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.json_item import Item, clean
+from daguerre.files.notes import Notes
+
 from .gltf_accessors import Accessors
-from .json_item import Item, clean
-from .notes import Notes
 
 FloatArray = NDArray[np.float32]
 _TYPES = {

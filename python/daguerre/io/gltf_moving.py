@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera import MOVABLE, Camera
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
 from daguerre.lights import DirectionalLight, PointLight, SpotLight
 from daguerre.materials import Material
-from daguerre.motion import Dynamic
+from daguerre.motion.values import Dynamic
 from daguerre.scene import Scene
 
 from .gltf_animation import Animations
@@ -29,8 +31,6 @@ from .gltf_over_time import (
 from .gltf_placing import Motion
 from .gltf_poses import Poses
 from .gltf_transforms import ranks
-from .json_item import Item
-from .notes import Notes
 
 Matrices = NDArray[np.float64]
 # Keys at which it is looked whether a scale presses something flat.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .notes import Notes
+from daguerre.files.notes import Notes
 
 FloatArray = NDArray[np.float32]
 

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.json_item import Item
 from daguerre.lights import DirectionalLight, Light, PointLight, SpotLight
 from daguerre.scene_motion import Vertices
 
 from .gltf_animation import Channel, breaks_of, play
 from .gltf_poses import Poses
 from .gltf_transforms import Matrix, ranks, without_scale
-from .json_item import Item
 
 FloatArray = NDArray[np.float64]
 _BLACK = (0.0, 0.0, 0.0)

@@ -11,16 +11,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
 from daguerre.materials import Gltf, Material
 from daguerre.scene import Instance, Scene, vertices_of
 
-from .gltf_budget import Budget
 from .gltf_instancing import MAX_INSTANCES
 from .gltf_nodes import MAX_SIZE
 from .gltf_over_time import FlatOverTime, NodeOverTime, ShownOverTime
 from .gltf_transforms import ranks
-from .json_item import Item
-from .notes import Notes
 
 Matrices = NDArray[np.float64]
 

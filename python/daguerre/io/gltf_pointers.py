@@ -11,8 +11,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from .gltf_budget import Budget
-from .json_item import Item, short
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, short
 
 _TYPES = ("SCALAR", "VEC2", "VEC3", "VEC4")
 _WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}  # of nodes

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+
 from .gltf_accessors import Accessors
 from .gltf_pointers import Target
-from .json_item import Item
-from .notes import Notes
 
 FloatArray = NDArray[np.float64]
 _MODES = ("LINEAR", "STEP", "CUBICSPLINE")

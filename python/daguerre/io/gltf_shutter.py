@@ -6,8 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daguerre import shutter
-
-from .json_item import Item
+from daguerre.files.json_item import Item
 
 
 def _curve(item: Item) -> shutter.ShutterCurve:

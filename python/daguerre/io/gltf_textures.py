@@ -16,16 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import given_up
+from daguerre.files import extras
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, clean
+from daguerre.files.notes import Notes
+from daguerre.files.uris import data_bytes, is_data
 from daguerre.materials import TextureSlot
 from daguerre.scene import Scene
 
-from . import extras, images
+from . import images
 from .gltf_accessors import Accessors
-from .gltf_budget import Budget
 from .gltf_file import Document
-from .json_item import Item, clean
-from .notes import Notes
-from .uris import data_bytes, is_data
 
 _WRAP = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _MAG = {9728: "nearest", 9729: "linear"}

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .json_item import Item
+from daguerre.files.json_item import Item
 
 Matrix = NDArray[np.float64]
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.json_item import Item
+
 from .gltf_accessors import Accessors
-from .json_item import Item
 
 
 def triangles_of(

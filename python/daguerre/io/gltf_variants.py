@@ -6,8 +6,7 @@ Source: the extension's text and schema. All mappings are checked, chosen or not
 from __future__ import annotations
 
 from daguerre.errors import InputError, suggest
-
-from .json_item import Item, clean
+from daguerre.files.json_item import Item, clean
 
 _EXTENSION = "KHR_materials_variants"
 

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError
+from daguerre.files.json_item import short
 
 from . import ktx2
-from .json_item import short
 
 MAX_PIXELS = 16384 * 16384
 #: Decoded, of one texture and of one environment (16384 x 8192 in float is 1.5 GiB).

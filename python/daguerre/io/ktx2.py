@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
-
-from . import extras
+from daguerre.files import extras
 
 MAGIC = b"\xabKTX 20\xbb\r\n\x1a\n"
 _NONE, _BASIS_LZ, _ZSTD = 0, 1, 2

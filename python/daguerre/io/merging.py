@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.film_channels import MOST_BANDS, MOST_CHANNELS
 from daguerre.frame import Frame, frame_of, set_film_state
+from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges

@@ -32,9 +32,9 @@ from numpy.typing import NDArray
 from daguerre.adaptive import Round
 from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
+from daguerre.files.json_item import short
 
 from .exr import Channels, attributes, channels, jsonable, write_parts
-from .json_item import short
 from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 

@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import whole
+from daguerre.color import spaces
 from daguerre.errors import OutputError, UsageError, suggest
+from daguerre.files.atomic import atomic_path
 
 from . import exif, icc
-from .atomic import atomic_path
 from .tiff import TiffImage, write_tiff
 
 ENDINGS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr")
@@ -149,7 +150,7 @@ def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
     if not complete_png(data):
         raise OutputError("PNG: the file is not complete; is the disk full?")
-    cicp = bytes([*icc.COLOUR_SPACES[space].cicp, 0, 1])
+    cicp = bytes([*spaces.COLOUR_SPACES[space].cicp, 0, 1])
     kept = b"".join(
         chunk for kind, chunk in _png_chunks(data) if kind not in (b"eXIf", b"cICP", b"IHDR")
     )
@@ -208,10 +209,10 @@ def _write_linear(
 
     linear = np.empty_like(pixels)
     for row in range(0, len(pixels), 64):
-        linear[row : row + 64] = icc.decoded(pixels[row : row + 64], space)
+        linear[row : row + 64] = spaces.decoded(pixels[row : row + 64], space)
     header = attributes(metadata)
-    corners = (*icc.COLOUR_SPACES[space].primaries, icc.D65)
+    corners = (*spaces.COLOUR_SPACES[space].primaries, spaces.D65)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
-    header["colorInteropID"] = f"lin_{icc.COLOUR_SPACES[space].interop}_scene"
+    header["colorInteropID"] = f"lin_{spaces.COLOUR_SPACES[space].interop}_scene"
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
     write_parts(path, [("picture", header, {"RGB": linear})], frame)

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import OutputError
+from daguerre.files.atomic import atomic_path
 
 from . import exif
-from .atomic import atomic_path
 
 if TYPE_CHECKING:
     from daguerre.frame import Frame
@@ -45,7 +45,7 @@ class PngWriter:
         """Begins a file.
 
         Args:
-            path: Where; put :func:`daguerre.io.atomic.atomic_path` around it.
+            path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
             width: px.
             height: px.
             metadata: Of a frame; what EXIF has a name for is kept.

@@ -19,8 +19,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.io.json_item import Item
-from daguerre.io.json_text import parse
+from daguerre.files.json_item import Item
+from daguerre.files.json_text import parse
 from daguerre.scene import Scene
 
 #: What programs append to the names of copies.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from daguerre.errors import suggest
-from daguerre.io.json_item import Item, clean
+from daguerre.files.json_item import Item, clean
 
 from .errors import LensError
 from .reading import member, number

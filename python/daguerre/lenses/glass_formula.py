@@ -6,7 +6,7 @@ import itertools
 import math
 
 import daguerre._core as _core
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
 
 #: Members that give the index by themselves.
 FORMULAS = ("table", "sellmeier", "polynomial")

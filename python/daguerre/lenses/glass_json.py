@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import daguerre._core as _core
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
 
 from . import glasses
 from .errors import LensError

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item, clean
-from daguerre.io.json_text import parse
+from daguerre.files.json_item import Item, clean
+from daguerre.files.json_text import parse
 
 from . import formats
 from .checking import checked

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from daguerre.io.json_item import Item, clean
+from daguerre.files.json_item import Item, clean
 
 from .surface import Triple
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
 
 from .errors import LensError
 from .glass_json import glass_from_json

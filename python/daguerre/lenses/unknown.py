@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from daguerre.errors import suggest
-from daguerre.io.json_item import Item, clean
+from daguerre.files.json_item import Item, clean
 
 from .reading import member
 

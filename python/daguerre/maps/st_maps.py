@@ -101,7 +101,7 @@ class StMaps:
         return Warp.of(self._canvas, self.sight.straight_from_bent)
 
     def _values(self, warp: Warp) -> Image:
-        from daguerre.post.picture import Rows
+        from daguerre.convolution.rows import Rows
         from daguerre.post.stmap import st_rows
 
         return st_rows(warp, self._canvas, Rows(0, self._canvas.height))

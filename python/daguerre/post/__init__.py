@@ -6,7 +6,8 @@ with the same parameters. None changes its argument.
 
 from __future__ import annotations
 
-from .convolution import convolve
+from daguerre.convolution.convolve import convolve
+
 from .depth_of_field import depth_of_field
 from .distortion import distort, undistort
 from .fake_flare import fake_flare

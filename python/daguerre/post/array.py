@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import UsageError
 
 from .effect import Effect, Step, Values
-from .picture import Band, Canvas, Image, Rows
+from .picture import Band, Canvas, Image
 from .tiles import WholeImage
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import defocus
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
 
 from . import channels
@@ -19,7 +20,7 @@ from .fours import in_fours
 from .iris import BLADES, iris_shape
 from .optics import FOCAL_LENGTH, SENSOR, film_plane, focal_length_mm, offsets
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows, Source, bands
+from .picture import Band, Canvas, Image, Source, bands
 
 Floats = NDArray[np.float32]
 SCAN = 256  # rows

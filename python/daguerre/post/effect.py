@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError, suggest
 
 from .parameter import Parameter
-from .picture import Band, Canvas, Rows, Source
+from .picture import Band, Canvas, Source
 
 Values = Mapping[str, Any]
 

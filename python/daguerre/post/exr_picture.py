@@ -7,10 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
 from daguerre.io.exr_bands import ExrReader, Planes
 
-from .picture import Band, Canvas, Image, Rows
+from .picture import Band, Canvas, Image
 
 
 class ExrPicture:

@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import IrisShape, defocus, rounded_blur
+from daguerre.convolution.rows import Rows
 
 from .array import on_array
 from .effect import Effect, Step, Values
 from .fours import in_fours
 from .iris import BLADES, iris_shape, outline
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows, Source, bands
+from .picture import Band, Canvas, Image, Source, bands
 
 SCAN = 256  # rows
 LARGEST = 512  # px, of the small picture in which flare is drawn

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from daguerre.convolution.convolve import spreader_of
 from daguerre.errors import InputError, UsageError
 
 from . import kernels
 from .array import on_array
-from .convolution import spreader_of
 from .effect import Effect, Step, Values
 from .kernels import Floats
 from .optics import SENSOR, film_plane

@@ -24,12 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
+from daguerre.convolution.rows import Rows
 
 from .array import on_array
 from .effect import Effect, Step, Values
 from .optics import SENSOR, film_plane
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows
+from .picture import Band, Canvas, Image
 
 Floats = NDArray[np.float64]
 

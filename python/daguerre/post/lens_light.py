@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError
 
 from .optics import Plane, offsets
-from .picture import Canvas, Rows
+from .picture import Canvas
 
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
@@ -42,7 +43,7 @@ def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, colour: bool) -> Fal
 
 def _mixes(*, by_channel: bool) -> tuple[FloatArray, FloatArray]:
     """Wavelengths (L,), nm, and what each brings to the channels of a white light, (L, C)."""
-    from daguerre.colour import rgb_mixes
+    from daguerre.color.spectra import rgb_mixes
 
     nm, mixes = rgb_mixes(WAVELENGTHS)
     white = mixes.sum(axis=2)

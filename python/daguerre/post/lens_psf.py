@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from daguerre.convolution.convolve import Spreader
 from daguerre.errors import InputError, UsageError
 
 from .array import on_array
-from .convolution import Spreader
 from .effect import Effect, Step, Values
 from .glow import IRIS, LARGEST, iris_of
 from .kernels import Floats, delta
@@ -95,7 +95,7 @@ def _kernel(
 ) -> Floats:
     """From channel to channel, shape (size, size, 3, 3); where no light arrives it stays."""
     from daguerre.analysis.lens_pupil import lens_pupil
-    from daguerre.colour import rgb_mixes
+    from daguerre.color.spectra import rgb_mixes
 
     from .starburst import starburst
 
@@ -113,7 +113,7 @@ def _kernel(
 
 def _of_rays(light: Pencil, iris: Iris, pitch: float, size: int, count: int) -> Floats:
     """The same by rays alone, where the blur is far wider than diffraction's."""
-    from daguerre.colour import rgb_mixes
+    from daguerre.color.spectra import rgb_mixes
 
     wide = replace(light.bench, iris_radius=light.bench.iris_radius * iris.outer_radius)
     light = _light(wide, (float(light.film[0]), float(light.film[1]))) or light

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import motion_blur as spread_along
+from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError
 
 from . import channels
@@ -21,7 +22,7 @@ from .array import on_array
 from .effect import Effect, Step, Values
 from .fours import in_fours
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows, Source, bands
+from .picture import Band, Canvas, Image, Source, bands
 
 Floats = NDArray[np.float32]
 SCAN = 256  # rows

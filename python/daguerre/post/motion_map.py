@@ -14,9 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
+
 from .channels import BACK, PARTS, USUAL
 from .parameter import Parameter
-from .picture import Canvas, Rows
+from .picture import Canvas
 from .warp import CELL, FloatArray, PointMap, Warp, displacements
 
 MOTION = (

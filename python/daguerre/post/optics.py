@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import UsageError
 
 from .effect import Values
 from .parameter import Parameter
-from .picture import Canvas, Rows
+from .picture import Canvas
 
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench

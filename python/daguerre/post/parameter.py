@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.io.json_item import short
+from daguerre.files.json_item import short
 
 Kind = Literal["number", "whole", "flag", "choice", "text", "size"]
 
@@ -96,7 +96,7 @@ class Parameter:
 
 
 def _number(text: str, unit: str, where: str) -> float:
-    from daguerre.cli import quantities  # the command line's words; arrays need none of it
+    from daguerre import units as quantities  # the command line's words; arrays need none of it
 
     if unit in _PARSERS:
         return float(getattr(quantities, _PARSERS[unit])(where, text))
@@ -104,7 +104,7 @@ def _number(text: str, unit: str, where: str) -> float:
 
 
 def _size(value: Any, where: str) -> tuple[float, float] | None:
-    from daguerre.cli import quantities
+    from daguerre import units as quantities
 
     if isinstance(value, str):
         return quantities.sensor_mm(where, value)

@@ -8,28 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
+
 Image = NDArray[np.float32]
-
-
-class Rows(NamedTuple):
-    """Rows [begin, end) of the pixels that a picture has."""
-
-    begin: int
-    end: int
-
-    def grown(self, by: int) -> Rows:
-        """With so many more on either side; the engine cuts off what the picture does not have."""
-        return Rows(self.begin - by, self.end + by)
-
-    def within(self, height: int) -> Rows:
-        """Cut to the rows of a picture; where nothing is left, its nearest row."""
-        begin = min(max(self.begin, 0), height - 1)
-        return Rows(begin, min(max(self.end, begin + 1), height))
 
 
 @dataclass(frozen=True)

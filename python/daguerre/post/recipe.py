@@ -60,7 +60,7 @@ def from_file(path: Path) -> list[Planned]:
     Raises:
         InputError: It cannot be read, or asks for something unknown; with the place in the file.
     """
-    from daguerre.io.json_text import parse
+    from daguerre.files.json_text import parse
 
     try:
         data = path.read_bytes()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from daguerre.io.atomic import atomic_path
+from daguerre.files.atomic import atomic_path
 from daguerre.io.exr_bands import ExrWriter
 
 from . import channels

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.convolution.rows import Rows
+
 from .array import on_array
 from .effect import Effect, Step, Values
 from .lens_light import LUMINANCE, Falloff
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows
+from .picture import Band, Canvas, Image
 from .vignetting import radial_polynomial, reciprocal
 
 

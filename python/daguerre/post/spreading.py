@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .convolution import Spread, convolve
+from daguerre.convolution.convolve import Spread, convolve
+from daguerre.convolution.rows import Rows
+
 from .effect import Step
 from .kernels import Floats
-from .picture import Band, Canvas, Image, Rows, Source, bands
+from .picture import Band, Canvas, Image, Source, bands
 
 SCAN = 256  # rows
 

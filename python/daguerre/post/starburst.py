@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 
 from daguerre.analysis.diffraction import Pupil, both_halves, far_fields, light_of
-from daguerre.colour import rgb_mixes
+from daguerre.color.spectra import rgb_mixes
 
 from .kernels import Floats
 

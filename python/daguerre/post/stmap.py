@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
 from daguerre.distortion import Distortion
 from daguerre.errors import InputError, UsageError
-from daguerre.io.atomic import atomic_path
+from daguerre.files.atomic import atomic_path
 from daguerre.io.exr_bands import ExrReader, ExrWriter
 from daguerre.io.exr_header import new_header
 
@@ -24,7 +25,7 @@ from .array import step_on_array
 from .distortion import point_map
 from .effect import Effect, Step, Values
 from .parameter import REQUIRED, Parameter
-from .picture import Canvas, Image, Rows
+from .picture import Canvas, Image
 from .tiles import BLOCK
 from .warp import CELL, Warp
 from .warp_step import FILTER, WarpStep, how

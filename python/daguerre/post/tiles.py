@@ -12,8 +12,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from daguerre.convolution.rows import Rows
+
 from .effect import Step
-from .picture import Band, Canvas, Rows, Source
+from .picture import Band, Canvas, Source
 
 BLOCK = 256  # rows
 

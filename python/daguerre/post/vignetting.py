@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.convolution.rows import Rows
 from daguerre.errors import UsageError
 
 from .array import on_array
@@ -15,7 +16,7 @@ from .effect import Effect, Step, Values
 from .lens_light import Falloff, lens_light
 from .optics import FOCAL_LENGTH, LENS, SENSOR, bench, film_plane, focal_length_mm, offsets
 from .parameter import Parameter
-from .picture import Band, Canvas, Image, Rows
+from .picture import Band, Canvas, Image
 
 DARK = 1e-4  # of the light on the axis: less cannot be undone
 

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import SourceMap
+from daguerre.convolution.rows import Rows
 
-from .picture import Canvas, Rows
+from .picture import Canvas
 
 FloatArray = NDArray[np.float64]
 PointMap = Callable[[FloatArray], FloatArray]  # (N, 2) -> (N, 2), px; NaN: nothing is there

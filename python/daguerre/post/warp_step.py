@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import remap, remap_nearest
+from daguerre.convolution.rows import Rows
 
 from .effect import Step, Values
 from .motion_map import MOTION, MotionMap
 from .parameter import Parameter
-from .picture import Band, Canvas, Rows
+from .picture import Band, Canvas
 from .warp import PointMap, Warp
 
 FILTER = (

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daguerre.checks import number
+from daguerre.color import illuminants
 from daguerre.errors import InputError
 
-from . import illuminants
 from .curve import FloatArray, rising, table
 
 if TYPE_CHECKING:

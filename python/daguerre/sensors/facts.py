@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from . import illuminants
+from daguerre.color import illuminants
+
 from .sensor import GREY_LX_S, SATURATION_LX_S, Sensor
 
 

@@ -14,18 +14,14 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.colour import rgb_from_xyz
-
-from . import illuminants
+from daguerre.color import illuminants
+from daguerre.color.adaptation import adaptation
+from daguerre.color.spectra import rgb_from_xyz
 
 if TYPE_CHECKING:
     from .sensor import Sensor
 
 FloatArray = NDArray[np.float64]
-#: Cone responses of the Bradford adaptation (as in ICC profiles of version 4, annex E).
-BRADFORD = np.array(
-    [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
-)
 
 
 @cache
@@ -101,13 +97,6 @@ def colour_matrix(sensor: Sensor, xy: tuple[float, float]) -> FloatArray:
     low, high = 1 / illuminants.D65_KELVIN, 1 / illuminants.A_KELVIN
     part = np.clip((1 / illuminants.kelvin_of(xy) - low) / (high - low), 0, 1)
     return np.asarray((1 - part) * day + part * lamp)
-
-
-def adaptation(from_xy: tuple[float, float], to_xy: tuple[float, float]) -> FloatArray:
-    """XYZ under one white to those that look alike under another (Bradford), shape (3, 3)."""
-    before = BRADFORD @ illuminants.xyz_of_xy(from_xy)
-    after = BRADFORD @ illuminants.xyz_of_xy(to_xy)
-    return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
 
 
 def rgb_from_channels(sensor: Sensor, xy: tuple[float, float]) -> FloatArray:

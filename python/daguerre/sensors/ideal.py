@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import illuminants
+from daguerre.color import illuminants
+
 from .mosaic import Mosaic
 from .sensor import SATURATION_LX_S, Sensor
 

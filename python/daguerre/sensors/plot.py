@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from daguerre.analysis.sheet import saved
+from daguerre.color import illuminants
 
-from . import illuminants
 from .facts import isos, row, snr_db
 from .sensor import GREY_LX_S, SATURATION_LX_S, Sensor
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from daguerre.io.json_file import read_json_file
-from daguerre.io.json_item import Item
+from daguerre.files.json_file import read_json_file
+from daguerre.files.json_item import Item
 
 from .curve import Curve
 from .mosaic import Mosaic

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.color import illuminants
 from daguerre.errors import UsageError
 
-from . import fit, illuminants
+from . import fit
 from .checking import check
 from .curve import Curve
 from .mosaic import Mosaic
@@ -246,8 +247,8 @@ class Sensor:
         return np.asarray(self.efficiency(at) * at / totals[:, None])
 
     def band_weights(self, count: int) -> FloatArray:
-        """Channels of a frame from its ``bands``, shape (count, C); see ``daguerre.colour``."""
-        from daguerre.film_channels import weights_of_bands
+        """Channels of a frame from its ``bands``, shape (count, C): ``daguerre.color.spectra``."""
+        from .bands import weights_of_bands
 
         return weights_of_bands(self, count)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
 from daguerre.checks import number, plain_light, whole
-from daguerre.colour import rgb_from_xyz
+from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.exposure import luminance_exposure
 from daguerre.film_channels import seen_of
@@ -140,7 +140,7 @@ def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> N
     """Light by way of the film; beyond the edges of the frame it is taken to go on as inside."""
     if kernel is None:
         return light
-    from daguerre.post.convolution import convolve
+    from daguerre.convolution.convolve import convolve
 
     within = convolve(np.ones_like(light), kernel)
     out = convolve(light, kernel)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from daguerre.io.json_file import read_json_file
-from daguerre.io.json_item import Item
-from daguerre.sensors import illuminants
+from daguerre.color import illuminants
+from daguerre.files.json_file import read_json_file
+from daguerre.files.json_item import Item
 from daguerre.sensors.curve import rising
 
 from .curve import CharacteristicCurve

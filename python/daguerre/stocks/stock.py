@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.checks import number
+from daguerre.color import illuminants
 from daguerre.errors import InputError
-from daguerre.sensors import illuminants
 from daguerre.sensors.checking import tells_colours
 from daguerre.sensors.curve import rising
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.json_item import clean
+from daguerre.files.json_item import clean
 from daguerre.lenses.errors import LensError
 
 from .draft import FAR, Draft, Table, lay_out, surface, with_thicknesses

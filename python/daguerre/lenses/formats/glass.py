@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from daguerre.io.json_item import clean
+from daguerre.files.json_item import clean
 
 from .catalogue import find, nearest
 from .text import Line, Unread

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from daguerre.io.json_item import clean
+from daguerre.files.json_item import clean
 
 from .assemble import Configuration, lens_file
 from .draft import Draft

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from daguerre.io.json_item import clean
+from daguerre.files.json_item import clean
 
 from .draft import FAR, Draft, moved, undone
 from .glass import Glass, coded, model, named

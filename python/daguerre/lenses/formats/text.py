@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import NoReturn
 
-from daguerre.io.json_item import clean, short
+from daguerre.files.json_item import clean, short
 from daguerre.lenses.errors import LensError
 
 MAX_LINES = 200_000

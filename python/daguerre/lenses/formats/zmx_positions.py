@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from daguerre.io.json_item import clean
+from daguerre.files.json_item import clean
 
 from .assemble import Configuration
 from .pupil import Pupil

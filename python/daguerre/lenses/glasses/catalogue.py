@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.errors import suggest
-from daguerre.io.json_item import Item
+from daguerre.files.json_item import Item
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.glass_formula import absorption_of, formula_of
 

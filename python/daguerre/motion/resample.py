@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.checks import given_matrix
 
-from .checks import given_matrix
 from .flat_values import Flat, changes, flat
-from .motion import Dynamic
-from .pieces import MAX_BREAKS, MAX_KEYS, Check, Pieces, some_breaks
+from .subdivision import MAX_BREAKS, MAX_KEYS, Check, Pieces, some_breaks
+from .values import Dynamic
 
 FloatArray = NDArray[np.float64]
 #: Of the change of a number, or of the radius of a mesh.

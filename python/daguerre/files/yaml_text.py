@@ -16,7 +16,8 @@ from typing import Any
 import yaml
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+
+from .json_item import Item
 
 OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
 _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")

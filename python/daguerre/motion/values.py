@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-
-from .checks import frozen, matrix, number, short, to_numbers
-from .errors import InputError, suggest
+from daguerre.checks import frozen, matrix, number, short, to_numbers
+from daguerre.errors import InputError, suggest
 
 FloatArray = NDArray[np.float64]
 #: Ways between two matrices; the first is the default. Each is explained in docs/motion.md.

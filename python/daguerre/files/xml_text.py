@@ -15,7 +15,8 @@ from typing import Any
 from xml.parsers import expat
 
 from daguerre.errors import InputError
-from daguerre.io.json_item import Item
+
+from .json_item import Item
 
 ROOT = "opencv_storage"
 MAX_DEPTH = 64

@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from daguerre.errors import UsageError, suggest
+from .errors import UsageError, suggest
 
 #: metres
 LENGTHS = {
@@ -176,7 +176,7 @@ def sensor(flag: str, text: str) -> dict[str, Any]:
     name = text.strip().lower()
     if name in SENSORS or (name[:1].isdigit() and "x" in name):
         return {"sensor_size": sensor_mm(flag, text)}
-    from daguerre import sensors
+    from . import sensors
 
     known = sensors.names()
     if text not in known and Path(text).suffix.lower() != ".json":

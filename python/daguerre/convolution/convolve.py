@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from daguerre.errors import UsageError
-from daguerre.fft import Real, thread_count
 
+from .fft import Real, thread_count
 from .overlap import Part, parts_of
-from .picture import Rows
+from .rows import Rows
 
 
 class Spread(Protocol):

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from .motion import Dynamic
+from .values import Dynamic
 
 T = TypeVar("T")
 #: Values a and b, s (0 .. 1), and the value that what lies at s between them is held against.

@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.fft import Complex, Fft2, Real, around, fast_sizes
-
-from .picture import Rows
+from .fft import Complex, Fft2, Real, around, fast_sizes
+from .rows import Rows
 
 #: bytes that the spectra of kernels and of one tile may take together
 SPECTRA_BYTES = 640 << 20

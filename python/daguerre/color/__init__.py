@@ -1,0 +1,1 @@
+"""Color: spectra, illuminants, RGB spaces, chromatic adaptation and display curves."""

@@ -1,0 +1,39 @@
+"""Display curves of a frame: sRGB, a soft shoulder, and colors brought into the gamut."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Of linear Rec.709 (ITU-R BT.709-6).
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+
+
+def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The sRGB curve of IEC 61966-2-1, clipped to [0, 1]."""
+    x = np.clip(linear, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-8) ** (1 / 2.4) - 0.055)
+
+
+def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:
+    """Identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k), which joins smoothly.
+
+    Each channel by itself would shift hues, so the largest one sets the scale of its pixel. Colours
+    go to white with the light above 1, half way at 17.
+    """
+    peak = linear.max(axis=2, keepdims=True)
+    above = np.maximum(peak, knee)
+    rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
+    over = np.maximum(peak - 1, 0)
+    white = over / (over + 16)
+    return np.asarray(rolled * (linear / above * (1 - white) + white * (peak > 0)), np.float32)
+
+
+def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Negative colours mixed with the grey of their luminance until they are none."""
+    low = linear.min(axis=2, keepdims=True)
+    if (low >= 0).all():
+        return linear
+    grey = np.maximum(linear @ _LUMINANCE, 0)[..., None]
+    share = np.where(low < 0, grey / np.maximum(grey - low, 1e-30), 1)
+    return np.asarray(np.maximum(grey + share * (linear - grey), 0), np.float32)

@@ -1,0 +1,97 @@
+"""RGB color spaces of pictures: primaries, white and transfer curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color.adaptation import BRADFORD
+
+FloatArray = NDArray[np.float64]
+
+
+D65 = (0.3127, 0.3290)
+
+
+@dataclass(frozen=True)
+class ColourSpace:
+    """Where the colours of a picture lie.
+
+    Attributes:
+        name: As users type it.
+        title: As viewers show it.
+        primaries: Of red, green and blue, x and y.
+        curve: (g, a, b, c, d): linear = (a v + b)^g from d on, c v below.
+        cicp: Colour primaries and transfer characteristics by ITU-T H.273.
+        interop: Of the primaries in the Color Interop Forum's names of linear spaces.
+    """
+
+    name: str
+    title: str
+    primaries: tuple[tuple[float, float], ...]
+    curve: tuple[float, float, float, float, float]
+    cicp: tuple[int, int]
+    interop: str
+
+
+# IEC 61966-2-1; ITU-R BT.2020-2, table 4, turned around: E' = a E^0.45 - (a - 1).
+_SRGB = (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+
+
+_A, _B = 1.09929682680944, 0.018053968510807
+
+
+_BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
+
+
+_P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
+
+
+_P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white D65
+
+
+_P2020 = ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))  # ITU-R BT.2020-2, table 3
+
+
+COLOUR_SPACES = {
+    space.name: space
+    for space in (
+        ColourSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
+        ColourSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
+        ColourSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
+    )
+}
+
+
+def xyz_of(xy: tuple[float, float]) -> FloatArray:
+    """XYZ of luminance 1 at a chromaticity."""
+    x, y = xy
+    return np.array([x / y, 1.0, (1 - x - y) / y])
+
+
+def xyz_from_rgb(space: ColourSpace) -> FloatArray:
+    """Of linear light in the space, shape (3, 3); D65 white has luminance 1."""
+    columns = np.stack([xyz_of(primary) for primary in space.primaries], axis=1)
+    return np.asarray(columns * np.linalg.solve(columns, xyz_of(D65)))
+
+
+def adaptation(white: FloatArray, to: FloatArray) -> FloatArray:
+    """XYZ under one white as they look under another, by Bradford's matrix, shape (3, 3)."""
+    ratio = (BRADFORD @ to) / (BRADFORD @ white)
+    return np.asarray(np.linalg.solve(BRADFORD, ratio[:, None] * BRADFORD))
+
+
+def decoded(values: NDArray[np.float32], name: str) -> NDArray[np.float32]:
+    """Linear light of numbers encoded in a colour space."""
+    g, a, b, c, d = COLOUR_SPACES[name].curve
+    high = np.maximum(np.float32(a) * values + np.float32(b), 0) ** np.float32(g)
+    return np.where(values >= d, high, np.float32(c) * values).astype(np.float32)
+
+
+def encoded(linear: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """The numbers that stand for linear light in a colour space; ``decoded`` turned around."""
+    g, a, b, c, d = COLOUR_SPACES[name].curve
+    high = (np.maximum(linear, 0) ** (1 / g) - b) / a
+    return np.where(linear >= c * d, high, linear / c)

@@ -1,0 +1,1 @@
+"""Linear pictures convolved with large kernels, by Fourier transforms in tiles."""

@@ -1,0 +1,1 @@
+"""Values over time: keys, spins, and how they are sampled."""

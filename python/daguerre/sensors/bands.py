@@ -1,0 +1,73 @@
+"""Bands of wavelengths, and the weights by which a sensor's channels follow from them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import whole
+from daguerre.color.spectra import FINE, FIRST_NM, LAST_NM, band_weights, fine_wavelengths, unit_d65
+from daguerre.errors import InputError
+
+if TYPE_CHECKING:
+    from daguerre.sensors.fit import Seeing
+
+
+FloatArray = NDArray[np.float64]
+
+
+LEAST_BANDS, MOST_BANDS = 3, 64
+
+
+MOST_CHANNELS = 4
+
+
+def check_bands(value: Any, where: str = "bands") -> int:
+    """A number of bands; 0: none."""
+    if value in (0, None):
+        return 0
+    return whole(value, where, LEAST_BANDS, MOST_BANDS, f"{LEAST_BANDS} .. {MOST_BANDS}")
+
+
+def responses(sensor: Seeing) -> FloatArray:
+    """What the film weighs light with: at 380, 381 .. 780 nm, per nm, shape (C, 401).
+
+    Raises:
+        InputError: There are more channels than a film holds, or one that sees nothing.
+    """
+    nm = np.arange(FIRST_NM, LAST_NM + 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rows = sensor.sensitivity(nm)
+    if len(rows) > MOST_CHANNELS:
+        raise InputError(f"sensor: channels: wanted at most {MOST_CHANNELS}, got {len(rows)}")
+    fine = fine_wavelengths(1)[0]
+    white = unit_d65(fine) * ((LAST_NM - FIRST_NM) / FINE)
+    totals = np.array([np.interp(fine, nm, row) @ white for row in rows])
+    if not (totals > 0).all():
+        raise InputError(
+            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: wanted some sensitivity between "
+            f"{FIRST_NM:g} and {LAST_NM:g} nm, got none"
+        )
+    return np.ascontiguousarray(rows / totals[:, None])
+
+
+def weights_of_bands(sensor: Seeing, bands: int) -> FloatArray:
+    """Channels of unit mean radiance in each band, shape (bands, C)."""
+    nm = np.arange(FIRST_NM, LAST_NM + 1)
+    rows = responses(sensor)
+    return band_weights(bands, lambda at: np.stack([np.interp(at, nm, r) for r in rows], axis=1))
+
+
+def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[np.float32]:
+    """What a sensor sees of a frame's bands, as if it had been named before the render.
+
+    Args:
+        bands: Of a frame, shape (H, W, N).
+        sensor: Whose channels are wanted.
+
+    Returns:
+        Channels, shape (H, W, C): D65 of luminance 1 is 1 in each.
+    """
+    return np.asarray(bands @ weights_of_bands(sensor, bands.shape[2]).astype(np.float32))
