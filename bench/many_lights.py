@@ -24,8 +24,8 @@ from peers import relative_mse
 
 import daguerre as dg
 import daguerre.session
-from daguerre.build import _add_all
 from daguerre.session import Session
+from daguerre.setup.scene import _add_all
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
 FACES = [(0, 1, 2), (0, 2, 3)]
@@ -152,7 +152,7 @@ def measure(name: str, lamps: int, choice: str, spp: int) -> dict[str, float]:
 
 
 def build(scene: dg.Scene, choice: str) -> _core.Scene:
-    """As daguerre.build.build, with another way to choose among the lights."""
+    """As daguerre.setup.scene.build, with another way to choose among the lights."""
     builder = _core.SceneBuilder()
     _add_all(builder, scene)
     return builder.build(choice)

@@ -28,7 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre import _core, aim_cache, camera_prescription
+from daguerre import _core
+from daguerre.setup import aim_cache
+from daguerre.setup import lens as camera_prescription
 
 LENS = Path(__file__).parent / "lenses" / "us5537259.json"
 DEGREES = (3, 5, 7, 9)

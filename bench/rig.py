@@ -21,8 +21,8 @@ import numpy as np
 from projections import CHESS, SUNSET
 
 import daguerre as dg
-from daguerre.built_scene import BuiltScene
 from daguerre.session import Session
+from daguerre.setup.built_scene import BuiltScene
 
 SIZE = (480, 270)
 BROWN = (-0.28, 0.09, 1e-3, -2e-3, -0.01)

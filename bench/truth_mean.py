@@ -17,7 +17,8 @@ import numpy as np
 from one_core import command, machine, report
 
 import daguerre as dg
-from daguerre.truth import COVERAGE, GroundTruth
+from daguerre.frame.aovs import COVERAGE
+from daguerre.truth import GroundTruth
 
 SIZE = (120, 80)
 RAYS = (16, 64, 256, 1024)

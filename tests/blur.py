@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.scene_motion import SceneMotion
+from daguerre.scene.motion import SceneMotion
 
 from .statistical import differences
 

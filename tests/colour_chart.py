@@ -9,7 +9,7 @@ import numpy as np
 from daguerre.color import illuminants
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
-from daguerre.raw import Raw
+from daguerre.frame.raw import Raw
 from daguerre.sensors import load
 
 _DATA = json.loads((Path(__file__).parent / "data" / "colour_chart.json").read_text())

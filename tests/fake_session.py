@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 import daguerre
-from daguerre.camera import Camera
-from daguerre.frame import Frame
+from daguerre.camera.camera import Camera
+from daguerre.frame.frame import Frame
 from daguerre.io.ranges import join_ranges
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
 
 
 def sample_value(index: int, height: int, width: int) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from daguerre.color import illuminants
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 from daguerre.sensors import Sensor, load
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.materials import Gltf, TextureSlot
+from daguerre.scene.materials import Gltf, TextureSlot
 
 from . import scenes
 from .blur import Case, case

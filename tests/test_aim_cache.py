@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import _core, aim_cache
+from daguerre import _core
+from daguerre.setup import aim_cache
 
 
 @pytest.fixture

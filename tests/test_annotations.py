@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.camera.projection import Projection
+from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.labels.annotations import Annotation, Annotations
 from daguerre.labels.boxes import rotation_of
 from daguerre.labels.categories import Categories, base_name
-from daguerre.projection import Projection
-from daguerre.shutter import RollingShutter
 
 from . import scenes
 from .test_truth import FPS, PINHOLE, PIXELS, SIZE, at, turned

@@ -16,8 +16,8 @@ import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
 from daguerre.calibration.calibration import field_notes
+from daguerre.camera.projection import Projection
 from daguerre.errors import DaguerreError, InputError, UsageError
-from daguerre.projection import Projection
 
 cv2 = pytest.importorskip("cv2")
 

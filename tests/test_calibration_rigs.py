@@ -164,7 +164,7 @@ def chain(*shifts: float | None) -> dict[str, Any]:
 
 def test_cameras_of_a_chain_are_triggered_apart() -> None:
     """The IMU's time is the camera's and the shift: with equal stamps, the larger was later."""
-    from daguerre import shutter
+    from daguerre.camera import shutter
 
     base = dg.Camera(fps=50, shutter_time=0.01)
     given = chain(0.002, 0.005, None)

@@ -15,9 +15,9 @@ from daguerre.analysis import set_up
 from daguerre.analysis.chief import chief_rays
 from daguerre.cli import main
 from daguerre.distortion.lens import LensDistortion
+from daguerre.distortion.rectified import Sight
 from daguerre.errors import UsageError
 from daguerre.io.exr_bands import ExrReader
-from daguerre.maps.sight import Sight
 
 from . import scenes
 from .make_gltf import triangle

@@ -12,9 +12,9 @@ import pytest
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.camera_setup import set_up
+from daguerre.analysis.camera_facts import camera_facts
 from daguerre.cli.info import camera_rows
-from daguerre.info import camera_facts
+from daguerre.setup.camera import set_up
 
 from . import scenes
 from .test_lens_models import LENS

@@ -344,9 +344,9 @@ def test_killed_leaves_no_half_picture_and_the_checkpoint_goes_on(tmp_path: Path
 
 def interrupted_checkpoint() -> None:
     """A checkpoint of the first samples, made by the parts that the loop uses."""
-    from daguerre.camera import Camera
+    from daguerre.camera.camera import Camera
     from daguerre.io.passes import pass_of, write_pass
-    from daguerre.scene import Scene
+    from daguerre.scene.scene import Scene
 
     session = fake_session.FakeSession(Scene(), Camera(), resolution=(8, 6))
     session.draw(0, 4)
@@ -548,7 +548,7 @@ def test_denoising_needs_the_picture_only(tmp_path: Path, monkeypatch: pytest.Mo
 def test_real_denoiser_lowers_the_error() -> None:
     pytest.importorskip("pyoidn")
     from daguerre.denoise import denoise
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
     clean = np.full((64, 64, 3), (0.2, 0.5, 3.0), np.float32)
     noise = np.random.default_rng(1).exponential(1, (64, 64, 1)).astype(np.float32)

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
-from daguerre import info
 from daguerre import units as q
-from daguerre.camera import Camera
+from daguerre.analysis import camera_facts as info
+from daguerre.camera.camera import Camera
 from daguerre.errors import UsageError
 
 GOOD: list[tuple[Callable[[str, str], object], str, object]] = [

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import _core, lenses
-from daguerre.camera_setup import set_up
-from daguerre.info import camera_facts
+from daguerre.analysis.camera_facts import camera_facts
 from daguerre.io.exr import attributes
+from daguerre.setup.camera import set_up
 
 from . import scenes
 from .statistical import batch_means, differences

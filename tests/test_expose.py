@@ -10,7 +10,7 @@ from scipy import stats
 
 import daguerre as dg
 from daguerre.color import illuminants
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 from daguerre.sensors import DarkCurrent, HotPixels, load
 
 from .flats import flat, lux_s_for, mono

@@ -11,8 +11,9 @@ import pytest
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.exposure import ideal_h0, luminance_exposure, pinhole_note, with_exposure
-from daguerre.frame import Frame
+from daguerre.camera.exposure import ideal_h0
+from daguerre.exposure import luminance_exposure, pinhole_note, with_exposure
+from daguerre.frame.frame import Frame
 
 from . import scenes
 

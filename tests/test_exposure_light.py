@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli.scene_flags import SceneFlags
-from daguerre.illuminance import illuminance
+from daguerre.scene.illuminance import illuminance
 
 
 def floor() -> tuple[dg.Scene, dg.Camera]:

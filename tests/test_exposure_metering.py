@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.exposure import ideal_h0
-from daguerre.frame import Frame
+from daguerre.camera.exposure import ideal_h0
+from daguerre.frame.frame import Frame
 from daguerre.metering import K, meter
 
 FACTS = {"expTime": 1 / 100, "aperture": 4.0, "h0": ideal_h0(4.0)}

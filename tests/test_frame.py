@@ -16,7 +16,7 @@ import pytest
 
 from daguerre.errors import OutputError, UsageError
 from daguerre.files import atomic
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 
 METADATA = {
     "isoSpeed": 400.0,
@@ -224,7 +224,7 @@ def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path: Path, ending
     code = (
         "import resource, sys\n"
         "import numpy as np\n"
-        "from daguerre.frame import Frame\n"
+        "from daguerre.frame.frame import Frame\n"
         "from daguerre.errors import OutputError\n"
         "rgb = np.random.default_rng(0).random((64, 64, 3)).astype(np.float32)\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.framing import bounds, frame_everything
+from daguerre.scene.framing import bounds, frame_everything
 
 from . import scenes
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from daguerre.camera import Camera
+from daguerre.camera.camera import Camera
 from daguerre.errors import InputError
 from daguerre.io import gltf
 from daguerre.io.gltf_cameras import _EXTRAS, _snake
-from daguerre.lights import DirectionalLight, PointLight, SpotLight
+from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
 
 from .make_gltf import Builder, triangle
 

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import daguerre
-from daguerre import camera_setup, focusing
 from daguerre.errors import InputError
 from daguerre.io import gltf, gltf_placing
+from daguerre.setup import camera as camera_setup
+from daguerre.setup import focus as focusing
 
 from .make_gltf import CORNERS, Builder, triangle
 

@@ -9,7 +9,7 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.io import gltf
-from daguerre.materials import Gltf
+from daguerre.scene.materials import Gltf
 
 from .make_gltf import png
 from .test_gltf_materials import kind, read, with_material

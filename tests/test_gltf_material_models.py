@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.io import gltf
-from daguerre.materials import Gltf
+from daguerre.scene.materials import Gltf
 
 from . import scenes
 from .make_gltf import png

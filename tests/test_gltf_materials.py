@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from daguerre.io import gltf, images
-from daguerre.materials import Gltf, TextureSlot
+from daguerre.scene.materials import Gltf, TextureSlot
 
 from .make_gltf import Builder, jpeg, png, triangle
 

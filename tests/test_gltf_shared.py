@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from daguerre.io import gltf
-from daguerre.lights import SpotLight
+from daguerre.scene.lights import SpotLight
 
 SCENES = Path(__file__).parents[2] / "shared" / "data" / "scenes"
 pytestmark = pytest.mark.skipif(not SCENES.is_dir(), reason="../shared/data/scenes is not here")

@@ -10,7 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.camera_setup import set_up
+from daguerre.setup.camera import set_up
 
 from . import scenes
 from .test_lens_models import LENS, rays

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.camera_setup import set_up
+from daguerre.setup.camera import set_up
 
 from . import scenes
 

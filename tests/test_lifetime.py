@@ -8,9 +8,9 @@ import sys
 import numpy as np
 
 import daguerre as dg
-from daguerre.build import build
 from daguerre.checks import frozen, given_up
 from daguerre.session import Session
+from daguerre.setup.scene import build
 
 from . import scenes
 

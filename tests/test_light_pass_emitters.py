@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.materials import Gltf, TextureSlot
+from daguerre.scene.materials import Gltf, TextureSlot
 
 from . import scenes
 from .light_proof import (

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import DaguerreError
-from daguerre.materials import Gltf, TextureSlot
+from daguerre.scene.materials import Gltf, TextureSlot
 
 from .motion_scenes import card_mesh, move, pinhole, sky, turn
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.scene_motion import SceneMotion
+from daguerre.scene.motion import SceneMotion
 
 from . import motion_scenes
 from .motion_scenes import ball, card, floor, move, pinhole, sky, turn

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.build import build, content_hash
-from daguerre.build_motion import Moving
 from daguerre.errors import InputError
 from daguerre.io import gltf
+from daguerre.setup.scene import build, content_hash
+from daguerre.setup.scene_motion import Moving
 
 from . import scenes
 from .make_gltf import triangle

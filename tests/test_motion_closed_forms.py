@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.materials import Gltf
+from daguerre.scene.materials import Gltf
 
 from . import scenes
 from .blur import ALPHA

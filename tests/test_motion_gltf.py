@@ -10,7 +10,7 @@ import pytest
 
 from daguerre.io import gltf
 from daguerre.motion.resample import resample
-from daguerre.resample_vertices import resample_vertices
+from daguerre.setup.vertices import resample_vertices
 
 from .make_gltf import CORNERS, Builder, png, triangle
 from .same_scene import scene_differences
@@ -252,8 +252,8 @@ def test_what_is_pressed_flat_moves_by_its_vertices(tmp_path):
 
 
 def test_colours_that_a_morph_changes_cannot_be_blurred(tmp_path):
-    from daguerre.build import build
     from daguerre.errors import InputError
+    from daguerre.setup.scene import build
 
     b = Builder()
     colors = b.accessor([[1, 0, 0]] * 3)

@@ -11,8 +11,8 @@ import pytest
 import daguerre as dg
 from daguerre.motion.resample import BOUND, resample, resample_shown, resample_transform
 from daguerre.motion.values import Composite
-from daguerre.resample_vertices import resample_vertices
-from daguerre.scene_motion import Vertices
+from daguerre.scene.motion import Vertices
+from daguerre.setup.vertices import resample_vertices
 
 BOX = np.array([[x, y, z] for x in (-1.0, 1) for y in (-1, 1) for z in (-1, 1)])
 

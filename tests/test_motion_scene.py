@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import DaguerreError
-from daguerre.materials import Gltf
+from daguerre.scene.materials import Gltf
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
 FACES = [[0, 1, 2], [0, 2, 3]]

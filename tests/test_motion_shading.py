@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.build import build
 from daguerre.errors import InputError
+from daguerre.setup.scene import build
 
 from . import scenes, statistical
 

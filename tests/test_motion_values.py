@@ -11,8 +11,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from daguerre.materials import Gltf, TextureSlot
 from daguerre.motion.values import Composite, at, moves
+from daguerre.scene.materials import Gltf, TextureSlot
 
 
 def turned(degrees: float, x: float = 0.0) -> np.ndarray:

@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.camera_setup import CameraSetup, set_up
 from daguerre.errors import UsageError
+from daguerre.setup.camera import CameraSetup, set_up
 
 from . import scenes
 

@@ -106,7 +106,7 @@ def test_outlines_are_those_of_the_cameras(blades: int, curvature: float) -> Non
 
 
 def test_an_iris_by_picture(tmp_path: Path) -> None:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
     picture = np.zeros((64, 64, 3), np.float32)
     picture[16:48, 24:40] = 1

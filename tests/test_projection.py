@@ -9,8 +9,8 @@ import pytest
 
 import daguerre as dg
 from daguerre import charts
+from daguerre.camera.projection import MODELS, Projection
 from daguerre.errors import UsageError
-from daguerre.projection import MODELS, Projection
 
 cv2 = pytest.importorskip("cv2")
 

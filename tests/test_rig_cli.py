@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import built_scene
 from daguerre.cli import main
 from daguerre.errors import InputError
+from daguerre.setup import built_scene
 
 from .make_gltf import Builder
 

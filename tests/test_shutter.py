@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import shutter
+from daguerre.camera import shutter
+from daguerre.camera.shutter_curve import read_curve
 from daguerre.cli.shutter_flags import ShutterFlags
-from daguerre.io.shutter_curve import read_curve
 
 from . import scenes
 

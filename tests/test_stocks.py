@@ -17,7 +17,7 @@ from daguerre.color import illuminants
 from daguerre.convolution.convolve import convolve
 from daguerre.development import develop
 from daguerre.errors import InputError, UsageError
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 from daguerre.stocks import Stock
 from daguerre.stocks.curve import GREY
 from daguerre.stocks.library import FOLDER

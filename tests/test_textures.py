@@ -10,7 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.io import images
-from daguerre.materials import Gltf, TextureSlot
+from daguerre.scene.materials import Gltf, TextureSlot
 
 from . import scenes
 from .make_gltf import png

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import tilt
-from daguerre.camera_setup import set_up
+from daguerre.setup import tilt
+from daguerre.setup.camera import set_up
 
 from . import scenes
 from .test_lens_models import LENS, Array, meeting, rays

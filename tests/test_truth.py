@@ -13,9 +13,9 @@ import pytest
 
 import daguerre as dg
 from daguerre import lenses
+from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.shutter import RollingShutter
 
 from . import scenes
 

@@ -9,10 +9,10 @@ import OpenEXR
 import pytest
 
 import daguerre as dg
+from daguerre.camera.projection import Projection
+from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.projection import Projection
-from daguerre.shutter import RollingShutter
 from daguerre.truth import GroundTruth
 
 from . import scenes

@@ -15,7 +15,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.lens_motion import MODEL_BLUR
+from daguerre.setup.lens_motion import MODEL_BLUR
 
 from . import motion_files, motion_scenes
 from .blur import Case

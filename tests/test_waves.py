@@ -14,12 +14,12 @@ import daguerre as dg
 from daguerre import analysis, lenses, pupil_files, waves
 from daguerre.analysis.diffraction import PlainPupil
 from daguerre.analysis.off_axis import off_axis
-from daguerre.camera_setup import set_up
 from daguerre.color import spectra as colour
 from daguerre.errors import InputError, UsageError
 from daguerre.io.merging import merge
 from daguerre.io.passes import pass_of, read_pass, write_pass
 from daguerre.session import Session
+from daguerre.setup.camera import set_up
 from daguerre.waves import Diffraction
 
 from . import test_flare

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ._core import __version__
-from .camera import Camera
+from .camera.camera import Camera
+from .camera.lens_scatter import LensScatter
+from .camera.projection import Projection
+from .camera.rolling_shutter import RollingShutter
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
-from .lights import DirectionalLight, PointLight, SphereLight, SpotLight
-from .materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
 from .motion.values import Keys, Spin, keys, spin
-from .projection import Projection
-from .scatter import LensScatter
-from .scene import Scene
-from .shutter import RollingShutter
+from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
+from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from .scene.scene import Scene
 
 if TYPE_CHECKING:
     from . import (
@@ -33,12 +33,12 @@ if TYPE_CHECKING:
         stocks,
     )
     from .analysis.calibrate import calibrate, calibrate_all
-    from .frame import Frame
+    from .frame.frame import Frame
+    from .frame.raw import Raw
     from .labels.annotations import annotate
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
-    from .raw import Raw
     from .rig import render_rig, stereo_pair
     from .session import Session, iter_render, render
     from .waves import Diffraction
@@ -157,8 +157,8 @@ def load(
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it.
     """
-    from .framing import frame_everything
     from .io import gltf
+    from .scene.framing import frame_everything
 
     suffix = Path(path).suffix.lower()
     if suffix not in (".glb", ".gltf"):

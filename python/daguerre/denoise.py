@@ -15,7 +15,7 @@ from .color.spectra import xyz_of
 from .errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from .frame import Frame
+    from .frame.frame import Frame
 
 
 def check_available() -> None:

@@ -21,9 +21,9 @@ from .color import illuminants
 from .color.spectra import rgb_from_xyz
 from .errors import InputError, UsageError
 from .exposure import frame_iso, luminance_exposure
-from .film_channels import seen_of
-from .frame import Frame
-from .raw import Raw
+from .frame.frame import Frame
+from .frame.raw import Raw
+from .frame.seen_by import seen_of
 from .sensors.library import load
 from .sensors.sensor import Sensor
 

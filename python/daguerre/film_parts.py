@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import daguerre._core as _core
 
-from .overscan import Overscan
+from .camera.overscan import Overscan
 
 if TYPE_CHECKING:
-    from .camera_setup import CameraSetup
+    from .setup.camera import CameraSetup
 
 Box = tuple[int, int, int, int]
 Counts = tuple[int, ...]

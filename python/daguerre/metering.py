@@ -20,7 +20,7 @@ from .checks import numbers
 from .color.spectra import rgb_from_xyz
 from .errors import InputError, UsageError, suggest
 from .exposure import luminance_exposure
-from .frame import Frame
+from .frame.frame import Frame
 
 FloatArray = NDArray[np.float64]
 MODES = ("centre", "spot", "matrix")

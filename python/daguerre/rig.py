@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .built_scene import BuiltScene
-from .camera import Camera
-from .camera_pose import moved_right
+from .camera.camera import Camera
 from .checks import number, short
 from .errors import InputError, UsageError
-from .frame import Frame
-from .scene import Scene
+from .frame.frame import Frame
+from .scene.scene import Scene
 from .session import Session, finish
+from .setup.built_scene import BuiltScene
+from .setup.pose import moved_right
 
 
 def render_rig(

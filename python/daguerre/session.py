@@ -18,30 +18,31 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import sensors, shutter
+from . import sensors
 from .adaptive import Round, check_noise, rounds
-from .built_scene import BuiltScene
-from .camera import Camera
-from .camera_checks import check_surfaces
-from .camera_facts import camera_metadata
-from .camera_setup import set_up
+from .camera import shutter
+from .camera.camera import Camera
+from .camera.exposure import without_exposure
+from .camera.lens_scatter import PER_PIXEL as SCATTER_PER_PIXEL
+from .camera.overscan import NONE, Overscan, check_overscan
 from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
+from .distortion.overscan import note as overscan_note
+from .distortion.overscan import to_undistort
+from .distortion.rectified import Sight
 from .errors import InputError, MismatchError, UsageError, suggest
-from .exposure import without_exposure
-from .film_channels import sensor_metadata
 from .film_parts import Box, FilmPart, area, core_settings, frame_around, inside
-from .flare import PER_PIXEL as FLARE_PER_PIXEL
-from .flare import check_highlights, check_used
-from .frame import Frame, frame_of, set_film_state
+from .frame.frame import Frame, frame_of, set_film_state
+from .frame.seen_by import sensor_metadata
 from .io.ranges import join_ranges
 from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
-from .maps.sight import Sight
-from .overscan import NONE, Overscan, check_overscan, to_undistort
-from .overscan import note as overscan_note
-from .scatter import PER_PIXEL as SCATTER_PER_PIXEL
-from .scatter import scatter_facts
-from .scene import Scene
+from .scene.scene import Scene
 from .sensors.bands import check_bands, responses
+from .setup.body import PER_PIXEL as FLARE_PER_PIXEL
+from .setup.body import check_highlights, check_used, scatter_facts
+from .setup.built_scene import BuiltScene
+from .setup.camera import set_up
+from .setup.checks import check_surfaces
+from .setup.metadata import camera_metadata
 from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
 from .waves import Diffraction, check_diffraction, with_bands
 from .waves import plan as plan_waves

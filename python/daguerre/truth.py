@@ -15,31 +15,24 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 
-from . import shutter
-from .build import build
-from .camera import Camera
-from .camera_setup import CameraSetup, set_up
+from .camera import rolling_shutter, shutter
+from .camera.camera import Camera
+from .camera.overscan import NONE, Overscan
 from .checks import short, whole
 from .errors import UsageError, suggest
-from .overscan import NONE, Overscan
-from .scene import Scene
+from .frame.aovs import COVERAGE, MOTION, PLANES
+from .scene.scene import Scene
+from .setup.camera import CameraSetup, set_up
+from .setup.scene import build
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
 #: When in the exposure of a pixel: as a fraction of its length.
 GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
-#: What is seen, in the names of the files.
-PLANES = (
-    "depth.Z", "distance.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object_id", "material_id",
-)  # fmt: skip
-#: What only means have: the share of the light whose rays meet a surface.
-COVERAGE = "coverage.Y"
 #: Through which rays: the chief ray of the pixel's centre, or all that expose it.
 GT_LENSES = ("chief", "mean")
 #: How many of those are drawn.
 GT_RAYS = 64
 MAX_RAYS = 65536
-#: Where it is in the next frame and where it was in the last one: how many frames later.
-MOTION = {"motion": 1, "motion_back": -1}
 
 
 def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") -> str | None:
@@ -196,7 +189,9 @@ def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
 def instants(camera: Camera, resolution: tuple[int, int]) -> Camera:
     """The camera with an exposure of no length, around the scene's time, on each of its lines."""
     order, line_time = shutter.scan(camera, resolution)
-    rolling = shutter.RollingShutter(order, line_time=line_time) if order != "none" else None
+    rolling = (
+        rolling_shutter.RollingShutter(order, line_time=line_time) if order != "none" else None
+    )
     return replace(
         camera,
         shutter_time=0.0,

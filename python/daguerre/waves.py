@@ -23,10 +23,10 @@ from .sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
     from .analysis.diffraction import Pupil
-    from .camera import Camera
-    from .camera_setup import CameraSetup
+    from .camera.camera import Camera
     from .lenses.focus import By
     from .sensors import Sensor
+    from .setup.camera import CameraSetup
 
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
@@ -100,8 +100,8 @@ def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[lis
     from .analysis.iris import iris_of
     from .analysis.lens_pupil import zone_pupils
     from .analysis.off_axis import off_axis
-    from .camera_checks import TRACED, lens_and_model
-    from .camera_prescription import decenters
+    from .setup.checks import TRACED, lens_and_model
+    from .setup.lens import decenters
 
     facts = setup.facts
     if facts.get("f_stop") is None:

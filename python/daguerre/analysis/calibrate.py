@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.camera import Camera
+from daguerre.camera.camera import Camera
+from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.lenses import Lens, load
 from daguerre.lenses.focus import By
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
-from daguerre.projection import MODELS, NEEDED, Projection
 
 from .bench import Bench, FloatArray, set_up
 from .chief import ChiefRays, chief_rays

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import daguerre._core as _core
+from daguerre.camera.lens_scatter import core_parts
 from daguerre.errors import InputError
-from daguerre.scatter import core_parts
 
 from .ghosts import NM, WEIGHTS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from daguerre.scatter import LensScatter
+    from daguerre.camera.lens_scatter import LensScatter
 
     from .bench import Bench
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 
 if TYPE_CHECKING:
-    from daguerre.camera import Camera
+    from daguerre.camera.camera import Camera
 
 Floats = NDArray[np.float32]
 
@@ -81,7 +81,7 @@ class Iris:
 
 def iris_of(camera: Camera, mask_half: float | None = None) -> Iris:
     """The iris of a camera: its blades or picture, and the mask on it."""
-    from daguerre.camera_parts import mask_of
+    from daguerre.setup.iris import mask_of
 
     picture = camera.aperture_image
     return Iris(

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from daguerre.lenses.groups import Group, angles, placed
 from daguerre.lenses.lens import Lens
-from daguerre.tilt import turn
+from daguerre.setup.tilt import turn
 
 from .bench import Bench, FloatArray
 

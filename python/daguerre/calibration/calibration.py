@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre import shutter
-from daguerre.camera import Camera
-from daguerre.camera_pose import mounted
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.projection import Projection
 from daguerre.checks import number, short
 from daguerre.errors import InputError, UsageError
-from daguerre.projection import Projection
+from daguerre.setup.pose import mounted
 
 FloatArray = NDArray[np.float64]
 #: Between the camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z behind).

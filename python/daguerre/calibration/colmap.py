@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.projection import Projection
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 

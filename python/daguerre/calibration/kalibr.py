@@ -14,10 +14,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from daguerre.camera.projection import Projection
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
-from daguerre.projection import Projection
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .source import choice, load, rigid, row

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
-from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
 from .source import agreed, camera_matrix, choice, first, load, needed, row

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
-from daguerre.projection import Projection
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .opencv import COUNTS, model_of, size_of

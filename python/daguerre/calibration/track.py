@@ -16,7 +16,7 @@ from .opentrackio import read_opentrackio
 from .source import load
 
 if TYPE_CHECKING:
-    from daguerre.camera import Camera
+    from daguerre.camera.camera import Camera
 
 #: What samples say of a camera, beside its projection.
 TRACKED = ("transform", "f_stop", "focus_distance")

@@ -13,9 +13,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from daguerre.camera.projection import Projection
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
-from daguerre.projection import Projection
 
 from .calibration import Calibration, projection
 from .source import agreed, choice, load, rigid

@@ -21,8 +21,8 @@ from daguerre.errors import UsageError
 if TYPE_CHECKING:
     import os
 
-    from daguerre.camera import Camera
-    from daguerre.scene import Scene
+    from daguerre.camera.camera import Camera
+    from daguerre.scene.scene import Scene
 
 FloatArray = NDArray[np.float64]
 Rgb = tuple[float, float, float]
@@ -75,7 +75,7 @@ class Chart:
             focal_length: mm.
             sensor_width: mm; the height follows from the chart.
         """
-        from daguerre.camera import Camera
+        from daguerre.camera.camera import Camera
 
         pose = np.eye(4)
         pose[2, 3] = self.distance(focal_length, sensor_width)
@@ -97,8 +97,8 @@ class Chart:
         Args:
             luminance: Of its white, cd/m2.
         """
-        from daguerre.materials import Diffuse, Material
-        from daguerre.scene import Scene
+        from daguerre.scene.materials import Diffuse, Material
+        from daguerre.scene.scene import Scene
 
         scene = Scene()
         for rgb, (positions, indices) in self.meshes().items():

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from daguerre.camera.projection import Projection
 from daguerre.checks import number, whole
 from daguerre.errors import UsageError
-from daguerre.projection import Projection
 
 from .boards import outline
 from .chart import Chart, FloatArray

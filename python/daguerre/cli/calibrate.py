@@ -182,7 +182,7 @@ def _write(
 def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:
     """Of the lens, not of its fit."""
     from daguerre import Scene
-    from daguerre.overscan import NONE
+    from daguerre.camera.overscan import NONE
 
     map_flags.write(Scene(), made.camera, made.projection.size, NONE)
 
@@ -203,7 +203,7 @@ def _facts(made: ProjectionFit) -> dict[str, Any]:
 
 
 def _print(made: ProjectionFit) -> None:
-    from daguerre.projection import MODELS
+    from daguerre.camera.projection import MODELS
 
     model = made.projection
     bench = made.bench

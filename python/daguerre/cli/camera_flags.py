@@ -358,7 +358,7 @@ class CameraFlags:
 
                 out[name] = read_grey(path)
         if parts := self._scatter():
-            from daguerre.scatter import LensScatter
+            from daguerre.camera.lens_scatter import LensScatter
 
             out["scatter"] = LensScatter(**parts)
         return _refuse_rivals(out)

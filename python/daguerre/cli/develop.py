@@ -19,8 +19,8 @@ from .flags import option
 if TYPE_CHECKING:
     from daguerre.development import Picture
     from daguerre.development.channels import Channels
-    from daguerre.frame import Frame
-    from daguerre.raw import Raw
+    from daguerre.frame.frame import Frame
+    from daguerre.frame.raw import Raw
 
 _SENSOR, _LOOK, _FILE = "The sensor (of IN.exr)", "The picture", "The file"
 

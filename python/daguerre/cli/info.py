@@ -18,7 +18,7 @@ from .shutter_flags import ShutterFlags
 from .views import views_of
 
 if TYPE_CHECKING:
-    from daguerre.info import Facts
+    from daguerre.analysis.camera_facts import Facts
 
 
 @with_flags(
@@ -42,9 +42,9 @@ def info(
 
     Flags of the camera are applied to what is shown, so that a lens or a stop can be tried.
     """
-    from daguerre import info as facts_of
-    from daguerre.build import build
-    from daguerre.camera import Camera
+    from daguerre.analysis import camera_facts as facts_of
+    from daguerre.camera.camera import Camera
+    from daguerre.setup.scene import build
 
     views = views_of(camera_flags.camera, calibration_flags.found, None)
     changes = camera_flags.changes() | shutter_flags.changes()

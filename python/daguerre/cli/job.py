@@ -14,7 +14,7 @@ from daguerre.errors import InputError
 from . import console
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
     from daguerre.session import Session
 
     from .loop import Loop

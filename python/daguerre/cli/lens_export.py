@@ -78,8 +78,8 @@ class Export:
         )
 
     def _iris(self) -> Iris:
-        from daguerre.camera import Camera
-        from daguerre.camera_parts import iris_of
+        from daguerre.camera.camera import Camera
+        from daguerre.setup.iris import iris_of
 
         turn = self.blade_rotation
         return iris_of(

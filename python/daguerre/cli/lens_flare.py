@@ -55,8 +55,8 @@ class Flare:
 
     def show(self, bench: Bench, *, plot: Path | None, drawing: Path | None, json: bool) -> int:
         """Prints and draws."""
-        from daguerre.camera import Camera
-        from daguerre.flare import stack_of
+        from daguerre.camera.camera import Camera
+        from daguerre.setup.body import stack_of
 
         body = Camera(cover_glass=self.glass, sensor_reflectance=self.reflectance)
         files = {"plot": plot, "drawing": drawing}

@@ -121,7 +121,7 @@ class MapFlags:
 def _write_stmaps(
     scene: Any, camera: Any, size: tuple[int, int], overscan: Any, files: dict[str, Path]
 ) -> None:
-    from daguerre.maps.sight import Sight
+    from daguerre.distortion.rectified import Sight
     from daguerre.maps.st_maps import StMaps
 
     maps = StMaps(Sight(camera, size, scene=scene, overscan=overscan), overscan)

@@ -32,7 +32,7 @@ def merge(
 ) -> int:
     """Adds passes to one picture, with the bits of a render in one go."""
     from daguerre.files import atomic
-    from daguerre.frame import TONES, check_format
+    from daguerre.frame.frame import TONES, check_format
     from daguerre.io import merging
     from daguerre.io.passes import write_pass
 

@@ -16,7 +16,7 @@ from daguerre.errors import DaguerreError, UsageError
 from . import console
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
     from daguerre.sensors import Sensor
 
 #: Parameters of a camera that are about exposure and development alone.

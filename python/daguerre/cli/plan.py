@@ -8,6 +8,7 @@ from pathlib import Path
 
 from daguerre import units as q
 from daguerre.errors import UsageError, suggest
+from daguerre.frame.aovs import ALWAYS, AOVS, DISPARITY, EXPOSED, TRUTH
 
 from .frames import numbered
 from .map_flags import MapFlags
@@ -16,25 +17,6 @@ from .views import View, named
 
 DEFAULT_RESOLUTION = (960, 540)
 DEFAULT_SPP = 64
-#: what may be asked for with --aov -> group of channels
-AOVS = {
-    "depth": "depth",
-    "P": "P",
-    "position": "P",
-    "N": "N",
-    "normal": "N",
-    "albedo": "albedo",
-    "object_id": "object_id",
-    "id": "object_id",
-}
-#: the same that only ground truth has; they are not among "all"
-TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back", "coverage")}
-#: what photographs are measured against: light of the exposure, in lux s, and where it saturates
-EXPOSED = ("exposure", "saturated")
-#: of a stereo pair, by its depth
-DISPARITY = "disparity"
-#: groups that every EXR has, so asking for them changes nothing
-ALWAYS = ("variance", "samples")
 
 
 @dataclass(frozen=True)
@@ -79,7 +61,7 @@ class Plan:
         """With pixels beside the picture."""
         if overscan is None:
             return self
-        from daguerre.overscan import check_overscan
+        from daguerre.camera.overscan import check_overscan
 
         check_overscan(overscan, self.resolution, "--overscan")
         if self.outputs and not any(path.suffix.lower() == ".exr" for path in self.outputs):
@@ -151,7 +133,7 @@ def make_plan(
     Raises:
         UsageError: Some value is wrong or does not go with another; the message names the flag.
     """
-    from daguerre.frame import TONES, check_format
+    from daguerre.frame.frame import TONES, check_format
 
     formats = [check_format(path, (".dng",)) for path in output]
     if tone not in TONES:
@@ -218,7 +200,7 @@ def check_crop(
     crop: tuple[int, int, int, int], resolution: tuple[int, int], overscan: str | None
 ) -> None:
     """It must lie within the picture and its overscan, as far as that is known yet."""
-    from daguerre.overscan import check_overscan
+    from daguerre.camera.overscan import check_overscan
 
     beside = check_overscan(overscan, resolution, "--overscan")
     if beside is None:  # the camera decides

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.flare import check_highlights, check_used
 from daguerre.light_paths import check_light_paths, check_paths
+from daguerre.setup.body import check_highlights, check_used
 
 from . import console
 from .calibration_flags import CalibrationFlags

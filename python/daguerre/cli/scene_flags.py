@@ -90,7 +90,7 @@ class SceneFlags:
         from dataclasses import replace
 
         from daguerre.errors import UsageError
-        from daguerre.illuminance import scale_for
+        from daguerre.scene.illuminance import scale_for
 
         if scene.environment is None:
             raise UsageError("--env-lux: the scene has no environment; give --env or --sky")

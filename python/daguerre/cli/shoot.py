@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import UsageError
+from daguerre.frame.aovs import DISPARITY
 
 from . import console
 from .job import INTERRUPTED, Job, core_errors
-from .plan import DISPARITY
 
 if TYPE_CHECKING:
-    from daguerre.built_scene import BuiltScene
     from daguerre.io.coco import CocoFile
     from daguerre.labels.categories import Categories
-    from daguerre.scene import Scene
+    from daguerre.scene.scene import Scene
     from daguerre.session import Session
+    from daguerre.setup.built_scene import BuiltScene
 
     from .calibration_flags import CalibrationFlags
     from .plan import Plan
@@ -181,11 +181,12 @@ class Shoot:
 
     def _write_maps(self, picture: Picture) -> None:
         """The maps of a camera, without its picture."""
-        from daguerre.build import build
-        from daguerre.camera_setup import set_up
-        from daguerre.maps.sight import Sight
-        from daguerre.overscan import check_overscan, note, to_undistort
-        from daguerre.shutter import interval
+        from daguerre.camera.overscan import check_overscan
+        from daguerre.camera.shutter import interval
+        from daguerre.distortion.overscan import note, to_undistort
+        from daguerre.distortion.rectified import Sight
+        from daguerre.setup.camera import set_up
+        from daguerre.setup.scene import build
         from daguerre.truth import focused
 
         plan, scene = picture.plan, self._scene_of(picture)
@@ -236,7 +237,7 @@ class Shoot:
         return self._seen
 
     def _session(self, picture: Picture) -> Session:
-        from daguerre.info import camera_warnings, lit
+        from daguerre.analysis.camera_facts import camera_warnings, lit
         from daguerre.session import Session
 
         plan, view = picture.plan, picture.view

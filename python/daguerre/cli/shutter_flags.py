@@ -103,14 +103,14 @@ def _curve(text: str) -> Any:
     if kind == "trapezoid":
         wanted = "trapezoid:E with an efficiency E of 0.5 .. 1, such as trapezoid:0.8"
         return "trapezoid", q.plain_number("--shutter-curve", efficiency, wanted)
-    from daguerre.io.shutter_curve import read_curve
+    from daguerre.camera.shutter_curve import read_curve
 
     return read_curve(Path(text))
 
 
 def _rolling(text: str) -> Any:
+    from daguerre.camera.rolling_shutter import RollingShutter
     from daguerre.errors import UsageError
-    from daguerre.shutter import RollingShutter
 
     side, comma, time = text.partition(",")
     if not comma:

@@ -19,8 +19,8 @@ from .frames import before_number
 
 if TYPE_CHECKING:
     from daguerre.calibration import Calibration
-    from daguerre.camera import Camera
-    from daguerre.scene import Scene
+    from daguerre.camera.camera import Camera
+    from daguerre.scene.scene import Scene
 
     from .calibration_flags import CalibrationFlags
 
@@ -50,7 +50,7 @@ class View:
         camera: Camera = flags.camera(scene.camera(self.camera), self.calibration, changes)
         if not self.shift:
             return camera
-        from daguerre.camera_pose import moved_right
+        from daguerre.setup.pose import moved_right
 
         return moved_right(camera, self.shift)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.color import illuminants
+from . import illuminants
 
 FloatArray = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.color.adaptation import BRADFORD
+from .adaptation import BRADFORD
 
 FloatArray = NDArray[np.float64]
 

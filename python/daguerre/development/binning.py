@@ -10,7 +10,7 @@ import numpy as np
 from daguerre.errors import InputError
 
 if TYPE_CHECKING:
-    from daguerre.raw import Raw
+    from daguerre.frame.raw import Raw
     from daguerre.sensors import Sensor
 
 

@@ -24,8 +24,8 @@ from .binning import bayer_of, is_mono
 from .looks import GREY
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
-    from daguerre.raw import Raw
+    from daguerre.frame.frame import Frame
+    from daguerre.frame.raw import Raw
 
 FloatArray = NDArray[np.float64]
 XY = tuple[float, float]

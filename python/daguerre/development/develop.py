@@ -18,15 +18,15 @@ from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import UsageError, suggest
+from daguerre.frame.picture import Picture
 
 from .channels import XY, Channels, Demosaic, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
-from .picture import Picture
 from .white import white_of
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
-    from daguerre.raw import Raw
+    from daguerre.frame.frame import Frame
+    from daguerre.frame.raw import Raw
 
 FloatArray = NDArray[np.float64]
 HIGHLIGHTS = ("clip", "blend", "reconstruct")
@@ -131,8 +131,8 @@ def develop(
 
 
 def _channels(source: Any, demosaic: Demosaic) -> Channels:
-    from daguerre.frame import Frame
-    from daguerre.raw import Raw
+    from daguerre.frame.frame import Frame
+    from daguerre.frame.raw import Raw
 
     if isinstance(source, Raw):
         return of_raw(source, demosaic)

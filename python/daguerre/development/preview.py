@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .channels import of_cells
 
 if TYPE_CHECKING:
-    from daguerre.raw import Raw
+    from daguerre.frame.raw import Raw
 
 LONGEST = 512
 

@@ -27,7 +27,7 @@ from .exif import Tags
 from .tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
 
 if TYPE_CHECKING:
-    from daguerre.raw import Raw
+    from daguerre.frame.raw import Raw
 
 MAKE = "Daguerre"
 #: LibRaw takes smaller pictures for no raw file, px each way.

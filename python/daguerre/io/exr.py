@@ -21,7 +21,7 @@ from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
 #: Rec.709 primaries and D65, ITU-R BT.709-6: red, green, blue, white as x, y.
 REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)

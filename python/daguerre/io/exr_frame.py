@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from daguerre.color.spectra import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 
 from . import exr
 from .exr_bands import ExrReader, Planes

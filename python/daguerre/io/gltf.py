@@ -19,7 +19,8 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
 from daguerre.files.uris import Folder
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import without_scale
 
 from .gltf_accessors import Accessors
 from .gltf_animation import Animations
@@ -36,7 +37,6 @@ from .gltf_placing import Placing
 from .gltf_poses import Poses
 from .gltf_skins import Skins
 from .gltf_textures import Textures
-from .gltf_transforms import without_scale
 from .gltf_variants import Variants
 
 # Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera import IDEAL, LIMITS, Camera
+from daguerre.camera.camera import IDEAL, LIMITS, Camera
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
 from daguerre.lenses import library

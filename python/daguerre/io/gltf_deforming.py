@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
-from daguerre.scene_motion import Vertices
+from daguerre.scene.motion import Vertices
+from daguerre.scene.normals import unit_normals, unit_tangents
 
 from .gltf_accessors import Accessors
 from .gltf_morphs import morph
-from .gltf_normals import unit_normals, unit_tangents
 from .gltf_over_time import PartOverTime
 from .gltf_skins import Influences, Skins, skin
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from daguerre.files.json_item import Item
-from daguerre.materials import Color
+from daguerre.scene.materials import Color
 
 #: Exporters round: a factor may stand this far beyond 1.
 SLACK = 1e-3

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
+from daguerre.scene.transforms import compose
 
 from .gltf_accessors import Accessors
-from .gltf_transforms import compose
 
 _COLUMNS = ("TRANSLATION", "ROTATION", "SCALE")
 #: Instances of a scene; an accessor without bytes could ask for any number of them.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from daguerre.files.json_item import Item
-from daguerre.lights import DirectionalLight, PointLight, SpotLight
+from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
 
 
 def light_items(root: Item) -> list[Item]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
-from daguerre.materials import Gltf, Material
+from daguerre.scene.materials import Gltf, Material
 
 from .gltf_factors import color_of, fraction, unit_color
 from .gltf_layers import read_layers

@@ -17,7 +17,7 @@ from daguerre.checks import given_up
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
 
 from . import gltf_draco
 from .gltf_accessors import Accessors

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera import MOVABLE, Camera
+from daguerre.camera.camera import MOVABLE, Camera
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
-from daguerre.lights import DirectionalLight, PointLight, SpotLight
-from daguerre.materials import Material
 from daguerre.motion.values import Dynamic
-from daguerre.scene import Scene
+from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
+from daguerre.scene.materials import Material
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import ranks
 
 from .gltf_animation import Animations
 from .gltf_cameras import fields_of, read_camera
@@ -30,7 +31,6 @@ from .gltf_over_time import (
 )
 from .gltf_placing import Motion
 from .gltf_poses import Poses
-from .gltf_transforms import ranks
 
 Matrices = NDArray[np.float64]
 # Keys at which it is looked whether a scale presses something flat.

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daguerre.files.json_item import Item
-
-from .gltf_transforms import Matrix, affine, compose
+from daguerre.scene.transforms import Matrix, affine, compose
 
 #: Lengths beyond this (m) overflow when a renderer squares them in float.
 MAX_SIZE = 1e18

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
-from daguerre.lights import DirectionalLight, Light, PointLight, SpotLight
-from daguerre.scene_motion import Vertices
+from daguerre.scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from daguerre.scene.motion import Vertices
+from daguerre.scene.transforms import Matrix, ranks, without_scale
 
 from .gltf_animation import Channel, breaks_of, play
 from .gltf_poses import Poses
-from .gltf_transforms import Matrix, ranks, without_scale
 
 FloatArray = NDArray[np.float64]
 _BLACK = (0.0, 0.0, 0.0)

@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
-from daguerre.materials import Gltf, Material
-from daguerre.scene import Instance, Scene, vertices_of
+from daguerre.scene.materials import Gltf, Material
+from daguerre.scene.parts import Instance, vertices_of
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import ranks
 
 from .gltf_instancing import MAX_INSTANCES
 from .gltf_nodes import MAX_SIZE
 from .gltf_over_time import FlatOverTime, NodeOverTime, ShownOverTime
-from .gltf_transforms import ranks
 
 Matrices = NDArray[np.float64]
 

@@ -11,10 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
+from daguerre.scene.transforms import Matrix, compose
+
 from .gltf_animation import Animations, Channel, breaks_of
 from .gltf_nodes import Tree, is_visible
 from .gltf_samplers import FloatArray
-from .gltf_transforms import Matrix, compose
 
 #: Poses of nodes, at one or many times, that are kept: parents are asked for by all their children.
 _MAX_KNOWN = 4096

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from daguerre import shutter
+from daguerre.camera import rolling_shutter, shutter
 from daguerre.files.json_item import Item
 
 
-def _curve(item: Item) -> shutter.ShutterCurve:
+def _curve(item: Item) -> rolling_shutter.ShutterCurve:
     """``"box"``, ``{"trapezoid": efficiency}`` or points [[fraction, opening], ...]."""
     if isinstance(item.value, str):
         return str(item.choice(("box",)))
@@ -29,7 +29,7 @@ def _curve(item: Item) -> shutter.ShutterCurve:
     return curve
 
 
-def _rolling(item: Item) -> shutter.RollingShutter:
+def _rolling(item: Item) -> rolling_shutter.RollingShutter:
     """``{"scanOrder": side, "lineTime" or "readoutTime": s}``."""
     order = item.get("scanOrder")
     times = {
@@ -39,7 +39,7 @@ def _rolling(item: Item) -> shutter.RollingShutter:
     }
     if (times["lineTime"] is None) == (times["readoutTime"] is None):
         item.fail("ambiguous: wanted either lineTime or readoutTime")
-    return shutter.RollingShutter(
+    return rolling_shutter.RollingShutter(
         "top" if order is None else order.choice(shutter.SCAN_ORDERS),
         times["lineTime"],
         times["readoutTime"],

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
+from daguerre.scene.transforms import affine
 
 from .gltf_accessors import Accessors
 from .gltf_nodes import Tree
 from .gltf_poses import Poses
-from .gltf_transforms import affine
 
 FloatArray = NDArray[np.float32]
 # Vertices at a time: each needs a matrix of its own, 100 times the size of its position.

@@ -21,8 +21,8 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
 from daguerre.files.uris import data_bytes, is_data
-from daguerre.materials import TextureSlot
-from daguerre.scene import Scene
+from daguerre.scene.materials import TextureSlot
+from daguerre.scene.scene import Scene
 
 from . import images
 from .gltf_accessors import Accessors

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame import Frame, frame_of, set_film_state
+from daguerre.frame.frame import Frame, frame_of, set_film_state
 from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
 from .passes import Pass, State, check_key, read_pass

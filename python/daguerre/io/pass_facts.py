@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from daguerre.camera.overscan import NONE, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
-from daguerre.overscan import NONE, check_overscan
 
 from . import exr
 

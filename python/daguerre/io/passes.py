@@ -6,7 +6,7 @@ per pixel, in a picture of four channels that is seven times as wide. Its header
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
 which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
 channels in the same way, and parts ``splats`` and ``flare`` what light paths
-(``daguerre.light_paths``) and ghosts (``daguerre.flare``) brought, if any were drawn; a part
+(``daguerre.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were drawn; a part
 ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among the facts
 (``daguerre.waves``), or those that the frame keeps; parts ``channels`` and ``channel_splats`` have
 those of its sensor.
@@ -39,7 +39,7 @@ from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
     from daguerre.session import Session
 
 State = dict[str, NDArray[np.uint32]]
@@ -210,7 +210,7 @@ def _read_truth(path: Path, source: Any) -> dict[str, NDArray[Any]]:
     """The channels of ground truth of the picture in a pass."""
     import OpenImageIO as oiio
 
-    from daguerre.truth import COVERAGE, MOTION, PLANES
+    from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
 
     source.seek_subimage(0, 0)
     spec = source.spec()

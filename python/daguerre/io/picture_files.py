@@ -20,6 +20,7 @@ from daguerre.checks import whole
 from daguerre.color import spaces
 from daguerre.errors import OutputError, UsageError, suggest
 from daguerre.files.atomic import atomic_path
+from daguerre.frame.picture import quantised
 
 from . import exif, icc
 from .tiff import TiffImage, write_tiff
@@ -83,16 +84,6 @@ def write_picture(
         data = exif.block(metadata, size, srgb=space == "srgb")
         add = _jpeg_with if suffix in (".jpg", ".jpeg") else _png_with
         temp.write_bytes(add(_coded(suffix, numbers, space, quality, str(path)), data, space))
-
-
-def quantised(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
-    """0 .. 1 as whole numbers of 8 or 16 bits, rounded; in stripes, for little memory."""
-    top = np.float32(2**bits - 1)
-    out = np.empty(pixels.shape, np.uint8 if bits == 8 else np.uint16)
-    for row in range(0, len(pixels), 64):
-        part = np.nan_to_num(pixels[row : row + 64], nan=0.0)
-        out[row : row + 64] = np.clip(part, 0, 1) * top + np.float32(0.5)
-    return out
 
 
 def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
@@ -203,7 +194,7 @@ def _write_linear(
     metadata: Mapping[str, Any],
 ) -> None:
     """Linear light in the primaries of the space, with the frame's attributes."""
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
     from .exr import attributes, write_parts
 

@@ -18,7 +18,7 @@ from daguerre.files.atomic import atomic_path
 from . import exif
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
 #: metadata name -> EXIF name in OpenImageIO
 EXIF = {

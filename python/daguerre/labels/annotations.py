@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre.camera import Camera
+from daguerre.camera.camera import Camera
 from daguerre.checks import short
 from daguerre.errors import UsageError
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
 from daguerre.session import Session
 from daguerre.truth import GroundTruth, Moment
 

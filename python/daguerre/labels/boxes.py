@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
 
 FloatArray = NDArray[np.float64]
 

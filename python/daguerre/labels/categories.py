@@ -21,7 +21,7 @@ from pathlib import Path
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
 
 #: What programs append to the names of copies.
 _COPY = re.compile(r"(?:[ ._-]\d+|\s*\(\d+\))$")

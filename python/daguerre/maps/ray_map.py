@@ -15,18 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre import shutter
-from daguerre.camera_facts import camera_metadata
-from daguerre.camera_setup import set_up
+from daguerre.camera import shutter
+from daguerre.camera.overscan import NONE, Overscan
+from daguerre.distortion.overscan import overscan_of
+from daguerre.distortion.rectified import built
 from daguerre.errors import UsageError, suggest
-from daguerre.overscan import NONE, Overscan
-from daguerre.scene import Scene
+from daguerre.scene.scene import Scene
+from daguerre.setup.camera import set_up
+from daguerre.setup.metadata import camera_metadata
 from daguerre.truth import GT_TIMES, check_gt_time, instants
 
-from .sight import built, overscan_of
-
 if TYPE_CHECKING:
-    from daguerre.camera import Camera
+    from daguerre.camera.camera import Camera
 
 FloatArray = NDArray[np.float64]
 #: What coordinates of rays are about.

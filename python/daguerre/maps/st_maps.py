@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.overscan import NONE, Overscan, to_redistort, to_undistort
-
-from .sight import Sight, built, overscan_of
+from daguerre.camera.overscan import NONE, Overscan
+from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
+from daguerre.distortion.rectified import Sight, built
 
 if TYPE_CHECKING:
-    from daguerre.camera import Camera
+    from daguerre.camera.camera import Camera
     from daguerre.post.warp import Warp
-    from daguerre.scene import Scene
+    from daguerre.scene.scene import Scene
 
 Image = NDArray[np.float32]
 

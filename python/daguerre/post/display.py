@@ -9,7 +9,7 @@ from typing import Self
 
 import numpy as np
 
-from daguerre.frame import Frame
+from daguerre.frame.frame import Frame
 from daguerre.io.png import PngWriter
 
 from .picture import Canvas, Image

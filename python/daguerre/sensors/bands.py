@@ -8,11 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import whole
-from daguerre.color.spectra import FINE, FIRST_NM, LAST_NM, band_weights, fine_wavelengths, unit_d65
+from daguerre.color.spectra import (
+    FINE,
+    FIRST_NM,
+    LAST_NM,
+    band_weights,
+    fine_wavelengths,
+    unit_d65,
+)
 from daguerre.errors import InputError
 
 if TYPE_CHECKING:
-    from daguerre.sensors.fit import Seeing
+    from .fit import Seeing
 
 
 FloatArray = NDArray[np.float64]

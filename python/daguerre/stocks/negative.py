@@ -13,7 +13,7 @@ from daguerre.checks import number, plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.exposure import luminance_exposure
-from daguerre.film_channels import seen_of
+from daguerre.frame.seen_by import seen_of
 from daguerre.post.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
 from daguerre.sensors.sensor import GREY_LX_S
@@ -24,7 +24,7 @@ from .stock import Stock
 
 if TYPE_CHECKING:
     from daguerre.development import Picture
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
 #: Density of middle grey on paper or in a slide, above white: -log10(0.18).
 GREY_DENSITY = 0.745
@@ -78,7 +78,7 @@ class Negative:
 
         What lies on the toe or shoulder comes back as it went, noisier; grain stays.
         """
-        from daguerre.frame import Frame
+        from daguerre.frame.frame import Frame
 
         stock = self.stock
         unit = luminance_exposure(self.metadata) * stock.iso
@@ -96,7 +96,7 @@ class Negative:
 
     def shown(self) -> Frame:
         """The print, or the slide, as a frame: lit so that its white is developed to white."""
-        from daguerre.frame import Frame
+        from daguerre.frame.frame import Frame
 
         facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
         facts["white_balance"] = facts["exposure_compensation"] = None

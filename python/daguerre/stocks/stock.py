@@ -19,7 +19,7 @@ from daguerre.sensors.curve import rising
 from .curve import CharacteristicCurve
 
 if TYPE_CHECKING:
-    from daguerre.frame import Frame
+    from daguerre.frame.frame import Frame
 
     from .negative import Negative
 

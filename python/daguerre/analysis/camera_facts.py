@@ -1,0 +1,278 @@
+"""What a photographer wants to know of a camera and a scene, without rendering.
+
+Depth of field and hyperfocal distance: S. F. Ray, Applied Photographic Optics, 3rd ed., ch. 22,
+for a thin lens of focal length f, f-stop N and circle of confusion c (f, c in the same unit):
+H = f^2 / (N c) + f;  near = s (H - f) / (H + s - 2 f);  far = s (H - f) / (H - s).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from daguerre.motion.subdivision import some_breaks
+from daguerre.scene.framing import bounds
+
+if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
+    from daguerre.scene.materials import Material
+    from daguerre.scene.parts import Instance
+    from daguerre.scene.scene import Scene
+
+#: A blur of 1/1500 of the diagonal is the classical limit of "sharp" (Ray, ch. 22).
+COC_PER_DIAGONAL = 1 / 1500
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A camera in numbers; None where something is unknown or without meaning.
+
+    Attributes:
+        lens: Name of the lens, or thin, or pinhole.
+        focal_length_mm: At infinity.
+        f_stop: None for a pinhole.
+        t_stop: As ``f_stop``, of the light that passes the glass; None without glass.
+        zoom_mm: Where a zoom stands.
+        zoom_range_mm: Shortest and longest focal length of a zoom.
+        squeeze: How much an anamorphic lens narrows the picture; else 1.
+        tilt_deg: Of the lens about x, then y.
+        decentered: How many elements are off the axis.
+        sensor_mm: Width, height.
+        picture_mm: The part of the sensor that a picture of the wanted shape covers.
+        field_of_view_deg: Of the sensor: horizontal, vertical, diagonal.
+        picture_field_of_view_deg: Of the picture, likewise.
+        focus_m: Distance of the sharp plane from the pupil; inf is infinity.
+        notes: How the focus was found, and what else was decided.
+        coc_mm: Circle of confusion that still counts as sharp.
+        hyperfocal_m: Focus here, and everything from half of it to infinity is sharp.
+        near_m: Where sharpness begins.
+        far_m: Where it ends.
+        pixel_pitch_um: Of the picture.
+        pupil_diameter_mm: Entrance pupil.
+        shutter_s: How long a point of the film is exposed.
+        shutter: The same in words, with what else the shutter does.
+        ev100: log2(N^2 / t) - log2(ISO / 100), ISO 2720.
+    """
+
+    lens: str
+    focal_length_mm: float
+    f_stop: float | None
+    t_stop: float | None
+    zoom_mm: float | None
+    zoom_range_mm: tuple[float, float] | None
+    squeeze: float
+    tilt_deg: tuple[float, float]
+    decentered: int
+    sensor_mm: tuple[float, float]
+    picture_mm: tuple[float, float]
+    field_of_view_deg: tuple[float, float, float]
+    picture_field_of_view_deg: tuple[float, float, float]
+    focus_m: float
+    notes: list[str]
+    coc_mm: float
+    hyperfocal_m: float | None
+    near_m: float | None
+    far_m: float | None
+    pixel_pitch_um: float
+    pupil_diameter_mm: float | None
+    shutter_s: float
+    shutter: str
+    ev100: float | None
+
+
+def camera_facts(
+    camera: Camera,
+    scene: Scene,
+    core_scene: Any = None,
+    resolution: tuple[int, int] = (960, 540),
+) -> Facts:
+    """The numbers of a camera, resolved as for a render.
+
+    Args:
+        camera: What is asked about.
+        scene: For ``focus_on``.
+        core_scene: For autofocus; see :func:`needs_autofocus`.
+        resolution: Shape of the picture, px.
+    """
+    from daguerre.camera.shutter import describe, shutter_time
+    from daguerre.setup.camera import set_up
+
+    setup = set_up(scene, camera, resolution, core_scene)
+    facts = setup.facts
+    focal, stop = float(facts["focal_length_mm"]), facts.get("f_stop")
+    focus, squeeze = float(facts.get("focus_distance_m", math.inf)), facts.get("squeeze", 1.0)
+    coc = math.hypot(*camera.sensor_size) * COC_PER_DIAGONAL
+    hyperfocal = near = far = None
+    if stop is not None:
+        hyperfocal = hyperfocal_m(focal, stop, coc)
+        near, far = depth_of_field_m(focal, stop, coc, focus)
+    shutter = shutter_time(camera)
+    ev100 = None
+    if stop is not None and shutter > 0:
+        ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
+    full = field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size, squeeze)
+    shown = field_of_view_deg(setup.pinhole_focal_length, setup.frame_size, squeeze)
+    projection = camera.at(scene.time).projection
+    if projection is not None:
+        full = shown = projection.field_of_view()
+    return Facts(
+        str(facts.get("lens", "thin")),
+        focal,
+        stop,
+        facts.get("t_stop"),
+        facts.get("zoom_mm"),
+        facts.get("zoom_range_mm"),
+        squeeze,
+        facts["tilt_deg"],
+        len(facts.get("decenter", ())),
+        camera.sensor_size,
+        setup.frame_size,
+        full,
+        shown,
+        focus,
+        setup.notes,
+        coc,
+        hyperfocal,
+        near,
+        far,
+        setup.frame_size[0] / resolution[0] * 1000,
+        None if stop is None else focal / stop,
+        shutter,
+        describe(camera, resolution),
+        ev100,
+    )
+
+
+def needs_autofocus(camera: Camera) -> bool:
+    """Whether the focus distance has to be measured in the scene."""
+    if camera.lens == "pinhole" or camera.lens_model == "pinhole":
+        return False
+    return camera.focus_distance is None or camera.focus_at is not None
+
+
+def hyperfocal_m(focal_mm: float, f_stop: float, coc_mm: float) -> float:
+    """H = f^2 / (N c) + f, m."""
+    return (focal_mm**2 / (f_stop * coc_mm) + focal_mm) / 1000
+
+
+def depth_of_field_m(
+    focal_mm: float, f_stop: float, coc_mm: float, focus_m: float
+) -> tuple[float, float]:
+    """Near and far limit of sharpness, m, for a focus distance from the lens, m."""
+    hyper = hyperfocal_m(focal_mm, f_stop, coc_mm)
+    f, s = focal_mm / 1000, focus_m
+    if math.isinf(s):
+        return hyper - f, math.inf
+    near = s * (hyper - f) / (hyper + s - 2 * f)
+    far = s * (hyper - f) / (hyper - s) if s < hyper else math.inf
+    return near, far
+
+
+def field_of_view_deg(
+    focal_mm: float, size_mm: tuple[float, float], squeeze: float = 1.0
+) -> tuple[float, float, float]:
+    """Full angles, 2 atan(d / 2 f): horizontal, vertical, diagonal.
+
+    ``focal_mm`` is that of the pinhole with the same framing; an anamorphic lens sees wider than
+    its film is by its squeeze.
+    """
+    width, height = size_mm[0] * squeeze, size_mm[1]
+    sides = (width, height, math.hypot(width, height))
+    h, v, d = (math.degrees(2 * math.atan(side / (2 * focal_mm))) for side in sides)
+    return h, v, d
+
+
+def camera_warnings(camera: Camera) -> list[str]:
+    """Values that are probably a mistake of units."""
+    found = []
+    focal, width = camera.focal_length, camera.sensor_size[0]
+    if focal is not None and not 1 <= focal <= 2000:
+        found.append(
+            f"the camera has a focal length of {_mm(focal)}, outside 1 mm .. 2 m; "
+            "is its unit mm, or are the units of the file wrong?"
+        )
+    if not 0.5 <= width <= 200:
+        found.append(
+            f"the camera has a sensor {_mm(width)} wide, outside 0.5 .. 200 mm; "
+            "is its unit mm, or are the units of the file wrong?"
+        )
+    return found
+
+
+def scene_facts(scene: Scene) -> dict[str, Any]:
+    """What is in a scene, counted."""
+    triangles = [len(mesh.indices) for mesh in scene.meshes]
+    corners = bounds(scene)
+    environment = scene.environment
+    light = None
+    if environment is not None:
+        image = environment.image
+        light = "even sky" if image is None else f"panorama {image.shape[1]} x {image.shape[0]}"
+    return {
+        "file": str(scene.path) if scene.path else None,
+        "meshes": len(scene.meshes),
+        "triangles": sum(triangles),
+        "instances": len(scene.instances),
+        "triangles_placed": sum(triangles[i.mesh] for i in scene.instances),
+        "bounds_m": [None, None] if corners is None else [c.tolist() for c in corners],
+        "materials": len(scene.materials),
+        "textures": [
+            {
+                "name": texture.name,
+                "width": int(texture.pixels.shape[1]),
+                "height": int(texture.pixels.shape[0]),
+                "channels": int(texture.pixels.shape[2]),
+            }
+            for texture in scene.textures
+        ],
+        "lights": dict(Counter(type(light).__name__ for light, _ in scene.lights)),
+        "emissive_instances": sum(_emits(scene, i) for i in scene.instances),
+        "environment": light,
+        "time_s": scene.time,
+        "animation_duration_s": scene.duration,
+        "moves": _moves(scene),
+        "variants": list(scene.variants),
+        "warnings": list(scene.warnings),
+    }
+
+
+def _moves(scene: Scene) -> dict[str, Any]:
+    """What changes over time: how many of each kind, and of the cameras which parameters."""
+    motion = scene.motion
+    counts = {
+        "instances": len(motion.instances),
+        "shown": len(motion.shown),
+        "meshes": len(motion.meshes),
+        "materials": len(motion.materials),
+        "lights": len(motion.lights),
+        "environment": int(motion.environment is not None),
+    }
+    cameras = {name: list(c.motion) for name, c in scene.cameras.items() if c.motion}
+    found: dict[str, Any] = {name: count for name, count in counts.items() if count}
+    return found | ({"cameras": cameras} if cameras else {})
+
+
+def lit(scene: Scene) -> bool:
+    """Whether there is any light, at any time."""
+    return bool(scene.lights or scene.environment or any(_emits(scene, i) for i in scene.instances))
+
+
+def _emits(scene: Scene, instance: Instance) -> bool:
+    over_time = scene.motion.materials.get(instance.material)
+    if over_time is not None:
+        times = [scene.time, *some_breaks(over_time, -math.inf, math.inf, 64)]
+        return any(_shines(over_time.at(t)) for t in times)
+    return _shines(scene.materials[instance.material])
+
+
+def _shines(material: Material) -> bool:
+    own = getattr(material.kind, "emissive", (0, 0, 0))
+    if getattr(material.kind, "unlit", False):
+        own = getattr(material.kind, "base_color", own)
+    return any(material.emission) or any(own)
+
+
+def _mm(value: float) -> str:
+    return f"{value / 1000:.3g} m" if abs(value) >= 1000 else f"{value:.3g} mm"

@@ -1,0 +1,1 @@
+"""Cameras in a photographer's terms: mm, m, s, degrees."""

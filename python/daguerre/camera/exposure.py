@@ -1,0 +1,113 @@
+"""Exposure of a camera: aperture, time and ISO as numbers, notes and metadata."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from daguerre.checks import number
+from daguerre.color.illuminants import white_xy
+
+if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
+
+
+#: Of a pinhole, whose own opening has no size: the stop of the photographer's sunny 16, two wider.
+PINHOLE_F_STOP = 8.0
+
+
+#: Of a camera's facts; h0 follows from the others, of a pinhole from its stop of exposure.
+_EXPOSURE_FACTS = (
+    *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
+    *("white_balance", "h0"),
+)
+
+
+def ideal_h0(f_number: float) -> float:
+    """Illuminance on the axis by a world of 1 cd/m2, lux, behind an ideal lens.
+
+    Args:
+        f_number: Working f-number: distance of the film / diameter of the exit pupil. Below 0.5
+            there is no such lens: light comes from no more than the half sphere.
+    """
+    return math.pi * min(1.0, 0.5 / f_number) ** 2
+
+
+def lens_h0(camera: Camera, facts: Mapping[str, Any], film_mm: float) -> float:
+    """``h0`` of the camera's lens as it is at mid-shutter, lux per cd/m2.
+
+    Args:
+        camera: For a pinhole's ``exposure_f_stop``.
+        facts: As resolved; a real lens brings its own h0.
+        film_mm: Film distance of an ideal lens.
+    """
+    if "h0" in facts:
+        return float(facts["h0"])
+    if "aperture_diameter_mm" in facts:
+        return ideal_h0(film_mm / facts["aperture_diameter_mm"])
+    return ideal_h0(camera.exposure_f_stop or PINHOLE_F_STOP)
+
+
+def exposure_facts(camera: Camera) -> dict[str, Any]:
+    """What was given of exposure beside shutter and stop, for metadata and hashes."""
+    usual = {"exposure_time": None, "exposure_f_stop": None, "responsivity": 1.0}
+    given = {name: getattr(camera, name) for name in usual}
+    return {name: value for name, value in given.items() if value != usual[name]}
+
+
+def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a camera's facts makes the light of a frame: the rest changes none of its bits."""
+    return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
+
+
+def exposure_notes(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -> list[str]:
+    """Where light and blur are not those of the same shutter and stop."""
+    notes = []
+    time, stop, own = camera.exposure_time, camera.exposure_f_stop, facts.get("f_stop")
+    if time is not None and not math.isclose(time, shutter_s):
+        notes.append(f"light is that of {time:g} s (exposure_time), blur that of the shutter")
+    if stop is not None and own is not None and not math.isclose(stop, own):
+        notes.append(f"light is that of f/{stop:g} (exposure_f_stop), blur that of f/{own:.3g}")
+    return notes
+
+
+def exposure_metadata(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -> dict[str, Any]:
+    """``expTime``, ``aperture``, ``h0`` and ``luminance_exposure`` of a frame; None: unknown.
+
+    Args:
+        camera: As given.
+        facts: As resolved, with ``h0``.
+        shutter_s: How long a point of the film is exposed, s.
+    """
+    time = shutter_s if camera.exposure_time is None else camera.exposure_time
+    own, asked = facts.get("f_stop"), camera.exposure_f_stop
+    white = camera.white_balance
+    light = facts["h0"] * time * camera.responsivity
+    if own is not None and asked is not None:
+        light *= (own / asked) ** 2
+    return {
+        "expTime": time,
+        "aperture": asked if asked is not None else own,
+        "h0": facts["h0"],
+        "luminance_exposure": light if light > 0 else None,
+        "exposure_compensation": camera.exposure_compensation or None,
+        "white_balance": white,
+        "adoptedNeutral": None if white is None else white_xy(white),
+    }
+
+
+def check_exposure(camera: Camera) -> None:
+    """Refuses exposure parameters that no camera has.
+
+    Raises:
+        UsageError: The message names the parameter.
+    """
+    for name in ("exposure_time", "exposure_f_stop"):
+        value = getattr(camera, name)
+        if value is not None:
+            number(value, f"camera: {name}", above=0)
+    number(camera.responsivity, "camera: responsivity", above=0)
+    number(camera.exposure_compensation, "camera: exposure_compensation", -64, 64)
+    if camera.white_balance is not None:
+        white_xy(camera.white_balance, "camera: white_balance")

@@ -1,0 +1,73 @@
+"""Light that the lens's own parts scatter: what they are like, and how much of it is followed.
+
+See ``docs/scatter.md``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import daguerre._core as _core
+from daguerre.checks import number, numbers, short
+from daguerre.errors import UsageError
+
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = 2.0
+
+
+@dataclass(frozen=True)
+class LensScatter:
+    """How the parts of a lens scatter light; the defaults are a well-made lens.
+
+    Attributes:
+        barrel: Share of light that the barrel and the blackened edges of the glass send to all
+            sides, 0 to 1.
+        barrel_gloss: Share that they send into a lobe about the mirror image, straight on; it grows
+            toward grazing light.
+        blades: As ``barrel``, of the iris's blades.
+        blades_gloss: As ``barrel_gloss``.
+        gloss_lobe: Of that lobe: where it begins to fall (sine of the angle) and the power by which
+            it does.
+        surface_rms_nm: RMS roughness of every polished surface, nm.
+        surface_lobe: Of what they scatter, as ``gloss_lobe``.
+    """
+
+    barrel: float = 0.03
+    barrel_gloss: float = 0.005
+    blades: float = 0.03
+    blades_gloss: float = 0.005
+    gloss_lobe: tuple[float, float] = (0.1, -2.5)
+    surface_rms_nm: float = 1.0
+    surface_lobe: tuple[float, float] = (0.01, -1.5)
+
+
+def core_parts(given: Any) -> _core.LensScatter:
+    """Checks values and makes the core's record; None: the defaults.
+
+    Raises:
+        UsageError: Values that cannot be.
+    """
+    parts = LensScatter() if given is None else given
+    where = "camera: scatter"
+    if not isinstance(parts, LensScatter):
+        raise UsageError(f"{where}: wanted a LensScatter, got {short(parts)}")
+    for name in ("barrel", "barrel_gloss", "blades", "blades_gloss"):
+        number(getattr(parts, name), f"{where}: {name}", 0, 1)
+    number(parts.surface_rms_nm, f"{where}: surface_rms_nm", 0, 1000)
+    lobes = [
+        (float(knee), float(slope))
+        for knee, slope in (
+            numbers(getattr(parts, name), f"{where}: {name}", 2, "where it falls, and the power")
+            for name in ("gloss_lobe", "surface_lobe")
+        )
+    ]
+    try:
+        return _core.LensScatter(
+            (float(parts.barrel), float(parts.barrel_gloss), lobes[0]),
+            (float(parts.blades), float(parts.blades_gloss), lobes[0]),
+            float(parts.surface_rms_nm),
+            lobes[1],
+        )
+    except ValueError as error:
+        raise UsageError(f"camera: {error}") from None

@@ -1,0 +1,252 @@
+"""Cameras that are known by a calibration, or by the formula of their picture, and not by glass.
+
+Numbers are those of calibration files: focal lengths and principal point in pixels, **pixel centres
+at integers** as OpenCV has them (the middle of the upper left pixel is (0, 0)), y down.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+import daguerre._core as _core
+from daguerre.checks import number, numbers, short, to_numbers, whole
+from daguerre.errors import UsageError, suggest
+
+FloatArray = NDArray[np.float64]
+
+#: Names of the parameters of each model, in order; those that are not given are 0.
+MODELS: dict[str, tuple[str, ...]] = {
+    "rectilinear": (),
+    "equidistant": (),
+    "equisolid": (),
+    "stereographic": (),
+    "orthographic": (),
+    "equirectangular": (),
+    "cube": (),
+    "opencv": (
+        *("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
+        *("s1", "s2", "s3", "s4", "tilt_x", "tilt_y"),
+    ),
+    "kannala_brandt": ("k1", "k2", "k3", "k4"),
+    "double_sphere": ("xi", "alpha"),
+    "eucm": ("alpha", "beta"),
+    "omni": ("xi", "k1", "k2", "p1", "p2"),
+    "fov": ("w",),
+    "opencv_inverse": ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
+}
+#: Models that have no picture of their own with all parameters 0.
+NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
+
+
+@dataclass(frozen=True)
+class Projection:
+    """How directions become pixels.
+
+    Attributes:
+        model: One of ``MODELS``.
+        size: Width and height of the picture that the numbers are about, px. A picture may be
+            rendered in any size of the same shape.
+        focal: Focal lengths, px, along x and y; of ``equirectangular`` pixels per radian, of
+            ``cube`` per side of a face.
+        principal: Where the axis meets the picture, px; None: its middle.
+        parameters: Of the model; see ``MODELS``.
+    """
+
+    model: str
+    size: tuple[int, int]
+    focal: tuple[float, float]
+    principal: tuple[float, float] | None = None
+    parameters: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        where = "projection"
+        if self.model not in MODELS:
+            raise UsageError(
+                f"{where}: model: wanted {', '.join(MODELS)}; got {short(self.model)}"
+                f"{suggest(str(self.model), MODELS)}"
+            )
+        wanted = "two whole numbers of pixels"
+        width, height = numbers(self.size, f"{where}: size", 2, wanted)
+        for side in (width, height):
+            whole(int(side) if side == int(side) else side, f"{where}: size", 1, 65536)
+        for value in numbers(self.focal, f"{where}: focal", 2, "two focal lengths, px"):
+            number(value, f"{where}: focal", 0, 1e9, above=0)
+        if self.principal is not None:
+            numbers(self.principal, f"{where}: principal", 2, "a point (x, y), px")
+        names = MODELS[self.model]
+        least = NEEDED.get(self.model, 0)
+        given = to_numbers(self.parameters, where, "parameters", "numbers", UsageError)
+        if given.ndim != 1 or not least <= given.size <= len(names):
+            raise UsageError(
+                f"{where}: parameters: {self.model} has {', '.join(names) or 'none'}; wanted "
+                f"{least} to {len(names)} numbers, got shape {given.shape}"
+            )
+        object.__setattr__(self, "size", (int(width), int(height)))
+        object.__setattr__(self, "focal", tuple(float(f) for f in self.focal))
+        object.__setattr__(self, "parameters", tuple(float(k) for k in given))
+        try:
+            _ = self.core
+        except ValueError as error:
+            raise UsageError(str(error)) from None
+
+    @classmethod
+    def of_field(
+        cls, model: str, size: tuple[int, int], field: float, parameters: Sequence[float] = ()
+    ) -> Projection:
+        """With the focal length that shows a field of view across the width, in the middle.
+
+        Args:
+            model: One of ``MODELS``.
+            size: px.
+            field: Of view across the width, degrees; of ``cube`` all six faces fill it.
+            parameters: Of the model.
+
+        Raises:
+            UsageError: The model does not see so far.
+        """
+        width, height = numbers(size, "projection: size", 2, "two whole numbers of pixels")
+        if model == "cube":
+            return cls(model, size, (width / 6, min(height, width / 6)), None, tuple(parameters))
+        number(field, "projection: field", 0, 360, above=0)
+        unit = cls(model, size, (1.0, 1.0), None, tuple(parameters))
+        half = math.radians(field) / 2
+        edge = unit.core.project(np.array([[math.sin(half), 0.0, math.cos(half)]]))[0, 0]
+        if math.isnan(edge) or edge <= 0:
+            raise UsageError(
+                f"projection: field: {model} sees up to {2 * unit.largest_angle:.4g} degrees, got "
+                f"{field:g}"
+            )
+        focal = width / 2 / edge
+        return cls(model, size, (focal, focal), None, tuple(parameters))
+
+    @cached_property
+    def core(self) -> _core.ProjectionModel:
+        """The core's model, in units of the focal length."""
+        return _core.ProjectionModel(self.model, [float(k) for k in self.parameters])
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """The principal point, px."""
+        width, height = self.size
+        return self.principal or ((width - 1) / 2, (height - 1) / 2)
+
+    @property
+    def largest_angle(self) -> float:
+        """From the axis, up to which the model is valid, degrees."""
+        return math.degrees(self.core.largest_angle)
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether what lies beside the camera or behind it may be seen."""
+        return bool(self.core.is_wide)
+
+    def field_of_view(self) -> tuple[float, float, float]:
+        """Of its picture: across, down and along the diagonal, degrees; NaN where nothing is seen.
+
+        The angles of the two edges from the axis, one after the other; of a panorama all around.
+        """
+        (width, height), (x, y) = self.size, self.center
+        left, right, top, bottom = -0.5, width - 0.5, -0.5, height - 0.5
+        ends = [[left, y], [right, y], [x, top], [x, bottom], [left, top], [right, bottom]]
+        if self.model in ("equirectangular", "cube"):
+            return (360.0, 180.0, 360.0)
+        seen = self.unproject(ends)
+        angles = np.degrees(np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2]))
+        across, down, diagonal = (float(a) for a in angles.reshape(3, 2).sum(axis=1))
+        return across, down, diagonal
+
+    @property
+    def form(self) -> tuple[str, tuple[int, int]]:
+        """Model and size: what all keys of a projection over time have in common."""
+        return self.model, self.size
+
+    def blended(self, other: Projection, share: float) -> Projection:
+        """What lies between it and another of the same form, number by number."""
+
+        def mix(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
+            both = zip_longest(a, b, fillvalue=0.0)  # parameters that are not given are 0
+            return tuple(x + share * (y - x) for x, y in both)
+
+        focal, center = mix(self.focal, other.focal), mix(self.center, other.center)
+        parameters = mix(self.parameters, other.parameters)
+        return Projection(
+            *(self.model, self.size, (focal[0], focal[1]), (center[0], center[1]), parameters)
+        )
+
+    def project(self, points: ArrayLike) -> FloatArray:
+        """Pixels of points of the camera's own frame as OpenCV has it: x right, y down, z ahead.
+
+        Args:
+            points: Shape (N, 3), of any unit.
+
+        Returns:
+            Shape (N, 2), px; NaN outside of the model's valid field.
+        """
+        given = _rows(points, 3)
+        return np.asarray(self.core.project(given) * self.focal + self.center)
+
+    def unproject(self, pixels: ArrayLike) -> FloatArray:
+        """Unit directions (x right, y down, z ahead) that pixels see; NaN where they see none.
+
+        Args:
+            pixels: Shape (N, 2), pixel centres at integers.
+
+        Returns:
+            Shape (N, 3).
+        """
+        given = (_rows(pixels, 2) - self.center) / self.focal
+        return np.asarray(self.core.unproject(np.ascontiguousarray(given)))
+
+    def film(self, width_mm: float) -> dict[str, Any]:
+        """Focal lengths and principal point on a film that is so wide, mm, upright.
+
+        Pixels of the numbers have their centres at integers, those of a picture at halves.
+        """
+        pitch = width_mm / self.size[0]
+        x, y = self.center
+        return {
+            "focal_mm": tuple(f * pitch for f in self.focal),
+            "principal_mm": (
+                (x + 0.5 - self.size[0] / 2) * pitch,
+                (self.size[1] / 2 - y - 0.5) * pitch,
+            ),
+        }
+
+    def facts(self) -> dict[str, Any]:
+        """For metadata and hashes."""
+        return {
+            "model": self.model,
+            "size": list(self.size),
+            "focal_px": list(self.focal),
+            "principal_px": list(self.center),
+            "parameters": list(self.parameters),
+        }
+
+
+def check_resolution(projection: Projection, resolution: tuple[int, int]) -> None:
+    """A picture must have the shape of the one that was calibrated.
+
+    Raises:
+        UsageError: It has another.
+    """
+    (width, height), (columns, rows) = projection.size, resolution
+    if abs(rows - columns * height / width) > 0.5:
+        raise UsageError(
+            f"projection: its picture is {width} x {height}: wanted a resolution of that shape, "
+            f"such as {columns} x {round(columns * height / width)}, got {columns} x {rows}"
+        )
+
+
+def _rows(values: ArrayLike, columns: int) -> FloatArray:
+    given = to_numbers(values, "projection", "points", f"shape (N, {columns})", UsageError)
+    if given.ndim != 2 or given.shape[1] != columns:
+        raise UsageError(f"projection: points: wanted shape (N, {columns}), got {given.shape}")
+    return np.ascontiguousarray(given, np.float64)

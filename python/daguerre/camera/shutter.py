@@ -1,0 +1,248 @@
+"""The shutter in a photographer's terms: when which line of pixels is exposed.
+
+Times are seconds. ``shutter_time`` is how long a point of the film sees light, from the first to
+the last of it; a shutter that scans needs longer for the whole frame. What each type does, and
+where the default times come from, is told in docs/motion.md.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import daguerre._core as _core
+from daguerre.checks import number, short
+from daguerre.errors import UsageError, suggest
+
+from .rolling_shutter import RollingShutter
+
+if TYPE_CHECKING:
+    from .camera import Camera
+
+TYPES = ("box", "leaf", "focal_plane", "rotary", "electronic")
+SCAN_ORDERS = ("top", "bottom", "left", "right")
+DEFAULT_ANGLE = 180.0
+#: Travel of the curtains: the flash synchronisation time of a fast camera is little more.
+CURTAIN_S = 1 / 300
+#: Reading a full-frame sensor of a video camera.
+READOUT_S = 1 / 60
+#: What the gate takes of the turn of a rotating disc, degrees.
+GATE_ANGLE = 60.0
+#: A leaf shutter is on its way for as long as it rests wide open (radius).
+LEAF_EFFICIENCY = 0.75
+#: Far beyond any shutter: what lies outside is a mistake.
+MAX_TIME = 1e6
+MAX_ANGLE = 360e6
+FPS_RANGE = (1e-6, 1e9)
+MAX_OFFSET = 1e9
+MAX_POINTS = 4096
+
+
+def shutter_time(camera: Camera) -> float:
+    """How long a point of the film is exposed, s."""
+    if camera.shutter_time is not None:
+        return float(camera.shutter_time)
+    angle = DEFAULT_ANGLE if camera.shutter_angle is None else camera.shutter_angle
+    return float(angle / 360 / camera.fps)
+
+
+def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
+    """The shutter for a frame of this size.
+
+    Raises:
+        UsageError: A parameter is wrong, or does not go with another.
+    """
+    check(camera)
+    order, line_time = scan(camera, resolution)
+    try:
+        return _core.Shutter(
+            shutter_time(camera), _curve(camera), order, line_time, _is_leaf(camera), resolution
+        )
+    except ValueError as error:
+        raise UsageError(f"camera: {error}") from None
+
+
+def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[float, float]:
+    """From the first light on the first line to the last on the last one, s of scene time.
+
+    It stands around ``time``, unless ``shutter_offset`` says when it opens.
+
+    Raises:
+        UsageError: As of ``core_shutter``; or the time is no number, or so large that doubles
+            cannot tell the opening from the closing.
+    """
+    duration = core_shutter(camera, resolution).duration_s
+    begin = number(time, "scene: time") - duration / 2
+    if camera.shutter_offset is not None:
+        begin = time + camera.shutter_offset / camera.fps
+    end = begin + duration
+    if abs(end - begin - duration) > 0.01 * duration:
+        raise UsageError(
+            f"scene: time: wanted one at which {duration:g} s can be told apart, got {time:g} s"
+        )
+    return begin, end
+
+
+def facts(camera: Camera, resolution: tuple[int, int]) -> dict[str, Any]:
+    """The shutter as resolved: for metadata and hashes, JSON-able."""
+    order, line_time = scan(camera, resolution)
+    begin, end = interval(camera, 0.0, resolution)
+    return {
+        "type": type_of(camera),
+        "time_s": shutter_time(camera),
+        "opens_s": begin,
+        "closes_s": end,
+        "curve": [list(point) for point in _curve(camera).nodes],
+        "fps": camera.fps,
+        **({} if order == "none" else {"scan_order": order, "line_time_s": line_time}),
+    }
+
+
+def metadata(camera: Camera) -> dict[str, Any]:
+    """By the names of the EXR attributes; the angle where the exposure fits into a frame."""
+    time = shutter_time(camera)
+    angle = 360 * time * camera.fps
+    fits = angle <= 360
+    return {
+        "expTime": time,
+        "shutterAngle": angle if fits else None,
+        "captureRate": camera.fps if fits else None,
+    }
+
+
+def type_of(camera: Camera) -> str:
+    """The type: what is asked for, else electronic where lines are exposed in turn, else box."""
+    return camera.shutter_type or ("box" if camera.rolling_shutter is None else "electronic")
+
+
+def check(camera: Camera) -> None:
+    """Refuses what is no shutter, and rivals."""
+    if camera.shutter_time is not None:
+        number(camera.shutter_time, "camera: shutter_time", 0, MAX_TIME)
+    if camera.shutter_angle is not None:
+        number(camera.shutter_angle, "camera: shutter_angle", 0, MAX_ANGLE)
+    number(camera.fps, "camera: fps", *FPS_RANGE)
+    if camera.shutter_offset is not None:
+        number(camera.shutter_offset, "camera: shutter_offset", -MAX_OFFSET, MAX_OFFSET)
+    if camera.shutter_time is not None and camera.shutter_angle is not None:
+        raise UsageError("camera: wanted either shutter_time or shutter_angle, got both")
+    kind = camera.shutter_type
+    if kind is not None and kind not in TYPES:
+        raise UsageError(
+            f"camera: shutter_type: wanted {', '.join(TYPES)}, got {kind!r}"
+            f"{suggest(str(kind), TYPES)}"
+        )
+    if kind == "rotary" and shutter_time(camera) > 1 / camera.fps:
+        raise UsageError(
+            f"camera: shutter_type rotary: a disc is open for {1 / camera.fps:g} s at most "
+            f"at {camera.fps:g} frames per second, got {shutter_time(camera):g} s"
+        )
+    _check_rolling(camera)
+    _curve(camera)
+
+
+def _check_rolling(camera: Camera) -> None:
+    rolling = camera.rolling_shutter
+    if rolling is None:
+        return
+    where = "camera: rolling_shutter"
+    if not isinstance(rolling, RollingShutter):
+        raise UsageError(f"{where}: wanted a RollingShutter, got {short(rolling)}")
+    if camera.shutter_type in ("box", "leaf"):
+        raise UsageError(
+            f"{where}: a {camera.shutter_type} shutter exposes all lines at once; "
+            "wanted focal_plane, rotary or electronic"
+        )
+    order = rolling.scan_order
+    if order not in SCAN_ORDERS:
+        raise UsageError(
+            f"{where}: scan_order: wanted {', '.join(SCAN_ORDERS)}, got {order!r}"
+            f"{suggest(str(order), SCAN_ORDERS)}"
+        )
+    if (rolling.line_time is None) == (rolling.readout_time is None):
+        got = "none" if rolling.line_time is None else "both"
+        raise UsageError(f"{where}: wanted either line_time or readout_time, got {got}")
+    for name in ("line_time", "readout_time"):
+        value = getattr(rolling, name)
+        if value is not None:
+            number(value, f"{where}: {name}", 0, MAX_TIME)
+
+
+def scan(camera: Camera, resolution: tuple[int, int]) -> tuple[str, float]:
+    """Which lines come first (none: all at once), and the time from one to the next, s."""
+    usual = {
+        # Curtains fall, and the picture on the film is upside down.
+        "focal_plane": RollingShutter("bottom", readout_time=CURTAIN_S),
+        "rotary": RollingShutter("left", readout_time=GATE_ANGLE / 360 / camera.fps),
+        "electronic": RollingShutter("top", readout_time=READOUT_S),
+    }
+    rolling = camera.rolling_shutter or usual.get(type_of(camera))
+    if rolling is None:
+        return "none", 0.0
+    lines = resolution[1 if rolling.scan_order in ("top", "bottom") else 0]
+    if rolling.line_time is not None:
+        return rolling.scan_order, float(rolling.line_time)
+    return rolling.scan_order, float(rolling.readout_time or 0.0) / lines
+
+
+def _is_leaf(camera: Camera) -> bool:
+    return type_of(camera) == "leaf"
+
+
+def _curve(camera: Camera) -> _core.OpeningCurve:
+    curve: Any = camera.shutter_curve
+    if curve is None:
+        curve = ("trapezoid", LEAF_EFFICIENCY) if _is_leaf(camera) else "box"
+    where = "camera: shutter_curve"
+    wanted = "box, ('trapezoid', efficiency) or points [(fraction of the time, opening), ...]"
+    if isinstance(curve, str):
+        if curve == "box":
+            return _core.OpeningCurve()
+        hint = "; it takes its efficiency: ('trapezoid', 0.8)" if curve == "trapezoid" else ""
+        raise UsageError(
+            f"{where}: wanted {wanted}, got {curve!r}{hint or suggest(curve, ('box', 'trapezoid'))}"
+        )
+    if isinstance(curve, tuple) and len(curve) == 2 and isinstance(curve[0], str):
+        if curve[0] != "trapezoid":
+            raise UsageError(f"{where}: wanted {wanted}, got {curve!r}")
+        efficiency = number(curve[1], f"{where}: efficiency", 0.5, 1)
+        return _core.OpeningCurve.trapezoid(efficiency)
+    return _points(curve, where, wanted)
+
+
+def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
+    try:
+        points = np.array(curve, np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}") from None
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}")
+    try:
+        return _core.OpeningCurve.points(
+            np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
+        )
+    except ValueError as error:
+        raise UsageError(f"camera: {error}") from None
+
+
+def describe(camera: Camera, resolution: tuple[int, int]) -> str:
+    """One line for people, such as ``1/48 s, 180 deg at 24 fps, box``."""
+    time, kind = shutter_time(camera), type_of(camera)
+    if time == 0:
+        parts = ["0 s (frozen)"]
+    else:
+        parts = [f"1/{1 / time:.4g} s" if time < 0.5 else f"{time:.4g} s"]
+        if time * camera.fps <= 1:
+            parts.append(f"{360 * time * camera.fps:.4g} deg at {camera.fps:.4g} fps")
+    parts.append(kind)
+    order, _ = scan(camera, resolution)
+    if order != "none":
+        whole = core_shutter(camera, resolution).duration_s
+        parts.append(f"from the {order}, {whole * 1e3:.4g} ms in all")
+    efficiency = _curve(camera).mean
+    if not math.isclose(efficiency, 1):
+        what = "mean radius" if kind == "leaf" else "efficiency"
+        parts.append(f"{what} {efficiency:.3g}")
+    return ", ".join(parts)

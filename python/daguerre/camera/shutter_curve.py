@@ -1,0 +1,76 @@
+"""Measured shutters: a table of time and opening, as text."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+from daguerre.errors import InputError
+
+from .shutter import MAX_POINTS
+
+_MAX_BYTES = 1 << 20
+
+
+def read_curve(path: Path) -> list[tuple[float, float]]:
+    """Points (fraction of the time, opening) of a file with two columns.
+
+    The columns are parted by commas, semicolons or blanks; lines with # are remarks, and the
+    first line may hold names. Times are in any unit: the first is where the exposure begins, the
+    last where it ends. Openings are in any unit, too: the largest is open.
+
+    Raises:
+        InputError: The file cannot be read, or is no such table; the message names the line.
+    """
+    try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # it might never end
+            raise InputError(f"{path}: wanted a file, got a device or a pipe")
+        if path.stat().st_size > _MAX_BYTES:
+            raise InputError(f"{path}: wanted a table of at most {_MAX_BYTES >> 20} MiB")
+        lines = path.read_text("utf-8-sig").splitlines()
+    except OSError as error:
+        reason = error.strerror or error
+        raise InputError(
+            f"--shutter-curve {path}: wanted box, trapezoid:E or a file: {reason}"
+        ) from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: wanted a table as text, got other bytes") from None
+    points: list[tuple[float, float]] = []
+    named = False
+    for i, line in enumerate(lines, 1):
+        words = [word for word in re.split(r"[,;\s]+", line.partition("#")[0].strip()) if word]
+        if not words:
+            continue
+        numbers = _numbers(words)
+        if numbers is None:
+            if points or named:
+                raise InputError(f"{path}: line {i}: wanted time and opening, got {line[:60]!r}")
+            named = True
+            continue
+        if points and numbers[0] < points[-1][0]:
+            raise InputError(
+                f"{path}: line {i}: wanted times that do not fall, got {numbers[0]:g} "
+                f"after {points[-1][0]:g}"
+            )
+        points.append(numbers)
+        if len(points) > MAX_POINTS:
+            raise InputError(f"{path}: wanted at most {MAX_POINTS} points")
+    return _over_the_exposure(path, points)
+
+
+def _over_the_exposure(path: Path, points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    if len(points) < 2 or not points[-1][0] > points[0][0]:
+        raise InputError(f"{path}: wanted at least two points of different times")
+    begin, end = points[0][0], points[-1][0]
+    return [(min(1.0, (t - begin) / (end - begin)), opening) for t, opening in points]
+
+
+def _numbers(words: list[str]) -> tuple[float, float] | None:
+    if len(words) != 2:
+        return None
+    try:
+        time, opening = float(words[0]), float(words[1])
+    except ValueError:
+        return None
+    return (time, opening) if math.isfinite(time) and math.isfinite(opening) else None

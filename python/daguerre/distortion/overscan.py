@@ -1,0 +1,97 @@
+"""Overscan needed so that undistorting or distorting a picture leaves no holes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.camera.overscan import Overscan, check_overscan
+from daguerre.errors import UsageError
+from daguerre.scene.scene import Scene
+
+from .rectified import Sight
+
+FloatArray = NDArray[np.float64]
+
+
+#: Pixels that the filters of ``daguerre post`` read around a point.
+FILTER_MARGIN = 4
+
+
+#: More than that many times the picture's side beside it is a mistake, or no picture any more.
+MOST = 2.0
+
+
+def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
+    """What a straightened picture of the same size needs beside the picture that it is made of.
+
+    Raises:
+        UsageError: It would need what the camera does not show, or a picture many times as large.
+    """
+    return _reach(sight, sight.bent_from_straight, where)
+
+
+def note(overscan: Overscan) -> str:
+    """What ``"undistort"`` was found to be, for people."""
+    told = f"{overscan} px" if overscan else "none is needed"
+    return f"overscan (left, top, right, bottom) to straighten the picture: {told}"
+
+
+def to_redistort(sight: Sight) -> Overscan | None:
+    """What an ideal picture needs beside it to be bent into one without holes; None: no bounds."""
+
+    def place(points: FloatArray) -> FloatArray:
+        found = sight.straight_from_bent(points)
+        dark = ~sight.sees(points)  # nothing is needed for what is dark
+        found[dark] = np.array(sight.resolution) / 2
+        return found
+
+    try:
+        return _reach(sight, place, "")
+    except UsageError:
+        return None
+
+
+def _reach(sight: Sight, place: Any, where: str) -> Overscan:
+    """How far the pixels of the display window, by a map, reach out of it."""
+    width, height = sight.resolution
+    # The map is smooth: its corners and edges reach farthest, but for folds within.
+    x, y = (np.linspace(0, n, min(n, 256) + 1) for n in (width, height))
+    at = np.stack(np.meshgrid(x, y), axis=-1)
+    found = place(at.reshape(-1, 2)).reshape(at.shape)
+    lost = ~np.isfinite(found).all(axis=2)
+    if lost.any():
+        row, column = np.argwhere(lost)[0]
+        raise UsageError(
+            f"{where}: impossible: the camera shows nothing of what the straight picture has at "
+            f"({x[column]:.0f}, {y[row]:.0f}) px ({lost.mean():.2g} of the picture); wanted a "
+            "number of pixels"
+        )
+    (left, top), (right, bottom) = found.min(axis=(0, 1)), found.max(axis=(0, 1))
+    beside = (-left, -top, right - width, bottom - height)
+    if max(beside) > MOST * max(width, height):
+        raise UsageError(
+            f"{where}: would take {max(beside):.0f} px beside a picture of {width} x {height}; "
+            "wanted a number of pixels"
+        )
+    # Rounding is no distortion: a camera that bends nothing needs nothing.
+    return Overscan(*(math.ceil(n) + FILTER_MARGIN if n > 0.01 else 0 for n in beside))
+
+
+def overscan_of(
+    wanted: Any,
+    camera: Camera,
+    resolution: tuple[int, int],
+    scene: Scene | None,
+    core_scene: _core.Scene | None,
+) -> Overscan:
+    """Pixels beside the picture that are asked for; ``"undistort"``: as the camera needs them."""
+    found = check_overscan(wanted, resolution)
+    if found is not None:
+        return found
+    return to_undistort(Sight(camera, resolution, scene=scene, core_scene=core_scene))

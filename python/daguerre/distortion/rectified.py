@@ -1,0 +1,116 @@
+"""Where the pixels of a camera look, and where the ideal camera would have put what they see.
+
+Pixels have their middles at halves: (0, 0) is the upper left corner of the picture.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.overscan import NONE, Overscan
+from daguerre.errors import UsageError
+from daguerre.scene.scene import Scene
+from daguerre.setup.camera import set_up
+
+FloatArray = NDArray[np.float64]
+
+
+class Sight:
+    """A camera as it is in the middle of its exposure, and the ideal camera in its place.
+
+    The ideal camera is the pinhole with the same focal length near the axis, principal point and
+    squeeze: a rectilinear picture, in which straight things are straight. What both see lies on the
+    plane in focus, since the entrance pupil of a real lens moves with the angle.
+
+    Args:
+        camera: Its focus must be stated, or the scene given.
+        resolution: Of the picture, px.
+        scene: For autofocus and the time.
+        core_scene: The same, built.
+        overscan: Pixels beside the picture that are asked for, too.
+    """
+
+    def __init__(
+        self,
+        camera: Camera,
+        resolution: tuple[int, int],
+        *,
+        scene: Scene | None = None,
+        core_scene: _core.Scene | None = None,
+        overscan: Overscan = NONE,
+    ) -> None:
+        scene = scene or Scene()
+        begin, end = shutter.interval(camera, scene.time, resolution)
+        still = camera.at(0.5 * (begin + end))
+        self.resolution = resolution
+        self.setup = set_up(scene, still, resolution, core_scene, overscan=overscan)
+        facts = self.setup.facts
+        self._center = np.array(facts["shift_mm"])
+        self._pitch = np.array(self.setup.frame_size) / resolution
+        self._chief = self.setup.core.chief_rays()
+        model = facts.get("projection")
+        if model is None:
+            f = self.setup.pinhole_focal_length
+            self._focal = np.array([f / facts.get("squeeze", 1.0), f])
+            self._principal = np.zeros(2)
+        else:
+            if model["model"] == "cube":
+                raise UsageError("stmap: a cube has no picture that could be straightened")
+            film = still.projection.film(self.setup.frame_size[0])  # type: ignore[union-attr]
+            self._focal, self._principal = map(np.array, (film["focal_mm"], film["principal_mm"]))
+
+    @cached_property
+    def distance(self) -> float:
+        """Of the plane on which both cameras are compared, m."""
+        return float(self.setup.facts.get("focus_distance_m", math.inf))
+
+    def bent_from_straight(self, pixels: FloatArray) -> FloatArray:
+        """Where the camera has what the ideal camera has at points (N, 2), px; NaN: nowhere."""
+        slopes = (self._film(pixels) - self._principal) / self._focal
+        ahead = np.column_stack([slopes, -np.ones(len(slopes))])
+        endless = math.isinf(self.distance)
+        points = ahead if endless else ahead * self.distance
+        return self._pixels(self._chief.film_points(np.ascontiguousarray(points), endless))
+
+    def straight_from_bent(self, pixels: FloatArray) -> FloatArray:
+        """Where the ideal camera has what the camera has at points (N, 2), px; NaN: nowhere."""
+        origins, directions = self._chief.rays(np.ascontiguousarray(self._film(pixels)))
+        seen = self.sees(pixels)
+        ahead = -directions[:, 2]
+        known = seen & (ahead > 1e-9)
+        ahead = np.where(known, ahead, np.nan)
+        slopes = directions[:, :2] / ahead[:, None]
+        if math.isfinite(self.distance):
+            # The ray meets the plane z = -distance at origin + way * direction.
+            slopes = (origins[:, :2] + (self.distance + origins[:, 2:]) * slopes) / self.distance
+        return self._pixels(slopes * self._focal + self._principal)
+
+    def sees(self, pixels: FloatArray) -> NDArray[np.bool_]:
+        """Whether light comes to points (N, 2), px."""
+        film = np.ascontiguousarray(self._film(pixels))
+        return np.asarray(self._chief.sees(self.setup.core, film))
+
+    def _film(self, pixels: FloatArray) -> FloatArray:
+        """Film points (mm, upright) of pixels."""
+        away = np.asarray(pixels, np.float64) - np.array(self.resolution) / 2
+        return np.asarray(away * self._pitch * (1, -1) + self._center)
+
+    def _pixels(self, film: FloatArray) -> FloatArray:
+        away = (film - self._center) * (1, -1) / self._pitch
+        return np.asarray(away + np.array(self.resolution) / 2)
+
+
+def built(scene: Scene | None, camera: Camera, resolution: tuple[int, int]) -> _core.Scene | None:
+    """The scene as a camera sees it, for autofocus; None where there is none."""
+    if scene is None:
+        return None
+    from daguerre.setup.scene import build
+
+    return build(scene, shutter.interval(camera, scene.time, resolution))

@@ -1,0 +1,1 @@
+"""Pictures in memory: linear frames, raw mosaics, display pictures."""

@@ -1,0 +1,357 @@
+"""A frame: what a camera recorded, scene-linear, with its auxiliary channels and its facts."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color.display import _into_gamut, _shoulder, _srgb
+from daguerre.errors import InputError, MismatchError, UsageError, suggest
+
+from .aovs import AOV_NAMES
+
+if TYPE_CHECKING:
+    import os
+
+    from daguerre.sensors.sensor import Sensor
+
+    from .raw import Raw
+
+TONES = ("srgb", "soft")
+FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
+_STRIPE = 64  # rows
+
+
+@dataclass
+class Frame:
+    """A picture in the making or made.
+
+    Attributes:
+        rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
+        xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
+        alpha: Share of the samples that hit something, shape (H, W); by default 1.
+        variance: Variance of the mean of R, G, B, shape (H, W, 3).
+        flare: What ghosts brought to ``rgb``, shape (H, W, 3), if they were drawn.
+        samples: Samples per pixel, shape (H, W).
+        aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
+            with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
+        metadata: Facts of camera and render; see ``daguerre.io.exr``.
+        channels: What the sensor named in the metadata sees, shape (H, W, C), where one was named:
+            D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
+        bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
+            of luminance 1 is some 1 in each.
+        bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
+    """
+
+    rgb: NDArray[np.float32]
+    xyz: NDArray[np.float32] | None = None
+    alpha: NDArray[np.float32] = field(default_factory=lambda: np.empty((0, 0), np.float32))
+    variance: NDArray[np.float32] | None = None
+    samples: NDArray[np.uint32] | None = None
+    aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
+    metadata: dict[str, Any] = field(default_factory=dict)
+    bad_samples: tuple[int, list[tuple[int, int, int]]] = (0, [])
+    flare: NDArray[np.float32] | None = None
+    channels: NDArray[np.float32] | None = None
+    bands: NDArray[np.float32] | None = None
+
+    def __post_init__(self) -> None:
+        if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:
+            raise UsageError(f"frame: rgb: wanted shape (H, W, 3), got {self.rgb.shape}")
+        if self.alpha.size == 0:
+            self.alpha = np.ones(self.rgb.shape[:2], np.float32)
+
+    @property
+    def width(self) -> int:
+        """Columns, px."""
+        return int(self.rgb.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Rows, px."""
+        return int(self.rgb.shape[0])
+
+    @property
+    def motion(self) -> NDArray[np.float32] | None:
+        """Where what is seen goes until the next frame, px, +x right and +y down, (H, W, 2).
+
+        None without ground truth; see ``daguerre.truth``.
+        """
+        return self._flow("motion")
+
+    @property
+    def motion_back(self) -> NDArray[np.float32] | None:
+        """Where what is seen was in the frame before, from where it is now; as ``motion``."""
+        return self._flow("motion_back")
+
+    def _flow(self, name: str) -> NDArray[np.float32] | None:
+        names = [f"{name}.{axis}" for axis in "UV"]
+        if not all(n in self.aovs for n in names):
+            return None
+        return np.stack([self.aovs[n] for n in names], axis=2)
+
+    def without_overscan(self) -> Frame:
+        """The pixels of the picture alone, without those beside it: what a sensor records.
+
+        Raises:
+            UsageError: The frame is a crop that has none of them.
+        """
+        width, height = self.metadata.get("resolution") or (self.width, self.height)
+        left, top = (self.metadata.get("crop") or (0, 0))[:2]
+        x0, y0 = max(left, 0), max(top, 0)
+        x1, y1 = min(left + self.width, width), min(top + self.height, height)
+        if (x0, y0, x1, y1) == (left, top, left + self.width, top + self.height):
+            return self
+        if x0 >= x1 or y0 >= y1:
+            raise UsageError("frame: wanted some pixel of the picture, got overscan alone")
+        rows, columns = slice(y0 - top, y1 - top), slice(x0 - left, x1 - left)
+        cut: dict[str, Any] = {
+            f.name: value[rows, columns]
+            for f in fields(self)
+            if isinstance(value := getattr(self, f.name), np.ndarray)
+        }
+        aovs = {name: plane[rows, columns] for name, plane in self.aovs.items()}
+        facts = {k: v for k, v in self.metadata.items() if k != "overscan"}
+        return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
+
+    def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
+        """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
+
+        Args:
+            tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
+                above 0.8, so that small bright lamps keep some shape, and lets them get whiter
+                the brighter they are. Colours that sRGB lacks are brought in toward the grey of
+                the same luminance. Neither changes ``rgb``. ISO and exposure compensation belong
+                to development, not to this.
+        """
+        shown = np.empty(self.rgb.shape, np.uint8)
+        for rows, encoded in self._stripes(tone):
+            shown[rows] = np.rint(encoded * 255)
+        return shown
+
+    def _encoded(self, tone: str) -> NDArray[np.float32]:
+        """As ``display``, 0 to 1."""
+        shown = np.empty(self.rgb.shape, np.float32)
+        for rows, encoded in self._stripes(tone):
+            shown[rows] = encoded
+        return shown
+
+    def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
+        """Rows of the picture for a screen: little memory for what is in between."""
+        if tone not in TONES:
+            raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
+        for row in range(0, self.height, _STRIPE):
+            rows = slice(row, row + _STRIPE)
+            linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
+            linear = _into_gamut(linear)
+            yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
+
+    def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
+        """Writes the frame, whole or not at all; the end of the name chooses the format.
+
+        Args:
+            path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
+                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. What an
+                exposure makes of it is ``expose``, and ``daguerre.development.develop``. They have
+                no overscan.
+            tone: For those; see :meth:`display`.
+
+        Raises:
+            UsageError: Another ending.
+            OutputError: The file cannot be written.
+        """
+        suffix = check_format(path)
+        if suffix == ".exr":
+            from daguerre.io.exr import write_exr
+
+            write_exr(path, self)
+        elif suffix == ".png":
+            from daguerre.io.png import write_png
+
+            write_png(path, self.without_overscan(), tone)
+        else:
+            from daguerre.development import Picture
+
+            shown = self.without_overscan()
+            Picture(shown._encoded(tone), "srgb", shown.metadata).save(path)
+
+    def expose(
+        self,
+        sensor: str | Sensor | None = None,
+        iso: float | None = None,
+        *,
+        seed: int = 0,
+        ev: float | None = None,
+        white_balance: Any = None,
+        temperature: float | None = None,
+    ) -> Raw:
+        """What a sensor makes of this light: a raw picture, with the noise of photons and sensor.
+
+        A pixel of the frame is one photosite, whatever the frame's resolution.
+
+        Args:
+            sensor: Name of the library (``dg.sensors.names()``), file, or sensor. By default the
+                one whose channels the frame holds, else "ideal".
+            iso: By default the camera's, where the sensor has it, else the sensor's base ISO.
+            seed: Of the shot's noise. The sensor's fixed pattern is by its serial number.
+            ev: Exposure compensation: light times 2^ev; by default the camera's.
+            white_balance: K or (x, y) that the neutral of the raw file is set to; by default the
+                camera's, else D65.
+            temperature: Of the sensor, deg C; by default that at which it was measured.
+
+        Raises:
+            DaguerreError: No such sensor, an ISO beyond it, or a frame whose facts do not tell its
+                exposure; the message names the field.
+        """
+        from daguerre.exposing import expose
+
+        return expose(
+            self,
+            sensor,
+            iso,
+            seed=seed,
+            ev=ev,
+            white_balance=white_balance,
+            temperature=temperature,
+        )
+
+    def exposure_truth(
+        self,
+        sensor: str | Sensor | None = None,
+        iso: float | None = None,
+        ev: float | None = None,
+    ) -> dict[str, NDArray[np.float32]]:
+        """What a photograph is measured against, without noise: channels to put into ``aovs``.
+
+        Returns:
+            ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the
+            light alone would saturate that channel's photosite; each of shape (H, W).
+        """
+        from daguerre.exposing import exposure_truth
+
+        return exposure_truth(self, sensor, iso, ev)
+
+    def __repr__(self) -> str:
+        spp = self.metadata.get("samples")
+        extra = f", {spp} samples" if spp is not None else ""
+        names = sorted({name.split(".")[0] for name in self.aovs})
+        aovs = f", aovs: {' '.join(names)}" if names else ""
+        return f"<Frame {self.width}x{self.height}{extra}{aovs}>"
+
+    def _repr_png_(self) -> bytes:
+        from daguerre.io.png import png_bytes
+
+        return png_bytes(self.without_overscan())
+
+    def _repr_html_(self) -> str:
+        from base64 import b64encode
+
+        data = b64encode(self._repr_png_()).decode("ascii")
+        caption = html.escape(self._caption())
+        return (
+            f'<figure><img src="data:image/png;base64,{data}" width="{self.width}" '
+            f'height="{self.height}" alt="{caption}"><figcaption>{caption}</figcaption></figure>'
+        )
+
+    def _caption(self) -> str:
+        facts = self.metadata
+        words = [f"{self.width} × {self.height}"]
+        if facts.get("lensModel"):
+            words.append(str(facts["lensModel"]))
+        if facts.get("nominalFocalLength"):
+            words.append(f"{facts['nominalFocalLength']:.4g} mm")
+        if facts.get("aperture"):
+            words.append(f"f/{facts['aperture']:.3g}")
+        if facts.get("focus"):
+            words.append(f"focus {facts['focus']:.4g} m")
+        if facts.get("samples") is not None:
+            words.append(f"{facts['samples']} samples")
+        return ", ".join(words)
+
+
+def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> str:
+    """The ending of an output, in lower case; ``more``: what else can be written there.
+
+    Raises:
+        UsageError: Not one that can be written; the message lists those.
+    """
+    suffix = Path(path).suffix.lower()
+    known = (*FORMATS, *more)
+    if suffix not in known:
+        wanted = f"{', '.join(known[:-1])} or {known[-1]}"
+        hint = "; a raw file is made by frame.expose().save()" if suffix == ".dng" else ""
+        raise UsageError(
+            f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
+        )
+    return suffix
+
+
+def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
+    """Puts sums that ``film.state`` gave, by part, into a film of the same size.
+
+    Raises:
+        MismatchError: A part is missing, unknown or of another size; the film is as it was then.
+    """
+    shapes = {part: film.state(part).shape for part in film.state_parts()}
+    given = {part: words.shape for part, words in state.items()}
+    if given != shapes:
+        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
+    for part, words in state.items():
+        film.set_state(part, np.ascontiguousarray(words, np.uint32))
+
+
+def frame_of(
+    film: Any,
+    metadata: dict[str, Any],
+    *,
+    aovs: bool,
+    waves: bool = True,
+) -> Frame:
+    """The picture of a film: means, variance and counts as plain arrays.
+
+    Args:
+        film: The core's.
+        metadata: Facts of the frame.
+        aovs: Whether the film has auxiliary channels.
+        waves: Whether its light is diffracted, if the film has bands; variance is always that
+            before.
+    """
+    planes: dict[str, NDArray[Any]] = {}
+    alpha = np.ones(film.shape, np.float32)
+    if aovs:
+        planes = {name: film.aov(name) for name in AOV_NAMES}
+        planes["object_id"] = film.object_ids()
+        alpha = film.aov("alpha")
+    parts, keep = film.state_parts(), bool(metadata.get("bands"))
+    if waves and "bands" in parts and ("pupils" in metadata or not keep):
+        from daguerre.waves import developed, rgb_of
+
+        made = developed(film, metadata.get("pupils"), keep=keep)
+        xyz, channels, bands = made.xyz, made.channels, made.bands
+        rgb = rgb_of(xyz)
+    else:
+        xyz, rgb = film.mean_xyz(), film.mean_rgb()
+        channels = film.mean_channels() if "channels" in parts else None
+        bands = film.mean_bands() if keep and "bands" in parts else None
+    names = metadata.get("sensor_channels") or []
+    if channels is not None and channels.shape[2] != len(names):
+        raise InputError(f"sensor_channels: wanted {channels.shape[2]} names, got {names}")
+    return Frame(
+        rgb=rgb,
+        xyz=xyz,
+        alpha=alpha,
+        variance=film.variance_rgb(),
+        samples=film.sample_counts(),
+        aovs=planes,
+        metadata=metadata,
+        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
+        flare=film.flare_rgb() if "flare" in parts else None,
+        channels=channels,
+        bands=bands,
+    )

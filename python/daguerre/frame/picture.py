@@ -1,0 +1,90 @@
+"""A developed picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import spaces
+
+if TYPE_CHECKING:
+    import os
+
+
+@dataclass(eq=False)
+class Picture:
+    """A picture for the eye.
+
+    Attributes:
+        pixels: Red, green and blue as files and screens have them, encoded with the curve of the
+            colour space, 0 to 1, float32, shape (H, W, 3).
+        colour_space: ``srgb``, ``p3`` (Display P3) or ``rec2020``.
+        metadata: Facts of the shot, for EXIF.
+    """
+
+    pixels: NDArray[np.float32]
+    colour_space: str = "srgb"
+    metadata: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def width(self) -> int:
+        """Columns, px."""
+        return int(self.pixels.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Rows, px."""
+        return int(self.pixels.shape[0])
+
+    def linear(self) -> NDArray[np.float32]:
+        """Light of the display, linear in the primaries of the colour space, shape (H, W, 3)."""
+        return spaces.decoded(self.pixels, self.colour_space)
+
+    def bytes8(self) -> NDArray[np.uint8]:
+        """In 8 bits, shape (H, W, 3)."""
+        return quantised(self.pixels, 8)
+
+    def save(
+        self, path: str | os.PathLike[str], *, quality: int = 95, bits: int | None = None
+    ) -> None:
+        """Writes it, whole or not at all, with its colour profile and EXIF.
+
+        Args:
+            path: ``.jpg``, ``.png``, ``.tif`` or ``.exr`` (linear).
+            quality: Of JPEG, 1 to 100.
+            bits: 8 or 16; by default 16 for TIFF, 8 for others.
+
+        Raises:
+            UsageError: Another ending, or bits that the format lacks.
+            OutputError: The file cannot be written.
+        """
+        from daguerre.io.picture_files import write_picture
+
+        write_picture(
+            path, self.pixels, self.colour_space, self.metadata, quality=quality, bits=bits
+        )
+
+    def __repr__(self) -> str:
+        return f"<Picture {self.width}x{self.height}, {self.colour_space}>"
+
+    def _repr_png_(self) -> bytes:
+        from pathlib import Path
+        from tempfile import TemporaryDirectory
+
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "picture.png"
+            self.save(path)
+            return path.read_bytes()
+
+
+def quantised(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
+    """0 .. 1 as whole numbers of 8 or 16 bits, rounded; in stripes, for little memory."""
+    top = np.float32(2**bits - 1)
+    out = np.empty(pixels.shape, np.uint8 if bits == 8 else np.uint16)
+    for row in range(0, len(pixels), 64):
+        part = np.nan_to_num(pixels[row : row + 64], nan=0.0)
+        out[row : row + 64] = np.clip(part, 0, 1) * top + np.float32(0.5)
+    return out

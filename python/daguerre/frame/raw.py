@@ -1,0 +1,121 @@
+"""A raw picture: what was read from a sensor, number by number, and what is known about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+from daguerre.sensors.sensor import Sensor
+
+if TYPE_CHECKING:
+    import os
+
+    from daguerre.development import Picture
+
+
+@dataclass(eq=False)
+class Raw:
+    """A mosaic of digital numbers, as a camera's file has it.
+
+    Attributes:
+        mosaic: Digital numbers of the photosites, uint16, shape (H, W).
+        sensor: That took them.
+        iso: As set.
+        black_level: DN of no light.
+        white_level: DN from which on a photosite is saturated.
+        gain: DN per electron.
+        neutral: What a white surface reads above black in the light that the white balance is set
+            to, its strongest channel 1, shape (C,): the "as shot neutral" of DNG.
+        white_balance: That white, chromaticity (x, y).
+        metadata: Facts of the frame: ``expTime`` (s), ``aperture``, ``lensModel``, ...
+        clipped: True where the photosite was full or the number the highest, shape (H, W); None:
+            as the numbers say.
+        luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None: not
+            known.
+        notes: What a user should know of it.
+    """
+
+    mosaic: NDArray[np.uint16]
+    sensor: Sensor
+    iso: float
+    black_level: int
+    white_level: int
+    gain: float
+    neutral: NDArray[np.float64]
+    white_balance: tuple[float, float]
+    metadata: dict[str, Any] = field(default_factory=dict)
+    clipped: NDArray[np.bool_] | None = None
+    luminance_exposure: NDArray[np.float32] | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.mosaic.ndim != 2 or self.mosaic.dtype != np.uint16:
+            raise InputError(
+                f"raw: mosaic: wanted uint16 of shape (H, W), got {self.mosaic.dtype} of shape "
+                f"{self.mosaic.shape}"
+            )
+        if not self.black_level < self.white_level:
+            raise InputError(
+                f"raw: white_level: wanted more than the black level of {self.black_level} DN, "
+                f"got {self.white_level}"
+            )
+
+    @property
+    def width(self) -> int:
+        """Columns, px."""
+        return int(self.mosaic.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Rows, px."""
+        return int(self.mosaic.shape[0])
+
+    @property
+    def saturated(self) -> NDArray[np.bool_]:
+        """Where a photosite was full or its number the highest, shape (H, W)."""
+        if self.clipped is not None:
+            return self.clipped
+        return np.asarray(self.mosaic >= self.white_level)
+
+    def exposure(self) -> NDArray[np.float32]:
+        """Luminance exposure of each photosite, lux s, shape (H, W): the truth, without noise.
+
+        Raises:
+            InputError: It is not known of a picture that was read from a file.
+        """
+        if self.luminance_exposure is None:
+            raise InputError("raw: exposure: not known of a picture that was read from a file")
+        return self.luminance_exposure
+
+    def electrons(self) -> NDArray[np.float32]:
+        """Electrons that the numbers stand for, noise and all, shape (H, W)."""
+        above = self.mosaic.astype(np.float32) - np.float32(self.black_level)
+        return np.asarray(above / np.float32(self.gain), np.float32)
+
+    def channel_map(self) -> NDArray[np.uint8]:
+        """Index of the channel of every photosite, shape (H, W)."""
+        return self.sensor.pattern.channel_map(self.height, self.width)
+
+    def develop(self, **look: Any) -> Picture:
+        """The picture of it; see ``daguerre.development.develop``."""
+        from daguerre.development import develop
+
+        return develop(self, **look)
+
+    def save(self, path: str | os.PathLike[str], **look: Any) -> None:
+        """Writes it, whole or not at all; the end of the name chooses the format.
+
+        Args:
+            path: ``.dng`` keeps the numbers; others are developed first.
+            look: For those; see ``daguerre.development.develop``.
+        """
+        from daguerre.development import save_raw
+
+        save_raw(path, self, **look)
+
+    def __repr__(self) -> str:
+        return f"<Raw {self.width}x{self.height}, {self.sensor.name}, ISO {self.iso:g}>"

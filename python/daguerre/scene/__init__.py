@@ -1,0 +1,1 @@
+"""Scenes: meshes, instances, materials, lights, cameras, environment, and their motion."""

@@ -1,0 +1,52 @@
+"""A camera for scenes that bring none: from the front, a little above, everything in the frame."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.camera import Camera
+
+from .scene import Scene
+
+FloatArray = NDArray[np.float64]
+#: From where: glTF's front is +z; a little to the right and above shows depth.
+_TOWARD_CAMERA = np.array([0.35, 0.3, 1.0]) / math.sqrt(0.35**2 + 0.3**2 + 1)
+_HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
+
+
+def frame_everything(scene: Scene) -> Camera | None:
+    """A 50 mm camera at f/8 that has the whole scene in view; None if there is nothing to see."""
+    corners = bounds(scene)
+    if corners is None:
+        return None
+    low, high = corners
+    middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+    distance = 1.05 * max(radius, 1e-3) / math.sin(_HALF_FIELD)
+    z = _TOWARD_CAMERA
+    x = np.cross([0.0, 1.0, 0.0], z)
+    x /= np.linalg.norm(x)
+    transform = np.eye(4)
+    transform[:3, 0], transform[:3, 1], transform[:3, 2] = x, np.cross(z, x), z
+    transform[:3, 3] = middle + distance * z
+    return Camera(transform=transform, focal_length=50.0, f_stop=8.0)
+
+
+def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
+    """Corners (3,) of the box around the boxes of what is shown, m; None if there is nothing."""
+    filled = [i for i in scene.instances if i.shown and len(scene.meshes[i.mesh].positions)]
+    if not filled:
+        return None
+    boxes = {}
+    for mesh in {instance.mesh for instance in filled}:
+        points = scene.meshes[mesh].positions
+        low, high = points.min(axis=0).astype(float), points.max(axis=0).astype(float)
+        boxes[mesh] = (low + high) / 2, (high - low) / 2
+    centers, halves = np.array([boxes[i.mesh] for i in filled]).swapaxes(0, 1)
+    matrices = np.array([i.transform for i in filled])
+    # A turned box reaches as far along an axis as its half edges together.
+    middles = np.einsum("nij,nj->ni", matrices[:, :3, :3], centers) + matrices[:, :3, 3]
+    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), halves)
+    return (middles - reach).min(axis=0), (middles + reach).max(axis=0)

@@ -1,0 +1,82 @@
+"""Emitters that are no surfaces. They sit at the origin of their transform and shine along -z."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from daguerre.checks import color, number, short
+from daguerre.errors import InputError
+
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PointLight:
+    """Intensity in cd; with a radius (m) it becomes a visible ball of the same intensity."""
+
+    intensity: Color = (1.0, 1.0, 1.0)
+    range: float = math.inf
+    radius: float = 0.0
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class SpotLight:
+    """Intensity on the axis in cd; half angles in degrees."""
+
+    intensity: Color = (1.0, 1.0, 1.0)
+    inner_angle: float = 0.0
+    outer_angle: float = 45.0
+    range: float = math.inf
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class DirectionalLight:
+    """Illuminance in lux on a facing surface."""
+
+    illuminance: Color = (1.0, 1.0, 1.0)
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class SphereLight:
+    """A ball of even luminance (cd/m2) that rays can hit; radius in m."""
+
+    luminance: Color = (1.0, 1.0, 1.0)
+    radius: float = 0.1
+    name: str = ""
+
+
+Light = PointLight | SpotLight | DirectionalLight | SphereLight
+
+
+def check_light(light: Light) -> None:
+    """Refuses what is no light, and numbers that no light has.
+
+    Raises:
+        InputError: With the light's name and the field.
+    """
+    if not isinstance(light, Light):
+        raise InputError(
+            f"light: wanted a point, spot, directional or sphere light, got {short(light)}"
+        )
+    where = f"light {light.name!r}"
+    for name, value in vars(light).items():
+        if name in ("intensity", "illuminance", "luminance"):
+            color(value, f"{where}: {name}")
+        elif name == "range":
+            number(value, f"{where}: range", above=0, infinite=True, error=InputError)
+        elif name == "radius":
+            number(value, f"{where}: radius", 0, error=InputError)
+    if isinstance(light, SphereLight) and not light.radius > 0:
+        raise InputError(f"{where}: radius: wanted a number above 0, got {light.radius}")
+    if isinstance(light, SpotLight):
+        inner = number(light.inner_angle, f"{where}: inner_angle", 0, error=InputError)
+        outer = number(light.outer_angle, f"{where}: outer_angle", 0, error=InputError)
+        if not inner < outer <= 90:
+            raise InputError(
+                f"{where}: wanted 0 <= inner_angle < outer_angle <= 90 degrees, "
+                f"got {inner:g} and {outer:g}"
+            )

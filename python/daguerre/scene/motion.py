@@ -1,0 +1,68 @@
+"""What moves in a scene, beside the plain lists that show one moment of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.motion.values import Dynamic
+
+
+@dataclass(frozen=True)
+class Vertices:
+    """The vertices of a mesh at a time.
+
+    Attributes:
+        positions: Shape (N, 3), m.
+        normals: Shape (N, 3), or None where the mesh has none.
+        tangents: Shape (N, 4), likewise.
+        uv: Shape (N, 2), likewise. This, ``uv1`` and ``colors`` may differ from picture to picture,
+            but do not change while a shutter is open.
+        uv1: Shape (N, 2).
+        colors: Shape (N, 4).
+    """
+
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32] | None = None
+    tangents: NDArray[np.float32] | None = None
+    uv: NDArray[np.float32] | None = None
+    uv1: NDArray[np.float32] | None = None
+    colors: NDArray[np.float32] | None = None
+
+
+@dataclass
+class SceneMotion:
+    """Values over time, by the index of what they belong to; what is absent stays.
+
+    Attributes:
+        instances: World from local, (4, 4).
+        shown: Whether an instance is there, true or false.
+        meshes: ``Vertices``.
+        materials: ``Material``.
+        lights: (light, its transform).
+        environment: ``Environment``.
+        node_positions: World position (m) of a node, by its name.
+    """
+
+    instances: dict[int, Dynamic] = field(default_factory=dict)
+    shown: dict[int, Dynamic] = field(default_factory=dict)
+    meshes: dict[int, Dynamic] = field(default_factory=dict)
+    materials: dict[int, Dynamic] = field(default_factory=dict)
+    lights: dict[int, Dynamic] = field(default_factory=dict)
+    environment: Dynamic | None = None
+    node_positions: dict[str, Dynamic] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return any(getattr(self, part.name) for part in fields(self))
+
+    def parts(self) -> Iterator[tuple[str, Dynamic]]:
+        """All that changes, each with a name such as ``instances 3``."""
+        for part in fields(self):
+            value = getattr(self, part.name)
+            if isinstance(value, dict):
+                yield from ((f"{part.name} {key}", one) for key, one in value.items())
+            elif value is not None:
+                yield part.name, value

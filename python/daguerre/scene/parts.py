@@ -1,0 +1,66 @@
+"""Parts of a scene: meshes, textures, instances, the environment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.scene.motion import Vertices
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles of one material, in their own space (m)."""
+
+    positions: NDArray[np.float32]
+    indices: NDArray[np.uint32]
+    normals: NDArray[np.float32] | None = None
+    uv: NDArray[np.float32] | None = None
+    uv1: NDArray[np.float32] | None = None
+    tangents: NDArray[np.float32] | None = None
+    colors: NDArray[np.float32] | None = None
+    name: str = ""
+
+
+def vertices_of(mesh: Mesh) -> Vertices:
+    """The vertices of a mesh at the time of its scene."""
+    return Vertices(mesh.positions, mesh.normals, mesh.tangents, mesh.uv, mesh.uv1, mesh.colors)
+
+
+@dataclass(frozen=True)
+class Texture:
+    """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels.
+
+    ``filter`` is for magnified texels ("linear" or "nearest"), ``min_filter`` for minified ones,
+    with the names of glTF: "linear_mipmap_linear", ..., or "linear" and "nearest" for no mip-maps.
+    """
+
+    pixels: NDArray[np.uint8] | NDArray[np.float32]
+    srgb: bool = False
+    wrap: tuple[str, str] = ("repeat", "repeat")
+    filter: str = "linear"
+    name: str = ""
+    min_filter: str = "linear_mipmap_linear"
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A mesh in the world."""
+
+    mesh: int
+    material: int
+    transform: NDArray[np.float64]
+    name: str = ""
+    shown: bool = True
+
+
+@dataclass(frozen=True)
+class Environment:
+    """Light from infinity: a panorama (H, W, 3) or one colour, times ``scale`` cd/m2."""
+
+    image: NDArray[np.float32] | None = None
+    color: tuple[float, float, float] | None = None
+    scale: float = 1.0
+    rotation: float = 0.0  # degrees about +y

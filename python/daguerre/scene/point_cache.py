@@ -1,0 +1,130 @@
+"""Meshes whose vertices are given at several times, as simulations and scans give them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import array, optional_array, short, to_numbers
+from daguerre.errors import InputError
+from daguerre.motion.values import Dynamic, is_dynamic, keys
+
+from .motion import Vertices
+
+FloatArray = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class PointCache:
+    """The vertices of a mesh over time.
+
+    Attributes:
+        positions: Over time, shape (N, 3), m.
+        normals: Over time; None: those of ``rest``, turned as the surface around them turns.
+        rest: Vertices of one moment, to which its normals and tangents belong.
+        triangles: Indices, shape (M, 3).
+        where: For complaints.
+    """
+
+    positions: Dynamic
+    normals: Dynamic | None
+    rest: Vertices
+    triangles: NDArray[np.uint32]
+    where: str
+
+    def at(self, time_s: float) -> Vertices:
+        """The vertices at a time, s."""
+        count = len(self.rest.positions)
+        points = optional_array(self.positions.at(time_s), self.where, "positions", 3, count)
+        assert points is not None
+        normals, tangents = self.rest.normals, self.rest.tangents
+        turn = None if normals is None else _Turn(self._faces, self._smooth(points))
+        if self.normals is not None:
+            normals = optional_array(self.normals.at(time_s), self.where, "normals", 3, count)
+        elif turn is not None and normals is not None:
+            normals = turn.of(normals)
+        if turn is not None and tangents is not None:
+            turned = turn.of(tangents[:, :3])
+            tangents = np.concatenate([turned, tangents[:, 3:]], axis=1)
+        return replace(self.rest, positions=points, normals=normals, tangents=tangents)
+
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        """Those of positions and normals."""
+        both = [d for d in (self.positions, self.normals) if d is not None]
+        return sorted({float(t) for d in both for t in d.breaks(begin, end)})
+
+    @cached_property
+    def _faces(self) -> NDArray[np.float64]:
+        return self._smooth(self.rest.positions)
+
+    @cached_property
+    def _corners(self) -> NDArray[np.int64]:
+        """Which vertices are one: seams of textures split what is smooth. Shape (N,)."""
+        assert self.rest.normals is not None
+        rows = np.concatenate([self.rest.positions, self.rest.normals], axis=1)
+        return np.asarray(np.unique(rows, axis=0, return_inverse=True)[1]).reshape(-1)
+
+    def _smooth(self, points: FloatArray) -> NDArray[np.float64]:
+        """Unit normals of the surface at its vertices, faces weighted by area."""
+        a, b, c = (points[self.triangles[:, k]].astype(np.float64) for k in range(3))
+        faces = np.cross(b - a, c - a)
+        sums = np.zeros((len(points), 3))
+        for k in range(3):
+            np.add.at(sums, self._corners[self.triangles[:, k]], faces)
+        lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+        return np.asarray((sums / np.where(lengths > 0, lengths, 1))[self._corners])
+
+
+class _Turn:
+    """The shortest turns from unit vectors to others, of which there may be many at once.
+
+    Source: Moeller and Hughes 1999, Efficiently Building a Matrix to Rotate One Vector to Another.
+    """
+
+    def __init__(self, before: NDArray[np.float64], after: NDArray[np.float64]) -> None:
+        self._w = np.cross(before, after)
+        self._c = np.einsum("ni,ni->n", before, after)[:, None]
+
+    def of(self, vectors: FloatArray) -> FloatArray:
+        """Unit vectors after the turn, float32."""
+        v = vectors.astype(np.float64)
+        along = np.cross(self._w, v)
+        turned = self._c * v + along
+        turned += (
+            self._w * np.einsum("ni,ni->n", self._w, v)[:, None] / np.maximum(1 + self._c, 1e-9)
+        )
+        lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+        return np.where(lengths > 1e-9, turned / np.maximum(lengths, 1e-9), v).astype(np.float32)
+
+
+def steps_of(steps: Any, where: str) -> Dynamic:
+    """Positions over time from what ``add_mesh(steps=...)`` takes.
+
+    Raises:
+        InputError: It is neither (times, positions) nor a value over time.
+    """
+    if is_dynamic(steps):
+        value: Dynamic = steps
+        return value
+    if not isinstance(steps, tuple | list) or len(steps) != 2:
+        raise InputError(
+            f"{where}: steps: vertices per time step: wanted (times (S,), positions (S, N, 3)) or "
+            f"dg.keys(...), got {short(steps)}"
+        )
+    times = to_numbers(steps[0], where, "steps: times", "shape (S,)")
+    points = to_numbers(steps[1], where, "steps: positions", "shape (S, N, 3)")
+    if times.ndim != 1 or points.ndim != 3 or points.shape[::2] != (len(times), 3):
+        raise InputError(
+            f"{where}: steps: wanted times (S,) and positions (S, N, 3), "
+            f"got shapes {times.shape} and {points.shape}"
+        )
+    checked = [array(step, where, f"steps: positions[{i}]", 3) for i, step in enumerate(points)]
+    try:
+        return keys(zip(times.tolist(), checked, strict=True))
+    except InputError as error:
+        raise InputError(f"{where}: steps: {error}") from None

@@ -1,0 +1,392 @@
+"""A scene: meshes, textures, materials, instances, lights and cameras. Arrays in, nothing hidden.
+
+World frame: metres, +y up (glTF); transforms are 4x4 matrices that act on column vectors.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.camera.camera import Camera
+from daguerre.checks import array, frozen, given_up, matrix, optional_array, short, to_numbers
+from daguerre.checks import color as check_color
+from daguerre.checks import number as check_number
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
+
+from .illuminance import scale_for
+from .lights import Light, check_light
+from .materials import Diffuse, Kind, Material, check_material
+from .motion import SceneMotion
+from .parts import Environment, Instance, Mesh, Texture, vertices_of
+from .point_cache import PointCache, steps_of
+
+
+@dataclass
+class Scene:
+    """What the camera looks at.
+
+    Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
+
+    Its lists show the moment ``time`` (s); ``motion`` has what changes, and ``at`` goes to another
+    moment. Transforms, vertices and the parameters of materials, lights and environment may be
+    values over time, such as :func:`daguerre.keys` makes.
+    """
+
+    path: Path | None = None
+    time: float = 0.0
+    meshes: list[Mesh] = field(default_factory=list)
+    textures: list[Texture] = field(default_factory=list)
+    materials: list[Material] = field(default_factory=list)
+    instances: list[Instance] = field(default_factory=list)
+    lights: list[tuple[Light, NDArray[np.float64]]] = field(default_factory=list)
+    cameras: dict[str, Camera] = field(default_factory=dict)
+    default_camera: str | None = None
+    #: other names by which ``camera`` finds one, such as that of the camera in its node
+    camera_aliases: dict[str, str] = field(default_factory=dict)
+    environment: Environment | None = None
+    #: what of all that changes over time
+    motion: SceneMotion = field(default_factory=SceneMotion)
+    #: length of the animations of a file, s
+    duration: float | None = None
+    #: node name -> indices of its instances (its own and its descendants'), for ``focus_on``
+    nodes: dict[str, list[int]] = field(default_factory=dict)
+    #: node name -> world position (m), also of nodes without a mesh
+    node_positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    #: names of the variants of the file's materials, for ``load(variant=...)``
+    variants: list[str] = field(default_factory=list)
+    #: what the reader met and did not understand, one sentence each, with counts
+    warnings: list[str] = field(default_factory=list)
+
+    def at(self, time: float) -> Scene:
+        """The same scene at another time, s; what does not change is shared."""
+        return scene_at(self, check_number(time, "scene: time"))
+
+    def add_texture(
+        self,
+        pixels: ArrayLike,
+        *,
+        srgb: bool = False,
+        wrap: tuple[str, str] = ("repeat", "repeat"),
+        filter: str = "linear",
+        min_filter: str = "linear_mipmap_linear",
+        name: str = "",
+    ) -> int:
+        """Adds an image (H, W) or (H, W, 1..4), uint8 or float; returns its index."""
+        array = np.asarray(pixels)
+        if array.ndim == 2:
+            array = array[:, :, None]
+        if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or array.size == 0:
+            raise InputError(
+                f"texture {name!r}: pixels: wanted shape (H, W, 1..4), got {array.shape}"
+            )
+        array = frozen(array, np.uint8 if array.dtype == np.uint8 else np.float32)
+        self.textures.append(Texture(array, srgb, wrap, filter, name, min_filter))
+        return len(self.textures) - 1
+
+    def add_material(self, material: Material | Kind | None = None, **fields: Any) -> int:
+        """Adds a material; returns its index.
+
+        Args:
+            material: A material, or only what it is made of; absent: made from ``fields``.
+            **fields: Those of :class:`Material`.
+        """
+        if material is None:
+            unknown = sorted(set(fields) - set(Material.__dataclass_fields__))
+            if unknown:
+                known = Material.__dataclass_fields__
+                raise UsageError(f"material: no field {unknown[0]!r}{suggest(unknown[0], known)}")
+            material = Material(**fields)
+        elif isinstance(material, Kind):
+            material = Material(material)
+        shown = at(material, self.time)
+        check_material(shown, f"material {getattr(shown, 'name', '') or len(self.materials)!r}")
+        if (motion := _motion_of(material)) is not None:
+            self.motion.materials[len(self.materials)] = motion
+        self.materials.append(shown)
+        return len(self.materials) - 1
+
+    def add_mesh(
+        self,
+        positions: ArrayLike | Dynamic,
+        indices: ArrayLike,
+        normals: ArrayLike | Dynamic | None = None,
+        uv: ArrayLike | None = None,
+        *,
+        uv1: ArrayLike | None = None,
+        tangents: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
+        steps: Dynamic | tuple[ArrayLike, ArrayLike] | None = None,
+        name: str = "",
+    ) -> int:
+        """Adds triangles; returns the index of the mesh.
+
+        Args:
+            positions: Vertices, shape (N, 3), m; they may be over time.
+            indices: Triangles, shape (M, 3) or (3 M,).
+            normals: Unit normals, shape (N, 3); absent: flat shading. Those that are not over time
+                belong to ``positions`` at the scene's time, and turn with the surface.
+            uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
+            uv1: The same, set 1.
+            tangents: Shape (N, 4), w is the handedness.
+            colors: Linear RGB or RGBA, shape (N, 3) or (N, 4).
+            steps: Vertices over time, as (times (S,) in s, positions (S, N, 3)) or over time;
+                ``positions`` then are those to which the normals belong.
+            name: For messages.
+
+        Raises:
+            InputError: A shape, an index or a number is wrong; the message names it.
+        """
+        where = f"mesh {name or len(self.meshes)!r}"
+        moving = _dynamic(positions) if steps is None else steps_of(steps, where)
+        moving_normals = _dynamic(normals)
+        points = array(self._now(positions), where, "positions", 3)
+        triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
+        if triangles.dtype.kind not in "iu":
+            raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
+        if triangles.size % 3:
+            raise InputError(f"{where}: indices: wanted a multiple of 3, got {triangles.size}")
+        if triangles.ndim != 1 and triangles.shape[1:] != (3,):
+            raise InputError(f"{where}: indices: wanted shape (M, 3), got {triangles.shape}")
+        triangles = triangles.reshape(-1, 3)
+        if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
+            raise InputError(
+                f"{where}: indices: wanted 0 .. {len(points) - 1}, "
+                f"got {triangles.min()} .. {triangles.max()}"
+            )
+        if colors is not None and np.shape(colors)[-1:] == (3,):
+            rgb = array(colors, where, "colors", 3)
+            colors = given_up(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))
+        n = len(points)
+        mesh = Mesh(
+            points,
+            frozen(triangles, np.uint32),
+            optional_array(self._now(normals), where, "normals", 3, n),
+            optional_array(uv, where, "uv", 2, n),
+            optional_array(uv1, where, "uv1", 2, n),
+            optional_array(tangents, where, "tangents", 4, n),
+            optional_array(colors, where, "colors", 4, n),
+            name,
+        )
+        if moving is not None or moving_normals is not None:
+            rest = vertices_of(mesh)
+            path = moving or Composite(points)
+            cache = PointCache(path, moving_normals, rest, mesh.indices, where)
+            mesh = replace(mesh, **vars(cache.at(self.time)))
+            self.motion.meshes[len(self.meshes)] = cache
+        self.meshes.append(mesh)
+        return len(self.meshes) - 1
+
+    def _now(self, value: Any) -> Any:
+        """A value, or what it is at the time of the scene."""
+        return value.at(self.time) if is_dynamic(value) else value
+
+    def add_instance(
+        self,
+        mesh: int,
+        material: int | Material | Kind | None = None,
+        transform: ArrayLike | Dynamic | None = None,
+        *,
+        name: str = "",
+        shown: bool | Dynamic = True,
+    ) -> int:
+        """Puts a mesh into the world; returns the index of the instance.
+
+        Args:
+            mesh: Index from ``add_mesh``.
+            material: Index from ``add_material`` or a material; absent: grey diffuse.
+            transform: World from local, shape (4, 4), which may be over time; absent: identity.
+            name: For messages, ids and ``focus_on``.
+            shown: Whether it is there, which may be over time.
+
+        Raises:
+            InputError: There is no such mesh or material, or the transform is no finite matrix.
+            UsageError: The transform is a list of keys over time, as it is before ``dg.keys``.
+        """
+        where = f"instance {name or len(self.instances)!r}"
+        mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
+        if _are_keys(transform):
+            raise UsageError(f"{where}: transform: keys over time: wanted dg.keys(...), got a list")
+        motion, presence = _dynamic(transform), None if shown is True else _dynamic(shown)
+        world = matrix(transform if motion is None else motion.at(self.time), where)
+        visible = shown if presence is None else presence.at(self.time)
+        if not isinstance(visible, bool | np.bool_ | int | float):
+            raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
+        if material is None:
+            material = Material(Diffuse())
+        if isinstance(material, Material | Kind):
+            material = self.add_material(material)
+        material = self._index(material, len(self.materials), f"{where}: material")
+        index = len(self.instances)
+        if motion is not None:
+            self.motion.instances[index] = motion
+        if presence is not None:
+            self.motion.shown[index] = presence
+        self.instances.append(Instance(mesh, material, world, name, bool(visible)))
+        if name:
+            self.nodes.setdefault(name, []).append(index)
+        return index
+
+    def add_light(self, light: Light, transform: ArrayLike | Dynamic | None = None) -> int:
+        """Adds a light at the origin of ``transform`` (4, 4), shining along its -z."""
+        shown = at(light, self.time)
+        check_light(shown)
+        world = matrix(self._now(transform), f"light {shown.name!r}")
+        motion = _motion_of((light, _dynamic(transform) or world))
+        if motion is not None:
+            self.motion.lights[len(self.lights)] = motion
+        self.lights.append((shown, world))
+        return len(self.lights) - 1
+
+    def add_camera(self, name: str, camera: Camera) -> None:
+        """Adds a camera under a name; the first one becomes the default."""
+        for value, kind in ((name, str), (camera, Camera)):
+            if not isinstance(value, kind):
+                raise UsageError(f"add_camera: wanted a {kind.__name__}, got {short(value)}")
+        self.cameras[name] = camera
+        if self.default_camera is None:
+            self.default_camera = name
+
+    def set_environment(
+        self,
+        image: ArrayLike | str | Path | None = None,
+        *,
+        color: Sequence[float] | Dynamic | None = None,
+        scale: float | Dynamic = 1.0,
+        rotation: float | Dynamic = 0.0,
+        lux: float | None = None,
+    ) -> None:
+        """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
+
+        All but the picture may be over time.
+
+        Args:
+            image: Equirectangular, row 0 at the zenith (+y), centre column along -z; or its file.
+            color: One linear colour for the whole sky.
+            scale: cd/m2 of a value of 1.
+            rotation: Degrees about +y.
+            lux: Illuminance on the ground, a horizontal plane that faces +y, instead of ``scale``.
+        """
+        if lux is not None and not (isinstance(scale, int | float) and scale == 1):
+            raise UsageError("environment: wanted either scale or lux, got both")
+        if (image is None) == (color is None):
+            raise UsageError("environment: wanted either an image or a color")
+        pixels = None
+        if isinstance(image, str | Path):
+            from daguerre.io.images import read_environment
+
+            pixels = read_environment(image)
+        elif image is not None:
+            pixels = _panorama(image)
+        given = Environment(pixels, cast("Any", color), cast("Any", scale), cast("Any", rotation))
+        now = at(given, self.time)
+        rgb = None if color is None else check_color(now.color, "environment: color")
+        now_scale = check_number(now.scale, "environment: scale", 0)
+        now_rotation = check_number(now.rotation, "environment: rotation")
+        self.environment = Environment(pixels, rgb, now_scale, now_rotation)
+        if lux is not None:
+            now_scale = scale_for(self.environment, lux)
+            self.environment = replace(self.environment, scale=now_scale)
+            given = replace(given, scale=now_scale)
+        self.motion.environment = _motion_of(given)
+
+    @staticmethod
+    def _index(value: Any, count: int, where: str) -> int:
+        if isinstance(value, bool | str) or not hasattr(value, "__index__"):
+            raise InputError(f"{where}: wanted an index, got {short(value)}")
+        index = operator.index(value)
+        if not 0 <= index < count:
+            wanted = f"0 .. {count - 1}" if count else "one that was added before"
+            raise InputError(f"{where}: wanted {wanted}, got {index}")
+        return index
+
+    def camera(self, name: str | None = None) -> Camera:
+        """The camera of that name, or the default one.
+
+        Raises:
+            InputError: There is none; the message suggests the nearest names.
+        """
+        if name is None:
+            if self.default_camera is None:
+                where = self.path or "scene"
+                raise InputError(f"{where}: cameras: wanted one, in the file or by add_camera")
+            name = self.default_camera
+        if name not in self.cameras:
+            name = self.camera_aliases.get(name, name)
+        if name not in self.cameras:
+            raise InputError(
+                f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"
+            )
+        return self.cameras[name]
+
+
+def _dynamic(value: Any) -> Dynamic | None:
+    return value if is_dynamic(value) else None
+
+
+def _motion_of(value: Any) -> Dynamic | None:
+    """The value over time, or None if nothing in it changes."""
+    return _dynamic(value) or (Composite(value) if moves(value) else None)
+
+
+def _are_keys(transform: Any) -> bool:
+    """Whether this looks like [(time, matrix), ...]."""
+    return (
+        isinstance(transform, list | tuple)
+        and len(transform) > 0
+        and all(
+            isinstance(key, list | tuple) and len(key) == 2 and np.ndim(key[0]) == 0
+            for key in transform
+        )
+    )
+
+
+def _panorama(image: ArrayLike) -> NDArray[np.float32]:
+    numbers = to_numbers(image, "environment", "image", "shape (H, W, 3)")
+    if numbers.ndim != 3 or numbers.shape[2] < 3 or numbers.size == 0:
+        raise InputError(f"environment: wanted shape (H, W, 3), got {numbers.shape}")
+    pixels = np.ascontiguousarray(numbers[:, :, :3], np.float32)
+    bad = int((~np.isfinite(pixels) | (pixels < 0)).sum())
+    if bad:
+        raise InputError(f"environment: wanted finite pixels of at least 0, got {bad} others")
+    return pixels
+
+
+def scene_at(scene: Scene, time: float) -> Scene:
+    """The scene with its lists evaluated anew; its motion is shared, and what stays, too."""
+    motion = scene.motion
+    moved: dict[str, Any] = {
+        "materials": _replaced(scene.materials, motion.materials, time),
+        "lights": _replaced(scene.lights, motion.lights, time),
+        "cameras": {name: camera.moved_to(time) for name, camera in scene.cameras.items()},
+    }
+    meshes = list(scene.meshes)
+    for i, vertices in motion.meshes.items():
+        meshes[i] = replace(meshes[i], **vars(vertices.at(time)))
+    instances = list(scene.instances)
+    for i, transform in motion.instances.items():
+        instances[i] = replace(instances[i], transform=transform.at(time))
+    for i, shown in motion.shown.items():
+        instances[i] = replace(instances[i], shown=bool(shown.at(time)))
+    positions = dict(scene.node_positions)
+    for name, position in motion.node_positions.items():
+        positions[name] = position.at(time)
+    if motion.environment is not None:
+        moved["environment"] = motion.environment.at(time)
+    return replace(
+        scene, time=time, meshes=meshes, instances=instances, node_positions=positions, **moved
+    )
+
+
+def _replaced(values: list[Any], motion: dict[int, Dynamic], time: float) -> list[Any]:
+    new = list(values)
+    for i, value in motion.items():
+        new[i] = value.at(time)
+    return new

@@ -1,0 +1,1 @@
+"""Scenes and cameras as the core takes them, in its units and its order."""

@@ -1,0 +1,104 @@
+"""Ghosts in a picture: how much light is followed by way of two reflections, and by which camera.
+
+See ``docs/flare.md``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.camera.lens_scatter import LensScatter, core_parts
+from daguerre.checks import number, numbers, short
+from daguerre.errors import UsageError
+
+if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
+
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = 0.5
+
+
+def check_highlights(value: object, where: str = "flare_highlights") -> bool:
+    """Whether light that other things send to the lens has ghosts, too.
+
+    Raises:
+        UsageError: Neither on nor off.
+    """
+    if value in ("on", "off"):
+        return value == "on"
+    if isinstance(value, bool):
+        return value
+    raise UsageError(f"{where}: wanted on or off, got {short(value)}")
+
+
+def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
+    """What says how light is followed wants some that is.
+
+    Args:
+        given: Parameters, and whether they are other than they are by themselves: of flare alone,
+            then of flare or scatter.
+        flare: Ghosts are drawn.
+        scatter: So is what the lens scatters.
+
+    Raises:
+        UsageError: A parameter that nothing would heed.
+    """
+    for (name, other), drawn in zip(given.items(), (flare, flare or scatter), strict=True):
+        if other and not drawn:
+            dashes = "--" if name.startswith("--") else ""
+            also = f" or {dashes}scatter" if "highlights" in name else ""
+            raise UsageError(f"{name}: wanted with {dashes}flare{also}")
+
+
+def stack_of(camera: Camera) -> _core.SensorStack:
+    """What the body adds to the surfaces of the lens.
+
+    Raises:
+        UsageError: Glass or a sensor that cannot be.
+    """
+    where = "camera: sensor_reflectance"
+    reflectance = number(camera.sensor_reflectance, where)
+    if not 0 <= reflectance <= 1:
+        raise UsageError(
+            f"{where}: wanted 0 .. 1 (no surface can send back more light than arrives), "
+            f"got {reflectance:g}"
+        )
+    given: Any = camera.cover_glass
+    if given is None:
+        return _core.SensorStack(reflectance=reflectance)
+    where = "camera: cover_glass"
+    wanted = "(thickness, gap) or (thickness, gap, index), mm"
+    if not isinstance(given, tuple | list) or len(given) not in (2, 3):
+        raise UsageError(f"{where}: wanted {wanted}, got {short(given)}")
+    thickness, gap, index = numbers((*given, 1.5168)[:3], where, 3, wanted)
+    number(thickness, where, 0, 100, above=0)
+    number(gap, where, 0, 100, above=0)
+    number(index, where, 1, 4)
+    return _core.SensorStack(thickness, index, gap, reflectance)
+
+
+def stack_facts(camera: Camera) -> dict[str, Any]:
+    """Of the body, for metadata and hashes; nothing if it declares nothing."""
+    facts: dict[str, Any] = {}
+    if camera.cover_glass is not None:
+        facts["cover_glass"] = list(camera.cover_glass)
+    if camera.sensor_reflectance:
+        facts["sensor_reflectance"] = camera.sensor_reflectance
+    return facts
+
+
+def parts_of(camera: Camera) -> _core.LensScatter:
+    """The core's record of what scatters.
+
+    Raises:
+        UsageError: Values that cannot be.
+    """
+    return core_parts(camera.scatter)
+
+
+def scatter_facts(camera: Camera) -> dict[str, Any]:
+    """What scatters, for metadata and hashes, where scatter is drawn."""
+    return asdict(camera.scatter or LensScatter())

@@ -1,0 +1,157 @@
+"""How far away what shall be sharp is: stated, measured along a ray, or asked of a node."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.scene.scene import Scene
+
+_VERTICES_AT_ONCE = 1 << 18
+_ROUNDS = 4
+
+
+@dataclass
+class Focus:
+    """Answers "how far is what shall be sharp": m from the entrance pupil along the axis."""
+
+    scene: Scene
+    camera: Camera
+    resolution: tuple[int, int]
+    frame: tuple[float, float]
+    world: NDArray[np.float64]
+    core_scene: _core.Scene | None
+    notes: list[str]
+    #: focus distance (m) at which a point of the camera's frame is sharp; None: its depth
+    sharp_at: Callable[[NDArray[np.float64]], float] | None = None
+
+    def distance(self, direction_of: Callable[[float, float], NDArray[np.float64]]) -> float:
+        """The focus distance, m (may be infinite).
+
+        Args:
+            direction_of: Unit view direction in the camera's frame of a film point (mm, upright).
+        """
+        camera = self.camera
+        if (
+            camera.focus_at is None
+            and camera.focus_on is None
+            and camera.focus_distance is not None
+        ):
+            return camera.focus_distance
+        if camera.focus_on is not None:
+            return self._on_node(camera.focus_on)
+        x, y = camera.focus_at or (self.resolution[0] / 2, self.resolution[1] / 2)
+        if not (0 <= x <= self.resolution[0] and 0 <= y <= self.resolution[1]):
+            raise UsageError(
+                f"camera: focus_at: wanted a pixel within {self.resolution[0]} x "
+                f"{self.resolution[1]}, got {x:g},{y:g}"
+            )
+        film_x = (x / self.resolution[0] - 0.5) * self.frame[0] + camera.shift[0]
+        film_y = (0.5 - y / self.resolution[1]) * self.frame[1] + camera.shift[1]
+        what = f"pixel {x:g},{y:g}" if camera.focus_at else "centre ray"
+        return self._along(direction_of(film_x, film_y), what)
+
+    def settled(
+        self, direction_at: Callable[[float], Callable[[float, float], NDArray[np.float64]]]
+    ) -> float:
+        """The focus distance of a lens whose view follows its focus where that matters: tilted.
+
+        Args:
+            direction_at: View directions of film points, given a focus distance in m.
+        """
+        kept = len(self.notes)
+        distance = self.distance(direction_at(math.inf))
+        if self.sharp_at is None:
+            return distance
+        for _ in range(_ROUNDS):
+            del self.notes[kept:]
+            distance = self.distance(direction_at(distance))
+        return distance
+
+    def _along(self, direction: NDArray[np.float64], what: str) -> float:
+        hit = None
+        if self.core_scene is not None:
+            origin = tuple(self.world[:3, 3])
+            hit = self.core_scene.first_hit(origin, tuple(self.world[:3, :3] @ direction))
+        if hit is None:
+            self.notes.append(f"autofocus: {what} meets nothing; focus at infinity")
+            return math.inf
+        depth = float(hit[0]) * -float(direction[2])
+        if not depth > 0:  # the camera stands in a surface
+            self.notes.append(f"autofocus: {what} begins on a surface; focus at infinity")
+            return math.inf
+        self.notes.append(f"autofocus: {what} meets a surface {depth:.4g} m away")
+        return depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
+
+    def _on_node(self, name: str) -> float:
+        """Depth of the visible surface in the middle of the node, else of its nearest vertex."""
+        scene = self.scene
+        if name not in scene.node_positions and name not in scene.nodes:
+            known = set(scene.node_positions) | set(scene.nodes)
+            raise InputError(f"camera: focus_on: no node named {name!r}{suggest(name, known)}")
+        instances = [i for i in scene.nodes.get(name, []) if scene.instances[i].shown]
+        eye, axis = self.world[:3, 3], -self.world[:3, 2]
+        if not instances:
+            place = scene.node_positions.get(name)
+            if place is None:
+                raise InputError(f"camera: focus_on: node {name!r} is hidden at {scene.time:g} s")
+            return self._in_front(name, float((place - eye) @ axis), "is", place - eye)
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        nearest, farthest = math.inf, -math.inf
+        vertex = eye
+        for points in _world_vertices(scene, instances):
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+            depths = (points - eye) @ axis
+            ahead = np.where(depths > 0, depths, math.inf)
+            if ahead.min() < nearest:
+                nearest, vertex = float(ahead.min()), points[ahead.argmin()]
+            farthest = max(farthest, float(depths.max()))
+        middle = (low + high) / 2 - eye
+        if self.core_scene is not None and middle @ axis > 0:
+            hit = self.core_scene.first_hit(tuple(eye), tuple(middle))
+            if hit is not None and hit[1] in instances:
+                depth = hit[0] * float(middle @ axis) / float(np.linalg.norm(middle))
+                place = hit[0] / float(np.linalg.norm(middle)) * middle
+                return self._in_front(name, depth, "has its visible middle", place)
+        depth = nearest if nearest < math.inf else farthest
+        return self._in_front(name, depth, "has its nearest vertex", vertex - eye)
+
+    def _in_front(self, name: str, depth: float, verb: str, from_eye: NDArray[np.float64]) -> float:
+        if not depth > 0:
+            raise InputError(
+                f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)"
+            )
+        self.notes.append(f"focus: node {name!r} {verb} {depth:.4g} m away")
+        return depth if self.sharp_at is None else self.sharp_at(self.world[:3, :3].T @ from_eye)
+
+
+def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:
+    """Vertices of instances, shape (N, 3), m: in pieces, as a forest has more than fit."""
+    by_mesh: dict[int, list[int]] = {}
+    for i in instances:
+        by_mesh.setdefault(scene.instances[i].mesh, []).append(i)
+    for mesh, users in by_mesh.items():
+        points = scene.meshes[mesh].positions.astype(np.float64)
+        at_once = max(1, _VERTICES_AT_ONCE // max(1, len(points)))
+        for start in range(0, len(users), at_once):
+            piece = np.array([scene.instances[i].transform for i in users[start : start + at_once]])
+            world = points @ piece[:, :3, :3].swapaxes(1, 2) + piece[:, None, :3, 3]
+            if world.size:
+                yield world.reshape(-1, 3)
+
+
+def ideal_direction(film_distance: float) -> Callable[[float, float], NDArray[np.float64]]:
+    """View direction of a film point through the centre of an ideal lens."""
+
+    def direction(x: float, y: float) -> NDArray[np.float64]:
+        d = np.array([x, y, -film_distance])
+        return np.asarray(d / np.linalg.norm(d))
+
+    return direction

@@ -1,0 +1,255 @@
+"""Focus, zoom, iris and film shift that change while the shutter is open.
+
+An ideal lens or a projection is keyed so that its numbers are within the bound of
+:mod:`daguerre.motion.resample` at all times; the parameters of a projection's model change in steps
+that move nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in
+states, each drawn by the samples that are nearest to it in time: so many that focusing and tilting
+blur by less than ``STATE_BLUR`` of a pixel from what it should be, and the iris turns and bends by
+less than 1 % of its radius. Its f-stop needs no states: the widest iris is closed as far as it is
+at each moment.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.errors import UsageError
+from daguerre.motion.resample import resample
+
+#: Blur, px, by which the focus of a state may miss.
+STATE_BLUR = 0.1
+#: Radii by which the iris's corner may miss.
+_STATE_TURN = 0.01
+MAX_STATES = 129
+#: The same of a projection's model, whose states are cheap, and are ground truth's, too.
+MODEL_BLUR = 0.01
+MAX_MODELS = 513
+_LOOKS = 1024
+_IRIS = ("blades", "blade_rotation", "blade_curvature")
+_LENS = (
+    *("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", "zoom"),
+    *("projection", *_IRIS),
+)
+_ACROSS = 9  # points across the picture at which it is seen how far a model moves it
+
+
+@dataclass
+class LensMotion:
+    """What changes, and how a lens is made for a moment.
+
+    Attributes:
+        camera: With its motion.
+        changing: Names of the parameters that change within the interval.
+        begin: Of the interval, s.
+        end: Of the interval, s.
+        focus_distance: m, unless it changes; None: a pinhole.
+        f_stop: Unless it changes; None: a pinhole.
+        film_offset: From the entrance pupil to the film at mid-exposure, m.
+        make: The core's camera for one without motion.
+    """
+
+    camera: Camera
+    changing: set[str]
+    begin: float
+    end: float
+    focus_distance: float | None
+    f_stop: float | None
+    film_offset: float
+    make: Callable[[Camera], _core.Camera]
+
+    def apply(
+        self, core: _core.Camera, efl: float | None, frame: tuple[float, float], pitch: float
+    ) -> str | None:
+        """Hands over what changes to the core's camera of mid-exposure.
+
+        Args:
+            core: The camera.
+            efl: Focal length of a lens that is set up in states, mm; None: an ideal lens.
+            frame: What the picture covers of the film, mm.
+            pitch: Of the pixels, mm.
+
+        Returns:
+            A note, if a bound is missed.
+
+        Raises:
+            UsageError: A parameter changes that cannot.
+        """
+        if "sensor_size" in self.changing:
+            raise UsageError(
+                "camera: sensor_size: cannot change while the shutter is open; "
+                "wanted a focal_length that does, or shutter_time=0"
+            )
+        note = None
+        if efl is None:
+            if self.changing & {*_LENS}:
+                note = self._change_ideal(core)
+        elif self.changing & {*_LENS, "shift"}:
+            note = self._change_states(core, efl, frame, pitch)
+        if "shift" in self.changing or (efl is not None and "f_stop" in self.changing):
+            self._change_setting(core, exact=efl is not None)
+        return note
+
+    def _at(self, time: float) -> Camera:
+        """The camera at a time; what it focuses on is known."""
+        now = self.camera.at(time)
+        if "focus_distance" in self.changing or self.focus_distance is None:
+            return now
+        known: dict[str, Any] = {"focus_on": None, "focus_at": None}
+        if "zoom" in self.changing:  # which moves the pupil, while the film stays
+            known |= {
+                "focus_distance": self.focus_distance + self.film_offset,
+                "focus_from": "sensor",
+            }
+        else:
+            known |= {"focus_distance": self.focus_distance, "focus_from": "pupil"}
+        return replace(now, **known)
+
+    def _fractions(self, times: Sequence[float]) -> NDArray[np.float32]:
+        span = self.end - self.begin
+        return np.array([(t - self.begin) / span for t in times], np.float32)
+
+    def _looks(self) -> list[float]:
+        """Moments at which it is seen how fast things change."""
+        even = self.begin + (self.end - self.begin) * np.arange(_LOOKS + 1) / _LOOKS
+        return [float(t) for t in even]
+
+    def _change_ideal(self, core: _core.Camera) -> str | None:
+        made: dict[float, _core.Camera] = {}
+
+        def lens(time: float) -> _core.Camera:
+            if time not in made:
+                made[time] = self.make(self._at(time))
+            return made[time]
+
+        watched = _Watched(lambda t: lens(t).lens_numbers, self.camera, self.changing)
+        times, _ = resample(watched, self.begin, self.end)
+        steps, needed = self._model_times()
+        if self.changing & {*_IRIS}:
+            steps = [*steps, *self._looks()[:: _LOOKS // (MAX_STATES - 1)]]
+        if steps:
+            times = sorted({*times, *steps})
+        core.change_lens(self._fractions(times), [lens(t) for t in times])
+        if needed <= MAX_MODELS:
+            return None
+        return _too_many("projection: its parameters", needed, MAX_MODELS)
+
+    def _model_times(self) -> tuple[list[float], int]:
+        """Of a projection whose parameters change: times of models, and how many are asked for."""
+        if "projection" not in self.changing:
+            return [], 0
+        models = [self.camera.motion["projection"].at(t) for t in self._looks()]
+        if len({projection.parameters for projection in models}) == 1:
+            return [], 0
+        middle = models[_LOOKS // 2]
+        ends = [np.linspace(-0.5, side - 0.5, _ACROSS) for side in middle.size]
+        pixels = np.stack(np.meshgrid(*ends), axis=-1).reshape(-1, 2)
+        ahead = middle.unproject(pixels)
+        ahead = ahead[np.isfinite(ahead).all(axis=1)]
+        places = np.array([p.core.project(ahead) for p in models]) * middle.focal
+        moved = np.linalg.norm(np.diff(places, axis=0), axis=2)
+        return self._spread(np.nan_to_num(moved).max(axis=1) / (2 * MODEL_BLUR), MAX_MODELS)
+
+    def _change_states(
+        self, core: _core.Camera, efl: float, frame: tuple[float, float], pitch: float
+    ) -> str | None:
+        cameras = [self._at(t) for t in self._looks()]
+        widest = min(self._stop(c) for c in cameras)
+        shifts = np.abs([c.shift for c in cameras]).max(axis=0)
+        reach = math.hypot(*(size / 2 + s for size, s in zip(frame, shifts, strict=True)))
+        times, needed = self._state_times(cameras, efl, reach, widest, STATE_BLUR * pitch)
+        states = [
+            replace(
+                self._at(t), f_stop=widest, t_stop=None, shift=(float(shifts[0]), float(shifts[1]))
+            )
+            for t in times
+        ]
+        with ThreadPoolExecutor() as pool:
+            core.change_lens(self._fractions(times), list(pool.map(self.make, states)))
+        if needed <= MAX_STATES:
+            return None
+        return _too_many("lens: its focus and iris", needed, MAX_STATES)
+
+    def _stop(self, camera: Camera) -> float:
+        if "f_stop" in self.changing and camera.f_stop is not None:
+            return float(camera.f_stop)
+        assert self.f_stop is not None  # an exact lens has one
+        return self.f_stop
+
+    def _state_times(
+        self, cameras: list[Camera], efl: float, reach: float, stop: float, blur_mm: float
+    ) -> tuple[list[float], int]:
+        """Times of the states, and how many the bounds ask for.
+
+        Focusing at s moves the film by about f^2 / s; a state serves as much to either side of it.
+        Tilting moves what is sharp by as much as the film's edge turns (``reach`` from the axis),
+        zooming what lies there.
+        """
+        film_mm = blur_mm * stop
+        # inf counts as 0, so does a focus that stays
+        inverse = [1e-3 / c.focus_distance if c.focus_distance else 0.0 for c in cameras]
+        steps = efl**2 * np.abs(np.diff(inverse)) / (2 * film_mm)
+        tilts = np.radians([c.tilt for c in cameras])
+        steps += reach * np.abs(np.diff(tilts, axis=0)).sum(axis=1) / (2 * film_mm)
+        zooms = np.log([c.zoom or 1.0 for c in cameras])
+        steps += reach * np.abs(np.diff(zooms)) / (2 * blur_mm)
+        turns = np.radians([c.blade_rotation for c in cameras])
+        bends = np.array([c.blade_curvature for c in cameras])
+        blades = np.diff([c.blades for c in cameras]) != 0
+        steps += (np.abs(np.diff(turns)) + np.abs(np.diff(bends))) / (2 * _STATE_TURN) + 2 * blades
+        return self._spread(steps, MAX_STATES)
+
+    def _spread(self, steps: NDArray[np.float64], most: int) -> tuple[list[float], int]:
+        """Times of states that share what changes from look to look, in units of what one may."""
+        way = np.concatenate([[0.0], np.cumsum(steps)])
+        if not way[-1] > 0:
+            return [0.5 * (self.begin + self.end)], 1
+        needed = int(np.ceil(way[-1]))
+        count = min(needed, most)
+        middles = way[-1] * (np.arange(count) + 0.5) / count
+        return [float(t) for t in np.interp(middles, way, self._looks())], needed
+
+    def _change_setting(self, core: _core.Camera, *, exact: bool) -> None:
+        """Iris radius of an exact lens, relative to its widest, and the film's shift."""
+        middle = self.camera.at(0.5 * (self.begin + self.end)).shift
+        widest = min(self._stop(self._at(t)) for t in self._looks()) if exact else 1.0
+
+        def setting(time: float) -> tuple[float, float, float]:
+            now = self._at(time)
+            opening = widest / self._stop(now) if exact else 1.0
+            return opening, now.shift[0] - middle[0], now.shift[1] - middle[1]
+
+        times, values = resample(
+            _Watched(setting, self.camera, self.changing), self.begin, self.end
+        )
+        table = np.array(values, np.float32)
+        openings = np.ascontiguousarray(np.minimum(1, table[:, 0]))
+        core.change_setting(self._fractions(times), openings, np.ascontiguousarray(table[:, 1:]))
+
+
+def _too_many(what: str, needed: int, most: int) -> str:
+    return f"{what} change so much that {needed} states were wanted; {most} are taken"
+
+
+@dataclass(frozen=True)
+class _Watched:
+    """What follows from parameters that change."""
+
+    value: Callable[[float], Any]
+    camera: Camera
+    names: set[str]
+
+    def at(self, time_s: float) -> Any:
+        return self.value(time_s)
+
+    def breaks(self, begin: float, end: float) -> list[float]:
+        parts = [self.camera.motion[name].breaks(begin, end) for name in self.names]
+        return sorted({float(t) for part in parts for t in part})

@@ -1,0 +1,170 @@
+"""Where a camera is while the shutter is open: a rigid motion, whatever moves it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.camera.projection import Projection
+from daguerre.checks import short
+from daguerre.errors import UsageError
+from daguerre.motion.resample import resample_transform
+from daguerre.motion.values import Dynamic, Keys, Spin
+
+#: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
+_STAY_RIGID = ("decomposed", "twist", "slerp")
+#: What a moving camera may be off by is told by points around it, m.
+_AROUND = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
+
+#: Moments at which a motion is looked at for its hash.
+_LOOKS = 64
+
+
+@dataclass(frozen=True)
+class _Rigid:
+    """World from camera over time, without what scale the file may have."""
+
+    transform: Dynamic
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        return rigid(self.transform.at(time_s))
+
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
+        return self.transform.breaks(begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class _Mounted:
+    """World from what is fixed to a camera that moves."""
+
+    body: Dynamic
+    place: NDArray[np.float64]
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        return np.asarray(rigid(self.body.at(time_s)) @ self.place)
+
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
+        return self.body.breaks(begin, end)
+
+
+def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
+    """The same camera at another place of the body that it is fixed to, and moving with it.
+
+    Args:
+        camera: It gives all else.
+        place: Of the new one in this one's frame, rigid, m; shape (4, 4).
+    """
+    given: Any = camera
+    if not isinstance(given, Camera):
+        raise UsageError(f"camera: wanted a Camera, got {short(given)}")
+    moving = camera.motion.get("transform")
+    if moving is not None:
+        return camera.with_(transform=_Mounted(moving, place))
+    return camera.with_(transform=rigid(camera.transform) @ place)
+
+
+def moved_right(camera: Camera, shift: float) -> Camera:
+    """As :func:`mounted`, to its own right, m."""
+    place = np.eye(4)
+    place[0, 3] = shift
+    return mounted(camera, place)
+
+
+def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
+    """World from camera over an interval (s), in fractions of it; rigid.
+
+    Keys and spins go to the core as they are; anything else as keys that keep the bound of
+    :func:`daguerre.motion.resample.resample_transform`.
+
+    Raises:
+        UsageError: A transform is singular.
+    """
+    moving = camera.motion.get("transform")
+    if moving is None or not end > begin:
+        return _core.Motion.still(rigid(camera.at(0.5 * (begin + end)).transform))
+    if isinstance(moving, Spin):
+        base = moving.transform
+        if not isinstance(base, Keys):
+            return replace(moving, transform=rigid(base)).motion.over(begin, end)
+        if base.interpolation in _STAY_RIGID:
+            return replace(moving, transform=_near(base, begin, end)).motion.over(begin, end)
+    if isinstance(moving, Keys) and moving.interpolation in _STAY_RIGID:
+        return _near(moving, begin, end).motion.over(begin, end)
+    return resample_transform(_Rigid(moving), begin, end, _AROUND).over(begin, end)
+
+
+def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
+    """Which parameters change in an interval, and what identifies how; for metadata and hashes."""
+    if not end > begin:
+        return {}
+    even = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
+    found: dict[str, Any] = {}
+    for name, dynamic in camera.motion.items():
+        breaks = [float(t) for t in dynamic.breaks(begin, end)]
+        times = sorted({*even, *breaks[: 16 * _LOOKS]})
+        values = [_plain(dynamic.at(t)) for t in times]
+        if any(value != values[0] for value in values):
+            text = json.dumps([values, breaks])
+            found[name] = {
+                "open": values[0],
+                "close": values[-1],
+                "sha256": hashlib.sha256(text.encode()).hexdigest(),
+            }
+    return {"motion": found} if found else {}
+
+
+def _plain(value: Any) -> Any:
+    """For JSON."""
+    return value.facts() if isinstance(value, Projection) else np.asarray(value).tolist()
+
+
+def _near(keys: Keys, begin: float, end: float) -> Keys:
+    """The keys that an interval needs, made rigid."""
+    first = max(0, int(np.searchsorted(keys.times, begin, side="right")) - 1)
+    last = int(np.searchsorted(keys.times, end, side="left")) + 1
+    values = tuple(rigid(value) for value in keys.values[first:last])
+    return replace(keys, times=keys.times[first:last], values=values)
+
+
+#: Of a camera from the origin, m: rays from further away overflow in the ray tracer.
+MAX_DISTANCE = 1e18
+
+
+def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rotation and position of a transform: a camera has no scale.
+
+    Raises:
+        UsageError: The matrix is no 4x4 of finite numbers, is singular, or stands too far away.
+    """
+    try:
+        matrix = np.asarray(transform, np.float64)
+    except (TypeError, ValueError):
+        raise UsageError(
+            f"camera: transform: wanted a 4x4 matrix, got {short(transform)}"
+        ) from None
+    if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+        raise UsageError("camera: transform: wanted a finite 4x4 matrix")
+    if np.abs(matrix[:3, 3]).max() > MAX_DISTANCE:
+        raise UsageError(
+            f"camera: transform: wanted a position within {MAX_DISTANCE:g} m of the origin, "
+            f"got {matrix[:3, 3].tolist()}"
+        )
+    forward, up = -matrix[:3, 2], matrix[:3, 1]
+    right = np.cross(forward, up)
+    if not (np.linalg.norm(forward) > 0 and np.linalg.norm(right) > 0):
+        raise UsageError(
+            "camera: transform: wanted a view direction and an up vector, got a singular matrix"
+        )
+    z = -forward / np.linalg.norm(forward)
+    x = right / np.linalg.norm(right)
+    out = np.eye(4)
+    out[:3, 0], out[:3, 1], out[:3, 2], out[:3, 3] = x, np.cross(z, x), z, matrix[:3, 3]
+    return out

@@ -1,0 +1,112 @@
+"""From the scene's arrays to the core's scene, and a hash of what was handed over."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from typing import Any
+
+import numpy as np
+
+import daguerre._core as _core
+from daguerre.checks import frozen, short
+from daguerre.errors import DaguerreError, InputError, UsageError
+from daguerre.motion.subdivision import samples
+from daguerre.scene.scene import Scene
+
+from .scene_motion import Moving
+from .shading import add_environment, add_lights, add_materials
+
+
+def build(
+    scene: Scene,
+    interval: tuple[float, float] | None = None,
+    notes: list[str] | None = None,
+) -> _core.Scene:
+    """Hands the scene to the core, which checks it and builds the ray tracer.
+
+    Args:
+        scene: What is seen.
+        interval: When it is seen, s; None: at its ``time``.
+        notes: Is told what moves in a way that cannot be shown to its end.
+
+    Raises:
+        InputError: Some part cannot be rendered; the message names it.
+    """
+    if not isinstance(scene, Scene):
+        raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
+    try:
+        builder = _core.SceneBuilder()
+        seen = interval or (scene.time, scene.time)
+        builder.set_interval(*seen)
+        moving = Moving(scene, seen, [] if notes is None else notes)
+        _add_all(builder, scene, moving)
+        moving.finish()
+        return builder.build()
+    except ValueError as error:
+        if isinstance(error, DaguerreError):
+            raise
+        raise InputError(f"{scene.path or 'scene'}: {error}") from None
+
+
+def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: Moving) -> None:
+    for texture in scene.textures:
+        pixels = frozen(texture.pixels)
+        filters = (texture.filter, texture.min_filter)
+        builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, *filters)
+    for i, mesh in enumerate(scene.meshes):
+        v = moving.vertices(i)
+        optional = (v.normals, v.uv, v.uv1, v.tangents, v.colors)
+        builder.add_mesh(
+            mesh.name,
+            frozen(v.positions),
+            frozen(mesh.indices),
+            *(None if values is None else frozen(values) for values in optional),
+        )
+    add_materials(builder, scene, moving.interval)
+    for i, instance in enumerate(scene.instances):
+        builder.add_instance(
+            instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)
+        )
+    add_lights(builder, scene, moving.interval)
+    add_environment(builder, scene, moving.interval)
+
+
+def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> str:
+    """SHA-256 of everything that the picture can depend on.
+
+    Args:
+        scene: What is seen.
+        interval: When it is seen, s; what moves is looked at its ends, its keys and in between.
+    """
+    digest = hashlib.sha256()
+
+    def add(value: Any) -> None:
+        if isinstance(value, np.ndarray):
+            digest.update(f"{value.dtype}{value.shape}".encode())
+            digest.update(np.ascontiguousarray(value).data)
+        elif dataclasses.is_dataclass(value):
+            for field in dataclasses.fields(value):
+                digest.update(field.name.encode())
+                add(getattr(value, field.name))
+        elif isinstance(value, (list, tuple)):
+            digest.update(f"[{len(value)}".encode())
+            for item in value:
+                add(item)
+        else:
+            digest.update(repr(value).encode())
+
+    for part in (
+        scene.meshes,
+        scene.textures,
+        scene.materials,
+        scene.instances,
+        scene.lights,
+        scene.environment,
+    ):
+        add(part)
+    if interval is not None:
+        for where, dynamic in scene.motion.parts():
+            add(where)
+            add(samples(dynamic, *interval))
+    return digest.hexdigest()

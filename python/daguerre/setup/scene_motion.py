@@ -1,0 +1,147 @@
+"""What moves, in the form that the core takes it: over the interval of one picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.checks import given_matrix, given_up
+from daguerre.errors import InputError
+from daguerre.motion.resample import resample_shown, resample_transform
+from daguerre.motion.subdivision import MAX_BREAKS, MAX_KEYS
+from daguerre.motion.values import Dynamic, Keys, Spin
+from daguerre.scene.motion import Vertices
+from daguerre.scene.parts import Instance, Mesh, vertices_of
+from daguerre.scene.scene import Scene
+
+from .vertices import MAX_STEPS, resample_vertices, same_array
+
+FloatArray = NDArray[np.float64]
+#: Keys of a file that are looked at, of all transforms together; few of each are left at least,
+#: or none where even that is too much work: halving finds what they tell, if less exactly.
+MAX_ALL_BREAKS = 1 << 18
+_MIN_BREAKS = 8
+
+
+class Moving:
+    """The moving parts of a scene over an interval.
+
+    Args:
+        scene: Has the motion.
+        interval: Begin and end, s.
+        notes: Is told where a bound cannot be kept.
+    """
+
+    def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
+        self._scene, self.interval, self._notes = scene, interval, notes
+        self._corners: dict[int, FloatArray] = {}
+        self._crowded: list[tuple[str, int, int]] = []
+        # What hangs at the end of a long chain costs as much as the whole of it.
+        work = sum(getattr(d, "weight", 1) for d in scene.motion.instances.values())
+        shared = MAX_ALL_BREAKS // max(1, work)
+        self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared)) if shared else 0
+
+    def vertices(self, index: int) -> Vertices:
+        """Those of a mesh: of one moment, (N, ...), or of even steps, (S, N, ...)."""
+        mesh = self._scene.meshes[index]
+        dynamic = self._scene.motion.meshes.get(index)
+        if dynamic is None:
+            return vertices_of(mesh)
+        steps, keeps = resample_vertices(dynamic, *self.interval)
+        if not keeps:
+            self._notes.append(
+                f"mesh {mesh.name or index!r} moves too unevenly for {MAX_STEPS} steps: "
+                f"{len(steps)} show it, as far as they go"
+            )
+        if len(steps) == 1:
+            return steps[0]
+        for name in ("uv", "uv1", "colors"):
+            if not all(same_array(getattr(s, name), getattr(steps[0], name)) for s in steps):
+                raise InputError(
+                    f"mesh {mesh.name or index!r}: {name}: changes while the shutter is open, "
+                    "which cannot be blurred; wanted one that stays, or a shutter time of 0"
+                )
+        moved = {name: _stacked(steps, name) for name in ("positions", "normals", "tangents")}
+        return replace(steps[0], **moved)
+
+    def transform(self, index: int) -> Any:
+        """World from local of an instance, (4, 4), or a motion of the core."""
+        instance = self._scene.instances[index]
+        dynamic = self._scene.motion.instances.get(index)
+        if dynamic is None:
+            return instance.transform
+        begin, end = self.interval
+        if begin == end:
+            return given_matrix(dynamic.at(begin), _where(instance, index))
+        if isinstance(dynamic, Keys | Spin):  # as they were meant, without a key too many
+            return dynamic.motion
+        return self._resampled(dynamic, instance, index)
+
+    def _resampled(self, dynamic: Dynamic, instance: Instance, index: int) -> _core.Motion:
+        if instance.mesh not in self._corners:
+            self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
+        box, where = self._corners[instance.mesh], _where(instance, index)
+        try:
+            self._count(dynamic, where, self._most)
+            return resample_transform(dynamic, *self.interval, box, self._most, where)
+        except (TypeError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"{where}: transform: {error}") from None
+
+    def _count(self, dynamic: Dynamic, where: str, most: int) -> None:
+        many = len(dynamic.breaks(*self.interval))
+        if many > most:
+            self._crowded.append((where, many, most))
+
+    def finish(self) -> None:
+        """Says once what has more keys than can be shown."""
+        motion = self._scene.motion
+        kinds = {"shown": motion.shown, "material": motion.materials, "light": motion.lights}
+        for kind, dynamics in kinds.items():
+            for i, dynamic in dynamics.items():
+                where = f"{kind} {i}" if kind != "shown" else f"instance {i}: shown"
+                self._count(dynamic, where, MAX_KEYS if kind == "shown" else MAX_BREAKS)
+        if motion.environment is not None:
+            self._count(motion.environment, "environment", MAX_BREAKS)
+        if self._crowded:
+            where, many, most = self._crowded[0]
+            others = len(self._crowded) - 1
+            self._notes.append(
+                f"{where} has {many} keys while the shutter is open; {most} at most show it"
+                + (f" ({others} others likewise)" if others else "")
+            )
+
+    def shown(self, index: int) -> list[tuple[float, float]] | None:
+        """When an instance is there, s; None: always."""
+        dynamic = self._scene.motion.shown.get(index)
+        if dynamic is None:
+            return None if self._scene.instances[index].shown else []
+        begin, end = self.interval
+        found = resample_shown(dynamic, begin, end)
+        # The last moment belongs to the picture, and the end of a stretch does not belong to it.
+        held = [(a, b if b < end else np.inf) for a, b in found]
+        return None if held == [(begin, np.inf)] else held
+
+
+def _stacked(steps: list[Vertices], name: str) -> Any:
+    """One array of all steps; None where a step has none."""
+    arrays = [getattr(step, name) for step in steps]
+    return None if any(a is None for a in arrays) else given_up(np.stack(arrays))
+
+
+def corners(mesh: Mesh) -> FloatArray:
+    """Of the box around a mesh, shape (8, 3), m."""
+    if not len(mesh.positions):
+        return np.zeros((8, 3))
+    ends = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    return np.array([[ends[k[i]][i] for i in range(3)] for k in product((0, 1), repeat=3)], float)
+
+
+def _where(instance: Instance, index: int) -> str:
+    return f"instance {instance.name or index!r}"

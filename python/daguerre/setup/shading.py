@@ -1,0 +1,206 @@
+"""Materials, lights and the environment, in the form that the core takes them: over an interval."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.errors import InputError
+from daguerre.motion.resample import resample
+from daguerre.motion.values import Dynamic
+from daguerre.scene.lights import (
+    DirectionalLight,
+    Light,
+    PointLight,
+    SphereLight,
+    SpotLight,
+    check_light,
+)
+from daguerre.scene.materials import (
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Gltf,
+    Material,
+    TextureSlot,
+    check_material,
+)
+from daguerre.scene.parts import Environment
+from daguerre.scene.scene import Scene
+
+Interval = tuple[float, float]
+#: Kind of light, and what the core's function for that kind takes.
+CoreLight = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A value over time, as ``look`` makes it what the core takes: there it shall be linear."""
+
+    dynamic: Dynamic
+    look: Callable[[Any], Any]
+
+    def at(self, time_s: float) -> Any:
+        return self.look(self.dynamic.at(time_s))
+
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
+        return self.dynamic.breaks(begin, end)
+
+
+def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """All materials; those that change as keys."""
+    for i, material in enumerate(scene.materials):
+        dynamic = scene.motion.materials.get(i)
+        if dynamic is None:
+            _add_material(builder, material)
+            continue
+        times, values = resample(_Seen(dynamic, _checker(material, i)), *interval)
+        for value in values:
+            _add_material(builder, value)
+        builder.fold_materials(times)
+
+
+def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """All lights; those that change as keys."""
+    for i, (light, transform) in enumerate(scene.lights):
+        dynamic = scene.motion.lights.get(i)
+        first = _core_light(light, transform)
+        if dynamic is None:
+            _add_light(builder, first)
+            continue
+        times, values = resample(_Seen(dynamic, _light_checker(first[0])), *interval)
+        for value in values:
+            _add_light(builder, value)
+        builder.fold_lights(times)
+
+
+def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+    """The environment, and what changes of it."""
+    dynamic = scene.motion.environment
+    environment = scene.environment if dynamic is None else dynamic.at(interval[0])
+    if environment is None:
+        return
+    if dynamic is not None:
+        image = environment.image
+        times, poses = resample(_Seen(dynamic, lambda e: _pose(e, image)), *interval)
+        if len(times) > 1:
+            builder.key_environment(times, poses)
+            color = None if environment.color is None else (1.0, 1.0, 1.0)
+            environment = dataclasses.replace(environment, color=color, scale=1.0, rotation=0.0)
+    _set_environment(builder, environment)
+
+
+def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
+    """What its light is multiplied by, and its turn about +y, rad."""
+    if environment.image is not image:
+        raise InputError("environment: image: wanted one that stays, got another later")
+    color = (1.0, 1.0, 1.0)
+    if environment.image is None:
+        color = environment.color or (0.0, 0.0, 0.0)
+    strength = tuple(float(c) * environment.scale for c in color)
+    return strength, math.radians(environment.rotation)
+
+
+def _checker(first: Material, index: int) -> Callable[[Any], Material]:
+    where = f"material {first.name!r}" if first.name else f"material {index}"
+    kind = type(first.kind)
+
+    def checked(material: Any) -> Material:
+        check_material(material, where)
+        if not isinstance(material.kind, kind):
+            raise InputError(
+                f"{where}: kind: wanted {kind.__name__} at all times, "
+                f"got {type(material.kind).__name__} at one"
+            )
+        return material  # type: ignore[no-any-return]
+
+    return checked
+
+
+def _light_checker(kind: str) -> Callable[[Any], CoreLight]:
+    def checked(pair: tuple[Light, NDArray[np.float64]]) -> CoreLight:
+        light = _core_light(*pair)
+        if light[0] != kind:
+            raise InputError(
+                f"light {pair[0].name!r}: kind: wanted a {kind} light at all times, "
+                f"got a {light[0]} light at one"
+            )
+        return light
+
+    return checked
+
+
+def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:
+    return None if slot is None else (slot.texture, slot.uv_set, tuple(slot.transform))
+
+
+def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
+    kind, rest = material.kind, (material.emission, material.two_sided_emission)
+    if isinstance(kind, Diffuse):
+        builder.add_diffuse(material.name, kind.reflectance, *rest)
+    elif isinstance(kind, Conductor):
+        builder.add_conductor(material.name, kind.reflectance, kind.alpha, *rest)
+    elif isinstance(kind, Dielectric):
+        builder.add_dielectric(
+            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, *rest
+        )
+    elif isinstance(kind, Gltf):
+        values = {f.name: getattr(kind, f.name) for f in dataclasses.fields(kind)}
+        for name, value in values.items():
+            if name.endswith("_texture"):
+                values[name] = _slot(value)
+        values["anisotropy_rotation"] = math.radians(kind.anisotropy_rotation)
+        builder.add_gltf(material.name, values, *rest)
+    else:
+        raise InputError(
+            f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
+            f"got {type(kind).__name__}"
+        )
+
+
+def _add_light(builder: _core.SceneBuilder, light: CoreLight) -> None:
+    kind, *values = light
+    getattr(builder, f"add_{kind}_light")(*values)
+
+
+def _core_light(light: Light, transform: NDArray[np.float64]) -> CoreLight:
+    check_light(light)
+    position = tuple(float(x) for x in transform[:3, 3])
+    shines = -transform[:3, 2]
+    length = float(np.linalg.norm(shines))
+    if not length > 0:
+        raise InputError(f"light {light.name!r}: transform: wanted a direction, got a zero axis")
+    direction = tuple(float(x) for x in shines / length)
+    if isinstance(light, PointLight) and light.radius > 0:
+        # A ball of luminance L has the intensity L pi r^2 seen from afar.
+        luminance = tuple(c / (math.pi * light.radius**2) for c in light.intensity)
+        return "sphere", position, light.radius, luminance
+    if isinstance(light, PointLight):
+        return "point", position, light.intensity, light.range
+    if isinstance(light, SpotLight):
+        cone = math.radians(light.inner_angle), math.radians(light.outer_angle)
+        return "spot", position, direction, light.intensity, *cone, light.range
+    if isinstance(light, DirectionalLight):
+        return "directional", direction, light.illuminance
+    if isinstance(light, SphereLight):
+        return "sphere", position, light.radius, light.luminance
+    raise InputError(f"light: wanted a point, spot, directional or sphere light, got {light!r}")
+
+
+def _set_environment(builder: _core.SceneBuilder, environment: Environment) -> None:
+    if environment.image is None:
+        color = environment.color or (0.0, 0.0, 0.0)
+        builder.set_environment_color(tuple(c * environment.scale for c in color))
+        return
+    angle = math.radians(environment.rotation)
+    matrix = np.eye(4)
+    matrix[0, 0] = matrix[2, 2] = math.cos(angle)
+    matrix[0, 2], matrix[2, 0] = math.sin(angle), -math.sin(angle)
+    builder.set_environment_image(environment.image, environment.scale, matrix)
