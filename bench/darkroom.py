@@ -31,7 +31,7 @@ from daguerre import lenses
 from daguerre.analysis.bench import set_up
 from daguerre.distortion.lens import LensDistortion
 from daguerre.post import distort
-from daguerre.post.distortion import CHANNEL_NM
+from daguerre.post.effects.distortion import CHANNEL_NM
 
 CHILD = """
 import json, sys

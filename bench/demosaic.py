@@ -21,7 +21,8 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from daguerre.color import spaces
-from daguerre.development.channels import LEAST_XTRANS, Demosaic
+from daguerre.development.channels import Demosaic
+from daguerre.development.dng import LEAST_XTRANS
 from daguerre.io.tiff import CFA, TiffImage, write_tiff
 from daguerre.sensors.mosaic import Mosaic as Pattern
 

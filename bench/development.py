@@ -44,7 +44,7 @@ def steps(sensor: str, folder: Path) -> dict[str, Callable[[dg.Frame], Any]]:
         frame.expose(sensor, iso=400).save(folder / "x.jpg")
 
     def jpeg_of_dng(_: dg.Frame) -> None:
-        from daguerre.io.camera_file import read_shot
+        from daguerre.development.camera_raw import read_shot
 
         dg.development.develop(read_shot(raw_file), look="standard").save(folder / "y.jpg")
 
@@ -52,7 +52,7 @@ def steps(sensor: str, folder: Path) -> dict[str, Callable[[dg.Frame], Any]]:
         dg.development.develop(frame, look="standard").save(folder / "z.jpg")
 
     def sharp_jpeg_of_dng(_: dg.Frame) -> None:
-        from daguerre.io.camera_file import read_shot
+        from daguerre.development.camera_raw import read_shot
 
         picture = dg.development.develop(read_shot(raw_file), look="standard", sharpen=0.5)
         picture.save(folder / "s.jpg")

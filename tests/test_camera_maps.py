@@ -17,7 +17,7 @@ from daguerre.cli import main
 from daguerre.distortion.lens import LensDistortion
 from daguerre.distortion.rectified import Sight
 from daguerre.errors import UsageError
-from daguerre.io.exr_bands import ExrReader
+from daguerre.io.exr.rows import ExrReader
 
 from . import scenes
 from .make_gltf import triangle

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.io.coco import CocoFile, runs_of
+from daguerre.labels.coco import CocoFile, runs_of
 
 from .make_gltf import CORNERS, Builder
 from .test_annotations import family

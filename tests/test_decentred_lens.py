@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre import _core, lenses
 from daguerre.analysis.camera_facts import camera_facts
-from daguerre.io.exr import attributes
+from daguerre.io.exr.write import attributes
 from daguerre.setup.camera import set_up
 
 from . import scenes

@@ -5,8 +5,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.io.camera_file import read_shot
-from daguerre.io.dng import size_note
+from daguerre.development.camera_raw import read_shot
+from daguerre.development.dng import size_note
 from daguerre.sensors import load
 
 from .colour_chart import delta_e, greys, lab, patch_means, raw_of, reflectances, saved_large, truth

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.color import spectra
 from daguerre.development import bayer_of
-from daguerre.io.dng import baseline_exposure, noise_profile, write_dng
+from daguerre.development.dng import baseline_exposure, noise_profile, write_dng
 from daguerre.sensors import load, names
 
 from .colour_chart import (
@@ -55,7 +56,7 @@ def test_mosaic_levels_and_pattern_come_back(tmp_path, pattern):
         neutral = 1 / np.array(opened.camera_whitebalance[:3])
         np.testing.assert_allclose(neutral / neutral.max(), raw.neutral, rtol=1e-4)
         # LibRaw keeps the inverse, rows scaled so that white is 1: the same matrix in all.
-        ours = raw.sensor.colour_matrix() @ np.linalg.inv(dg.colour.rgb_from_xyz())
+        ours = raw.sensor.colour_matrix() @ np.linalg.inv(spectra.rgb_from_xyz())
         ours /= ours.sum(axis=1, keepdims=True)
         inverse = np.linalg.inv(opened.color_matrix[:, :3])
         np.testing.assert_allclose(inverse, ours, atol=2e-3)

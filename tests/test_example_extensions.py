@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.io.gltf_extensions import KNOWN
+from daguerre.io.gltf.extensions import KNOWN
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")

@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 from daguerre import lenses
 from daguerre.camera.exposure import ideal_h0
-from daguerre.exposure import luminance_exposure, pinhole_note, with_exposure
+from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note, with_exposure
 from daguerre.frame.frame import Frame
 
 from . import scenes

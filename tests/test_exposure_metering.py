@@ -10,8 +10,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.camera.exposure import ideal_h0
+from daguerre.exposure.metering import K, meter
 from daguerre.frame.frame import Frame
-from daguerre.metering import K, meter
 
 FACTS = {"expTime": 1 / 100, "aperture": 4.0, "h0": ideal_h0(4.0)}
 

@@ -12,7 +12,7 @@ import pytest
 
 from daguerre.checks import frozen
 from daguerre.errors import InputError, UsageError
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 
 from .make_gltf import CORNERS, Builder, glb_bytes, triangle
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 
 from .make_gltf import Builder, triangle
 

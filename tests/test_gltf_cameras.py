@@ -9,8 +9,8 @@ import pytest
 
 from daguerre.camera.camera import Camera
 from daguerre.errors import InputError
-from daguerre.io import gltf
-from daguerre.io.gltf_cameras import _EXTRAS, _snake
+from daguerre.io.gltf import reader as gltf
+from daguerre.io.gltf.cameras import _EXTRAS, _snake
 from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
 
 from .make_gltf import Builder, triangle

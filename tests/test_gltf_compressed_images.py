@@ -13,7 +13,8 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.files import extras
-from daguerre.io import gltf, images
+from daguerre.io import images
+from daguerre.io.gltf import reader as gltf
 
 from .make_gltf import Builder, png, triangle
 

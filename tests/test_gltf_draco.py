@@ -10,7 +10,7 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.files import extras
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 
 from .make_gltf import Builder
 

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 import daguerre
 from daguerre.errors import InputError
-from daguerre.io import gltf, gltf_placing
+from daguerre.io.gltf import placing as gltf_placing
+from daguerre.io.gltf import reader as gltf
 from daguerre.setup import camera as camera_setup
 from daguerre.setup import focus as focusing
 

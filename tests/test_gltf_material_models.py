@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 from daguerre.scene.materials import Gltf
 
 from . import scenes

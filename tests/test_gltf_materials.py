@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from daguerre.io import gltf, images
+from daguerre.io import images
+from daguerre.io.gltf import reader as gltf
 from daguerre.scene.materials import Gltf, TextureSlot
 
 from .make_gltf import Builder, jpeg, png, triangle

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
-from daguerre.io import gltf
-from daguerre.io.gltf_pointers import parse
+from daguerre.io.gltf import reader as gltf
+from daguerre.io.gltf.pointers import parse
 
 from .make_gltf import CORNERS, Builder, png, triangle
 

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from daguerre.errors import InputError
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 
 from .bad_files.bases import full, moving, seen
 from .make_gltf import COMPONENTS, TYPES, Builder, glb_bytes

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 
 from .make_gltf import Builder, png
 

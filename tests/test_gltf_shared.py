@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 from daguerre.scene.lights import SpotLight
 
 SCENES = Path(__file__).parents[2] / "shared" / "data" / "scenes"

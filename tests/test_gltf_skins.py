@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from daguerre.errors import InputError
-from daguerre.io import gltf, gltf_skins
+from daguerre.io.gltf import reader as gltf
+from daguerre.io.gltf import skins as gltf_skins
 
 from .make_gltf import CORNERS, Builder
 

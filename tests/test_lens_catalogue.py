@@ -10,7 +10,7 @@ import pytest
 
 from daguerre import lenses
 from daguerre.lenses import library
-from daguerre.lenses.drawing import Drawing, Line, Polygon
+from daguerre.plots.lens_section import Drawing, Line, Polygon
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = (ROOT / "docs" / "lens-catalogue.md").read_text(encoding="utf-8")

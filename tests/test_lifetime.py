@@ -38,7 +38,7 @@ def _scene(arrays: dict[str, np.ndarray]) -> dg.Scene:
     arrays = dict(arrays)
     scene = dg.Scene()
     picture = scene.add_texture(arrays.pop("picture"), srgb=True)
-    slot = dg.materials.TextureSlot(picture)
+    slot = dg.TextureSlot(picture)
     mesh = scene.add_mesh(**arrays)
     scene.add_instance(mesh, dg.Material(dg.Gltf(base_color_texture=slot, metallic=0)))
     scene.add_camera("Camera", dg.Camera(transform=scenes.at(0, 0, 5)))

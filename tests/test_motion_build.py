@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 from daguerre.setup.scene import build, content_hash
 from daguerre.setup.scene_motion import Moving
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from daguerre.io import gltf
+from daguerre.io.gltf import reader as gltf
 from daguerre.motion.resample import resample
 from daguerre.setup.vertices import resample_vertices
 

@@ -11,10 +11,10 @@ from daguerre.analysis.bench import set_up
 from daguerre.convolution.rows import Rows
 from daguerre.distortion import BrownConrady, Equisolid
 from daguerre.distortion.lens import LensDistortion
-from daguerre.post.distortion import point_map
+from daguerre.post.effects.distortion import point_map
+from daguerre.post.effects.stmap import stmap
 from daguerre.post.motion_map import MotionMap
 from daguerre.post.picture import Band, Canvas
-from daguerre.post.stmap import stmap
 from daguerre.post.warp import Warp
 from daguerre.post.warp_step import WarpStep
 

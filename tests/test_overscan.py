@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.camera.overscan import NONE, Overscan, check_overscan
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.io.exr_bands import ExrReader
+from daguerre.io.exr.rows import ExrReader
 from daguerre.io.merging import merge
 from daguerre.io.passes import pass_of
 from daguerre.session import Session

@@ -13,8 +13,9 @@ import pytest
 from daguerre import cli
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
-from daguerre.post import effects, recipe, run, tiles
+from daguerre.post import recipe, run, tiles
 from daguerre.post.effect import Effect, Step
+from daguerre.post.effects import catalogue as effects
 from daguerre.post.parameter import REQUIRED, Parameter
 from daguerre.post.picture import Band, Canvas
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.post.fake_flare import ghosts
+from daguerre.post.effects.fake_flare import ghosts
 
 
 def lamp(x: int = 230, y: int = 120, light: float = 1e6) -> np.ndarray:

@@ -8,7 +8,7 @@ import pytest
 import daguerre as dg
 from daguerre import _core
 from daguerre.errors import UsageError
-from daguerre.post.grain import relative_variance, sharpness
+from daguerre.post.effects.grain import relative_variance, sharpness
 
 FILM = {"sensor": (36.0, 24.0)}
 

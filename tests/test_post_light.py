@@ -13,8 +13,8 @@ from daguerre.analysis.bench import set_up
 from daguerre.analysis.chief import chief_rays
 from daguerre.analysis.illumination import relative_illumination
 from daguerre.errors import UsageError
-from daguerre.post.distortion import CHANNEL_NM
-from daguerre.post.effects import EFFECTS
+from daguerre.post.effects.catalogue import EFFECTS
+from daguerre.post.effects.distortion import CHANNEL_NM
 
 from .test_post import planes, post, read, write
 from .test_warp import soft

@@ -11,7 +11,8 @@ import pytest
 from daguerre.convolution import overlap
 from daguerre.convolution.convolve import convolve, spreader_of
 from daguerre.convolution.rows import Rows
-from daguerre.post import lens_psf, run, spreading
+from daguerre.post import run, spreading
+from daguerre.post.effects import lens_psf
 from daguerre.post.exr_picture import ExrPicture
 from daguerre.post.picture import Band
 

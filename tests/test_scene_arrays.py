@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.lenses import plot
+from daguerre.plots import lens_file as plot
 from daguerre.session import Session
 
 from . import scenes

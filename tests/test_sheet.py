@@ -10,7 +10,7 @@ import pytest
 from daguerre import analysis, lenses
 from daguerre.analysis.figures import Figures, figures
 from daguerre.analysis.illumination import within_light
-from daguerre.lenses.outline import element_outlines, sag
+from daguerre.plots.lens_outline import element_outlines, sag
 
 SVG = "{http://www.w3.org/2000/svg}"
 HEADS = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
@@ -24,7 +24,7 @@ def made() -> Figures:
 @pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
 def test_the_page_is_a_file_of_its_kind(kind: str, made: Figures) -> None:
     pytest.importorskip("matplotlib", reason="data sheets are drawn by matplotlib")
-    from daguerre.analysis.sheet import page
+    from daguerre.plots.sheet import page
 
     data = page(made, kind)
     assert data.startswith(HEADS[kind])
@@ -77,7 +77,7 @@ def test_sags_of_conics_and_aspheres() -> None:
 
 
 def test_the_drawing_needs_no_package_and_has_three_fields() -> None:
-    from daguerre.lenses.drawing import COLOURS, draw
+    from daguerre.plots.lens_section import COLOURS, draw
 
     root = ElementTree.fromstring(draw(lenses.load("heliar-100mm-f4")))
     strokes = [line.get("stroke") for line in root.iter(f"{SVG}polyline")]

@@ -15,7 +15,8 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre import Camera, render
-from daguerre.io import gltf, images
+from daguerre.io import images
+from daguerre.io.gltf import reader as gltf
 
 from . import scenes
 from .make_gltf import png

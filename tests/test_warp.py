@@ -13,7 +13,7 @@ from daguerre.distortion import BrownConrady, Equidistant, OpenCVFisheye, Stereo
 from daguerre.distortion.lens import LensDistortion
 from daguerre.errors import UsageError
 from daguerre.post import run, tiles
-from daguerre.post.distortion import CHANNEL_NM, point_map
+from daguerre.post.effects.distortion import CHANNEL_NM, point_map
 from daguerre.post.picture import Canvas
 from daguerre.post.warp import Warp
 

@@ -9,7 +9,7 @@ import daguerre as dg
 from daguerre import lenses
 from daguerre.analysis.bench import set_up
 from daguerre.distortion.lens import LensDistortion
-from daguerre.post.distortion import CHANNEL_NM
+from daguerre.post.effects.distortion import CHANNEL_NM
 
 from . import scenes
 

@@ -23,7 +23,7 @@ from place import place
 import daguerre as dg
 from daguerre import lenses
 from daguerre.lenses import library
-from daguerre.lenses.drawing import section
+from daguerre.plots.lens_section import section
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent

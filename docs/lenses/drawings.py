@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.lenses.drawing import Drawing, Line, Polygon
+from daguerre.plots.lens_section import Drawing, Line, Polygon
 
 WIDE, HIGH = 3000, 2000  # the picture fits into this, tenths of a pixel
 TOLERANCE = 1.2  # of a curve, in the same unit

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.glb_writer import Glb
+from daguerre.io.gltf.writer import Glb
 from extensions.letters import written
 from imperfections.glow import COOL, GOLD, PINK, TEAL, WARM, Glow
 from kit import shapes, textures

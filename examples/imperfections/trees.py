@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.glb_writer import Glb, Shape
+from daguerre.io.gltf.writer import Glb, Shape
 from imperfections.glow import Glow
 from kit import shapes, textures
 from kit.pose import Point

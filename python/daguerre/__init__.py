@@ -26,13 +26,13 @@ if TYPE_CHECKING:
         distortion,
         exposure,
         lenses,
-        metering,
         polynomial,
         post,
         sensors,
         stocks,
     )
     from .analysis.calibrate import calibrate, calibrate_all
+    from .exposure import metering
     from .frame.frame import Frame
     from .frame.raw import Raw
     from .labels.annotations import annotate
@@ -107,8 +107,8 @@ _LAZY = {
     "calibrate": "analysis.calibrate",
     "calibrate_all": "analysis.calibrate",
     "Diffraction": "waves",
-    "Frame": "frame",
-    "Raw": "raw",
+    "Frame": "frame.frame",
+    "Raw": "frame.raw",
     "RayMap": "maps.ray_map",
     "raymap": "maps.ray_map",
     "StMaps": "maps.st_maps",
@@ -121,15 +121,18 @@ _LAZY = {
 }
 
 
-_MODULES = (
-    "calibration", "charts", "development", "distortion", "exposure", "lenses", "metering",
-    "polynomial", "post", "sensors", "stocks",
-)  # fmt: skip
+_MODULES = {
+    name: name
+    for name in (
+        "calibration", "charts", "development", "distortion", "exposure", "lenses",
+        "polynomial", "post", "sensors", "stocks",
+    )
+} | {"metering": "exposure.metering"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
-        return import_module("." + name, __name__)
+        return import_module("." + _MODULES[name], __name__)
     if name in _LAZY:
         value = getattr(import_module("." + _LAZY[name], __name__), name)
         globals()[name] = value
@@ -157,7 +160,7 @@ def load(
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it.
     """
-    from .io import gltf
+    from .io.gltf import reader as gltf
     from .scene.framing import frame_everything
 
     suffix = Path(path).suffix.lower()
@@ -176,6 +179,6 @@ def load_frame(path: str | Path) -> Frame:
     Raises:
         InputError: It cannot be read; the message names the file.
     """
-    from .io.exr import read_frame
+    from .io.exr.write import read_frame
 
     return read_frame(path)

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.io import gltf, passes
+from daguerre.io import passes
+from daguerre.io.gltf import reader as gltf
 from daguerre.session import Session
 
 from .bases import seen

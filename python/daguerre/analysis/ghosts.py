@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.errors import InputError
-from daguerre.lenses.drawing import Drawing, Line, section
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench
@@ -128,19 +127,7 @@ class Ghosts:
             for g in self.all
         ]
 
-    def drawing(self, ghost: Ghost) -> Drawing:
-        """The section of the lens with rays of one ghost."""
-        bench = self.bench
-        plain = section(bench.lens, bench.film_z, bench.field_mm)
-        shapes = [s for s in plain.shapes if not (isinstance(s, Line) and s.width == 0.7)]
-        colour = "#c0392b"
-        for points in self._paths(ghost):
-            shapes.append(Line([(float(p[2]), float(p[1])) for p in points], colour, 0.7))
-        far, near = ghost.surfaces[0], ghost.surfaces[1]
-        title = f"{bench.lens.name}: ghost of surfaces {far} and {near}, {self.angle_deg:g} deg"
-        return Drawing(title, plain.left, plain.right, plain.top, shapes)
-
-    def _paths(self, ghost: Ghost) -> list[NDArray[np.float64]]:
+    def paths(self, ghost: Ghost) -> list[NDArray[np.float64]]:
         """Rays of the section that come through, from the left edge of the drawing to the film."""
         angle = math.radians(self.angle_deg)
         direction = [0.0, math.sin(angle), math.cos(angle)]

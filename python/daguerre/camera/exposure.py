@@ -10,7 +10,7 @@ from daguerre.checks import number
 from daguerre.color.illuminants import white_xy
 
 if TYPE_CHECKING:
-    from daguerre.camera.camera import Camera
+    from .camera import Camera
 
 
 #: Of a pinhole, whose own opening has no size: the stop of the photographer's sunny 16, two wider.

@@ -144,7 +144,7 @@ class Chart:
         """
         from daguerre.checks import number
         from daguerre.files.atomic import write_bytes
-        from daguerre.io.glb_writer import Glb, Shape
+        from daguerre.io.gltf.writer import Glb, Shape
 
         if Path(path).suffix.lower() != ".glb":
             raise UsageError(f"{path}: chart: wanted a name ending in .glb")

@@ -173,7 +173,7 @@ def _write(
         write(output, Calibration(made.projection, pixel_pitch=made.pixel_pitch_um), file_format)
         console.note(f"wrote {output}")
     if residuals is not None:
-        from daguerre.analysis.residual_plot import plot_residuals
+        from daguerre.plots.residual_plot import plot_residuals
 
         write_bytes(residuals, plot_residuals(made, residuals.suffix.lower()[1:]))
         console.note(f"wrote {residuals}")

@@ -208,7 +208,7 @@ def _check_stock(source: Path, outputs: list[Path], sensor: str | None, iso: str
 
 def _on_film(frame: Frame, stock: str, ev: float, seed: int) -> Frame:
     """The print of film that was exposed."""
-    from daguerre.exposure import frame_iso
+    from daguerre.exposure.lux_seconds import frame_iso
     from daguerre.stocks import load
 
     own = float(frame.metadata.get("exposure_compensation") or 0.0)
@@ -229,7 +229,7 @@ def _tell_speed(film: float, camera: float | None) -> None:
 
 
 def _frame(path: Path) -> Frame:
-    from daguerre.io.exr import read_frame
+    from daguerre.io.exr.write import read_frame
 
     return read_frame(path)
 
@@ -246,7 +246,7 @@ def _taken(
 ) -> Raw | Frame:
     """What a sensor makes of the frame; the frame itself without one."""
     from daguerre.development.white import numbers_of
-    from daguerre.exposure import luminance_exposure
+    from daguerre.exposure.lux_seconds import luminance_exposure
 
     luminance_exposure(frame.metadata)  # complains of what is missing, before all else
     if sensor is None and frame.metadata.get("sensor") is None:
@@ -267,8 +267,8 @@ def _shot(path: Path, sensor: str | None, iso: float | None, wanted: dict[str, A
     for flag, value in (("--sensor", sensor), ("--iso", iso)):
         if value is not None:
             raise UsageError(f"{flag}: {path} was taken with a sensor and ISO of its own")
+    from daguerre.development.camera_raw import read_shot
     from daguerre.development.channels import Demosaic
-    from daguerre.io.camera_file import read_shot
 
     passes, clip = wanted["colour_noise"], wanted["highlights"] == "clip"
     if not 0 <= passes <= 20:
@@ -281,7 +281,7 @@ def _save_dng(path: Path, taken: Any, source: Path) -> None:
         raise UsageError(
             f"{path}: {source} has no raw stage: wanted --sensor NAME, which takes the picture"
         )
-    from daguerre.io.dng import size_note
+    from daguerre.development.dng import size_note
 
     taken.save(path)
     if remark := size_note(taken):

@@ -22,7 +22,7 @@ def check_drawing(
         formats: Endings that it may have.
     """
     from daguerre.files.atomic import check_writable
-    from daguerre.lenses.plot import check_available
+    from daguerre.plots.lens_file import check_available
 
     if path is None:
         return

@@ -176,7 +176,7 @@ def _print_json(
 ) -> None:
     from json import dumps
 
-    from daguerre.io.exr import without_infinity
+    from daguerre.io.exr.write import without_infinity
 
     cameras = {
         name: {**asdict(one), "default": name == default, "warnings": warnings[name]}

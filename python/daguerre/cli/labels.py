@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from daguerre.errors import UsageError
 
 if TYPE_CHECKING:
-    from daguerre.io.coco import CocoFile
     from daguerre.labels.categories import Categories
+    from daguerre.labels.coco import CocoFile
 
     from .shoot import Picture
 
@@ -39,7 +39,7 @@ def coco_of(
         categories is not None and path.resolve() == categories.resolve()
     ):
         raise UsageError(f"--coco {path}: this name is taken by another file of this call")
-    from daguerre.io.coco import CocoFile
     from daguerre.labels.categories import Categories
+    from daguerre.labels.coco import CocoFile
 
     return CocoFile(path), None if categories is None else Categories.read(categories)

@@ -229,7 +229,7 @@ def _point(text: str) -> tuple[float, bool, float]:
 
 def _write_drawing(bench: Bench, path: Path) -> None:
     from daguerre.files.atomic import write_bytes
-    from daguerre.lenses.plot import picture
+    from daguerre.plots.lens_file import picture
 
     write_bytes(path, picture(bench, path.suffix.lower()))
 
@@ -242,8 +242,8 @@ def _write_figures(
 
     made = figures(bench)
     if plot is not None:
-        from daguerre.analysis.sheet import page
         from daguerre.files.atomic import write_bytes
+        from daguerre.plots.sheet import page
 
         write_bytes(plot, page(made, plot.suffix.lower()[1:]))
     if json:

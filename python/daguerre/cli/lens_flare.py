@@ -102,8 +102,8 @@ def show_flare(
     if drawing is not None:
         _write_drawing(ghosts, ghosts.find(which) if which else _brightest(ghosts), drawing)
     if plot is not None:
-        from daguerre.analysis.ghost_plot import plot_ghosts
         from daguerre.files.atomic import write_bytes
+        from daguerre.plots.ghost_plot import plot_ghosts
 
         write_bytes(plot, plot_ghosts(ghosts, plot.suffix.lower()[1:]))
     if json:
@@ -131,9 +131,10 @@ def _brightest(ghosts: Ghosts) -> Ghost:
 
 def _write_drawing(ghosts: Ghosts, ghost: Ghost, path: Path) -> None:
     from daguerre.files.atomic import write_bytes
-    from daguerre.lenses.plot import drawn
+    from daguerre.plots.ghost_section import ghost_section
+    from daguerre.plots.lens_file import drawn
 
-    write_bytes(path, drawn(ghosts.drawing(ghost), path.suffix.lower()))
+    write_bytes(path, drawn(ghost_section(ghosts, ghost), path.suffix.lower()))
 
 
 def _print(ghosts: Ghosts) -> None:

@@ -40,8 +40,8 @@ def show_psf(
     light = _light(bench, field, is_angle, distance_m)
     made = series(light, STEPS if through_focus else 1)
     if plot is not None:
-        from daguerre.analysis.through_focus import pictures
         from daguerre.files.atomic import write_bytes
+        from daguerre.plots.through_focus import pictures
 
         write_bytes(plot, pictures(light, made, plot.suffix.lower()[1:]))
     rows = [step.facts for step in made]

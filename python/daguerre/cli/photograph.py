@@ -74,7 +74,7 @@ class Photograph:
         if iso is not None and not iso > 0:
             raise UsageError(f"--iso: wanted a number above 0, got {iso:g}")
         if sensor is not None:
-            from daguerre.exposing import check_can_expose
+            from daguerre.exposure.expose import check_can_expose
 
             check_can_expose(sensor, iso)
         asked = any(name in changes for name in ASKING) or any((exposure, bracket, look))
@@ -119,7 +119,7 @@ class Photograph:
                     f"is exposed (.dng, {', '.join(PICTURES)})"
                 )
             return
-        from daguerre.exposure import luminance_exposure, pinhole_note
+        from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note
 
         luminance_exposure(metadata)
         if note := pinhole_note(metadata):
@@ -131,7 +131,7 @@ class Photograph:
         """The frame with the ISO that the meter chooses, if it is to; says which."""
         if not any(self.exposes(path) for path in paths) or self.meters is None:
             return frame
-        from daguerre.metering import meter
+        from daguerre.exposure.metering import meter
 
         try:
             read = meter(frame, self.meters, at=self.focus_at)
@@ -170,8 +170,8 @@ class Photograph:
     def _shoot(self, frame: Frame, offset: float, files: list[Path], *, tell: bool) -> None:
         """One exposure into its files."""
         from daguerre.development import develop
-        from daguerre.exposure import with_exposure
-        from daguerre.io.dng import size_note
+        from daguerre.development.dng import size_note
+        from daguerre.exposure.lux_seconds import with_exposure
 
         if offset:
             frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
@@ -204,7 +204,7 @@ def _meter_mode(text: str) -> str:
         raise UsageError(
             f"--exposure: wanted auto, auto:centre, auto:spot or auto:matrix; got {text!r}"
         )
-    from daguerre.metering import check_mode
+    from daguerre.exposure.metering import check_mode
 
     return check_mode(mode or "centre", "--exposure auto")
 

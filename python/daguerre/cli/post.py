@@ -46,7 +46,7 @@ def post(
     ] = False,
 ) -> int:
     """Puts effects of a lens on a picture, or takes them away, in bands of little memory."""
-    from daguerre.post.effects import EFFECTS
+    from daguerre.post.effects.catalogue import EFFECTS
 
     console.quiet = quiet
     if list_effects:

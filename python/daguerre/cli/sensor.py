@@ -35,7 +35,7 @@ def sensor(
     item = load(name)
     if plot is not None:
         from daguerre.files.atomic import write_bytes
-        from daguerre.sensors.plot import page
+        from daguerre.plots.sensor import page
 
         write_bytes(plot, page(item, plot.suffix.lower()[1:]))
     if json:

@@ -16,8 +16,8 @@ from . import console
 from .job import INTERRUPTED, Job, core_errors
 
 if TYPE_CHECKING:
-    from daguerre.io.coco import CocoFile
     from daguerre.labels.categories import Categories
+    from daguerre.labels.coco import CocoFile
     from daguerre.scene.scene import Scene
     from daguerre.session import Session
     from daguerre.setup.built_scene import BuiltScene
@@ -204,7 +204,7 @@ class Shoot:
 
     def describe(self, wanted: list[Picture]) -> int:
         """What would be drawn, on stdout: of a sequence its first frame, of a rig each camera."""
-        from daguerre.io.exr import jsonable, without_infinity
+        from daguerre.io.exr.write import jsonable, without_infinity
 
         first = [picture for picture in wanted if picture.frame == wanted[0].frame]
         told = {picture.view.name: self._facts(picture) for picture in first}
@@ -274,7 +274,7 @@ class Shoot:
 
             check_straight(session.metadata)
         if plan.exposed:
-            from daguerre.exposure import luminance_exposure
+            from daguerre.exposure.lux_seconds import luminance_exposure
 
             luminance_exposure(session.metadata)  # or an error that names what is missing
         if first and not lit(scene):

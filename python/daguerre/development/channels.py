@@ -21,6 +21,7 @@ from daguerre.errors import UsageError, suggest
 from daguerre.sensors.sensor import GREY_LX_S
 
 from .binning import bayer_of, is_mono
+from .dng import _LEAST, LEAST_XTRANS
 from .looks import GREY
 
 if TYPE_CHECKING:
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 XY = tuple[float, float]
 _TOP = 65535.0
-#: LibRaw refuses smaller pictures, px each way.
-_LEAST, LEAST_XTRANS = 32, 516
 #: Cells of X-Trans have 6 px.
 MARGIN_XTRANS = 6
 #: Three that are chosen by pattern, and LibRaw's own names.
@@ -125,7 +124,7 @@ class Channels:
 
 def of_frame(frame: Frame) -> Channels:
     """A frame's XYZ as a perfect sensor exposes it, at ISO 12232's brightness."""
-    from daguerre.exposure import frame_iso, luminance_exposure
+    from daguerre.exposure.lux_seconds import frame_iso, luminance_exposure
 
     facts = frame.metadata
     iso = frame_iso(facts) or 100.0
@@ -170,7 +169,7 @@ def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:
 
 def _of_pixels(raw: Raw, pixels: NDArray[Any], scale: FloatArray) -> Channels:
     """Numbers that are DN above black times ``scale``."""
-    from daguerre.io.dng import shot_facts, value_dn
+    from .dng import shot_facts, value_dn
 
     return Channels(
         pixels=pixels,
@@ -200,7 +199,7 @@ def _demosaiced(raw: Raw, demosaic: Demosaic) -> tuple[NDArray[np.uint16], Float
     """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
     import rawpy
 
-    from daguerre.io.dng import put_dng
+    from .dng import put_dng
 
     file = io.BytesIO()
     xtrans = raw.sensor.pattern.name == "xtrans"

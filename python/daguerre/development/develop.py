@@ -151,7 +151,7 @@ def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
     if check_ending(path, (".dng", *ENDINGS)) != ".dng":
         develop(raw, **look).save(path, **files)
         return
-    from daguerre.io.dng import write_dng
+    from .dng import write_dng
 
     if given := [*look, *files]:
         raise UsageError(f"{Path(path)}: a DNG is not developed: {', '.join(given)} has no place")
@@ -230,7 +230,7 @@ def _by_light(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32
 def _with_grain(
     light: NDArray[np.float32], recipe: Recipe, source: Channels
 ) -> NDArray[np.float32]:
-    from daguerre.post.grain import grain
+    from daguerre.post.effects.grain import grain
 
     size = source.metadata.get("sensorOverallDimensions")
     if size is None:

@@ -41,7 +41,7 @@ class Frame:
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
-        metadata: Facts of camera and render; see ``daguerre.io.exr``.
+        metadata: Facts of camera and render; see ``daguerre.io.exr.write``.
         channels: What the sensor named in the metadata sees, shape (H, W, C), where one was named:
             D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
         bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
@@ -168,7 +168,7 @@ class Frame:
         """
         suffix = check_format(path)
         if suffix == ".exr":
-            from daguerre.io.exr import write_exr
+            from daguerre.io.exr.write import write_exr
 
             write_exr(path, self)
         elif suffix == ".png":
@@ -209,7 +209,7 @@ class Frame:
             DaguerreError: No such sensor, an ISO beyond it, or a frame whose facts do not tell its
                 exposure; the message names the field.
         """
-        from daguerre.exposing import expose
+        from daguerre.exposure.expose import expose
 
         return expose(
             self,
@@ -233,7 +233,7 @@ class Frame:
             ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the
             light alone would saturate that channel's photosite; each of shape (H, W).
         """
-        from daguerre.exposing import exposure_truth
+        from daguerre.exposure.expose import exposure_truth
 
         return exposure_truth(self, sensor, iso, ev)
 

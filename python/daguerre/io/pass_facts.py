@@ -1,7 +1,7 @@
 """What a pass file says of its picture, checked before anything is made of it.
 
 Such a file may come from another machine, or be damaged: each fact has the type that those have
-which :mod:`daguerre.io.exr` writes as attributes, or the file is refused.
+which :mod:`daguerre.io.exr.write` writes as attributes, or the file is refused.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from daguerre.camera.overscan import NONE, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
 
-from . import exr
+from .exr import write as exr
 
 
 def _is_number(value: Any) -> bool:

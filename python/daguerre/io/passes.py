@@ -34,7 +34,7 @@ from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
 
-from .exr import Channels, attributes, channels, jsonable, write_parts
+from .exr.write import Channels, attributes, channels, jsonable, write_parts
 from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 

@@ -196,7 +196,7 @@ def _write_linear(
     """Linear light in the primaries of the space, with the frame's attributes."""
     from daguerre.frame.frame import Frame
 
-    from .exr import attributes, write_parts
+    from .exr.write import attributes, write_parts
 
     linear = np.empty_like(pixels)
     for row in range(0, len(pixels), 64):

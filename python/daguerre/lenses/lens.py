@@ -347,7 +347,7 @@ class Lens:
         return "\n".join([*_headline(self), *_table(self)])
 
     def _repr_svg_(self) -> str:
-        from .drawing import draw
+        from daguerre.plots.lens_section import draw
 
         return draw(self)
 

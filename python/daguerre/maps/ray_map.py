@@ -63,7 +63,7 @@ class RayMap:
         Raises:
             OutputError: The file cannot be written.
         """
-        from daguerre.io.exr import attributes, write_planes
+        from daguerre.io.exr.write import attributes, write_planes
 
         planes = {
             f"{name}.{axis}": values[:, :, k].astype(np.float32)

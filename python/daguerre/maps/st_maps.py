@@ -1,6 +1,6 @@
 """STMaps of a camera, both ways: to straighten its pictures, and to bend straight ones.
 
-What ``s`` and ``t`` are is told in ``daguerre.post.stmap`` and in docs/darkroom.md.
+What ``s`` and ``t`` are is told in ``daguerre.post.effects.stmap`` and in docs/darkroom.md.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class StMaps:
         Raises:
             OutputError: A file cannot be written.
         """
-        from daguerre.post.stmap import write_stmap
+        from daguerre.post.stmap_rows import write_stmap
 
         for path, warp in ((undistort, "_undistort"), (redistort, "_redistort")):
             if path is not None:
@@ -102,7 +102,7 @@ class StMaps:
 
     def _values(self, warp: Warp) -> Image:
         from daguerre.convolution.rows import Rows
-        from daguerre.post.stmap import st_rows
+        from daguerre.post.stmap_rows import st_rows
 
         return st_rows(warp, self._canvas, Rows(0, self._canvas.height))
 

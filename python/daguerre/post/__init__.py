@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from daguerre.convolution.convolve import convolve
 
-from .depth_of_field import depth_of_field
-from .distortion import distort, undistort
-from .fake_flare import fake_flare
-from .glow import bloom, diffract, glare, halo, spread_by, star
-from .grain import grain
-from .lateral_colour import lateral_colour, remove_lateral_colour
-from .lens_psf import through_lens
-from .motion_blur import motion_blur
-from .saturation import unvignette_saturation, vignette_saturation
-from .stmap import apply_stmap, stmap
-from .vignetting import unvignette, vignette
+from .effects.depth_of_field import depth_of_field
+from .effects.distortion import distort, undistort
+from .effects.fake_flare import fake_flare
+from .effects.glow import bloom, diffract, glare, halo, spread_by, star
+from .effects.grain import grain
+from .effects.lateral_colour import lateral_colour, remove_lateral_colour
+from .effects.lens_psf import through_lens
+from .effects.motion_blur import motion_blur
+from .effects.saturation import unvignette_saturation, vignette_saturation
+from .effects.stmap import apply_stmap, stmap
+from .effects.vignetting import unvignette, vignette
 
 __all__ = [
     "apply_stmap",

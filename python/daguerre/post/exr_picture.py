@@ -9,7 +9,7 @@ import numpy as np
 
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
-from daguerre.io.exr_bands import ExrReader, Planes
+from daguerre.io.exr.rows import ExrReader, Planes
 
 from .picture import Band, Canvas, Image
 

@@ -11,7 +11,7 @@ from typing import Any
 from daguerre.errors import InputError, UsageError, suggest
 
 from .effect import Effect, Values
-from .effects import EFFECTS
+from .effects.catalogue import EFFECTS
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from daguerre.files.atomic import atomic_path
-from daguerre.io.exr_bands import ExrWriter
+from daguerre.io.exr.rows import ExrWriter
 
 from . import channels
 from .display import Display

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.scene.motion import Vertices
+from .motion import Vertices
 
 
 @dataclass(frozen=True)

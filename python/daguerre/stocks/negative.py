@@ -12,9 +12,9 @@ from daguerre._core import grain_pattern
 from daguerre.checks import number, plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
-from daguerre.exposure import luminance_exposure
+from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.frame.seen_by import seen_of
-from daguerre.post.grain import sharpness
+from daguerre.post.effects.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
 from daguerre.sensors.sensor import GREY_LX_S
 

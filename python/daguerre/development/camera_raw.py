@@ -1,0 +1,196 @@
+"""Raw files of cameras, and our own DNG, as channels for development: LibRaw reads them."""
+
+from __future__ import annotations
+
+import logging
+import math
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import illuminants
+from daguerre.errors import InputError
+
+from .channels import USUAL, XY, Channels, Demosaic
+from .dng import LEAST_XTRANS
+
+FloatArray = NDArray[np.float64]
+Matrix = Callable[[XY], FloatArray]
+#: Correlated colour temperatures of EXIF's light sources, K (DNG 1.7.1, CalibrationIlluminant1).
+_ILLUMINANTS = {
+    3: 2850.0, 17: 2856.0, 24: 3200.0, 23: 5003.0, 20: 5503.0, 1: 5500.0, 21: 6504.0, 22: 7504.0,
+}  # fmt: skip
+#: EXIF's names in tifffile, and ours.
+_FACTS = {
+    "ExposureTime": "expTime",
+    "FNumber": "aperture",
+    "FocalLength": "nominalFocalLength",
+    "ISOSpeedRatings": "isoSpeed",
+    "LensModel": "lensModel",
+    "LensMake": "lensMake",
+    "SubjectDistance": "focus",
+    "DateTimeOriginal": "capDate",
+}
+
+
+def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Channels:
+    """A camera's raw file, demosaiced, with its own colours.
+
+    Args:
+        path: DNG, or what else LibRaw reads.
+        demosaic: How; of X-Trans below 516 px LibRaw knows only the fast method.
+
+    Raises:
+        InputError: It is no such file, or nothing is known of its camera's colours.
+    """
+    import rawpy
+
+    if not Path(path).is_file():
+        got = "a folder" if Path(path).is_dir() else "no such file"
+        raise InputError(f"{path}: wanted a raw file, got {got}")
+    tags = _tags(path)
+    try:
+        with rawpy.imread(str(path)) as opened:
+            return _shot(path, opened, tags, demosaic)
+    except rawpy.LibRawError as error:
+        reason = error.args[0] if error.args else error
+        reason = reason.decode() if isinstance(reason, bytes) else str(reason)
+        raise InputError(f"{path}: not a raw file that can be read: {reason}") from None
+
+
+def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:
+    grey = opened.num_colors == 1
+    if not grey and (opened.num_colors != 3 or opened.raw_pattern is None):
+        raise InputError(
+            f"{path}: colours: wanted a mosaic of red, green and blue, or none; got "
+            f"{opened.num_colors} colours"
+        )
+    neutral = np.ones(3) if grey else _neutral(path, opened)
+    matrix = _grey if grey else _camera_from_xyz(path, opened, tags)
+    balance = 1 / np.clip(neutral, 0.05, 1)
+    xtrans = not grey and opened.raw_pattern.shape == (6, 6)
+    if xtrans and min(opened.raw_image.shape) < LEAST_XTRANS:
+        demosaic = replace(demosaic, method="fast")
+    pixels = demosaic.run(opened, balance, xtrans, turn=True)
+    white = demosaic.scale(balance, 1.0)
+    three = np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
+    return Channels(
+        pixels=np.ascontiguousarray(three),
+        unit=white / 2.0 ** _number(tags.get("BaselineExposure"), 0.0),
+        full=np.minimum(white, 65535.0),
+        xyz_from=lambda white: np.asarray(np.linalg.inv(matrix(white)), np.float64),
+        as_shot=illuminants.D65_XY if grey else _white(neutral, matrix),
+        metadata=_facts(tags),
+    )
+
+
+def _neutral(path: Any, opened: Any) -> FloatArray:
+    factors = np.array(opened.camera_whitebalance[:3], np.float64)
+    if not (factors > 0).all():
+        factors = np.array(opened.daylight_whitebalance[:3], np.float64)
+    if not (factors > 0).all():
+        raise InputError(f"{path}: white balance: wanted the camera's, got none")
+    return np.asarray(factors.min() / factors)
+
+
+def _grey(white: XY) -> FloatArray:
+    return np.asarray(np.diag(1 / illuminants.xyz_of_xy(white)))
+
+
+def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
+    """A DNG's two matrices, between them by reciprocal temperature; else LibRaw's for daylight."""
+    known = [
+        (_ILLUMINANTS.get(int(_number(tags.get(f"CalibrationIlluminant{k}"), 21)), 6504.0), table)
+        for k in (1, 2)
+        if (table := _matrix(tags.get(f"ColorMatrix{k}"))) is not None
+    ]
+    if not known:
+        daylight = np.asarray(opened.rgb_xyz_matrix, np.float64)[:3]
+        if not daylight.any():
+            raise InputError(f"{path}: ColorMatrix1: wanted the camera's colours, got none")
+        known = [(6504.0, daylight)]
+    (first, one), (last, other) = known[0], known[-1]
+
+    def matrix(white: XY) -> FloatArray:
+        if first == last:
+            return _scaled(one)
+        at = 1 / max(illuminants.kelvin_of(white), 1000.0)
+        part = np.clip((at - 1 / first) / (1 / last - 1 / first), 0, 1)
+        return _scaled((1 - part) * one + part * other)
+
+    return matrix
+
+
+def _scaled(matrix: FloatArray) -> FloatArray:
+    """So that the strongest channel of daylight of Y = 1 is 1, which is what white levels mean."""
+    return np.asarray(matrix / (matrix @ illuminants.xyz_of_xy(illuminants.D65_XY)).max())
+
+
+def _white(neutral: FloatArray, matrix: Matrix) -> XY:
+    """The light in which white reads as the neutral; found in turns, as in DNG 1.7.1, chapter 6."""
+    white = illuminants.D65_XY
+    for _ in range(8):
+        xyz = np.linalg.solve(matrix(white), neutral)
+        white = (float(xyz[0] / xyz.sum()), float(xyz[1] / xyz.sum()))
+        if not (0.05 < white[0] < 0.8 and 0.05 < white[1] < 0.8):
+            return illuminants.D65_XY
+    return white
+
+
+def _matrix(value: Any) -> FloatArray | None:
+    """Of 9 rationals; None: it is none, or no matrix that can be turned around."""
+    if not isinstance(value, tuple | list) or len(value) != 18:
+        return None
+    with np.errstate(all="ignore"):
+        pairs = np.reshape(np.asarray(value, np.float64), (9, 2))
+        table = (pairs[:, 0] / pairs[:, 1]).reshape(3, 3)
+    usable = np.isfinite(table).all() and np.linalg.cond(table) < 1e4
+    return table if usable else None
+
+
+def _tags(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """What the first directory and that of the exposure say; nothing of files that are no TIFF."""
+    import tifffile
+
+    log = logging.getLogger("tifffile")  # what is wrong with a file, LibRaw says, and once
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        with tifffile.TiffFile(path) as file:
+            first: Any = file.pages[0]
+            found = {tag.name: tag.value for tag in first.tags}
+            return found | dict(found.get("ExifTag") or {})
+    except Exception:  # broken files bring out whatever there is
+        return {}
+    finally:
+        log.setLevel(level)
+
+
+def _facts(tags: Mapping[str, Any]) -> dict[str, Any]:
+    facts: dict[str, Any] = {}
+    for theirs, ours in _FACTS.items():
+        value = tags.get(theirs)
+        if isinstance(value, str):
+            facts[ours] = value
+        elif value is not None and (number := _number(value, 0.0)) > 0:
+            facts[ours] = number
+    for theirs, ours in (("Make", "cameraMake"), ("Model", "cameraModel")):
+        if isinstance(tags.get(theirs), str):
+            facts[ours] = tags[theirs]
+    return facts
+
+
+def _number(value: Any, default: float) -> float:
+    """A number, or a rational as a pair; a tuple of more counts by its first."""
+    try:
+        if isinstance(value, tuple | list):
+            value = float(value[0]) / float(value[1]) if len(value) == 2 else value[0]
+        number = float(value)
+        return number if math.isfinite(number) else default
+    except (TypeError, ValueError, ZeroDivisionError, IndexError):
+        return default

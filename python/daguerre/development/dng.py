@@ -1,0 +1,180 @@
+"""DNG, the raw format that every developer of photographs opens, of a raw picture.
+
+Tags and their numbers: Adobe, Digital Negative Specification 1.7.1, chapter 4. The first directory
+has a small picture for browsers, and what is about the whole photograph; its child has the numbers
+of the photosites as they are, 16 bits each.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import illuminants
+from daguerre.files.atomic import atomic_path
+from daguerre.io import exif
+from daguerre.io.exif import Tags
+from daguerre.io.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
+from daguerre.sensors.sensor import GREY_LX_S
+
+from .binning import bayer_of, is_mono
+from .looks import GREY
+
+if TYPE_CHECKING:
+    from daguerre.frame.raw import Raw
+
+MAKE = "Daguerre"
+#: LibRaw takes smaller pictures for no raw file, px each way.
+LEAST_OPENED = 22
+#: Numbers of EXIF's light sources, in DNG's order: incandescent first.
+_LAMP_A, _LAMP_D65 = 17, 21
+
+
+def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
+    """Writes a raw picture, whole or not at all.
+
+    A Quad-Bayer mosaic is written as it is binned in cameras, four photosites to one: no reader
+    knows its pattern of four by four.
+
+    Args:
+        path: Its name should end in ``.dng``.
+        raw: The picture.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    with atomic_path(path) as temp:
+        put_dng(temp, bayer_of(raw))
+
+
+def size_note(raw: Raw) -> str | None:
+    """For pictures that are too small for LibRaw, and all that is built on it; None: large enough.
+
+    It opens none below 22 px, and its methods for X-Trans work in tiles of 512 px.
+    """
+    xtrans = raw.sensor.pattern.name == "xtrans"
+    least = LEAST_XTRANS if xtrans else LEAST_OPENED
+    height, width = raw.mosaic.shape
+    if min(height, width) >= least:
+        return None
+    what = "develops X-Trans" if xtrans else "opens DNG"
+    return f"LibRaw {what} from {least} x {least} px: other programs may refuse {width} x {height}"
+
+
+def put_dng(target: Path | IO[bytes], raw: Raw, *, preview: bool = True) -> None:
+    """The same into a file that exists, or a stream; ``preview``: with the small picture."""
+    facts = shot_facts(raw)
+    about = exif.main_tags(facts | body_facts(raw)) | photograph_tags(raw)
+    mosaic = mosaic_tags(raw)
+    photometric = LINEAR_RAW if is_mono(raw) else CFA
+    exposure = exif.exposure_tags(facts)
+    if not preview:
+        write_tiff(target, [TiffImage(raw.mosaic, photometric, about | mosaic)], exposure)
+        return
+    from .preview import preview_of
+
+    small = TiffImage(preview_of(raw), "rgb", about, reduced=True)
+    write_tiff(target, [small, TiffImage(raw.mosaic, photometric, mosaic)], exposure)
+
+
+def shot_facts(raw: Raw) -> dict[str, Any]:
+    """What EXIF says of a raw picture: the frame's facts, the sensor as body, and the ISO."""
+    sensor = raw.sensor
+    body = {"cameraMake": sensor.make, "cameraModel": sensor.model}
+    return (
+        body
+        | {key: value for key, value in raw.metadata.items() if value is not None}
+        | {"isoSpeed": raw.iso}
+    )
+
+
+def body_facts(raw: Raw) -> dict[str, str]:
+    """Make and model in a DNG: not the real camera's.
+
+    Developers would take their own profile of that camera, and cut off the border that it has.
+    """
+    body = f"{raw.sensor.make} {raw.sensor.model}".strip()
+    return {"cameraMake": MAKE, "cameraModel": body.removeprefix(f"{MAKE} ")}
+
+
+def photograph_tags(raw: Raw) -> Tags:
+    """Colours and brightness: matrices for lamp light and daylight, the neutral, the exposure."""
+    sensor = raw.sensor
+    tags: Tags = {
+        50706: (exif.BYTE, (1, 4, 0, 0)),
+        50707: (exif.BYTE, (1, 3, 0, 0)),
+        50708: (exif.ASCII, " ".join(body_facts(raw).values())),
+        50730: (exif.SRATIONAL, exif.rational(baseline_exposure(raw))),
+        50734: (exif.RATIONAL, (1, 1)),
+        50735: (exif.ASCII, str(sensor.serial)),
+    }
+    if is_mono(raw):
+        return tags
+    lamp = sensor.colour_matrix(illuminants.A_KELVIN)
+    tags[50721] = (exif.SRATIONAL, _matrix(lamp))
+    tags[50722] = (exif.SRATIONAL, _matrix(sensor.colour_matrix()))
+    tags[50778], tags[50779] = (exif.SHORT, (_LAMP_A,)), (exif.SHORT, (_LAMP_D65,))
+    tags[50728] = (exif.RATIONAL, _rationals(raw.neutral))
+    return tags
+
+
+def mosaic_tags(raw: Raw) -> Tags:
+    """Where which channel is read, and between which levels."""
+    height, width = raw.mosaic.shape
+    tags: Tags = {
+        50713: (exif.SHORT, (1, 1)),
+        50714: (exif.LONG, (raw.black_level,)),
+        50717: (exif.LONG, (raw.white_level,)),
+        50719: (exif.LONG, (0, 0)),
+        50720: (exif.LONG, (width, height)),
+        50829: (exif.LONG, (0, 0, height, width)),
+        51041: (exif.DOUBLE, noise_profile(raw)),
+    }
+    if not is_mono(raw):  # R, G, B are 0, 1, 2 of CFAPattern (ISO 12234-2) as of our channels
+        cells = raw.sensor.pattern.cells
+        tags[33421] = (exif.SHORT, cells.shape)
+        tags[33422] = (exif.BYTE, tuple(int(cell) for cell in cells.ravel()))
+        tags[50710], tags[50711] = (exif.BYTE, (0, 1, 2)), (exif.SHORT, (1,))
+    return tags
+
+
+def value_dn(raw: Raw) -> float:
+    """DN above black of a developed value of 1 in the strongest channel, D65.
+
+    ISO 12232: a luminance exposure of 10 / S lux s becomes middle grey, 0.18.
+    """
+    lux_s = GREY_LX_S / GREY / raw.iso
+    return raw.gain * float(raw.sensor.white_electrons().max()) * lux_s
+
+
+def baseline_exposure(raw: Raw) -> float:
+    """EV that readers have to brighten the file by, so that middle grey is 0.18.
+
+    They take the white level for 1; ISO 12232 keeps half a stop above white.
+    """
+    return math.log2((raw.white_level - raw.black_level) / value_dn(raw))
+
+
+def noise_profile(raw: Raw) -> tuple[float, float]:
+    """Variance of numbers between black (0) and white (1): slope and that of black."""
+    span = raw.white_level - raw.black_level
+    read = raw.gain * raw.sensor.read_noise_at(raw.iso)
+    return raw.gain / span, (read**2 + 1 / 12) / span**2
+
+
+def _matrix(values: NDArray[np.float64]) -> tuple[int, ...]:
+    """Rounded to 10000ths, as every camera has it."""
+    return tuple(part for value in values.ravel() for part in (round(float(value) * 10000), 10000))
+
+
+def _rationals(values: NDArray[np.float64]) -> tuple[int, ...]:
+    return tuple(part for value in values for part in (round(float(value) * 10**6), 10**6))
+
+
+#: LibRaw refuses smaller pictures, px each way.
+_LEAST, LEAST_XTRANS = 32, 516

@@ -1,0 +1,284 @@
+"""From a frame to a raw picture: light by channel, electrons, numbers.
+
+The frame is taken for the mean of the light, as a render converges to it; photon noise is drawn
+here. A pixel of the frame is one photosite of the sensor, whatever the frame's resolution: noise is
+what the sensor shows at 100 %.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.checks import number, whole
+from daguerre.color import illuminants
+from daguerre.color.spectra import rgb_from_xyz
+from daguerre.errors import InputError, UsageError
+from daguerre.frame.frame import Frame
+from daguerre.frame.raw import Raw
+from daguerre.frame.seen_by import seen_of
+from daguerre.sensors.library import load
+from daguerre.sensors.sensor import Sensor
+
+from .lux_seconds import frame_iso, luminance_exposure
+
+FloatArray = NDArray[np.float64]
+#: Of a sensor's noise the render's own is a part as long as it is this much less in variance.
+NOISY_SHARE = 0.01
+_STRIPE = 256  # rows
+
+
+@dataclass(frozen=True)
+class Light:
+    """What falls on a sensor, plane by plane.
+
+    Attributes:
+        planes: Shape (H, W, P).
+        electrons: Of a plane's 1 in each channel, shape (C, P).
+        source: "channels", "bands" or "xyz": what the planes are.
+        lux_s: Luminance exposure of a value of 1.
+    """
+
+    planes: NDArray[np.float32]
+    electrons: FloatArray
+    source: str
+    lux_s: float
+
+
+def expose(
+    frame: Frame,
+    sensor: str | Sensor | None = None,
+    iso: float | None = None,
+    *,
+    seed: int = 0,
+    ev: float | None = None,
+    white_balance: Any = None,
+    temperature: float | None = None,
+) -> Raw:
+    """See :meth:`daguerre.Frame.expose`."""
+    frame = frame.without_overscan()
+    body = chosen_sensor(frame, sensor)
+    notes: list[str] = []
+    speed = chosen_iso(frame, body, iso, notes)
+    compensation = chosen_ev(frame, ev)
+    white = white_balance if white_balance is not None else frame.metadata.get("white_balance")
+    white_xy = illuminants.white_xy(white)
+    light = light_of(frame, body, compensation)
+    seconds = number(frame.metadata.get("expTime", 0.0), "frame: expTime", 0, error=InputError)
+    shot = _shot(body, light, speed, dark_electrons(body, seconds, temperature))
+    shot.seed = whole(seed, "seed", 0, 2**64 - 1)
+    mosaic, saturated, negative, bad, place = _core.expose(light.planes, shot)
+    if bad:
+        raise InputError(
+            f"frame: {light.source}: wanted finite numbers, got others at {bad} photosites, the "
+            f"first at {place}"
+        )
+    if negative:
+        share = negative / mosaic.size
+        notes.append(f"light was below 0 at {share:.2%} of the photosites, and taken for none")
+    notes += [*_source_note(frame, body, light), *_pitch_note(frame, body)]
+    notes += _noise_note(frame, body, light)
+    return Raw(
+        mosaic=mosaic,
+        sensor=body,
+        iso=speed,
+        black_level=body.black_level,
+        white_level=body.white_level(speed),
+        gain=body.gain(speed),
+        neutral=body.neutral(white),
+        white_balance=white_xy,
+        metadata=_facts(frame, body, speed, compensation, seed, light.source, negative),
+        clipped=saturated.view(np.bool_),
+        luminance_exposure=exposure_map(frame, compensation),
+        notes=tuple(notes),
+    )
+
+
+def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
+    """The one that is named, or the frame's, or the ideal one."""
+    if sensor is not None:
+        return load(sensor)
+    name = frame.metadata.get("sensor") or "ideal"
+    try:
+        return load(name)
+    except InputError as error:
+        raise InputError(f"frame: {error}; wanted its file, as sensor") from None
+
+
+def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]) -> float:
+    """The one that is asked for, or the camera's where the sensor has it, or the base ISO."""
+    if iso is not None:
+        sensor.check_iso(iso)
+        return float(iso)
+    camera = frame_iso(frame.metadata)
+    low, high = sensor.iso_range
+    if camera is not None and low <= camera <= high:
+        return camera
+    if camera is not None:
+        notes.append(f"ISO {camera:g} is beyond {sensor.name}: exposed at {sensor.base_iso:g}")
+    return float(sensor.base_iso)
+
+
+def chosen_ev(frame: Frame, ev: float | None) -> float:
+    """The compensation that is asked for, or the camera's."""
+    given = frame.metadata.get("exposure_compensation") or 0.0 if ev is None else ev
+    return number(given, "ev", -64, 64)
+
+
+def dark_electrons(
+    sensor: Sensor, seconds: float, temperature: float | None
+) -> tuple[float, float]:
+    """Means that heat makes in a photosite, and more in a hot one."""
+    if temperature is not None:
+        number(temperature, "temperature", -273.15, 200)
+    factor = sensor.dark_current.factor(temperature) * seconds
+    return sensor.dark_current.rate * factor, sensor.hot_pixels.rate * factor
+
+
+def light_of(frame: Frame, sensor: Sensor, ev: float = 0.0) -> Light:
+    """The best planes that a frame has for a sensor: its channels, else bands, else XYZ."""
+    lux_s = luminance_exposure(frame.metadata) * 2.0**ev
+    electrons = sensor.electrons_per_lux_s()[:, None] * lux_s
+    seen = seen_of(frame, sensor)
+    planes = np.ascontiguousarray(seen.planes, np.float32)
+    return Light(planes, electrons * seen.channels, seen.source, lux_s)
+
+
+def _shot(sensor: Sensor, light: Light, iso: float, dark: tuple[float, float]) -> Any:
+    with np.errstate(over="ignore"):  # infinite electrons are refused with the light
+        electrons = np.ascontiguousarray(light.electrons, np.float32)
+    shot = _core.Shot(electrons, sensor.pattern.cells)
+    shot.low_pass_px = sensor.low_pass / sensor.pixel_pitch
+    shot.crosstalk = sensor.crosstalk
+    shot.prnu, shot.dsnu = sensor.prnu, sensor.dsnu
+    shot.dark, shot.hot_dark = dark
+    shot.hot_share = sensor.hot_pixels.share
+    shot.full_well = sensor.full_well_at(iso)
+    shot.read_noise = sensor.read_noise_at(iso)
+    shot.gain = sensor.gain(iso)
+    shot.black_dn, shot.highest_dn = sensor.black_level, sensor.highest_dn
+    shot.serial = sensor.serial
+    return shot
+
+
+def _facts(
+    frame: Frame, sensor: Sensor, iso: float, ev: float, seed: int, source: str, negative: int
+) -> dict[str, Any]:
+    return {
+        **frame.metadata,
+        "isoSpeed": iso,
+        "exposure_compensation": ev or None,
+        "sensor": sensor.name,
+        "sensor_hash": sensor.hash,
+        "sensor_channels": list(sensor.channels),
+        "sensor_from": source,
+        "cameraMake": sensor.make,
+        "cameraModel": sensor.model,
+        "sensor_serial": sensor.serial,
+        "noise_seed": seed,
+        "negative_photosites": negative,
+    }
+
+
+def _source_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
+    if frame.channels is None or light.source == "channels":
+        return []
+    return [
+        f"the frame holds what {frame.metadata.get('sensor')} sees; that of {sensor.name} is made "
+        f"of its {'XYZ' if light.source == 'xyz' else light.source}"
+    ]
+
+
+def _pitch_note(frame: Frame, sensor: Sensor) -> list[str]:
+    pitch = np.ravel(frame.metadata.get("sensorPhotositePitch") or [])
+    if not pitch.size or abs(pitch[0] / sensor.pixel_pitch - 1) <= 0.01:
+        return []
+    return [
+        f"a pixel of the picture is {pitch[0]:.3g} um of the film, a photosite of {sensor.name} "
+        f"{sensor.pixel_pitch:.3g} um: noise is that of the photosites, as in a crop at 100 %"
+    ]
+
+
+def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
+    """How often the render's own noise is more than that of its photons."""
+    share = noisy_share(frame, sensor, light)
+    if share <= NOISY_SHARE:
+        return []
+    return [
+        f"the render's own noise is larger than that of the photons in {share:.0%} of the pixels: "
+        "more samples would show the sensor's noise alone"
+    ]
+
+
+def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
+    """Share of the pixels whose variance over samples exceeds that of their photons.
+
+    Of luminance, in the strongest channel. Red, green and blue of a sample vary together (a path
+    is bright or dark), so their deviations add.
+    """
+    if frame.variance is None:
+        return 0.0
+    of_white = light.lux_s * float(sensor.electrons_per_lux_s().max())
+    luma = np.linalg.inv(rgb_from_xyz())[1].astype(np.float32)
+    noisy = 0
+    for rows in _stripes(frame.height):
+        mean = frame.rgb[rows] @ luma
+        deviation = np.sqrt(np.maximum(frame.variance[rows], 0)) @ luma
+        noisy += int(np.count_nonzero(of_white * deviation**2 > np.maximum(mean, 0)))
+    return noisy / (frame.width * frame.height)
+
+
+def _stripes(height: int) -> Iterator[slice]:
+    return (slice(row, min(row + _STRIPE, height)) for row in range(0, height, _STRIPE))
+
+
+# Truth ------------------------------------------------------------------------------------------
+
+
+def exposure_map(frame: Frame, ev: float | None = None) -> NDArray[np.float32]:
+    """Luminance exposure of each pixel, lux s, shape (H, W)."""
+    factor = np.float32(luminance_exposure(frame.metadata) * 2.0 ** chosen_ev(frame, ev))
+    if frame.xyz is not None:
+        return np.asarray(frame.xyz[..., 1] * factor, np.float32)
+    luma = np.linalg.inv(rgb_from_xyz())[1].astype(np.float32)
+    return np.asarray((frame.rgb @ luma) * factor, np.float32)
+
+
+def exposure_truth(
+    frame: Frame,
+    sensor: str | Sensor | None = None,
+    iso: float | None = None,
+    ev: float | None = None,
+) -> dict[str, NDArray[np.float32]]:
+    """See :meth:`daguerre.Frame.exposure_truth`."""
+    body = chosen_sensor(frame, sensor)
+    speed = chosen_iso(frame, body, iso, [])
+    compensation = chosen_ev(frame, ev)
+    light = light_of(frame, body, compensation)
+    highest = (body.highest_dn - body.black_level) / body.gain(speed)
+    most = np.float32(min(body.full_well_at(speed), highest))
+    weights = light.electrons.T.astype(np.float32)
+    full = np.empty((frame.height, frame.width, len(body.channels)), np.float32)
+    for rows in _stripes(frame.height):
+        full[rows] = light.planes[rows] @ weights >= most
+    truth = {"exposure.Y": exposure_map(frame, compensation)}
+    return truth | {f"saturated.{name}": full[..., i] for i, name in enumerate(body.channels)}
+
+
+def check_can_expose(sensor: str | Sensor, iso: float | None) -> None:
+    """Before a long render: whether the sensor is there and has this ISO.
+
+    Raises:
+        DaguerreError: It is not, or has not.
+    """
+    body = load(sensor)
+    if iso is not None:
+        try:
+            body.check_iso(iso)
+        except UsageError as error:
+            raise UsageError(f"--iso: {error}") from None

@@ -1,0 +1,205 @@
+"""Metering: how bright a scene is to a camera, and the ISO that its time and stop need.
+
+A meter takes the mean of some part of the picture for middle grey. Its luminance L, cd/m2, is given
+as EV100 = log2(100 L / K), with K = 12.5 cd s/m2 as most cameras are calibrated (ISO 2720). The
+ISO is found from the exposure on the film itself, through lens and filters as in a camera: 10 / ISO
+lux s become middle grey (ISO 12232), so what was metered develops to 0.18. For an ideal lens both
+agree within 2 %: (pi / 4) K = 9.8.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import numbers
+from daguerre.color.spectra import rgb_from_xyz
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.frame.frame import Frame
+
+from .lux_seconds import luminance_exposure
+
+FloatArray = NDArray[np.float64]
+MODES = ("centre", "spot", "matrix")
+#: cd s/m2: ISO 2720 allows 10.6 to 13.4; Canon, Nikon and Sekonic have 12.5.
+K = 12.5
+#: Luminance exposure of middle grey at ISO 1, lux s (ISO 12232, standard output sensitivity).
+GREY_LUX_S = 10.0
+#: Centre: a circle of half the frame's height (12 mm of 36 x 24) has this share of the weight.
+CENTRE_SHARE, CENTRE_DIAMETER = 0.75, 0.5
+#: Spot: a circle of this share of the frame's area.
+SPOT_AREA = 0.025
+#: Matrix: zones across and down; those at the place in focus count so many times.
+ZONES, FOCUS_WEIGHT = (9, 7), 3.0
+#: A zone this many times as bright as middle grey is white; it may cost the rest one stop at most.
+WHITE_OVER_GREY, MOST_PROTECTION = 1 / 0.18, 2.0
+#: Zones count as no darker than this share of the brightest: a night's sky is no subject.
+DARKEST_ZONE = 2.0**-10
+_STRIPE = 256  # rows
+
+
+@dataclass(frozen=True)
+class Metered:
+    """What a meter read.
+
+    Attributes:
+        mode: centre, spot or matrix.
+        luminance: Of what was taken for middle grey, cd/m2.
+        iso: That makes it middle grey with the frame's time and stop.
+    """
+
+    mode: str
+    luminance: float
+    iso: float
+
+    @property
+    def ev100(self) -> float:
+        """Exposure value at ISO 100."""
+        return math.log2(100 * self.luminance / K)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.mode}: {self.luminance:.3g} cd/m2, EV100 {self.ev100:.1f}, ISO {self.iso:.3g}"
+        )
+
+
+def check_mode(mode: str, where: str = "meter") -> str:
+    """The name of a way to meter; ``center`` is one, too.
+
+    Raises:
+        UsageError: There is no such way.
+    """
+    known = "centre" if mode == "center" else mode
+    if known not in MODES:
+        raise UsageError(
+            f"{where}: wanted {', '.join(MODES)}, got {mode!r}{suggest(str(mode), MODES)}"
+        )
+    return known
+
+
+def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None = None) -> Metered:
+    """Meters a frame as a camera does.
+
+    Args:
+        frame: With exposure metadata.
+        mode: ``centre``: mean luminance, three quarters of it from the middle; ``spot``: of a
+            fortieth of the area about the place in focus; ``matrix``: zones, the place in focus
+            and highlights first.
+        at: The place in focus, px of the whole frame; None: its middle.
+
+    Raises:
+        UsageError: There is no such way to meter, or that place is not in the picture.
+        InputError: Nothing there is bright, or the frame's facts do not tell its exposure.
+    """
+    mode = check_mode(mode)
+    frame = frame.without_overscan()
+    unit = luminance_exposure(frame.metadata)
+    place = _Place.of(frame, at)
+    if mode == "matrix":
+        luminance = _matrix(frame, place)
+    else:
+        weight = _centre_weight if mode == "centre" else _spot_weight
+        total, light = 0.0, 0.0
+        for rows, y in _luminances(frame):
+            weights = weight(place, rows)
+            total += float(weights.sum())
+            light += float((weights * y).sum())
+        if not total > 0:
+            raise UsageError(f"meter: spot at {place.focus}: wanted a place in the picture")
+        luminance = light / total
+    if not luminance > 0:
+        raise InputError(f"meter: {mode}: wanted some light to meter, got black")
+    return Metered(mode, luminance, GREY_LUX_S / (luminance * unit))
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where the frame's pixels are in the whole picture, px.
+
+    Attributes:
+        width, height: Of the whole picture.
+        left, top: Of the frame within it.
+        columns: Of the frame.
+        focus: The place in focus.
+    """
+
+    width: int
+    height: int
+    left: int
+    top: int
+    columns: int
+    focus: tuple[float, float]
+
+    @classmethod
+    def of(cls, frame: Frame, at: tuple[float, float] | None) -> _Place:
+        width, height = frame.metadata.get("resolution") or (frame.width, frame.height)
+        left, top = (frame.metadata.get("crop") or (0, 0))[:2]
+        focus = (width / 2, height / 2)
+        if at is not None:
+            x, y = numbers(at, "meter: at", 2, "a pixel (x, y)")
+            focus = (x, y)
+        return cls(width, height, left, top, frame.width, focus)
+
+    def squared_distance(self, rows: slice, point: tuple[float, float]) -> FloatArray:
+        """Of pixel centres from a point, px^2, shape (rows, columns)."""
+        x = self.left + np.arange(self.columns) + 0.5 - point[0]
+        y = self.top + np.arange(rows.start, rows.stop) + 0.5 - point[1]
+        return np.asarray(x[None, :] ** 2 + y[:, None] ** 2)
+
+
+def _centre_weight(place: _Place, rows: slice) -> FloatArray:
+    radius2 = (CENTRE_DIAMETER * place.height / 2) ** 2
+    inside = place.squared_distance(rows, (place.width / 2, place.height / 2)) < radius2
+    area = math.pi * radius2
+    outer = max(place.width * place.height - area, 1.0)
+    return np.where(inside, CENTRE_SHARE / area, (1 - CENTRE_SHARE) / outer)
+
+
+def _spot_weight(place: _Place, rows: slice) -> FloatArray:
+    # A pixel at least, of however small a picture.
+    radius2 = max(SPOT_AREA * place.width * place.height / math.pi, 0.51)
+    return np.asarray(place.squared_distance(rows, place.focus) < radius2, np.float64)
+
+
+def _luminances(frame: Frame) -> Iterator[tuple[slice, FloatArray]]:
+    """Stripes of rows and their luminance, cd/m2; what is no number or negative is black."""
+    luma = np.linalg.inv(rgb_from_xyz())[1]
+    for begin in range(0, frame.height, _STRIPE):
+        rows = slice(begin, min(begin + _STRIPE, frame.height))
+        y = frame.xyz[rows, :, 1] if frame.xyz is not None else frame.rgb[rows] @ luma
+        y = np.asarray(y, np.float64)
+        yield rows, np.where(np.isfinite(y) & (y > 0), y, 0.0)
+
+
+def _matrix(frame: Frame, place: _Place) -> float:
+    """Mean of the zones in stops; a white zone lifts it, by a stop at most."""
+    across, down = ZONES
+    sums, counts = np.zeros(across * down), np.zeros(across * down)
+    columns = ((place.left + np.arange(place.columns)) * across) // place.width
+    for rows, y in _luminances(frame):
+        lines = ((place.top + np.arange(rows.start, rows.stop)) * down) // place.height
+        zone = (lines[:, None] * across + columns[None, :]).ravel()
+        sums += np.bincount(zone, y.ravel(), across * down)
+        counts += np.bincount(zone, minlength=across * down)
+    there = counts > 0
+    zones = sums[there] / counts[there]
+    brightest = zones.max()
+    if not brightest > 0:
+        return 0.0
+    stops = np.log2(np.maximum(zones, DARKEST_ZONE * brightest))
+    weights = _zone_weights(place)[there]
+    mean = 2.0 ** float((weights * stops).sum() / weights.sum())
+    return float(np.clip(brightest / WHITE_OVER_GREY, mean, MOST_PROTECTION * mean))
+
+
+def _zone_weights(place: _Place) -> FloatArray:
+    """More where the picture is in focus, less with distance from there; one far away."""
+    across, down = ZONES
+    x = (np.arange(across) + 0.5) / across * place.width - place.focus[0]
+    y = (np.arange(down) + 0.5) / down * place.height - place.focus[1]
+    away2 = (x[None, :] ** 2 + y[:, None] ** 2) / (place.height / 3) ** 2
+    return np.asarray(1 + (FOCUS_WEIGHT - 1) * np.exp(-away2)).ravel()

@@ -1,0 +1,1 @@
+"""OpenEXR files: frames written and read, rows in blocks, headers."""

@@ -1,0 +1,146 @@
+"""OpenEXR files as frames: what Daguerre wrote comes back whole; of others, what is there.
+
+The counterpart of :mod:`daguerre.io.exr.write`. Colors of other primaries become Rec.709; white is
+adapted, so that (1, 1, 1) stays white (Bradford: Lindbloom, "Chromatic Adaptation",
+http://www.brucelindbloom.com/index.html?Eqn_ChromAdapt.html).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color.spectra import rgb_from_xyz, xyz_of
+from daguerre.errors import InputError
+from daguerre.frame.frame import Frame
+
+from . import write as exr
+from .header import ExrHeader
+from .rows import ExrReader, Planes
+
+_BRADFORD = np.array(
+    [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
+)
+
+
+def read_frame(path: str | os.PathLike[str]) -> Frame:
+    """Reads a picture (the first part of the file) with all its channels and facts.
+
+    Args:
+        path: ``.exr``.
+
+    Returns:
+        The frame. ``xyz`` is made of ``rgb``; channels that are no part of a frame are among its
+        ``aovs``, by name. Half floats become floats.
+
+    Raises:
+        InputError: It cannot be read, or has neither R, G, B nor Y.
+    """
+    with ExrReader(path) as reader:
+        planes = reader.rows(0, reader.height)
+        metadata = read_metadata(reader.header)
+        metadata |= _place(reader)
+    planes = {name: _writable(plane) for name, plane in planes.items()}
+    rgb = _rgb(planes, path)
+    if (matrix := _to_rec709(reader.facts.get("chromaticities"))) is not None:
+        rgb = np.asarray(rgb @ matrix.T.astype(np.float32))
+    names = metadata.get("sensor_channels") or []
+    bands = sorted(name for name in planes if name.startswith("bands."))
+    samples = planes.pop("samples.Y", None)
+    frame = Frame(
+        rgb=rgb,
+        xyz=xyz_of(rgb),
+        alpha=planes.pop("A", np.empty((0, 0), np.float32)),
+        variance=_group(planes, [f"variance.{c}" for c in "RGB"]),
+        samples=None if samples is None else np.rint(samples).astype(np.uint32),
+        metadata=metadata,
+        flare=_group(planes, [f"flare.{c}" for c in "RGB"]),
+        channels=_group(planes, [f"sensor.{name}" for name in names]),
+        bands=_group(planes, bands),
+    )
+    frame.aovs = planes
+    count = metadata.get("bad_samples", 0)
+    places = metadata.get("bad_sample_places", [])
+    frame.bad_samples = (int(count), [(x, y, sample) for x, y, sample in places])
+    return frame
+
+
+def read_metadata(header: ExrHeader) -> dict[str, Any]:
+    """Facts by the names of ``Frame.metadata``: of the standard and of Daguerre."""
+    facts = header.facts
+    names = (*exr.FLOATS, *exr.STRINGS, *exr.VECTORS, *exr.RATIONALS)
+    found: dict[str, Any] = {name: facts[name] for name in names if name in facts}
+    for name in exr.MATRICES:
+        if name in facts:
+            found[name] = np.array(facts[name], np.float64).reshape(4, 4)
+    own = {
+        name.removeprefix("daguerre:"): value
+        for name, value in facts.items()
+        if name.startswith("daguerre:")
+    }
+    return found | {name: _own(name, value) for name, value in own.items()}
+
+
+def _own(name: str, value: Any) -> Any:
+    """JSON as what it says; a whole number that travelled as text as a number."""
+    if not isinstance(value, str):
+        return value
+    try:
+        if name in exr.OWN_NUMBERS:
+            return int(value)
+        return json.loads(value) if name in (*exr.OWN_JSON, "camera") else value
+    except (ValueError, RecursionError):
+        return value
+
+
+def _place(reader: ExrReader) -> dict[str, Any]:
+    """Size of the whole picture and the part of it that is there; overscan lies beside it."""
+    (x, y), (left, top) = reader.corner, reader.full_corner
+    x0, y0 = x - left, y - top
+    width, height = reader.full_size
+    crop = (x0, y0, x0 + reader.width, y0 + reader.height)
+    return {"resolution": (width, height), "crop": crop}
+
+
+def _writable(plane: NDArray[Any]) -> NDArray[Any]:
+    return plane.copy() if plane.dtype == np.uint32 else plane.astype(np.float32)
+
+
+def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
+    """Takes channels out of ``planes``; None: there are none, or one is missing."""
+    if not names or not all(name in planes for name in names):
+        return None
+    return np.stack([planes.pop(name) for name in names], axis=2)
+
+
+def _rgb(planes: Planes, path: str | os.PathLike[str]) -> NDArray[np.float32]:
+    rgb = _group(planes, ["R", "G", "B"])
+    if rgb is not None:
+        return rgb
+    if "Y" in planes:
+        return np.repeat(planes.pop("Y")[:, :, None], 3, axis=2)
+    names = ", ".join(list(planes)[:12])
+    raise InputError(f"{path}: channels: wanted R, G, B or Y, got {names}")
+
+
+def _to_rec709(chromaticities: Any) -> NDArray[np.float64] | None:
+    """Rec.709 from RGB of other primaries and white; None: they are Rec.709."""
+    if chromaticities is None or np.allclose(chromaticities, exr.REC709, atol=2e-4):
+        return None
+    x, y = np.reshape(chromaticities, (4, 2)).T
+    if not (np.isfinite([x, y]).all() and (y > 0).all()):
+        return None
+    xyz = np.stack([x / y, np.ones(4), (1 - x - y) / y])
+    try:
+        primaries = xyz[:, :3] * np.linalg.solve(xyz[:, :3], xyz[:, 3])
+        to_rgb = rgb_from_xyz()
+        white = np.linalg.inv(to_rgb).sum(axis=1)
+        gains = (_BRADFORD @ white) / (_BRADFORD @ xyz[:, 3])
+        adapted = np.linalg.solve(_BRADFORD, gains[:, None] * _BRADFORD)
+        return np.asarray(to_rgb @ adapted @ primaries)
+    except np.linalg.LinAlgError:
+        return None

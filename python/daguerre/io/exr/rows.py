@@ -1,0 +1,202 @@
+"""OpenEXR in bands of rows, so that a picture need not fit into memory.
+
+Reading is OpenEXR's own, of any kind of file. Its Python module writes whole pictures only, and
+drops attributes that it does not know when it writes rows; so rows are written here, as the format
+describes it: scanline blocks, plain or deflated (https://openexr.com/en/latest/OpenEXRFileLayout.html,
+"Predictor and interleaving": OpenEXR Technical Introduction).
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import MAX_RESOLUTION
+from daguerre.errors import InputError, OutputError
+
+from .header import ExrHeader, header_bytes, read_header
+
+NO_COMPRESSION, ZIP = 0, 3
+BLOCK_ROWS = {NO_COMPRESSION: 1, ZIP: 16}
+DEFLATE_LEVEL = 4  # OpenEXR's own default
+Planes = dict[str, NDArray[Any]]
+
+
+class ExrReader:
+    """The first part of a file; ``rows`` reads some of them, in any order."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Opens a file.
+
+        Raises:
+            InputError: It cannot be read, or its windows make no sense.
+        """
+        import OpenEXR
+
+        self.path = Path(path)
+        self.header = read_header(self.path)
+        self.facts = self.header.facts
+        x0, y0, x1, y1 = self._window("dataWindow")
+        self.corner, self.width, self.height = (x0, y0), x1 - x0 + 1, y1 - y0 + 1
+        x0, y0, x1, y1 = self._window("displayWindow")
+        self.full_corner, self.full_size = (x0, y0), (x1 - x0 + 1, y1 - y0 + 1)
+        for channel in self.header.channels:
+            if channel.subsampled:
+                raise InputError(
+                    f"{self.path}: channel {channel.name!r}: wanted a value for every pixel, "
+                    "got a subsampled one"
+                )
+        self.channels = {channel.name: channel.dtype for channel in self.header.channels}
+        OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
+        try:
+            self._file = OpenEXR.InputFile(str(self.path))
+        except (RuntimeError, OSError, ValueError) as error:
+            raise InputError(f"{self.path}: cannot be decoded: {error}") from error
+
+    def rows(self, begin: int, end: int) -> Planes:
+        """Rows [begin, end), counted from the first of the data window, by channel.
+
+        Raises:
+            InputError: The file is damaged there.
+        """
+        top = self.corner[1]
+        names = list(self.channels)
+        try:
+            raw = self._file.channels(names, scanLine1=top + begin, scanLine2=top + end - 1)
+        except (RuntimeError, OSError, ValueError, TypeError) as error:
+            raise InputError(f"{self.path}: rows {begin} .. {end - 1}: {error}") from error
+        shape = (end - begin, self.width)
+        return {
+            name: np.frombuffer(data, self.channels[name]).reshape(shape)
+            for name, data in zip(names, raw, strict=True)
+        }
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _window(self, name: str) -> tuple[int, int, int, int]:
+        x0, y0, x1, y1 = self.facts.get(name, (0, 0, -1, -1))
+        width, height = x1 - x0 + 1, y1 - y0 + 1
+        if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):
+            raise InputError(
+                f"{self.path}: {name}: wanted 1 to {MAX_RESOLUTION} pixels each way, "
+                f"got {width} x {height}"
+            )
+        return x0, y0, x1, y1
+
+
+class ExrWriter:
+    """Writes a scanline file row by row, with the attributes of the file that it was made from."""
+
+    def __init__(self, path: Path, source: ExrHeader, attributes: Mapping[str, str] = {}) -> None:
+        """Begins a file.
+
+        Args:
+            path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
+            source: Its attributes are kept, but for how pixels are packed.
+            attributes: Texts to add.
+        """
+        packed = source.facts.get("compression", NO_COMPRESSION)
+        self._compression = NO_COMPRESSION if packed == NO_COMPRESSION else ZIP
+        self._block = BLOCK_ROWS[self._compression]
+        kept = dict(source.attributes)
+        for name in ("tiles", "chunkCount", "type", "version", "maxSamplesPerPixel"):
+            kept.pop(name, None)
+        kept["compression"] = ("compression", struct.pack("<B", self._compression))
+        kept["lineOrder"] = ("lineOrder", b"\0")
+        kept |= {name: ("string", text.encode()) for name, text in attributes.items()}
+        self._channels = source.channels
+        _, y0, _, y1 = source.facts["dataWindow"]
+        self._top, self._height, self._next = y0, y1 - y0 + 1, 0
+        self._waiting: list[Planes] = []
+        self._offsets: list[int] = []
+        self._pool = ThreadPoolExecutor(min(os.cpu_count() or 1, 8))
+        self._path = path
+        self._stream = path.open("wb")
+        self._stream.write(header_bytes(ExrHeader(kept, source.flags, 1)))
+        self._table = self._stream.tell()
+        self._stream.write(bytes(8 * self._blocks(self._height)))
+
+    def write(self, planes: Planes) -> None:
+        """The next rows, by channel, in the types of the file.
+
+        Raises:
+            OutputError: The disk is full, or gone.
+        """
+        self._waiting.append(planes)
+        rows = sum(len(next(iter(p.values()))) for p in self._waiting)
+        complete = rows - rows % self._block
+        if self._next + rows == self._height:
+            complete = rows
+        if complete == 0:
+            return
+        names = [c.name for c in self._channels]
+        joined = {n: np.concatenate([p[n] for p in self._waiting]) for n in names}
+        self._waiting = [{n: joined[n][complete:] for n in names}] if complete < rows else []
+        starts = range(0, complete, self._block)
+        cut = [{n: joined[n][a : min(a + self._block, complete)] for n in names} for a in starts]
+        try:
+            for start, data in zip(starts, self._pool.map(self._packed, cut), strict=True):
+                self._offsets.append(self._stream.tell())
+                y = self._top + self._next + start
+                self._stream.write(struct.pack("<ii", y, len(data)) + data)
+        except OSError as error:
+            raise OutputError(f"{self._path}: cannot write: {error.strerror or error}") from error
+        self._next += complete
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        self._pool.shutdown()
+        with self._stream:
+            if kind is None:
+                assert self._next == self._height, "rows are missing"
+                self._stream.seek(self._table)
+                self._stream.write(struct.pack(f"<{len(self._offsets)}Q", *self._offsets))
+
+    def _blocks(self, rows: int) -> int:
+        return -(-rows // self._block)
+
+    def _packed(self, planes: Planes) -> bytes:
+        """A block of rows: row by row, in each the channels one after another."""
+        count = len(next(iter(planes.values())))
+        lines = [
+            np.ascontiguousarray(planes[c.name], np.dtype(c.dtype).newbyteorder("<"))
+            .reshape(count, -1)
+            .view(np.uint8)
+            for c in self._channels
+        ]
+        plain = np.concatenate(lines, axis=1).reshape(-1)
+        if self._compression == NO_COMPRESSION:
+            return plain.tobytes()
+        halves = np.concatenate([plain[0::2], plain[1::2]])
+        halves[1:] = halves[1:] - halves[:-1] + np.uint8(128)
+        deflated = zlib.compress(halves.tobytes(), DEFLATE_LEVEL)
+        return deflated if len(deflated) < plain.nbytes else plain.tobytes()

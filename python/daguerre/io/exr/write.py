@@ -1,0 +1,243 @@
+"""OpenEXR: the channels and attributes of a frame, by the names of the format and of Daguerre.
+
+Standard attributes: OpenEXR "Standard Optional Attributes"; those with ``daguerre:`` are our own.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import os
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import OutputError
+from daguerre.files.atomic import atomic_path
+
+if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
+
+#: Rec.709 primaries and D65, ITU-R BT.709-6: red, green, blue, white as x, y.
+REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
+
+FLOATS = (
+    "isoSpeed", "expTime", "aperture", "tStop", "focus", "nominalFocalLength",
+    "effectiveFocalLength", "pinholeFocalLength", "entrancePupilOffset", "shutterAngle",
+    "whiteLuminance", "pixelAspectRatio",
+)  # fmt: skip
+STRINGS = ("lensMake", "lensModel", "lensSerialNumber", "cameraMake", "cameraModel", "capDate")
+VECTORS = (
+    "sensorPhotositePitch", "sensorOverallDimensions", "sensorCenterOffset", "adoptedNeutral",
+)  # fmt: skip
+MATRICES = ("worldToCamera", "worldToNDC")
+RATIONALS = ("captureRate",)
+OWN_NUMBERS = (
+    "samples", "samples_min", "samples_max", "noise", "seed", "h0", "luminance_exposure",
+    "exposure_compensation", "time", "bad_samples", "motion_missing", "gt_rays", "bands",
+)  # fmt: skip
+OWN_STRINGS = (
+    "version", "scene_hash", "filter", "denoised", "gt_time", "gt_lens", "light_paths", "flare",
+    "scatter", "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan",
+)  # fmt: skip
+OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
+
+Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
+
+
+def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
+    """EXR header attributes with the types of the standard.
+
+    Args:
+        metadata: Facts by name, units and frames as the standard has them (matrices act on row
+            vectors). Unknown names, and None, are left out.
+    """
+    header: dict[str, Any] = {
+        "chromaticities": REC709,
+        "colorInteropID": "lin_rec709_scene",
+        "software": f"daguerre {metadata.get('version', '')}".strip(),
+    }
+    known = {key: value for key, value in metadata.items() if value is not None}
+    header |= {key: float(known[key]) for key in FLOATS if key in known}
+    header |= {key: str(known[key]) for key in STRINGS if known.get(key)}
+    header |= {key: _pair(known[key]) for key in VECTORS if key in known}
+    header |= {
+        key: np.ascontiguousarray(known[key], np.float32) for key in MATRICES if key in known
+    }
+    header |= {
+        key: _rational(known[key]) for key in RATIONALS if key in known and _positive(known[key])
+    }
+    header |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
+    header |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
+    header |= {
+        f"daguerre:{key}": json.dumps(known[key], default=jsonable)
+        for key in OWN_JSON
+        if known.get(key)
+    }
+    if "camera" in known:
+        camera = without_infinity(known["camera"])
+        header["daguerre:camera"] = json.dumps(camera, sort_keys=True, default=jsonable)
+    return header
+
+
+def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
+    """The channels of a frame by the names of the file, all that it has.
+
+    R G B A, its AOVs, flare.R/G/B, variance.R/G/B, samples.Y, those of its sensor (sensor.R) and
+    its bands of wavelengths (bands.0380-0405, nm). An array of three planes stands for three
+    channels, as OpenEXR has it: no copies are made.
+    """
+    planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
+    planes["A"] = frame.alpha
+    planes |= frame.aovs
+    if frame.channels is not None:
+        names = frame.metadata["sensor_channels"]
+        planes |= {f"sensor.{name}": frame.channels[..., i] for i, name in enumerate(names)}
+    if frame.bands is not None:
+        names = band_names(frame.bands.shape[2])
+        planes |= {f"bands.{name}": frame.bands[..., i] for i, name in enumerate(names)}
+    if frame.flare is not None:
+        planes["flare"] = frame.flare
+    if frame.variance is not None:
+        planes["variance"] = frame.variance
+    if frame.samples is not None:
+        planes["samples.Y"] = frame.samples.astype(np.float32)
+    return {name: _plane(name, plane) for name, plane in planes.items()}
+
+
+def band_names(count: int) -> list[str]:
+    """First and last wavelength of each band in whole nm, such as 0380-0405."""
+    from daguerre.color.spectra import FIRST_NM, LAST_NM
+
+    edges = np.rint(np.linspace(FIRST_NM, LAST_NM, count + 1)).astype(int).tolist()
+    return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]
+
+
+def read_frame(path: str | os.PathLike[str]) -> Frame:
+    """Reads a picture with all its channels and facts; see :mod:`daguerre.io.exr.read`."""
+    from .read import read_frame as read
+
+    return read(path)
+
+
+def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
+    """Writes a frame, atomically, as one multichannel part."""
+    write_parts(path, [("beauty", attributes(frame.metadata), channels(frame))], frame)
+
+
+def write_parts(
+    path: str | os.PathLike[str], parts: list[tuple[str, dict[str, Any], Channels]], frame: Frame
+) -> None:
+    """Writes parts (name, attributes, channels) that share the windows of ``frame``.
+
+    Raises:
+        OutputError: The file cannot be written; nothing is left of it.
+    """
+    _write(path, parts, _windows(frame.metadata, frame.rgb.shape))
+
+
+def write_planes(
+    path: str | os.PathLike[str],
+    header: Mapping[str, Any],
+    planes: Channels,
+    metadata: Mapping[str, Any],
+) -> None:
+    """Writes channels that are no picture; their place is told by resolution and crop.
+
+    Raises:
+        OutputError: The file cannot be written; nothing is left of it.
+    """
+    windows = _windows(metadata, next(iter(planes.values())).shape)
+    _write(path, [("map", dict(header), planes)], windows)
+
+
+def _write(
+    path: str | os.PathLike[str],
+    parts: list[tuple[str, dict[str, Any], Channels]],
+    windows: dict[str, Any],
+) -> None:
+    import OpenEXR
+
+    # The module's default is one thread; compression is most of the time of writing.
+    OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
+    storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with atomic_path(path) as temp:
+        exr_parts = [
+            OpenEXR.Part(storage | windows | header, dict(planes), name)
+            for name, header, planes in parts
+        ]
+        try:
+            with OpenEXR.File(exr_parts) as file:
+                file.write(str(temp))
+        except (RuntimeError, OSError) as error:
+            reason = str(error).replace(str(temp), str(path))
+            raise OutputError(f"{path}: cannot write: {reason}") from error
+
+
+def without_infinity(value: Any) -> Any:
+    """JSON has no infinity; the text "inf" is read back by every float()."""
+    if isinstance(value, dict):
+        return {key: without_infinity(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_infinity(inner) for inner in value]
+    return str(value) if isinstance(value, float) and math.isinf(value) else value
+
+
+def jsonable(value: Any) -> Any:
+    """What ``json`` does not know by itself: arrays, numpy numbers, paths."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    return str(value) if isinstance(value, Path | Fraction) else repr(value)
+
+
+def _windows(metadata: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
+    """A crop keeps its place in the display window; overscan reaches out of it."""
+    height, width = shape[:2]
+    full_width, full_height = metadata.get("resolution") or (width, height)
+    x0, y0 = (metadata.get("crop") or (0, 0))[:2]
+    corner = np.array([x0, y0], np.int32)
+    size = np.array([width - 1, height - 1], np.int32)
+    full = np.array([full_width - 1, full_height - 1], np.int32)
+    return {
+        "dataWindow": (corner, corner + size),
+        "displayWindow": (np.zeros(2, np.int32), full),
+    }
+
+
+def _plane(name: str, plane: NDArray[Any]) -> NDArray[np.float32] | NDArray[np.uint32]:
+    if name.endswith("_id"):
+        return np.ascontiguousarray(plane, np.uint32)
+    return np.ascontiguousarray(plane, np.float32)
+
+
+def _pair(value: Any) -> NDArray[np.float32]:
+    """A v2f; one number stands for both axes."""
+    return np.ascontiguousarray(np.broadcast_to(np.asarray(value, np.float32), (2,)))
+
+
+def _positive(value: Any) -> bool:
+    number = float(_rational(value)) if isinstance(value, tuple | list) else float(value)
+    return math.isfinite(number) and number > 0
+
+
+def _rational(value: Any) -> Fraction:
+    """``rational`` has a signed 32-bit numerator; 23.976... becomes 24000/1001."""
+    if isinstance(value, tuple | list):
+        return Fraction(int(value[0]), int(value[1]))
+    fraction = Fraction(value)
+    near = fraction.limit_denominator(1001)
+    return near if abs(near - fraction) <= fraction / 10**6 else fraction.limit_denominator(10**6)
+
+
+def _number(value: Any) -> int | float | str:
+    """EXR integers have 32 bits; a longer one (a seed) travels as text."""
+    if isinstance(value, int | np.integer):
+        return int(value) if -(2**31) <= int(value) < 2**31 else str(int(value))
+    return float(value)

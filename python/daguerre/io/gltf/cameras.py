@@ -1,0 +1,163 @@
+"""Cameras of glTF in a photographer's units, with what EXT_camera_physical and extras add.
+
+glTF knows a field of view only; the rest of a camera comes from ``EXT_camera_physical``
+({focalLength mm, sensorSize mm, focusDistance m, fStop}) and ``extras.daguerre`` (parameters of
+``Camera`` in camelCase, which win). ``znear`` and ``zfar`` serve rasterizers and are not read: a
+lens sees what stands close to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.camera import IDEAL, LIMITS, Camera
+from daguerre.files.json_item import Item, clean, short
+from daguerre.files.notes import Notes
+from daguerre.lenses import library
+
+from .shutter import SHUTTER
+
+_SENSOR_HEIGHT_MM = 24.0
+_SENSOR_WIDTH_MM = 36.0
+
+_Reader = Callable[[Item], Any]
+
+
+def _within(name: str) -> _Reader:
+    return lambda item: item.number(*LIMITS[name], above=0)
+
+
+def _positive(item: Item) -> float:
+    return item.number(above=0)
+
+
+def _any(item: Item) -> float:
+    return item.number()
+
+
+def _sensor(item: Item) -> tuple[float, ...]:
+    size = item.numbers(2, 0)
+    if min(size) <= 0:
+        item.fail(f"out of range: wanted two numbers above 0, got {list(size)}")
+    return item.numbers(2, *LIMITS["sensor_size"])
+
+
+def _f_stop(item: Item) -> float:
+    value = item.number()
+    if value <= 0:
+        item.fail(
+            f"out of range: wanted a number above 0 (a pinhole is a lens of its own), got {value:g}"
+        )
+    return item.number(*LIMITS["f_stop"])
+
+
+def _lens(item: Item) -> str:
+    # A file from strangers may name a lens of the library, but no file, not even a near one.
+    name = item.text()
+    if name not in (*IDEAL, *library.names()):
+        item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}")
+    return clean(name)
+
+
+def _one_of(*options: str) -> _Reader:
+    return lambda item: item.choice(options)
+
+
+_PHYSICAL: dict[str, _Reader] = {
+    "focalLength": _within("focal_length"),
+    "sensorSize": _sensor,
+    "fStop": _f_stop,
+    "focusDistance": _within("focus_distance"),
+}
+_EXTRAS: dict[str, _Reader] = _PHYSICAL | {
+    "lens": _lens,
+    "lensModel": _one_of("exact", "thin", "pinhole"),
+    "sensorFit": _one_of("horizontal", "vertical", "auto", "fill"),
+    "apertureDiameter": _within("aperture_diameter"),
+    "focusOn": lambda item: item.text(),
+    "focusAt": lambda item: item.numbers(2),
+    "focusFrom": _one_of("pupil", "sensor"),
+    "focusBreathing": lambda item: item.flag(),
+    "blades": lambda item: item.integer(0, 1000),
+    "bladeRotation": _any,
+    "bladeCurvature": lambda item: item.number(-1, 1),
+    "naturalVignetting": lambda item: item.flag(),
+    "shift": lambda item: item.numbers(2, *LIMITS["shift"]),
+    "iso": _positive,
+    "exposureCompensation": _any,
+    **SHUTTER,
+}
+
+
+def _snake(name: str) -> str:
+    return "".join("_" + c.lower() if c.isupper() else c for c in name)
+
+
+def fields_of(tokens: list[str]) -> tuple[str, ...]:
+    """Parameters of ``Camera`` that a value of the file, such as yfov, has a say in."""
+    key = tokens[-1]
+    fields = {
+        "yfov": ("focal_length",),
+        "aspectRatio": ("sensor_size", "focal_length"),
+        "sensorSize": ("sensor_size", "focal_length"),
+    }
+    return fields.get(key, (_snake(key),) if key in _EXTRAS else ())
+
+
+def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Camera | None:
+    """A camera at ``transform`` (4, 4; rigid), or None with a note if it is orthographic."""
+    if item.need("type").choice(("perspective", "orthographic")) == "orthographic":
+        notes.add("an orthographic camera is left out: no lens makes parallel rays")
+        return None
+    perspective = item.need("perspective")
+    yfov_item = perspective.need("yfov")
+    yfov = yfov_item.number(above=0)
+    if yfov >= math.pi:
+        yfov_item.fail(f"out of range: wanted less than pi (radians), got {yfov:g}")
+    aspect = perspective.number_of("aspectRatio", 0.0, 1e-3, 1e3, above=0)
+    # The stated shape of the picture becomes the shape of the sensor, so that yfov holds for it.
+    width = _SENSOR_HEIGHT_MM * aspect if aspect else _SENSOR_WIDTH_MM
+    values: dict[str, Any] = {"sensor_size": (round(width, 6), _SENSOR_HEIGHT_MM)}
+    physical = item.extension("EXT_camera_physical")
+    if physical is not None:
+        values |= _known(physical, _PHYSICAL, notes, "EXT_camera_physical")
+    extras = item.get("extras")
+    if extras is not None and isinstance(extras.value, dict):
+        ours = extras.get("daguerre")
+        if ours is not None:
+            values |= _known(ours, _EXTRAS, notes, "extras.daguerre")
+    if values.get("lens") in (None, *IDEAL):  # a prescription has its own
+        values.setdefault("focal_length", 0.5 * values["sensor_size"][1] / math.tan(0.5 * yfov))
+        low, high = LIMITS["focal_length"]
+        if not low <= values["focal_length"] <= high:
+            yfov_item.fail(
+                f"out of range: wanted a focal length of {low:g} .. {high:g} mm, "
+                f"got {yfov:g} rad, which is {values['focal_length']:g} mm"
+            )
+    _doubt(values, notes)
+    return Camera(transform=transform, **values)
+
+
+def _known(item: Item, readers: dict[str, _Reader], notes: Notes, of: str) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for member in item.members():
+        key = str(member.key)
+        if key in readers and member.value is not None:
+            values[_snake(key)] = readers[key](member)
+        elif key not in readers and key not in ("extras", "extensions"):
+            notes.add(f"camera parameter {clean(key)[:40]!r} of {of} is not known")
+    return values
+
+
+def _doubt(values: dict[str, Any], notes: Notes) -> None:
+    """Figures that no camera has are probably in another unit."""
+    focal, width = values.get("focal_length"), values["sensor_size"][0]
+    if focal is not None and not 1 <= focal <= 2000:
+        notes.add(f"a camera says a {focal:.4g} mm lens; its unit is probably not mm")
+    if not 0.5 <= width <= 200:
+        notes.add(f"a camera says a {width:.4g} mm wide sensor; its unit is probably not mm")

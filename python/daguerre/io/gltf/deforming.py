@@ -1,0 +1,84 @@
+"""Vertices of a primitive as morphs and skins leave them, at one moment or over time.
+
+Source: glTF 2.0 specification, chapters 3.7.2.2 and 3.7.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.notes import Notes
+from daguerre.scene.motion import Vertices
+from daguerre.scene.normals import unit_normals, unit_tangents
+
+from .accessors import Accessors
+from .morphs import morph
+from .over_time import PartOverTime
+from .skins import Influences, Skins, skin
+
+FloatArray = NDArray[np.float32]
+Arrays = dict[str, FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshOverTime:
+    """The vertices of a primitive over time.
+
+    Attributes:
+        arrays: Attributes by their names in glTF, as they are in the file.
+        triangles: Shape (M, 3), wound as the vertices lay when the file was read.
+        displacements: What morphs it.
+        skins: Those of the file.
+        skin: Index of its skin, and who moves its vertices; None: it has none.
+        accessors: Those of the file.
+    """
+
+    arrays: Arrays
+    triangles: NDArray[np.uint32]
+    displacements: PartOverTime
+    skins: Skins
+    skin: tuple[int, Influences] | None
+    accessors: Accessors
+
+    def at(self, time_s: float) -> Vertices:
+        """The vertices at a time, s."""
+        arrays = dict(self.arrays)
+        with np.errstate(all="ignore"):
+            morph(arrays, self.displacements.at(time_s), self.accessors)
+            if self.skin is not None:
+                index, influences = self.skin
+                skin(arrays, influences, self.skins.matrices_at(index, time_s))
+            return finished(arrays, self.arrays, self.triangles, Notes())
+
+    def breaks(self, begin: float, end: float) -> NDArray[np.float64]:
+        """Times of all keys of weights and joints."""
+        morphs = self.displacements.breaks(begin, end)
+        if self.skin is None:
+            return morphs
+        return np.union1d(morphs, self.skins.breaks(self.skin[0], begin, end))
+
+
+def finished(arrays: Arrays, base: Arrays, triangles: NDArray[np.uint32], notes: Notes) -> Vertices:
+    """Normals and tangents made units; what is still in ``base`` is copied before."""
+
+    def own(name: str) -> FloatArray | None:
+        array = arrays.get(name)
+        return array.copy() if array is not None and array is base.get(name) else array
+
+    normals = own("NORMAL")
+    if normals is not None:
+        normals = unit_normals(normals, arrays["POSITION"], triangles, notes)
+    colors = arrays.get("COLOR_0")
+    if colors is not None and colors.shape[1] == 3:
+        colors = np.concatenate([colors, np.ones((len(colors), 1), np.float32)], axis=1)
+    return Vertices(
+        arrays["POSITION"],
+        normals,
+        unit_tangents(own("TANGENT"), notes),
+        arrays.get("TEXCOORD_0"),
+        arrays.get("TEXCOORD_1"),
+        colors,
+    )

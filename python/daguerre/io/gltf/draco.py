@@ -1,0 +1,90 @@
+"""KHR_draco_mesh_compression: triangles and attributes of a primitive out of one packed stream.
+
+The accessors of such a primitive say what comes out of it; they are given the arrays. DracoPy (the
+extra ``compression``) unpacks; it holds counts against the bytes behind them itself.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+from daguerre.files import extras
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+
+from .accessors import Accessors
+
+NAME = "KHR_draco_mesh_compression"
+_MAX_BYTES = 8 << 30
+
+
+def supply(
+    primitive: Item, mode: int, attributes: dict[str, Item], accessors: Accessors, notes: Notes
+) -> bool:
+    """Gives the accessors of a compressed primitive their arrays.
+
+    Args:
+        primitive: The primitive.
+        mode: Its mode.
+        attributes: Its attributes by name.
+        accessors: Get the arrays.
+        notes: Told if the file's uncompressed data stand in.
+
+    Returns:
+        Whether the triangles are now a list, whatever the mode says.
+
+    Raises:
+        InputError: The stream is broken, does not fit the accessors, or cannot be unpacked here.
+    """
+    extension = primitive.extension(NAME)
+    if extension is None:
+        return False
+    package = extras.missing(NAME)
+    if package:
+        if not accessors.has_bytes(attributes["POSITION"]):
+            extension.fail(f"wanted the package {package}, got none; install it: {extras.HINT}")
+        notes.add(f"{NAME} needs {package} ({extras.HINT}): uncompressed data stand in")
+        return False
+    if mode < 4 or mode > 5:
+        primitive.need("mode").fail(f"wanted 4 or 5 with {NAME}, got {mode}")
+    view = extension.need("bufferView")
+    source = NAME, view.integer()
+    uses = [*extension.need("attributes").members()]
+    indices = primitive.get("indices")
+    wanted = [attributes[str(use.key)] for use in uses if str(use.key) in attributes]
+    if all(accessors.supplied(use, source) for use in wanted) and (
+        indices is None or accessors.supplied(indices, source)
+    ):
+        return True
+    accessors.check_size([*wanted, *([indices] if indices else [])], _MAX_BYTES)
+    mesh = _decode(bytes(accessors.view_bytes(view)), extension)
+    arrays = {a["unique_id"]: np.asarray(a["data"]) for a in mesh.attributes}
+    for use in uses:
+        name, identity = str(use.key), use.integer(0)
+        if identity not in arrays:
+            known = ", ".join(map(str, sorted(arrays)))
+            use.fail(f"no such attribute in the stream: wanted one of {known}, got {identity}")
+        if name in attributes:
+            data = arrays[identity]
+            accessors.supply(attributes[name], data.reshape(len(data), -1), source)
+    if indices is not None:
+        corners: NDArray[Any] = np.asarray(mesh.faces, np.uint32).reshape(-1, 1)
+        accessors.supply(indices, corners, source, any_count=mode == 5)
+    return True
+
+
+def _decode(data: bytes, extension: Item) -> Any:
+    try:
+        mesh = import_module("DracoPy").decode(data)
+    except Exception as error:  # several types of its own
+        raise InputError(
+            f"{extension.file}: {extension.path}: cannot be decoded: {error}"
+        ) from None
+    if not hasattr(mesh, "faces"):
+        extension.fail("wanted triangles in the stream, got a point cloud")
+    return mesh

@@ -1,0 +1,169 @@
+"""The container of a glTF scene: .glb chunks or .gltf text, and the bytes of buffers.
+
+Plain ``json`` and not pygltflib: its dataclasses take a string for a number without a word,
+forget where a value stood and drop members that they do not know, so no complaint could name the
+JSON path.
+Source: glTF 2.0 specification, chapters 3.6 (buffers) and 4 (GLB).
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+from daguerre.errors import InputError
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, short
+from daguerre.files.json_text import parse
+from daguerre.files.uris import Folder, data_bytes, is_data
+
+from .meshopt import placeholders
+
+_JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
+#: Of a .gltf, and of all buffers of a file together.
+MAX_TEXT_BYTES = 1 << 30
+MAX_BUFFER_BYTES = 1 << 34
+
+
+@dataclass(frozen=True)
+class Document:
+    """A parsed file.
+
+    Attributes:
+        root: The JSON object.
+        binary: The BIN chunk of a .glb, else None.
+        folder: Where its URIs may point.
+        trailing: Bytes behind the stated end of a .glb.
+    """
+
+    root: Item
+    binary: memoryview | None
+    folder: Folder
+    trailing: int = 0
+
+
+def open_document(path: Path, folder: Folder) -> Document:
+    """Reads a .glb or .gltf file, told apart by its first bytes.
+
+    Raises:
+        InputError: It cannot be read, is truncated or is not glTF 2.0.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            raise InputError(f"{path}: wanted a glTF file, got something that is no ordinary file")
+        data, trailing = _read(path)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    if data[:4] == b"glTF":
+        text, binary = _split_chunks(path, data)
+    elif path.suffix.lower() == ".glb" or data.lstrip()[:1] not in (b"{", b"\xef"):
+        wanted = "b'glTF'" if path.suffix.lower() == ".glb" else "b'glTF' or a JSON object"
+        raise InputError(f"{path}: header.magic: wanted {wanted}, got {short(data[:4])}")
+    else:
+        text, binary = memoryview(data), None
+    root = parse(bytes(text), str(path))
+    root.members()
+    _check_asset(root)
+    return Document(root, binary, folder, trailing)
+
+
+def _read(path: Path) -> tuple[bytes, int]:
+    """The bytes of a file, of a .glb as many as its header says, and how many are left."""
+    with path.open("rb") as stream:
+        size = path.stat().st_size
+        start = stream.read(12)
+        wanted = size
+        if start[:4] == b"glTF" and len(start) == 12:
+            wanted = min(size, int.from_bytes(start[8:], "little"))
+        elif size > MAX_TEXT_BYTES:
+            raise InputError(f"{path}: wanted at most {MAX_TEXT_BYTES} bytes of JSON, got {size}")
+        return start + stream.read(max(wanted - 12, 0)), max(size - max(wanted, 12), 0)
+
+
+def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
+    def fail(where: str, message: str) -> NoReturn:
+        raise InputError(f"{path}: {where}: {message}")
+
+    view = memoryview(data)
+    if len(data) < 20:
+        fail("header", f"truncated: wanted at least 20 bytes, got {len(data)}")
+    version, length = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        fail("header.version", f"wanted 2, got {version}")
+    if length > len(data):
+        fail("header.length", f"truncated: wanted {short(length)} bytes, got {len(data)}")
+    if length < 20:
+        fail("header.length", f"wanted at least 20 bytes, got {length}")
+    chunks: list[tuple[int, memoryview]] = []
+    offset = 12
+    while offset < length:
+        where = f"chunk {len(chunks)}"
+        if length - offset < 8:
+            fail(where, f"truncated: wanted 8 bytes of header, got {length - offset}")
+        size, kind = struct.unpack_from("<II", data, offset)
+        if size > length - offset - 8:
+            fail(f"{where}.length", f"wanted at most {length - offset - 8} bytes left, got {size}")
+        chunks.append((kind, view[offset + 8 : offset + 8 + size]))
+        offset += 8 + size
+    if chunks[0][0] != _JSON_CHUNK:
+        fail("chunk 0.type", f"wanted 0x{_JSON_CHUNK:08x} (JSON), got 0x{chunks[0][0]:08x}")
+    binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == _BIN_CHUNK else None
+    return chunks[0][1], binary
+
+
+def _check_asset(root: Item) -> None:
+    asset = root.need("asset")
+    for key in ("version", "minVersion"):
+        version = asset.need(key) if key == "version" else asset.get(key)
+        if version is None:
+            continue
+        match = re.fullmatch(r"([0-9]{1,4})\.([0-9]{1,4})", version.text())
+        if not match:
+            version.fail(f"wanted a version such as '2.0', got {short(version.text())}")
+        if int(match[1]) != 2 or (key == "minVersion" and int(match[2]) > 0):
+            version.fail(f"unsupported: wanted glTF 2.0, got {short(version.text())}")
+
+
+def load_buffers(document: Document) -> list[memoryview]:
+    """The bytes of every buffer, exactly ``byteLength`` of them; none of those that nobody reads.
+
+    Raises:
+        InputError: A file is missing, outside of the folder, or shorter than ``byteLength``.
+    """
+    unread = placeholders(document.root)
+    budget = Budget(MAX_BUFFER_BYTES, "bytes of buffers")
+    return [
+        memoryview(b"") if index in unread else _load_buffer(document, item, budget)
+        for index, item in enumerate(document.root.list_of("buffers"))
+    ]
+
+
+def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
+    length_item = item.need("byteLength")
+    length = length_item.integer(1)
+    budget.spend(length, length_item)
+    uri = item.get("uri")
+    if uri is None:
+        if item.key != 0 or document.binary is None:
+            Item(None, "uri", item).fail("missing: wanted a URI, as there is no binary chunk")
+        data, source = document.binary, "the binary chunk"
+    elif is_data(uri):
+        data, source = memoryview(data_bytes(uri)), "the data URI"
+    else:
+        file = document.folder.resolve(uri)
+        source = repr(file.name)
+        try:
+            with file.open("rb") as stream:  # the size is asked first: byteLength may be a lie
+                size = file.stat().st_size
+                data = memoryview(stream.read(min(length, size)))
+        except OSError as error:
+            uri.fail(f"cannot be read: {error.strerror}")
+    if len(data) < length:
+        length_item.fail(f"{source} is too short: wanted {short(length)} bytes, got {len(data)}")
+    return data[:length]

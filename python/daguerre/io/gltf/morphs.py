@@ -1,0 +1,96 @@
+"""Morph targets: vertices that are shifted by weighted sums of displacements.
+
+Source: glTF 2.0 specification, chapters 3.7.2.2 and 3.7.4; KHR_mesh_quantization.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.json_item import Item, clean
+from daguerre.files.notes import Notes
+
+from .accessors import Accessors
+
+FloatArray = NDArray[np.float32]
+_TYPES = {
+    "POSITION": ("VEC3",),
+    "NORMAL": ("VEC3",),
+    "TANGENT": ("VEC3",),  # the sign of a tangent stays
+    "TEXCOORD_0": ("VEC2",),
+    "TEXCOORD_1": ("VEC2",),
+    "COLOR_0": ("VEC3", "VEC4"),
+}
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """An accessor of displacements and how much of it there is; equal ones change a mesh alike."""
+
+    attribute: str
+    accessor: int
+    weight: float
+    use: Item = field(compare=False)
+
+
+def weights_of(node: Item, mesh: Item) -> Item | None:
+    """The list of weights of a mesh at a node, or None if it has its own shape there."""
+    weights = node.get("weights")
+    return mesh.get("weights") if weights is None else weights
+
+
+def displacements(
+    primitive: Item, weights: Item | None, accessors: Accessors, notes: Notes
+) -> tuple[Displacement, ...]:
+    """What changes a primitive; targets without weight are not looked at.
+
+    Raises:
+        InputError: There are not as many weights as targets.
+    """
+    targets = primitive.list_of("targets")
+    if weights is None or not targets:
+        return ()
+    attributes = primitive.need("attributes")
+    parts: dict[tuple[str, int], tuple[float, Item]] = {}
+    for weight, target in zip(weights.numbers(len(targets)), targets, strict=True):
+        for use in target.members() if weight else ():
+            name = str(use.key)
+            if name in _TYPES and attributes.get(name) is not None:
+                # Files may name one accessor a thousand times: it is read once.
+                key = name, accessors.index(use)
+                parts[key] = parts.get(key, (0.0, use))[0] + weight, use
+            elif not name.startswith("_"):
+                notes.add(f"morph target attribute {clean(name)[:40]!r} is not used")
+    return tuple(
+        Displacement(name, accessor, weight, use)
+        for (name, accessor), (weight, use) in parts.items()
+    )
+
+
+def morph(
+    arrays: dict[str, FloatArray], parts: tuple[Displacement, ...], accessors: Accessors
+) -> None:
+    """Replaces arrays of vertices by displaced ones; normals and tangents are no units then.
+
+    Args:
+        arrays: Attributes of the mesh, by their names in glTF, shape (N, components).
+        parts: The displacements.
+        accessors: Those of the file.
+    """
+    for name in dict.fromkeys(part.attribute for part in parts):
+        arrays[name] = arrays[name].copy()
+    for part in parts:
+        array = arrays[part.attribute]
+        if accessors.count(part.use) != len(array):
+            part.use.fail(
+                f"wrong count: wanted {len(array)} like {part.attribute} of the mesh, "
+                f"got {accessors.count(part.use)}"
+            )
+        places, values = accessors.changes(part.use, _TYPES[part.attribute], "displacement")
+        width = min(values.shape[1], array.shape[1])
+        array[places, :width] += np.float32(part.weight) * values[:, :width]
+    if any(part.attribute == "COLOR_0" for part in parts):
+        np.clip(arrays["COLOR_0"], 0, 1, out=arrays["COLOR_0"])

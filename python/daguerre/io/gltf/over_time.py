@@ -1,0 +1,205 @@
+"""What a glTF file animates, as values over time of the scene.
+
+Each asks the file anew for its part at a time: whatever a reader understands can move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.json_item import Item
+from daguerre.scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from daguerre.scene.motion import Vertices
+from daguerre.scene.transforms import Matrix, ranks, without_scale
+
+from .animation import Channel, breaks_of, play
+from .poses import Poses
+
+FloatArray = NDArray[np.float64]
+_BLACK = (0.0, 0.0, 0.0)
+_NONE = np.zeros(0)
+
+
+@dataclass(frozen=True, eq=False)
+class PartOverTime:
+    """What a reader makes of a part of the file: a material, the parameter of a camera.
+
+    Attributes:
+        channels: What changes there.
+        read: Reads it, as it is in the JSON now.
+    """
+
+    channels: Sequence[Channel]
+    read: Callable[[], Any]
+
+    def at(self, time_s: float) -> Any:
+        """What is read at a time, s."""
+        play(self.channels, time_s)
+        with np.errstate(all="ignore"):
+            return self.read()
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys."""
+        return breaks_of(self.channels, begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class NodeOverTime:
+    """World from node, or world from something that stands in the node.
+
+    Attributes:
+        poses: The nodes of the file.
+        node: Index of the node.
+        local: Node from what stands in it, (4, 4); None: the identity.
+    """
+
+    poses: Poses
+    node: int
+    local: Matrix | None = None
+
+    def at(self, time_s: float) -> Matrix:
+        """The transform at a time, s, (4, 4)."""
+        return np.asarray(self.many(np.array([time_s]))[0])
+
+    @property
+    def weight(self) -> int:
+        """How many nodes have to be looked at for it."""
+        return self.poses.depth(self.node)
+
+    def many(self, times: FloatArray) -> Matrix:
+        """Transforms at many times, (T, 4, 4)."""
+        worlds = self.poses.worlds(self.node, times)
+        return worlds if self.local is None else worlds @ self.local
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys."""
+        return self.poses.breaks(self.node, begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class RigidOverTime:
+    """The place and directions of a camera, which ignores the scale of its node.
+
+    Attributes:
+        node: Where it stands.
+        item: The node, for complaints.
+    """
+
+    node: NodeOverTime
+    item: Item
+
+    def at(self, time_s: float) -> Matrix:
+        """The transform at a time, s, (4, 4)."""
+        rigid = without_scale(self.node.at(time_s))
+        if rigid is None:
+            self.item.fail(
+                "wanted a transform that leaves its camera a direction, "
+                f"got a scale of 0 at {time_s:g} s"
+            )
+        return rigid
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys."""
+        return self.node.breaks(begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class PositionOverTime:
+    """Where a node is."""
+
+    node: NodeOverTime
+
+    def at(self, time_s: float) -> Matrix:
+        """The position at a time, s, (3,), m."""
+        return self.node.at(time_s)[:3, 3].copy()
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys."""
+        return self.node.breaks(begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class ShownOverTime:
+    """Whether a mesh is there: its node is shown (KHR_node_visibility), and not scaled to nothing.
+
+    Attributes:
+        node: Where it stands.
+        blinks: Whether the node is shown at some times only.
+        vanishes: Whether its scale may be 0.
+    """
+
+    node: NodeOverTime
+    blinks: bool
+    vanishes: bool
+
+    def at(self, time_s: float) -> bool:
+        """Whether it is there at a time, s."""
+        if self.blinks and not self.node.poses.shown(self.node.node, time_s):
+            return False
+        return not self.vanishes or bool(ranks(self.node.at(time_s)[None, :3, :3])[0] >= 2)
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys of both."""
+        poses, node = self.node.poses, self.node.node
+        shown = poses.shown_breaks(node, begin, end) if self.blinks else _NONE
+        moved = self.node.breaks(begin, end) if self.vanishes else _NONE
+        return np.union1d(shown, moved)
+
+
+@dataclass(frozen=True, eq=False)
+class FlatOverTime:
+    """A mesh that its node presses flat: there is no inverse, so its vertices are in the world."""
+
+    node: NodeOverTime
+    mesh: Vertices
+
+    def at(self, time_s: float) -> Vertices:
+        """Vertices in the world at a time, s."""
+        world = self.node.at(time_s)
+        points = self.mesh.positions @ world[:3, :3].T + world[:3, 3]
+        return replace(self.mesh, positions=points.astype(np.float32))
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of the keys."""
+        return self.node.breaks(begin, end)
+
+
+@dataclass(frozen=True, eq=False)
+class LightOverTime:
+    """A light and its transform; it is dark where its node is hidden or scaled to nothing.
+
+    Attributes:
+        node: Where it stands.
+        part: What it is.
+    """
+
+    node: NodeOverTime
+    part: PartOverTime
+
+    def at(self, time_s: float) -> tuple[Light, Matrix]:
+        """The light and its transform (4, 4) at a time, s."""
+        light, poses = self.part.at(time_s), self.node.poses
+        rigid = without_scale(self.node.at(time_s))
+        if rigid is None or (
+            poses.blinks(self.node.node) and not poses.shown(self.node.node, time_s)
+        ):
+            light = dark(light)
+        return light, np.eye(4) if rigid is None else rigid
+
+    def breaks(self, begin: float, end: float) -> FloatArray:
+        """Times of all keys."""
+        poses, node = self.node.poses, self.node.node
+        nodes = np.union1d(poses.breaks(node, begin, end), poses.shown_breaks(node, begin, end))
+        return np.union1d(self.part.breaks(begin, end), nodes)
+
+
+def dark(light: PointLight | SpotLight | DirectionalLight) -> Light:
+    """The same light, switched off."""
+    if isinstance(light, DirectionalLight):
+        return replace(light, illuminance=_BLACK)
+    return replace(light, intensity=_BLACK)

@@ -1,0 +1,136 @@
+"""Meshes into the world: one instance of the scene for each part of a mesh and each transform.
+
+Source: glTF 2.0 specification, chapters 3.5.3 (scale 0) and 3.7.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+from daguerre.scene.materials import Gltf, Material
+from daguerre.scene.parts import Instance, vertices_of
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import ranks
+
+from .instancing import MAX_INSTANCES
+from .nodes import MAX_SIZE
+from .over_time import FlatOverTime, NodeOverTime, ShownOverTime
+
+Matrices = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What an instance does over time; None: nothing.
+
+    Attributes:
+        transform: World from mesh.
+        shown: Whether it is there.
+        flat: Instead of ``transform``, where this may have no inverse.
+    """
+
+    transform: NodeOverTime | None = None
+    shown: ShownOverTime | None = None
+    flat: NodeOverTime | None = None
+
+
+class Placing:
+    """Adds instances to a scene.
+
+    Args:
+        scene: Has the meshes and the materials.
+        copies: For vertices that cannot be shared.
+        notes: What was not understood.
+    """
+
+    def __init__(self, scene: Scene, copies: Budget, notes: Notes) -> None:
+        self._scene = scene
+        self._copies = copies
+        self._instances = Budget(MAX_INSTANCES, "instances in a scene")
+        self._notes = notes
+        self._default_material: int | None = None
+
+    def add(
+        self,
+        node: Item,
+        mesh: int,
+        material: int | None,
+        worlds: Matrices,
+        name: str,
+        moves: Sequence[Motion] | None = None,
+    ) -> None:
+        """Places a mesh.
+
+        Args:
+            node: For complaints.
+            mesh: Index of the scene's mesh.
+            material: Index of its material; None: glTF's default.
+            worlds: World from mesh, shape (instances, 4, 4).
+            name: Of the instances.
+            moves: What each of them does over time; None: nothing.
+        """
+        scene = self._scene
+        self._instances.spend(len(worlds), node)
+        if not np.abs(worlds).max() < MAX_SIZE:  # NaN is not smaller than anything
+            node.fail(f"world transform: wanted numbers below {MAX_SIZE:g}, got larger ones")
+        if material is None:
+            material = self._default()
+        self._note_missing_uv(mesh, material)
+        dimensions = ranks(worlds[:, :3, :3])
+        hidden = int((dimensions < 2).sum()) if moves is None else 0
+        if hidden:  # scale 0 is how files hide things
+            self._notes.add("a mesh that its node scales to nothing is left out", hidden)
+        if moves is not None:
+            for world, motion in zip(worlds, moves, strict=True):
+                self._add_moving(node, Instance(mesh, material, world, name), motion)
+            return
+        for world, rank in zip(worlds, dimensions.tolist(), strict=True):
+            if rank == 3:  # checked above, all at once: there may be a million
+                scene.instances.append(Instance(mesh, material, world, name))
+            elif rank == 2:
+                self._copies.spend(len(scene.meshes[mesh].positions), node)
+                scene.add_instance(self._flattened(mesh, world, name), material, name=name)
+
+    def _add_moving(self, node: Item, instance: Instance, motion: Motion) -> None:
+        scene, index = self._scene, len(self._scene.instances)
+        if motion.flat is not None:
+            mesh = scene.meshes[instance.mesh]
+            self._copies.spend(len(mesh.positions), node)
+            flat = self._flattened(instance.mesh, instance.transform, instance.name)
+            rest = replace(vertices_of(mesh), normals=None, tangents=None)
+            scene.motion.meshes[flat] = FlatOverTime(motion.flat, rest)
+            instance = replace(instance, mesh=flat, transform=np.eye(4))
+        if motion.transform is not None:
+            scene.motion.instances[index] = motion.transform
+        if motion.shown is not None:
+            scene.motion.shown[index] = motion.shown
+            instance = replace(instance, shown=bool(motion.shown.at(scene.time)))
+        scene.instances.append(instance)
+
+    def _default(self) -> int:
+        if self._default_material is None:
+            self._default_material = self._scene.add_material(Material(Gltf(), name="default"))
+        return self._default_material
+
+    def _flattened(self, mesh: int, world: Matrices, name: str) -> int:
+        """Squashed flat, there is no inverse: the world's vertices are written down."""
+        flat = self._scene.meshes[mesh]
+        points = flat.positions @ world[:3, :3].T + world[:3, 3]
+        return self._scene.add_mesh(
+            points, flat.indices, None, flat.uv, uv1=flat.uv1, colors=flat.colors, name=name
+        )
+
+    def _note_missing_uv(self, mesh: int, material: int) -> None:
+        kind = self._scene.materials[material].kind
+        arrays = (self._scene.meshes[mesh].uv, self._scene.meshes[mesh].uv1)
+        for key, slot in vars(kind).items():
+            if key.endswith("_texture") and slot is not None and arrays[slot.uv_set] is None:
+                self._notes.add("a textured mesh lacks the texture coordinates that it needs")
+                return

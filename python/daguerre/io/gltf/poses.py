@@ -1,0 +1,157 @@
+"""Where the nodes of a file stand at any time, and whether they are shown.
+
+Only nodes that move are worked out, for many times at once.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from daguerre.scene.transforms import Matrix, compose
+
+from .animation import Animations, Channel, breaks_of
+from .nodes import Tree, is_visible
+from .samplers import FloatArray
+
+#: Poses of nodes, at one or many times, that are kept: parents are asked for by all their children.
+_MAX_KNOWN = 4096
+#: Scales below this leave no volume, or may mirror on their way.
+_THIN = 1e-6
+_PLACE = ("translation", "rotation", "scale")
+
+
+class Poses:
+    """The nodes of a file over time.
+
+    Args:
+        tree: The nodes, as they are at the time of reading.
+        animations: What changes them.
+    """
+
+    def __init__(self, tree: Tree, animations: Animations) -> None:
+        self._tree = tree
+        self._own: dict[int, list[Channel]] = {}
+        self._shown: dict[int, list[Channel]] = {}
+        for node in animations.parts("nodes"):
+            channels = animations.of("nodes", str(node))
+            own = [c for c in channels if c.target.key in _PLACE and len(c.tokens) == 3]
+            shown = [c for c in channels if c.target.is_flag]
+            self._own |= {node: own} if own else {}
+            self._shown |= {node: shown} if shown else {}
+        self._known: OrderedDict[tuple[int, bytes], Matrix] = OrderedDict()
+
+    @cached_property
+    def _moving(self) -> set[int]:
+        return self._below(self._own)
+
+    @cached_property
+    def _blinking(self) -> set[int]:
+        return self._below(self._shown)
+
+    @cached_property
+    def _thin(self) -> set[int]:
+        """Nodes that a scale may press flat on the way."""
+        return self._below(
+            {
+                node
+                for node, channels in self._own.items()
+                if any(c.target.key == "scale" and c.track.lowest < _THIN for c in channels)
+            }
+        )
+
+    def _below(self, nodes: dict[int, list[Channel]] | set[int]) -> set[int]:
+        """The nodes and all their descendants."""
+        found, stack = set(), list(nodes)
+        while stack:
+            node = stack.pop()
+            if node not in found:
+                found.add(node)
+                stack.extend(self._tree.children[node])
+        return found
+
+    def moves(self, node: int) -> bool:
+        """Whether the node's place changes."""
+        return node in self._moving
+
+    def may_be_flat(self, node: int) -> bool:
+        """Whether a scale may press the node flat at some time."""
+        return node in self._thin
+
+    def blinks(self, node: int) -> bool:
+        """Whether the node is shown at some times only; what hides it always wins."""
+        if node not in self._blinking:
+            return False
+        return all(n in self._shown or is_visible(self._tree.items[n]) for n in self._chain(node))
+
+    def world(self, node: int, time: float) -> Matrix:
+        """World from node at a time, s, shape (4, 4)."""
+        return np.asarray(self.worlds(node, np.array([time]))[0])
+
+    def worlds(self, node: int, times: FloatArray) -> Matrix:
+        """World from node at many times, shape (T, 4, 4)."""
+        if node not in self._moving:
+            return np.asarray(np.broadcast_to(self._tree.world(node), (len(times), 4, 4)))
+        moment = times.tobytes()
+        chain = []
+        while node in self._moving and (node, moment) not in self._known:
+            chain.append(node)
+            node = self._tree.parents[node]
+        world: Matrix | None = self._known.get((node, moment))
+        if world is None and node >= 0:
+            world = self._tree.world(node)
+        for below in reversed(chain):
+            local = self._locals(below, times)
+            world = local if world is None else world @ local
+            self._tree.check_size(below, world)
+            self._keep((below, moment), world)
+        assert world is not None
+        return world
+
+    def _locals(self, node: int, times: FloatArray) -> Matrix:
+        """Parent from node, (T, 4, 4), or (4, 4) where the node itself stays."""
+        if node not in self._own:
+            return self._tree.local(node)
+        moved = {str(c.target.key): c.track for c in self._own[node]}
+        parts = (
+            moved[path].many(times) if path in moved else np.broadcast_to(p, (len(times), len(p)))
+            for path, p in zip(_PLACE, self._tree.parts(node), strict=True)
+        )
+        return compose(*parts)
+
+    def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
+        while len(self._known) >= _MAX_KNOWN:
+            self._known.popitem(last=False)
+        self._known[key] = world
+
+    def shown(self, node: int, time: float) -> bool:
+        """Whether a node that blinks is shown at a time, s."""
+        return all(c.track.at(time) for n in self._chain(node) for c in self._shown.get(n, ()))
+
+    def breaks(self, node: int, begin: float, end: float) -> FloatArray:
+        """Times of all keys that move the node, inside of (begin, end), s."""
+        return self.breaks_of_all([node], begin, end)
+
+    def breaks_of_all(self, nodes: Sequence[int], begin: float, end: float) -> FloatArray:
+        """Likewise of several nodes."""
+        chains = dict.fromkeys(n for node in nodes for n in self._chain(node))
+        return breaks_of([c for n in chains for c in self._own.get(n, ())], begin, end)
+
+    def shown_breaks(self, node: int, begin: float, end: float) -> FloatArray:
+        """Likewise of keys that show or hide it."""
+        return breaks_of([c for n in self._chain(node) for c in self._shown.get(n, ())], begin, end)
+
+    def depth(self, node: int) -> int:
+        """The node and its ancestors, counted."""
+        return len(self._chain(node))
+
+    def _chain(self, node: int) -> list[int]:
+        """The node and its ancestors."""
+        chain = []
+        while node >= 0:
+            chain.append(node)
+            node = self._tree.parents[node]
+        return chain

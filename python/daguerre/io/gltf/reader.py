@@ -1,0 +1,204 @@
+"""glTF 2.0 into a scene: the page where container, nodes, meshes, materials and cameras meet.
+
+Start here; each step has a file of its own beside this one (``gltf_*.py``). Whatever is wrong in
+a file ends as one ``InputError`` that names file, JSON path, what was wanted and what was got.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from daguerre.errors import InputError, UsageError
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+from daguerre.files.uris import Folder
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import without_scale
+
+from .accessors import Accessors
+from .animation import Animations
+from .cameras import read_camera
+from .extensions import check_extensions
+from .file import load_buffers, open_document
+from .instancing import instance_transforms
+from .lights import light_items, read_light
+from .materials import read_material, read_materials
+from .meshes import Meshes
+from .moving import Moving
+from .nodes import Placed, Tree, unique_names
+from .placing import Placing
+from .poses import Poses
+from .skins import Skins
+from .textures import Textures
+from .variants import Variants
+
+# Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.
+_MAX_NODE_ENTRIES = 4_000_000
+# Vertices that morphs, skins and flat nodes have for themselves; large files may have more.
+_MAX_COPIES = 1 << 24
+_BYTES_PER_COPY = 4
+
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    time: float = 0.0,
+    scene_index: int | None = None,
+    variant: str | None = None,
+    allow_dirs: Iterable[str | os.PathLike[str]] = (),
+) -> Scene:
+    """Reads a .glb or .gltf file.
+
+    Args:
+        path: The file.
+        time: Moment at which animations are evaluated, s.
+        scene_index: Which scene of the file; absent: its default.
+        variant: Name of a variant of the materials (KHR_materials_variants); absent: none.
+        allow_dirs: Folders besides the file's own from which buffers and images may come.
+
+    Returns:
+        The scene; ``warnings`` says what was not understood.
+
+    Raises:
+        InputError: The file is unreadable or invalid.
+    """
+    if not math.isfinite(time):
+        raise UsageError(f"time: wanted a finite number of seconds, got {time}")
+    file = Path(path)
+    # Absurd but finite numbers may overflow on the way; results are checked where they matter.
+    with np.errstate(all="ignore"):
+        folder = Folder(file, allow_dirs)
+        return _Reader(file, float(time), variant, folder).read(scene_index)
+
+
+class _Reader:
+    def __init__(self, path: Path, time: float, variant: str | None, folder: Folder) -> None:
+        self.notes = Notes()
+        self.scene = Scene(path=path, time=time)
+        self.document = open_document(path, folder)
+        self.root = self.document.root
+        check_extensions(self.root, self.notes)
+        if self.document.trailing:
+            self.notes.add("a byte behind the stated end of the file", self.document.trailing)
+        buffers = load_buffers(self.document)
+        self.accessors = Accessors(self.root, buffers)
+        # Before anything else is read:
+        self.animations = Animations(self.root, self.accessors, time, self.notes)
+        self.scene.duration = self.animations.duration
+        self.tree = Tree(self.root)
+        self.poses = Poses(self.tree, self.animations)
+        skins = Skins(self.root, self.accessors, self.tree, self.poses, self.notes)
+        limit = max(_MAX_COPIES, sum(map(len, buffers)) // _BYTES_PER_COPY)
+        copies = Budget(limit, "vertices that are not shared")
+        variants = Variants(self.root, variant)
+        self.scene.variants = variants.names
+        self.meshes = Meshes(
+            *(self.root, self.accessors, self.animations, skins, variants),
+            *(self.scene, copies, self.notes),
+        )
+        self.placing = Placing(self.scene, copies, self.notes)
+        self.moving = Moving(self.scene, self.animations, self.poses)
+        self.cameras = self.root.list_of("cameras")
+        self.lights = light_items(self.root)
+        self.names = unique_names(self.tree, self.meshes.items, self.cameras)
+
+    def read(self, scene_index: int | None) -> Scene:
+        scene = self.scene
+        textures = Textures(self.document, self.accessors, self.notes)
+        scene.materials = read_materials(self.root, textures, self.notes)
+        textures.decode(scene)
+        self.moving.materials(partial(read_material, textures=textures, notes=Notes()), self.root)
+        placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
+        firsts = []
+        for position in placed:
+            firsts.append(len(scene.instances))
+            self._node(position)
+        self._collect(placed, [*firsts, len(scene.instances)])
+        scene.warnings = self.notes.sentences()
+        return scene
+
+    def _scene_item(self, index: int | None) -> Item | None:
+        scenes = self.root.list_of("scenes")
+        chosen = self.root.get("scene")
+        if index is not None:
+            if not 0 <= index < len(scenes):
+                raise InputError(
+                    f"{self.root.file}: scenes: wanted an index in 0 .. {len(scenes) - 1}, "
+                    f"got {index}"
+                )
+            return scenes[index]
+        if chosen is not None:
+            return scenes[chosen.index(len(scenes), "scenes")]
+        if not scenes:
+            self.notes.add("the file names no scene: all its nodes are shown")
+            return None
+        return scenes[0]
+
+    def _node(self, placed: Placed) -> None:
+        item, name = self.tree.items[placed.index], self.names[placed.index]
+        self.scene.node_positions[name] = placed.world[:3, 3].copy()
+        self.moving.position(placed.index, name)
+        mesh, camera = item.get("mesh"), item.get("camera")
+        light = item.extension("KHR_lights_punctual")
+        seen = placed.visible or self.poses.blinks(placed.index)
+        if mesh is not None and seen:
+            self._mesh(item, placed, name)
+        if camera is not None:
+            self._camera(self.cameras[camera.index(len(self.cameras), "cameras")], placed, name)
+        if light is not None and seen:
+            chosen = self.lights[light.need("light").index(len(self.lights), "lights")]
+            self._light(chosen, placed, name)
+
+    def _mesh(self, node: Item, placed: Placed, name: str) -> None:
+        copies = instance_transforms(node, self.accessors, self.notes)
+        world = placed.world
+        for part in self.meshes.parts(node):
+            worlds = world[None] if copies is None else world @ copies
+            if part.in_world:
+                worlds = np.eye(4)[None]
+                if copies is not None:
+                    self.notes.add("a mesh that a skin moves is shown once, not at its instances")
+            moves = self.moving.instances(
+                placed.index, None if part.in_world else copies, worlds, rigid=part.in_world
+            )
+            self.placing.add(node, part.mesh, part.material, worlds, name, moves)
+
+    def _camera(self, item: Item, placed: Placed, name: str) -> None:
+        node, rigid = self.tree.items[placed.index], without_scale(placed.world)
+        if rigid is None:
+            node.fail("wanted a transform that leaves its camera a direction, got a scale of 0")
+        camera = read_camera(item, rigid, self.notes)
+        if camera is not None:
+            self.scene.add_camera(name, self.moving.camera(camera, item, node))
+            if item.name():
+                self.scene.camera_aliases.setdefault(item.name(), name)
+
+    def _light(self, item: Item, placed: Placed, name: str) -> None:
+        light = read_light(item, name)
+        motion = self.moving.light(partial(read_light, item, name), item, placed.index)
+        rigid = without_scale(placed.world)
+        if motion is not None:
+            self.scene.motion.lights[len(self.scene.lights)] = motion
+            self.scene.lights.append(motion.at(self.scene.time))
+        elif rigid is None:
+            self.notes.add("a light whose node is scaled to nothing is left out")
+        else:
+            self.scene.add_light(light, rigid)
+
+    def _collect(self, placed: list[Placed], firsts: list[int]) -> None:
+        """Instances of each node and its descendants: one run of numbers, as parents come first."""
+        left = _MAX_NODE_ENTRIES
+        for position, node in enumerate(placed):
+            first, last = firsts[position], firsts[node.end]
+            left -= last - first
+            if left < 0:
+                self.notes.add("a node too deep in the tree stands for its own meshes only")
+                last = firsts[position + 1]
+            self.scene.nodes[self.names[node.index]] = list(range(first, last))

@@ -1,0 +1,230 @@
+"""Skins: vertices that follow joints, by linear blending of the joints' transforms.
+
+A skinned mesh comes out in world space: the transform of its own node does not count.
+Source: glTF 2.0 specification, chapter 3.7.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.json_item import Item
+from daguerre.files.notes import Notes
+from daguerre.scene.transforms import affine
+
+from .accessors import Accessors
+from .nodes import Tree
+from .poses import Poses
+
+FloatArray = NDArray[np.float32]
+# Vertices at a time: each needs a matrix of its own, 100 times the size of its position.
+_CHUNK = 1 << 15
+# Sums of weights of four or eight bytes are off by this much when each was rounded by itself.
+_SLACK = 0.01
+
+
+@dataclass(frozen=True)
+class Influences:
+    """Who moves the vertices of a mesh, and how much.
+
+    Attributes:
+        joints: Indices into the joints of the skin, one array (N, 4) for each set.
+        weights: Their shares, likewise; what a vertex has in all sets adds to 1.
+    """
+
+    joints: list[NDArray[Any]]
+    weights: list[FloatArray]
+
+
+class Skins:
+    """The skins of a file in the pose of its nodes.
+
+    Args:
+        root: The JSON object of the file.
+        accessors: Its accessors.
+        tree: Its nodes.
+        poses: Its nodes over time.
+        notes: What was not understood.
+    """
+
+    def __init__(
+        self, root: Item, accessors: Accessors, tree: Tree, poses: Poses, notes: Notes
+    ) -> None:
+        self._items = root.list_of("skins")
+        self._accessors = accessors
+        self._tree = tree
+        self._poses = poses
+        self._notes = notes
+        self._matrices: dict[int, NDArray[np.float64]] = {}
+        self._joint_nodes: dict[int, list[int]] = {}
+        self._bind: dict[int, NDArray[np.float64]] = {}
+
+    def index(self, use: Item) -> int:
+        """The skin that ``use`` names; checked."""
+        return use.index(len(self._items), "skins")
+
+    def matrices(self, index: int) -> NDArray[np.float64]:
+        """World from mesh for each joint, shape (joints, 4, 4)."""
+        if index not in self._matrices:
+            self._read(index)
+            world = np.stack([self._tree.world(joint) for joint in self._joint_nodes[index]])
+            self._matrices[index] = world @ self._bind[index]
+        return self._matrices[index]
+
+    def matrices_at(self, index: int, time: float) -> NDArray[np.float64]:
+        """The same at a time, s."""
+        if not self.moves(index):
+            return self.matrices(index)
+        joints = self._joint_nodes[index]
+        worlds = {joint: self._poses.world(joint, time) for joint in set(joints)}
+        return np.stack([worlds[joint] for joint in joints]) @ self._bind[index]
+
+    def moves(self, index: int) -> bool:
+        """Whether a joint moves."""
+        self.matrices(index)
+        return any(map(self._poses.moves, self._joint_nodes[index]))
+
+    def breaks(self, index: int, begin: float, end: float) -> NDArray[np.float64]:
+        """Times of all keys that move the joints, inside of (begin, end), s."""
+        return self._poses.breaks_of_all(self._joint_nodes[index], begin, end)
+
+    def _read(self, index: int) -> None:
+        item = self._items[index]
+        tree, skeleton = self._tree, item.get("skeleton")
+        if skeleton is not None:  # a pivot for editors
+            skeleton.index(len(tree.items), "nodes")
+        joints = [use.index(len(tree.items), "nodes") for use in item.need("joints")]
+        if not joints:
+            item.need("joints").fail("wanted at least one joint, got none")
+        outside = sum(not tree.is_placed(joint) for joint in joints)
+        if outside:
+            self._notes.add("a joint of a skin stands outside of the scene", outside)
+        bind = item.get("inverseBindMatrices")
+        self._joint_nodes[index] = joints
+        still = np.eye(4)[None]
+        self._bind[index] = still if bind is None else self._inverse_bind(bind, len(joints))
+
+    def _inverse_bind(self, use: Item, count: int) -> NDArray[np.float64]:
+        if self._accessors.kind(use)[1] != 5126:
+            use.fail("wrong accessor type: wanted matrices of component type 5126 (float)")
+        values = self._accessors.floats(use, ("MAT4",), "matrix")
+        if len(values) < count:
+            use.fail(f"wrong count: wanted at least {count} like the joints, got {len(values)}")
+        # Stored by columns.
+        matrices = values[:count].astype(np.float64).reshape(-1, 4, 4).swapaxes(1, 2)
+        return affine(matrices, use)
+
+    def influences(self, attributes: dict[str, Item], skin: int, count: int) -> Influences:
+        """Reads JOINTS_n and WEIGHTS_n of a mesh with ``count`` vertices; there is JOINTS_0."""
+        found = Influences([], [])
+        while (joints := attributes.get(f"JOINTS_{len(found.joints)}")) is not None:
+            weights = attributes.get(f"WEIGHTS_{len(found.joints)}")
+            if weights is None:
+                joints.fail(f"wanted WEIGHTS_{len(found.joints)} beside it, got none")
+            assert weights is not None
+            for use in (joints, weights):
+                if self._accessors.count(use) != count:
+                    use.fail(
+                        f"wrong count: wanted {count} like POSITION, "
+                        f"got {self._accessors.count(use)}"
+                    )
+            found.weights.append(self._weights(weights))
+            found.joints.append(self._joints(joints, found.weights[-1], skin))
+        _share(found, self._notes)
+        return found
+
+    def _weights(self, use: Item) -> FloatArray:
+        _, component, normalized = self._accessors.kind(use)
+        if component != 5126 and not (component in (5121, 5123) and normalized):
+            use.fail(
+                "wrong accessor type: wanted float or normalized unsigned byte or short, "
+                f"got component type {component}{'' if normalized else ', not normalized'}"
+            )
+        weights = self._accessors.floats(use, ("VEC4",), "vertex")
+        return np.asarray(np.maximum(weights, 0))
+
+    def _joints(self, use: Item, weights: FloatArray, skin: int) -> NDArray[Any]:
+        joints, count = self._accessors.joints(use), len(self.matrices(skin))
+        beyond = joints >= count
+        if not beyond.any():
+            return joints
+        bad = np.argwhere(beyond & (weights > 0))
+        if bad.size:
+            vertex, k = bad[0]
+            use.fail(
+                f"vertex {vertex}: index out of range: wanted 0 .. {count - 1} (joints), "
+                f"got {joints[vertex, k]} ({len(bad)} such)"
+            )
+        return np.where(beyond, 0, joints)  # without weight, any joint will do
+
+
+def _share(found: Influences, notes: Notes) -> None:
+    """Makes the weights of each vertex add to 1; a vertex without any follows its first joint."""
+    total = np.sum([w.sum(axis=1, dtype=np.float64) for w in found.weights], axis=0)
+    odd = int((np.abs(total - 1) > _SLACK).sum())
+    if odd:
+        notes.add("a vertex whose joint weights do not add to 1 has them scaled", odd)
+    lost = total == 0
+    found.weights[0][lost, 0] = total[lost] = 1
+    for weights in found.weights:
+        weights /= total[:, None]
+
+
+def skin(
+    arrays: dict[str, FloatArray], found: Influences, matrices: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Moves positions, normals and tangents into the world; what is moved is no unit then.
+
+    Args:
+        arrays: Attributes of the mesh, by their names in glTF; replaced.
+        found: Joints and weights of its vertices.
+        matrices: World from mesh for each joint, shape (joints, 4, 4).
+
+    Returns:
+        Which vertices are mirrored, shape (N,).
+    """
+    for name in {"POSITION", "NORMAL", "TANGENT"} & arrays.keys():
+        arrays[name] = arrays[name].copy()
+    rows = matrices[:, :3].reshape(-1, 12)
+    mirrored = np.zeros(len(arrays["POSITION"]), bool)
+    for start in range(0, len(mirrored), _CHUNK):
+        piece = slice(start, start + _CHUNK)
+        blend = sum(
+            np.einsum("nk,nkm->nm", weights[piece].astype(np.float64), rows[joints[piece]])
+            for joints, weights in zip(found.joints, found.weights, strict=True)
+        ).reshape(-1, 3, 4)
+        linear = blend[:, :, :3]
+        cofactors = _cofactors(linear)
+        mirrored[piece] = np.einsum("ni,ni->n", linear[:, 0], cofactors[:, 0]) < 0
+        side = np.where(mirrored[piece], -1, 1)
+        points = arrays["POSITION"][piece]
+        points[:] = _times(linear, points) + blend[:, :, 3]
+        if "NORMAL" in arrays:
+            # Cofactors are the inverse transpose times the determinant, and exist without inverse.
+            normals = _times(cofactors, arrays["NORMAL"][piece]) * side[:, None]
+            arrays["NORMAL"][piece] = _scaled(normals)
+        if "TANGENT" in arrays:
+            tangents = arrays["TANGENT"][piece]
+            tangents[:, :3] = _scaled(_times(linear, tangents[:, :3]))
+            tangents[:, 3] *= side
+    return mirrored
+
+
+def _cofactors(m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of matrices (N, 3, 3): each row is the cross product of the two others."""
+    a, b, c = m[:, 0], m[:, 1], m[:, 2]
+    return np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
+
+
+def _times(m: NDArray[np.float64], v: FloatArray) -> NDArray[np.float64]:
+    return np.asarray(np.einsum("nij,nj->ni", m, v))
+
+
+def _scaled(v: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit vectors; 0 stays 0."""
+    lengths = np.linalg.norm(v, axis=1, keepdims=True)
+    return np.asarray(v / np.where(lengths > 0, lengths, 1))

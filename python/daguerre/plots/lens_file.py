@@ -1,0 +1,85 @@
+"""The drawing of a lens as a file: SVG by itself, PNG and PDF by matplotlib (extra ``plot``)."""
+
+from __future__ import annotations
+
+import io
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from daguerre.errors import UsageError
+
+from .lens_section import Drawing, Line, Polygon, section, to_svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from daguerre.analysis.bench import Bench
+
+WIDTH_INCHES = 8.0
+
+
+def check_available(suffix: str, *, needed: bool) -> None:
+    """Refuses a format whose package is missing, before anything is computed.
+
+    Args:
+        suffix: Of the file.
+        needed: Whether an SVG needs the package, too, as that of a data sheet does.
+    """
+    if (needed or suffix != ".svg") and find_spec("matplotlib") is None:
+        other = "--drawing FILE.svg" if needed else ".svg"
+        raise UsageError(
+            f'a plot as {suffix} needs matplotlib: pip install "daguerre[plot]"; '
+            f"{other} needs nothing"
+        )
+
+
+def picture(bench: Bench, suffix: str) -> bytes:
+    """The meridional section of a lens with rays, as the bytes of a file."""
+    from daguerre.analysis.illumination import within_light
+
+    return drawn(section(bench.lens, bench.film_z, within_light(bench).field_mm), suffix)
+
+
+def drawn(drawing: Drawing, suffix: str) -> bytes:
+    """A drawing as the bytes of a file of that ending."""
+    if suffix == ".svg":
+        return to_svg(drawing).encode()
+    return _by_matplotlib(drawing, suffix[1:])
+
+
+def _by_matplotlib(drawing: Drawing, kind: str) -> bytes:
+    # The object-oriented face: no window system, and no state shared with the user's own plots.
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    x0, x1, half = drawing.left, drawing.right, drawing.top
+    figure = Figure(figsize=(WIDTH_INCHES, WIDTH_INCHES * 2 * half / (x1 - x0)))
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set_xlim(x0, x1)
+    axes.set_ylim(-half, half)
+    axes.set_aspect("equal")
+    for shape in drawing.shapes:
+        add_shape(axes, shape)
+    out = io.BytesIO()
+    facts = {"Title": drawing.title}
+    if kind == "pdf":
+        facts |= {"Creator": "daguerre"}
+    figure.savefig(out, format=kind, dpi=150, metadata=facts)
+    return out.getvalue()
+
+
+def add_shape(axes: Axes, shape: Line | Polygon, scale: float = 0.8) -> None:
+    """One shape of a drawing on a matplotlib plot; scale: points per px of its lines."""
+    z, y = zip(*shape.points, strict=True)
+    if isinstance(shape, Polygon):
+        axes.fill(z, y, facecolor=(*_rgb(shape.fill), 0.45), edgecolor=shape.stroke, lw=scale)
+        return
+    style = (0, tuple(float(v) for v in shape.dash.split())) if shape.dash else "-"
+    axes.plot(z, y, color=shape.stroke, lw=scale * shape.width, ls=style)
+
+
+def _rgb(colour: str) -> tuple[float, float, float]:
+    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return r, g, b

@@ -1,0 +1,152 @@
+"""The lower half of the data sheet: aberrations over the field, light, colour, Seidel sums."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from daguerre.analysis.figures import COLOURS_NM, CURVE, PUPIL_SHARES, Figures
+from daguerre.analysis.seidel import NAMES
+
+from .panels import LINE_COLOURS, LINE_NAMES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SURFACE_COLOURS = "tab20"
+
+
+def spherical(axes: Axes, made: Figures) -> None:
+    """Longitudinal spherical aberration of three colours."""
+    for values, colour, name in zip(made.spherical, LINE_COLOURS, LINE_NAMES, strict=True):
+        axes.plot(values, PUPIL_SHARES, color=colour, label=name)
+    axes.set_title("Spherical aberration")
+    axes.set_xlabel("focus against the film, mm")
+    axes.set_ylabel("height in the pupil")
+    axes.set_ylim(0, 1)
+    around_zero(axes, made.spherical)
+    axes.legend(loc="upper left")
+
+
+def curvature(axes: Axes, made: Figures) -> None:
+    """Sagittal and tangential focus over the field."""
+    for curve, colour in zip(made.curves, LINE_COLOURS, strict=True):
+        axes.plot(curve.sagittal, curve.height_mm, color=colour)
+        axes.plot(curve.tangential, curve.height_mm, color=colour, ls="--")
+    axes.set_title("Field curvature (- S, -- T)")
+    axes.set_xlabel("focus against the film, mm")
+    axes.set_ylabel("image height, mm")
+    axes.set_ylim(0, made.bench.field_mm)
+    around_zero(axes, [v for c in made.curves for v in (c.sagittal, c.tangential)])
+
+
+def distorted(axes: Axes, made: Figures) -> None:
+    """Distortion in percent."""
+    axes.plot(made.distortion.percent, made.distortion.height_mm, color="#1a202c")
+    law = {"rectilinear": "f tan θ"}.get(
+        made.distortion.law, made.distortion.law.replace("fisheye-", "")
+    )
+    axes.set_title("Distortion")
+    axes.set_xlabel(f"% of the ideal height ({law})")
+    axes.set_ylim(0, made.bench.field_mm)
+    around_zero(axes, made.distortion.percent, least=0.5)
+
+
+def lateral(axes: Axes, made: Figures) -> None:
+    """Lateral colour against d."""
+    um = 1e3 * made.lateral
+    for k in (0, 2):
+        axes.plot(um[:, k], made.bench.field_mm * CURVE, color=LINE_COLOURS[k], label=LINE_NAMES[k])
+    axes.set_title("Lateral colour")
+    axes.set_xlabel("against d, µm")
+    axes.set_ylim(0, made.bench.field_mm)
+    around_zero(axes, um, least=1.0)
+    axes.legend(loc="upper left")
+
+
+def illumination(axes: Axes, made: Figures) -> None:
+    """Light over the field against cos^4 (Kolb, Mitchell and Hanrahan 1995)."""
+    light = made.illumination
+    axes.plot(light.height_mm, 100 * light.relative, color="#1a202c", label="exact")
+    axes.plot(
+        light.height_mm, 100 * light.cos4_object, color="#c53030", ls="--", label="cos⁴, object"
+    )
+    axes.plot(light.height_mm, 100 * light.cos4_film, color="#2b6cb0", ls=":", label="cos⁴, film")
+    axes.set_title("Relative illumination, %")
+    axes.set_xlabel("image height, mm")
+    axes.set_xlim(0, made.bench.field_mm)
+    axes.set_ylim(0, max(105, 100 * float(np.nanmax(light.relative)) + 5))
+    axes.legend(loc="lower left")
+
+
+def pupils(axes: Axes, made: Figures) -> None:
+    """The pupil as points of the film see it."""
+    axes.set_title("Pupil seen from the film")
+    axes.set_aspect("equal")
+    sizes = [np.ptp(p.outline, axis=0).max() for p in made.points if len(p.outline)]
+    size = max(sizes, default=1.0)
+    for k, point in enumerate(made.points):
+        x, y = 1.12 * size * (k % 3), -1.3 * size * (k // 3)
+        if len(point.outline):
+            middle = 0.5 * (point.outline.min(axis=0) + point.outline.max(axis=0))
+            axes.fill(
+                *(point.outline - middle + [x, y]).T,
+                facecolor="#f6e7b4",
+                edgecolor="#975a16",
+                lw=0.7,
+            )
+        axes.text(x, y - 0.56 * size, f"{point.height_mm:.1f} mm", size=5.2, ha="center", va="top")
+    axes.set_xlim(-0.6 * size, 2.84 * size)
+    axes.set_ylim(-2.2 * size, 0.75 * size)
+    axes.set_axis_off()
+
+
+def axial(axes: Axes, made: Figures) -> None:
+    """Paraxial focus over the wavelength."""
+    axes.plot(COLOURS_NM, made.axial, color="#1a202c")
+    axes.axhline(0, color="#999999", lw=0.5)
+    axes.set_title("Axial colour, mm")
+    axes.set_xlabel("wavelength, nm")
+    axes.set_xlim(COLOURS_NM[0], COLOURS_NM[-1])
+
+
+def seidel(axes: Axes, made: Figures) -> None:
+    """Seidel sums by surface, stacked away from zero, with their totals."""
+    axes.set_title("Seidel sums, mm")
+    if made.seidel is None:
+        axes.set_axis_off()
+        axes.text(
+            0.5, 0.5, "no axial symmetry", ha="center", transform=axes.transAxes, color="#888888"
+        )
+        return
+    rows = made.seidel.surfaces
+    at = np.arange(len(NAMES))
+    for sign in (1, -1):
+        base = np.zeros(len(NAMES))
+        for i, row in enumerate(rows):
+            part = np.where(sign * row > 0, row, 0)
+            axes.bar(at, part, 0.75, base, color=_colour(i), lw=0)
+            base = base + part
+    axes.plot(at, made.seidel.total, "k_", ms=9, mew=1.4)
+    axes.axhline(0, color="#444444", lw=0.5)
+    axes.set_xticks(at, NAMES)
+    axes.set_xlabel("by surface; bar: total", labelpad=1)
+    axes.grid(axis="x", visible=False)
+
+
+def _colour(i: int) -> tuple[float, float, float, float]:
+    from matplotlib import colormaps
+
+    r, g, b, a = colormaps[SURFACE_COLOURS](i % 20)
+    return float(r), float(g), float(b), float(a)
+
+
+def around_zero(axes: Axes, values: object, least: float = 0.02) -> None:
+    """A symmetric range that holds the values, and a line at zero."""
+    parts = [np.ravel(np.asarray(v, np.float64)) for v in values]  # type: ignore[attr-defined]
+    flat = np.concatenate(parts) if parts else np.zeros(1)
+    finite = np.abs(flat[np.isfinite(flat)])
+    reach = max(least, 1.08 * float(finite.max(initial=0)))
+    axes.set_xlim(-reach, reach)
+    axes.axvline(0, color="#444444", lw=0.5)

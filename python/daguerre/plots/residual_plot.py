@@ -1,0 +1,41 @@
+"""What a fitted projection leaves, over the picture (extra ``plot``)."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from daguerre.analysis.calibrate import ProjectionFit
+
+
+def plot_residuals(fit: ProjectionFit, kind: str) -> bytes:
+    """Arrows from where the lens puts things to where the model does; a file's bytes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    (x, y), (dx, dy) = fit.pixels.T, fit.residuals.T
+    width, height = fit.projection.size
+    sizes = np.hypot(dx, dy)
+    figure = Figure(figsize=(8.5, 7.5 * height / width + 1.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    longest = float(sizes.max()) or 1.0
+    apart = width / 40
+    drawn = axes.quiver(
+        x, y, dx, dy, sizes, angles="xy", scale_units="xy", scale=longest / (2 * apart),
+        cmap="viridis", width=0.002,
+    )  # fmt: skip
+    figure.colorbar(drawn, ax=axes, label="residual, px")
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xlabel="px", ylabel="px")
+    axes.set_aspect("equal")
+    axes.set_title(
+        f"{fit.bench.lens.name} by {fit.projection.model}: {fit.rms:.3g} px RMS, "
+        f"{fit.largest:.3g} px at most",
+        fontsize=10,
+    )
+    out = io.BytesIO()
+    figure.savefig(out, format=kind, dpi=110, metadata={"Title": "residuals"})
+    return out.getvalue()

@@ -1,0 +1,1 @@
+"""Effects of the darkroom, one file each."""

@@ -1,0 +1,218 @@
+"""Distortion and its removal: pictures bent as a lens bends them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from daguerre import distortion as models
+from daguerre.distortion import Distortion
+from daguerre.errors import UsageError
+from daguerre.post.array import step_on_array
+from daguerre.post.effect import Effect, Step, Values
+from daguerre.post.optics import (
+    FOCAL_LENGTH,
+    LENS,
+    SENSOR,
+    axis,
+    bench,
+    film_plane,
+    focal_length_mm,
+)
+from daguerre.post.parameter import Parameter
+from daguerre.post.picture import Canvas, Image
+from daguerre.post.warp import FloatArray, PointMap, Warp
+from daguerre.post.warp_step import FILTER, WarpStep, how
+
+#: Wavelengths that stand for the red, green and blue of linear Rec.709 under D65: their means of
+#: 1 / wavelength^2, which dispersion follows to first order (Cauchy). Colours that are as broad as
+#: these blur as well; a map moves them by their mean.
+CHANNEL_NM = (650.0, 545.0, 443.0)
+
+MODELS: dict[str, type[Distortion]] = {
+    "brown-conrady": models.BrownConrady,
+    "opencv": models.OpenCV,
+    "opencv-fisheye": models.OpenCVFisheye,
+    "division": models.Division,
+    "equidistant": models.Equidistant,
+    "equisolid": models.Equisolid,
+    "stereographic": models.Stereographic,
+    "orthographic": models.Orthographic,
+}
+COEFFICIENTS = tuple(f.name for f in dataclasses.fields(models.OpenCV))
+
+
+def distort(
+    image: Image,
+    model: Distortion | Sequence[Distortion],
+    *,
+    focal_px: float | tuple[float, float],
+    centre: tuple[float, float] | None = None,
+    scale: float = 1.0,
+    filter: str = "cubic",
+    antialias: bool = True,
+    inverse: bool = False,
+) -> Image:
+    """Bends an ideal picture as a lens does.
+
+    Args:
+        image: Scene-linear, shape (H, W, C).
+        model: One, or one each for red, green and blue.
+        focal_px: Focal length, px, or those across and down.
+        centre: Of the distortion, px from the top left corner of the picture; its middle if None.
+            OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
+        scale: Of the ideal picture: above 1 it shows less of the scene, larger.
+        filter: cubic or linear.
+        antialias: Whether to average where the map shrinks.
+        inverse: Straightens instead.
+
+    Returns:
+        The same shape; 0 where the source has nothing, or the model no answer.
+    """
+    given = [model] if isinstance(model, Distortion) else list(model)
+    focal = (focal_px, focal_px) if isinstance(focal_px, int | float) else focal_px
+
+    def make(canvas: Canvas) -> Step:
+        middle = canvas.centre if centre is None else centre
+        maps = [point_map(m, focal, middle, scale=scale, inverse=inverse) for m in given]
+        warps = Warp.of_each(canvas, maps)
+        return WarpStep(canvas, warps, filter=filter, antialias=antialias)
+
+    return step_on_array("distort", image, make)
+
+
+def undistort(image: Image, model: Distortion | Sequence[Distortion], **parameters: Any) -> Image:
+    """Straightens what a lens has bent; see :func:`distort`."""
+    return distort(image, model, **parameters, inverse=True)
+
+
+def point_map(
+    model: Distortion,
+    focal_px: tuple[float, float],
+    centre: tuple[float, float],
+    *,
+    scale: float = 1.0,
+    inverse: bool = False,
+) -> PointMap:
+    """Where the light of points of the result lies in the source, px.
+
+    To bend a picture is to ask at each of its points which ideal point it shows.
+    """
+    focal, middle = np.array(focal_px), np.array(centre)
+
+    def straight_from_bent(points: FloatArray) -> FloatArray:
+        ideal = model.undistort((points - middle) / focal)
+        return np.asarray(ideal * (focal * scale) + middle)
+
+    def bent_from_straight(points: FloatArray) -> FloatArray:
+        bent = model.distort((points - middle) / (focal * scale))
+        return np.asarray(bent * focal + middle)
+
+    return bent_from_straight if inverse else straight_from_bent
+
+
+def _make(canvas: Canvas, values: Values) -> Step:
+    given, focal, centre = camera(canvas, values)
+    maps = [
+        point_map(m, focal, centre, scale=values["scale"], inverse=values["inverse"]) for m in given
+    ]
+    warps = Warp.of_each(canvas, maps)
+    if values["stmap"] is not None:
+        from daguerre.post.stmap_rows import write_stmap
+
+        write_stmap(values["stmap"], warps[len(warps) // 2], canvas)
+    forward = point_map(
+        given[len(given) // 2], focal, centre, scale=values["scale"], inverse=not values["inverse"]
+    )
+    return WarpStep(canvas, warps, forward=forward, **how(values))
+
+
+def camera(
+    canvas: Canvas, values: Values
+) -> tuple[list[Distortion], tuple[float, float], tuple[float, float]]:
+    """The models (one, or one per colour), focal lengths and centre (px) of a set of values."""
+    middle = axis(canvas, values)
+    centre = tuple(
+        middle[k] if values[name] is None else values[name] + 0.5
+        for k, name in enumerate(("cx", "cy"))
+    )
+    if values["model"] == "lens":
+        colours = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
+        made, focal_px = lens_models(canvas, values, colours)
+        return made, focal_px, (centre[0], centre[1])
+    if values["fx"] is not None:
+        focal = (values["fx"], values["fy"] or values["fx"])
+    else:
+        pixels = focal_length_mm(canvas, values) / film_plane(canvas, values).pitch_mm
+        focal = (pixels, pixels)
+    return [_model(values)], focal, (centre[0], centre[1])
+
+
+def lens_models(
+    canvas: Canvas, values: Values, wavelengths_nm: Sequence[float]
+) -> tuple[list[Distortion], tuple[float, float]]:
+    """Models of a lens of the library, one per wavelength, and focal lengths of the picture, px.
+
+    Those are the lens's own, across and down: near the axis nothing moves.
+    """
+    from daguerre.distortion.lens import LensDistortion
+    from daguerre.distortion.lens_map import LensMap
+
+    if values["lens"] is None:
+        raise UsageError("lens: wanted a name or a file with model=lens, got nothing")
+    film = film_plane(canvas, values)
+    corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
+    reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.centre).max(axis=0)
+    item = bench(values)
+    if not item.lens.prescription.is_axially_symmetric:
+        maps = LensMap.of_colours(item, (float(reach[0]), float(reach[1])), wavelengths_nm)
+        across, down = maps[0].focal_mm
+        return list(maps), (across / film.pitch_mm, down / film.pitch_mm)
+    made = LensDistortion.of_colours(item, math.hypot(*reach), wavelengths_nm)
+    pixels = made[0].focal_length_mm / film.pitch_mm
+    return list(made), (pixels, pixels)
+
+
+def _model(values: Values) -> Distortion:
+    kind = MODELS[values["model"]]
+    given = {name: values[name] for name in COEFFICIENTS if values[name] is not None}
+    known = {f.name for f in dataclasses.fields(kind)}  # type: ignore[arg-type]
+    if kind is models.BrownConrady:
+        known = {"k1", "k2", "k3", "p1", "p2"}
+    for name in given:
+        if name not in known:
+            raise UsageError(
+                f"distortion: {name}: {values['model']} has "
+                f"{', '.join(sorted(known)) or 'no coefficients'}"
+            )
+    return kind(**given)
+
+
+DISTORTION = Effect(
+    "distortion",
+    "bends a picture as a lens does, or straightens it",
+    (
+        Parameter(
+            "model", "what bends", kind="choice", default="brown-conrady", choices=(*MODELS, "lens")
+        ),
+        *(Parameter(name, "as in OpenCV" if "tau" not in name else "tilt of the sensor",
+                    "rad" if "tau" in name else "") for name in COEFFICIENTS),
+        FOCAL_LENGTH,
+        SENSOR,
+        Parameter("fx", "focal length instead of mm", "px", low=1e-3),
+        Parameter("fy", "down, where pixels are not square", "px", low=1e-3),
+        Parameter("cx", "centre, as OpenCV counts: 0 is the middle of the first pixel", "px"),
+        Parameter("cy", "centre", "px"),
+        *LENS,
+        Parameter("lateral_colour", "of a lens: its own", kind="flag", default=True),
+        Parameter("scale", "of the ideal picture; below 1 shows more of it", default=1.0, low=1e-3),
+        *FILTER,
+        Parameter("stmap", "an .exr to write the map to as well (of green)", kind="text"),
+        Parameter("inverse", "straighten instead", kind="flag", default=False),
+    ),
+    _make,
+)  # fmt: skip

@@ -1,0 +1,177 @@
+"""Lens flare drawn from the highlights of a picture: a fake, for pictures without a scene.
+
+After King 2000 (2D lens flare) and Chapman 2013 (Pseudo lens flare): each highlight makes spots on
+the line through the middle of the picture, with the shape of the iris, and a ring around itself.
+Where the spots lie, how large and of which tint they are is made up; how bright is not: two
+reflections at surfaces of the given reflectance. Light from outside the frame makes none. Ghosts
+of a real lens, from all of the scene's light, are those of ``daguerre render --flare``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import IrisShape, defocus, rounded_blur
+from daguerre.convolution.rows import Rows
+from daguerre.post.array import on_array
+from daguerre.post.effect import Effect, Step, Values
+from daguerre.post.fours import in_fours
+from daguerre.post.iris import BLADES, iris_shape, outline
+from daguerre.post.parameter import Parameter
+from daguerre.post.picture import Band, Canvas, Image, Source, bands
+
+SCAN = 256  # rows
+LARGEST = 512  # px, of the small picture in which flare is drawn
+
+
+@dataclass(frozen=True)
+class Ghost:
+    """A spot that each highlight makes.
+
+    Attributes:
+        place: Of the spot, as a multiple of the highlight's own from the middle of the picture.
+        radius: In halves of the picture's diagonal.
+        tint: Of R, G, B; their mean is 1.
+    """
+
+    place: float
+    radius: float
+    tint: NDArray[np.float32]
+
+
+def ghosts(count: int, seed: int) -> list[Ghost]:
+    """Made up: mirrored ones and others, small and large, with the pale tints of coatings."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for k in range(count):
+        tint = rng.uniform(0.4, 1.0, 3)
+        side = -1 if k % 3 else 1
+        found.append(
+            Ghost(
+                side * rng.uniform(0.15, 1.4),
+                float(np.exp(rng.uniform(math.log(0.015), math.log(0.16)))),
+                np.asarray(tint / tint.mean(), np.float32),
+            )
+        )
+    return found
+
+
+class _FakeFlare(Step):
+    def __init__(self, canvas: Canvas, values: Values) -> None:
+        self._canvas = canvas
+        self._colours = len(canvas.colours) - canvas.alpha
+        self._values = values
+        self._iris = iris_shape(values)
+        self._block = math.ceil(max(canvas.width, canvas.height) / LARGEST)
+        self._flare: Image = np.zeros((1, 1, self._colours), np.float32)
+
+    def prepare(self, source: Source) -> None:
+        """Collects highlights in a small picture, and draws their flare there."""
+        canvas, block = self._canvas, self._block
+        height, width = (math.ceil(n / block) for n in (canvas.height, canvas.width))
+        small = np.zeros((height, width, self._colours), np.float32)
+        for band in bands(source, SCAN * block):
+            light = np.nan_to_num(band.image[:, :, : self._colours], posinf=0, neginf=0)
+            light = light * (light.max(axis=2, keepdims=True) > self._values["threshold"])
+            y = np.arange(band.rows.begin, band.rows.end) // block
+            columns = np.add.reduceat(light, np.arange(0, canvas.width, block), axis=1)
+            np.add.at(small, y, columns)
+        self._flare = self._drawn(small / np.float32(block**2))
+
+    def _drawn(self, light: Image) -> Image:
+        values = self._values
+        height, width, _ = light.shape
+        half = 0.5 * math.hypot(height, width)
+        out = np.zeros_like(light)
+        bounced = values["reflectance"] ** 2
+        for ghost in ghosts(values["ghosts"], values["seed"]):
+            spot = _spread(light, ghost.place, half * ghost.radius, self._iris)
+            tint = ghost.tint if self._colours == 3 else np.ones(1, np.float32)
+            out += bounced * tint * spot
+        if values["halo"] > 0:
+            ring = half * values["halo_radius"]
+            disc = IrisShape.outline(outline(0, 0, 0))  # dust and scratches scatter to all sides
+            outer, inner = (rounded_blur(scale * ring) for scale in (1.05, 0.95))
+            whole, hole = (r * r * _spread(light, 1, r, disc) for r in (outer, inner))
+            out += values["halo"] * (whole - hole) / (outer**2 - inner**2)
+        return np.maximum(out, 0)  # rounding where the discs of the ring cancel
+
+    def apply(self, band: Band, rows: Rows) -> Band:
+        image = band.image.copy()
+        y = (np.arange(rows.begin, rows.end) + 0.5) / self._block - 0.5
+        x = (np.arange(image.shape[1]) + 0.5) / self._block - 0.5
+        image[:, :, : self._colours] += _between(_between(self._flare, y, 0), x, 1)
+        return band.with_image(image)
+
+
+def _spread(light: Image, place: float, radius: float, iris: IrisShape) -> Image:
+    """Light at a multiple of its place, as spots of a radius in px; the sum stays, in the frame."""
+    height, width, count = light.shape
+    rim = math.ceil(radius * iris.outer_radius) + 2  # spots that lie outside reach in
+    y, x = np.nonzero(light.max(axis=2) > 0)
+    to_y = (y + 0.5 - 0.5 * height) * place + 0.5 * height - 0.5 + rim
+    to_x = (x + 0.5 - 0.5 * width) * place + 0.5 * width - 0.5 + rim
+    canvas = np.zeros((height + 2 * rim, width + 2 * rim, count), np.float32)
+    left, top = np.floor(to_x).astype(int), np.floor(to_y).astype(int)
+    for down in (0, 1):
+        for right in (0, 1):
+            share = np.abs(1 - down - (to_y - top)) * np.abs(1 - right - (to_x - left))
+            row, column = top + down, left + right
+            inside = (row >= 0) & (row < canvas.shape[0]) & (column >= 0)
+            inside &= column < canvas.shape[1]
+            amount = light[y[inside], x[inside]] * share[inside, None]
+            np.add.at(canvas, (row[inside], column[inside]), amount.astype(np.float32))
+    blur = np.full(canvas.shape[:2], -radius, np.float32)
+    spread = in_fours(
+        canvas, lambda four: np.asarray(defocus(four, blur, iris, (rim, rim + height)))
+    )
+    return spread[:, rim : rim + width]
+
+
+def _between(small: Image, at: NDArray[Any], axis: int) -> Image:
+    """Values between the pixels of a picture along one axis, linearly; its edge goes on."""
+    last = small.shape[axis] - 1
+    at = np.clip(at, 0, last)
+    low = np.minimum(np.floor(at).astype(int), max(last - 1, 0))
+    part = (at - low).astype(np.float32)
+    part = part[:, None, None] if axis == 0 else part[:, None]
+    before, after = (np.take(small, np.minimum(low + k, last), axis=axis) for k in (0, 1))
+    return np.asarray(before + part * (after - before), np.float32)
+
+
+FAKE_FLARE = Effect(
+    "fake-flare",
+    "made-up ghosts and a ring from the highlights of a picture",
+    (
+        Parameter("threshold", "light from which on a pixel is a highlight", "", 4.0, low=0),
+        Parameter("reflectance", "of a surface; a ghost has two", "", 0.01, low=0, high=1),
+        Parameter("ghosts", "how many", "", 8, "whole", low=0, high=200),
+        Parameter("halo", "share of the light in a ring around it", "", 0.0, low=0, high=1),
+        Parameter(
+            "halo_radius", "of the ring, in halves of the diagonal", "", 0.4, low=0.01, high=2
+        ),
+        *BLADES,
+        Parameter("seed", "another number, other ghosts", "", 0, "whole", low=0, high=2**53),
+    ),
+    _FakeFlare,
+)
+
+
+def fake_flare(image: Image, **parameters: Any) -> Image:
+    """Adds made-up lens flare to a scene-linear picture, from its own highlights.
+
+    Args:
+        image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
+        **parameters: Those of the effect ``fake-flare``: ``threshold``, ``reflectance``,
+            ``ghosts``, ``halo``, ``halo_radius``, ``blades``, ``blade_rotation`` (deg),
+            ``blade_curvature``, ``aperture_image``, ``seed``.
+
+    Raises:
+        UsageError: A parameter that is wrong.
+    """
+    return on_array(FAKE_FLARE, image, parameters)

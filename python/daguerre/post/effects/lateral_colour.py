@@ -1,0 +1,126 @@
+"""Lateral chromatic aberration: each colour has a size of its own, so that edges get fringes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from daguerre.distortion import Distortion, Radial
+from daguerre.distortion.model import FloatArray
+from daguerre.distortion.monotone import SAMPLES, Monotone
+from daguerre.errors import UsageError
+from daguerre.post.array import on_array
+from daguerre.post.effect import Effect, Step, Values
+from daguerre.post.optics import LENS, SENSOR, axis
+from daguerre.post.parameter import Parameter
+from daguerre.post.picture import Canvas, Image
+from daguerre.post.warp import Warp
+from daguerre.post.warp_step import FILTER, WarpStep, how
+
+from .distortion import CHANNEL_NM, lens_models, point_map
+
+MAX_RADIUS = 2.0  # half diagonals
+
+
+@dataclass(frozen=True)
+class Magnification(Radial):
+    """Radius times 1 + size + growth r^2; r is 1 in the corners."""
+
+    size: float
+    growth: float
+
+    @cached_property
+    def _rule(self) -> Monotone:
+        return Monotone(
+            lambda r: r * (1 + self.size + self.growth * r * r), np.linspace(0, MAX_RADIUS, SAMPLES)
+        )
+
+    def _bent(self, radius: FloatArray) -> FloatArray:
+        return self._rule(radius)
+
+    def _straight(self, radius: FloatArray) -> FloatArray:
+        return self._rule.inverse(radius)
+
+
+@dataclass(frozen=True)
+class Between(Distortion):
+    """From where a lens shows points in one colour to where it shows them in another."""
+
+    one: Distortion
+    other: Distortion
+
+    def _distorted(self, points: FloatArray) -> FloatArray:
+        return self.other.distort(self.one.undistort(points))
+
+    def _ideal(self, points: FloatArray) -> FloatArray:
+        return self.one.distort(self.other.undistort(points))
+
+
+def _make(canvas: Canvas, values: Values) -> Step:
+    if len(canvas.colours) < 3:
+        raise UsageError(f"{canvas.where}: lateral-colour: wanted R, G and B, got grey")
+    half = 0.5 * math.hypot(*canvas.full_size)
+    unit = half, half
+    if values["model"] == "lens":
+        models, unit = _of_lens(canvas, values)
+    else:
+        models = [
+            Magnification(values[f"{colour}"] / 100, values[f"{colour}_corner"] / 100)
+            for colour in ("red", "blue")
+        ]
+    red, blue = (
+        Warp.of(canvas, point_map(m, unit, axis(canvas, values), inverse=values["inverse"]))
+        for m in models
+    )
+    same = Warp.of(canvas, lambda points: points)
+    return WarpStep(canvas, [red, same, blue], forward=lambda points: points, **how(values))
+
+
+def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], tuple[float, float]]:
+    """Red and blue of a lens against its green, and the units of its models, px."""
+    (red, green, blue), focal_px = lens_models(canvas, values, CHANNEL_NM)
+    return [Between(green, red), Between(green, blue)], focal_px
+
+
+LATERAL_COLOUR = Effect(
+    "lateral-colour",
+    "red and blue in another size than green, or that taken away",
+    (
+        Parameter(
+            "model", "numbers, or a lens", kind="choice", default="numbers",
+            choices=("numbers", "lens"),
+        ),
+        Parameter("red", "how much larger red is than green", "%", 0.0, low=-50, high=50),
+        Parameter("red_corner", "what is added to that in the corners, as r^2", "%", 0.0,
+                  low=-30, high=30),
+        Parameter("blue", "how much larger blue is than green", "%", 0.0, low=-50, high=50),
+        Parameter("blue_corner", "what is added to that in the corners, as r^2", "%", 0.0,
+                  low=-30, high=30),
+        SENSOR,
+        *LENS,
+        *FILTER,
+        Parameter("inverse", "take it away", kind="flag", default=False),
+    ),
+    _make,
+)  # fmt: skip
+
+
+def lateral_colour(image: Image, **parameters: Any) -> Image:
+    """Gives red and blue another size than green.
+
+    Args:
+        image: Scene-linear, shape (H, W, 3), or 4 with alpha, which stays.
+        **parameters: Those of the effect ``lateral-colour``: ``red``, ``blue`` (percent larger
+            than green), ``red_corner``, ``blue_corner`` (percent more in the corners, growing as
+            r^2); or ``model="lens"`` with ``lens``, ``focus`` (m), ``zoom`` (mm), ``sensor`` (mm).
+    """
+    return on_array(LATERAL_COLOUR, image, parameters)
+
+
+def remove_lateral_colour(image: Image, **parameters: Any) -> Image:
+    """Takes away what :func:`lateral_colour` with the same parameters did."""
+    return on_array(LATERAL_COLOUR, image, {**parameters, "inverse": True})

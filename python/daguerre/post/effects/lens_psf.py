@@ -1,0 +1,161 @@
+"""A picture through a lens of the library: its spread of points, which changes over the frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from daguerre.convolution.convolve import Spreader
+from daguerre.errors import InputError, UsageError
+from daguerre.post.array import on_array
+from daguerre.post.effect import Effect, Step, Values
+from daguerre.post.kernels import Floats, delta
+from daguerre.post.optics import LENS, SENSOR, Plane, bench, film_plane
+from daguerre.post.parameter import REQUIRED, Parameter
+from daguerre.post.picture import Canvas, Image
+from daguerre.post.spreading import Spreading
+
+from .glow import IRIS, LARGEST, iris_of
+
+if TYPE_CHECKING:
+    from daguerre.analysis.bench import Bench
+    from daguerre.analysis.iris import Iris
+    from daguerre.analysis.pencils import Pencil
+
+WAVES = 257  # px across a kernel: what is wider is made of rays,
+FRINGES = 500.0  # and what is wider than so many wavelengths x f-number
+RAYS = 96  # across a pupil
+
+
+def _make(canvas: Canvas, values: Values) -> Step:
+    """Kernels of a grid of points from edge to edge of the picture, blended between them."""
+    if len(canvas.colours) - canvas.alpha != 3:
+        listed = ", ".join(canvas.colours)
+        raise InputError(f"{canvas.where}: lens-psf: wanted channels R, G and B, got {listed}")
+    film, lens, iris = film_plane(canvas, values), bench(values), iris_of(values)
+    lens = lens.moved(lens.film_z + values["defocus"])
+    points = _points(canvas, film, values["zones"])
+    lights = [[_light(lens, point) for point in row] for row in points]
+    found = [light for row in lights for light in row if light is not None]
+    if not found:
+        raise InputError(f"{canvas.where}: lens-psf: {lens.lens.name}: no light arrives")
+    size = _size(canvas, found, film.pitch_mm)
+    narrow = size <= WAVES and size * film.pitch_mm <= FRINGES * 0.55e-3 * lens.f_stop
+    waves, count = values["waves"] and narrow, values["wavelengths"]
+    kernels = [
+        [_kernel(lens, light, iris, film.pitch_mm, size, count, waves) for light in row]
+        for row in lights
+    ]
+    grid = np.asarray(kernels, np.float32)
+    return Spreading(canvas, Spreader(grid, (canvas.height, canvas.width)))
+
+
+def _points(canvas: Canvas, film: Plane, zones: int) -> list[list[tuple[float, float]]]:
+    """Film points (mm) of the grid; the picture stands upside down on the film."""
+    share = np.linspace(0, 1, zones) if zones > 1 else np.array([0.5])
+    x, y = (
+        (corner + share * extent - centre) * film.pitch_mm
+        for corner, extent, centre in zip(
+            canvas.corner, (canvas.width, canvas.height), film.centre, strict=True
+        )
+    )
+    return [[(-float(a), float(b)) for a in x] for b in y]
+
+
+def _light(lens: Bench, film_mm: tuple[float, float]) -> Pencil | None:
+    from daguerre.analysis.pencils import pencil
+
+    return pencil(lens, film_mm)
+
+
+def _size(canvas: Canvas, lights: list[Pencil], pitch: float) -> int:
+    """Pixels that hold all spreads, and some rings of diffraction, odd."""
+    from daguerre.analysis.spots import spot
+
+    reach = 0.0
+    for light in lights:
+        points = spot(light, grid=24).points
+        reach = max(reach, float(np.abs(points).max(initial=0)))
+    reach += 12 * 0.65e-3 * lights[0].bench.f_stop
+    most = min(LARGEST, 2 * max(canvas.width, canvas.height) - 1)
+    size = 2 * math.ceil(reach / pitch) + 3
+    if size > most:
+        raise UsageError(
+            f"{canvas.where}: lens-psf: wanted a point spread of at most {most} px, got {size} px: "
+            "the lens is that far out of focus"
+        )
+    return size
+
+
+def _kernel(
+    lens: Bench, light: Pencil | None, iris: Iris, pitch: float, size: int, count: int, waves: bool
+) -> Floats:
+    """From channel to channel, shape (size, size, 3, 3); where no light arrives it stays."""
+    from daguerre.analysis.lens_pupil import lens_pupil
+    from daguerre.color.spectra import rgb_mixes
+    from daguerre.post.starburst import starburst
+
+    nm, _ = rgb_mixes(count)
+    if light is None:
+        return delta(size)[:, :, None, None] * np.eye(3, dtype=np.float32)
+    if not waves:
+        return _of_rays(light, iris, pitch, size, count)
+    place = (float(light.film[0]), float(light.film[1]))
+    pupil = lens_pupil(lens, place, iris, nm.tolist())
+    if pupil is None:
+        return _kernel(lens, None, iris, pitch, size, count, waves)
+    return starburst(pupil, pitch, size, wavelengths=count)
+
+
+def _of_rays(light: Pencil, iris: Iris, pitch: float, size: int, count: int) -> Floats:
+    """The same by rays alone, where the blur is far wider than diffraction's."""
+    from daguerre.color.spectra import rgb_mixes
+
+    wide = replace(light.bench, iris_radius=light.bench.iris_radius * iris.outer_radius)
+    light = _light(wide, (float(light.film[0]), float(light.film[1]))) or light
+    edges = (np.arange(size + 1) - 0.5 * size) * pitch
+    at = light.grid(RAYS)
+    out = np.zeros((size, size, 3, 3), np.float32)
+    for nm, mix in zip(*rgb_mixes(count), strict=True):
+        rays = light.trace(at, float(nm))
+        unit = (rays.iris / (wide.iris_radius / iris.outer_radius)).astype(np.float32)
+        share = iris.amplitude(unit[:, 0], unit[:, 1], 2 / RAYS) ** 2
+        share = np.where(rays.passed, share * light.flux(at) * rays.transmittance, 0)
+        off = np.where(rays.passed[:, None], light.film - rays.at(wide.film_z), 0)
+        image, _, _ = np.histogram2d(-off[:, 1], off[:, 0], bins=(edges, edges), weights=share)
+        image /= max(float(image.sum()), 1e-30)
+        out += (image[:, :, None, None] * mix).astype(np.float32)
+    return out
+
+
+LENS_PSF = Effect(
+    "lens-psf",
+    "how sharp a lens of the library would have drawn it, from the middle to the corners",
+    (
+        replace(LENS[0], default=REQUIRED),
+        *LENS[1:],
+        Parameter("defocus", "of the film from the focus, away from the lens", "mm", 0.0),
+        Parameter("zones", "points along each side with a spread of their own", default=5,
+                  kind="whole", low=1, high=17),
+        Parameter("wavelengths", "from 400 to 700 nm", default=9, kind="whole", low=3, high=64),
+        Parameter("waves", "light as waves; 0: rays alone, far quicker where the blur is wide",
+                  kind="flag", default=True),
+        *IRIS[1:],
+        SENSOR,
+    ),
+    _make,
+)  # fmt: skip
+
+
+def through_lens(image: Image, **parameters: Any) -> Image:
+    """The picture as a lens would have drawn it: its spreads of points, without distortion.
+
+    Args:
+        image: Scene-linear RGB, shape (H, W, 3), or with alpha, which stays.
+        **parameters: Those of the effect ``lens-psf``: ``lens``, ``focus`` (m), ``zoom`` (mm),
+            ``f_stop``, ``defocus`` (mm), ``zones``, ``sensor`` (mm, mm).
+    """
+    return on_array(LENS_PSF, image, parameters)

@@ -1,0 +1,75 @@
+"""Vignetting of saturation: colours that grow paler toward the edge, and their return."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from daguerre.convolution.rows import Rows
+from daguerre.post.array import on_array
+from daguerre.post.effect import Effect, Step, Values
+from daguerre.post.lens_light import LUMINANCE, Falloff
+from daguerre.post.parameter import Parameter
+from daguerre.post.picture import Band, Canvas, Image
+
+from .vignetting import radial_polynomial, reciprocal
+
+
+class _Saturation(Step):
+    """Colours move along the line to the grey of their own luminance, which stays."""
+
+    def __init__(self, canvas: Canvas, falloff: Falloff, *, inverse: bool) -> None:
+        self._falloff, self._inverse = falloff, inverse
+        self._colours = len(canvas.colours) - canvas.alpha
+        self._pale = 0
+
+    def apply(self, band: Band, rows: Rows) -> Band:
+        if self._colours != 3:
+            return band
+        share = self._falloff(rows)
+        if self._inverse:
+            share, pale = reciprocal(share)
+            self._pale += pale
+        image = band.image.copy()
+        grey = (image[:, :, :3] @ LUMINANCE.astype(np.float32))[:, :, None]
+        image[:, :, :3] = grey + (image[:, :, :3] - grey) * share[:, :, None]
+        return band.with_image(image)
+
+    def remarks(self) -> list[str]:
+        found = [f"{self._pale} pixels had lost all their colour and stay grey"]
+        return found if self._pale else []
+
+
+def _make(canvas: Canvas, values: Values) -> Step:
+    falloff = radial_polynomial(canvas, values["k1"], values["k2"], values["k3"])
+    return _Saturation(canvas, falloff, inverse=values["inverse"])
+
+
+SATURATION = Effect(
+    "saturation-vignetting",
+    "colours paler toward the edge, or that taken away",
+    (
+        Parameter("k1", "saturation is 1 + k1 r^2 + ..., r = 1 in the corners", default=-0.5),
+        Parameter("k2", "of r^4", default=0.0),
+        Parameter("k3", "of r^6", default=0.0),
+        Parameter("inverse", "take it away", kind="flag", default=False),
+    ),
+    _make,
+)
+
+
+def vignette_saturation(image: Image, **parameters: Any) -> Image:
+    """Makes colours paler toward the edge; luminance stays.
+
+    Args:
+        image: Scene-linear Rec.709, shape (H, W, 3), or 4 with alpha, which stays.
+        **parameters: ``k1``, ``k2``, ``k3``: saturation is 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in
+            the corners.
+    """
+    return on_array(SATURATION, image, parameters)
+
+
+def unvignette_saturation(image: Image, **parameters: Any) -> Image:
+    """Takes away what :func:`vignette_saturation` with the same parameters did."""
+    return on_array(SATURATION, image, {**parameters, "inverse": True})
