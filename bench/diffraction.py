@@ -19,13 +19,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre import analysis, lenses, pupil_files, waves
+from daguerre import analysis, lenses
 from daguerre.analysis.diffraction import PlainPupil, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import zone_pupils
 from daguerre.color.spectra import band_colours
 from daguerre.convolution.convolve import convolve
 from daguerre.post.starburst import starburst
+from daguerre.rendering import diffraction as waves
+from daguerre.rendering import pupil_files
 
 PITCH_MM = 0.006
 

@@ -17,8 +17,8 @@ import numpy as np
 import scene as dof_field  # type: ignore[import-not-found]
 
 import daguerre as dg
-from daguerre.adaptive import rounds
-from daguerre.session import Session
+from daguerre.rendering.rounds import rounds
+from daguerre.rendering.session import Session
 
 MODES = ("pinhole", "thin", "mb", "pan")
 SHUTTER = 1 / 48  # s, from time 0

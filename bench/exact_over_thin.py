@@ -22,7 +22,7 @@ import numpy as np
 from peers import DEFAULT_SCENE, relative_mse
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 LENS = "double-gauss-50mm-f2"
 F_STOP = 2.0

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 SUN_DEG = 0.265  # half
 LUMINANCE = (0.2126, 0.7152, 0.0722)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 SUN_RADIUS = 0.00465  # over its distance
 KINDS = {"matte": (0.12, 0.2, -1.0), "chrome": (-0.5, 0.9, 0.7)}  # and the way to the sun

@@ -23,8 +23,8 @@ import numpy as np
 from peers import relative_mse
 
 import daguerre as dg
-import daguerre.session
-from daguerre.session import Session
+from daguerre.rendering.session import Session
+from daguerre.setup import built_scene
 from daguerre.setup.scene import _add_all
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
@@ -139,7 +139,7 @@ def render(scene: dg.Scene, camera: dg.Camera, spp: int, seed: int) -> tuple[np.
 
 def measure(name: str, lamps: int, choice: str, spp: int) -> dict[str, float]:
     """Cost, error and cost to a fixed error of one scene."""
-    daguerre.session.build = lambda scene: build(scene, choice)
+    built_scene.build = lambda scene, *_: build(scene, choice)
     scene, camera = SCENES[name](lamps)
     (a, seconds_a), (b, seconds_b) = (render(scene, camera, spp, seed) for seed in (1, 2))
     error, seconds = relative_mse(a, b), (seconds_a + seconds_b) / 2

@@ -114,7 +114,7 @@ def spins(options: argparse.Namespace) -> None:
 
 def report(dg: Any, scene: Any, camera: Any, options: argparse.Namespace, imported: float) -> None:
     """Draws and prints what it took."""
-    from daguerre.session import Session
+    from daguerre.rendering.session import Session
 
     def cpu_seconds() -> float:
         usage = resource.getrusage(resource.RUSAGE_SELF)

@@ -34,7 +34,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "examples")]

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 CHESS, SUNSET = DATA / "scenes/open_chess_set_512.glb", DATA / "hdri/pmndrs_sunset.hdr"

@@ -21,7 +21,7 @@ import numpy as np
 from projections import CHESS, SUNSET
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 from daguerre.setup.built_scene import BuiltScene
 
 SIZE = (480, 270)

@@ -22,7 +22,7 @@ import daguerre as dg
 from daguerre import lenses
 from daguerre.analysis import set_up
 from daguerre.analysis.glare import VeilingGlare
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 SUN_DEG = 0.265  # half
 

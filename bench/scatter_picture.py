@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 SIZE = (300, 200)
 #: of pillars: x, z and half of the width, m

@@ -24,8 +24,8 @@ import daguerre as dg
 from daguerre import sensors
 from daguerre.color import illuminants
 from daguerre.color.spectra import FIRST_NM, LAST_NM, unit_d65
+from daguerre.rendering.session import Session
 from daguerre.sensors.bands import weights_of_bands
-from daguerre.session import Session
 
 BANDS = (4, 8, 16, 32, 64)
 NM = illuminants.NM

@@ -18,7 +18,7 @@ from one_core import command, machine, report
 
 import daguerre as dg
 from daguerre.frame.aovs import COVERAGE
-from daguerre.truth import GroundTruth
+from daguerre.rendering.truth import GroundTruth
 
 SIZE = (120, 80)
 RAYS = (16, 64, 256, 1024)

@@ -18,7 +18,7 @@ import numpy as np
 import daguerre
 from daguerre.camera.camera import Camera
 from daguerre.frame.frame import Frame
-from daguerre.io.ranges import join_ranges
+from daguerre.rendering.ranges import join_ranges
 from daguerre.scene.scene import Scene
 
 
@@ -29,7 +29,7 @@ def sample_value(index: int, height: int, width: int) -> np.ndarray:
 
 
 class FakeSession:
-    """Keeps the contract of ``daguerre.session.Session``."""
+    """Keeps the contract of ``daguerre.rendering.session.Session``."""
 
     def __init__(
         self,
@@ -149,9 +149,9 @@ def load(
 
 def install(patch: Callable[[object, str, object], None] = setattr) -> None:
     """Puts the fakes where the command line looks for the real ones."""
-    module = types.ModuleType("daguerre.session")
+    module = types.ModuleType("daguerre.rendering.session")
     module.Session = FakeSession  # type: ignore[attr-defined]
-    sys.modules["daguerre.session"] = module
+    sys.modules["daguerre.rendering.session"] = module
     patch(daguerre, "load", load)
 
 

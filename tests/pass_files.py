@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from daguerre.io.passes import Pass, pass_of, read_pass, write_pass
-from daguerre.session import Session
+from daguerre.rendering.passes import Pass, pass_of, read_pass, write_pass
+from daguerre.rendering.session import Session
 
 
 def through_files(folder: Path, *drawn: Session) -> list[Pass]:

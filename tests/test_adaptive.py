@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import adaptive
 from daguerre.errors import MismatchError, UsageError
-from daguerre.io import merging, passes
-from daguerre.session import Session
+from daguerre.rendering import adaptive, merging, passes, rounds
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .statistical import differences
@@ -77,12 +76,12 @@ def test_what_is_drawn_already_counts() -> None:
     """Samples of another plan: too few to estimate from, or more than may be drawn now."""
     one = session()
     one.draw(0, 1)
-    assert next(adaptive.rounds(one, 0.5)).begin.max() == 1
+    assert next(rounds.rounds(one, 0.5)).begin.max() == 1
     assert one.sample_counts().min() == one.sample_counts().max() == adaptive.START
-    for _ in adaptive.rounds(one, 0.04, 200):
+    for _ in rounds.rounds(one, 0.04, 200):
         pass
     before = one.sample_counts()
-    for _ in adaptive.rounds(one, 0.01, 100):
+    for _ in rounds.rounds(one, 0.01, 100):
         pass
     after = one.sample_counts()
     assert before.max() > 100
@@ -111,12 +110,12 @@ def test_what_cannot_be_is_refused(options: dict[str, object]) -> None:
 @pytest.mark.parametrize("lens", ["thin", LENS])
 def test_neither_threads_nor_parts_change_a_bit(lens: str) -> None:
     whole = session(lens, threads=1)
-    for _ in adaptive.rounds(whole, 0.07):
+    for _ in rounds.rounds(whole, 0.07):
         pass
     assert whole.round is not None
     assert whole.sample_counts().max() > whole.sample_counts().min()
     parts = session(lens, threads=3)
-    while adaptive.plan_round(parts, 0.07, adaptive.MAX_SPP):
+    while rounds.plan_round(parts, 0.07, adaptive.MAX_SPP):
         for until in (7, 30000, adaptive.PARTS):
             parts.draw_round(until)
     assert same(whole, parts)
@@ -125,7 +124,7 @@ def test_neither_threads_nor_parts_change_a_bit(lens: str) -> None:
 def test_the_first_round_is_a_plain_render() -> None:
     plain, first = session(LENS), session(LENS)
     plain.draw(0, adaptive.START)
-    adaptive.plan_round(first, 0.1, 1000)
+    rounds.plan_round(first, 0.1, 1000)
     first.draw_round(adaptive.PARTS)
     assert same(plain, first)
 
@@ -133,12 +132,12 @@ def test_the_first_round_is_a_plain_render() -> None:
 def test_a_checkpoint_within_a_round_goes_on_to_the_same_bits(tmp_path: Path) -> None:
     noise = 0.12
     whole, begun = session(), session()
-    for _ in adaptive.rounds(whole, noise):
+    for _ in rounds.rounds(whole, noise):
         pass
     for _ in range(1):
-        adaptive.plan_round(begun, noise, adaptive.MAX_SPP)
+        rounds.plan_round(begun, noise, adaptive.MAX_SPP)
         begun.draw_round(adaptive.PARTS)
-    adaptive.plan_round(begun, noise, adaptive.MAX_SPP)
+    rounds.plan_round(begun, noise, adaptive.MAX_SPP)
     begun.draw_round(20000)
     path = tmp_path / "a.exr"
     passes.write_pass(path, begun.frame(), passes.pass_of(begun))
@@ -147,17 +146,17 @@ def test_a_checkpoint_within_a_round_goes_on_to_the_same_bits(tmp_path: Path) ->
     assert saved.round.drawn == 20000
     resumed = session()
     resumed.set_state(saved.state, saved.ranges, saved.round)
-    for _ in adaptive.rounds(resumed, noise):
+    for _ in rounds.rounds(resumed, noise):
         pass
     assert same(whole, resumed)
-    for _ in adaptive.rounds(resumed, noise / 2):  # and further
+    for _ in rounds.rounds(resumed, noise / 2):  # and further
         pass
     assert resumed.metadata["noise"] <= noise / 2
 
 
 def test_a_stopped_part_is_not_taken_for_drawn() -> None:
     one = session()
-    adaptive.plan_round(one, 0.1, 1000)
+    rounds.plan_round(one, 0.1, 1000)
     assert not one.draw_round(adaptive.PARTS, lambda _: False)
     assert one.round is not None
     assert one.round.drawn == 0
@@ -167,7 +166,7 @@ def test_a_stopped_part_is_not_taken_for_drawn() -> None:
 
 def test_rounds_are_no_passes() -> None:
     one = session()
-    next(adaptive.rounds(one, 0.2))
+    next(rounds.rounds(one, 0.2))
     with pytest.raises(MismatchError, match="drawn with --noise"):
         merging.merge([passes.pass_of(one)])
     with pytest.raises(MismatchError, match="another round"):
@@ -175,7 +174,7 @@ def test_rounds_are_no_passes() -> None:
     later = session()
     later.draw(8, 16)
     with pytest.raises(MismatchError, match="from 0 on"):
-        next(adaptive.rounds(later, 0.2))
+        next(rounds.rounds(later, 0.2))
 
 
 # The mean -------------------------------------------------------------------------------------
@@ -243,7 +242,7 @@ def test_rare_light_keeps_its_mean() -> None:
 
 def test_a_round_needs_its_facts(tmp_path: Path) -> None:
     one = session()
-    next(adaptive.rounds(one, 0.2))
+    next(rounds.rounds(one, 0.2))
     drawn = passes.pass_of(one)
     assert drawn.round is not None
     broken = replace(drawn, round=replace(drawn.round, drawn=None))  # type: ignore[arg-type]

@@ -18,7 +18,7 @@ import pytest
 
 import daguerre
 from daguerre.cli import console, main
-from daguerre.cli.work import pass_size
+from daguerre.rendering.schedule import pass_size
 
 from . import fake_session
 
@@ -27,7 +27,9 @@ SMALL = ["--res", "8x6"]
 
 @pytest.fixture(autouse=True)
 def _fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(sys.modules, "daguerre.session", sys.modules.get("daguerre.session"))
+    monkeypatch.setitem(
+        sys.modules, "daguerre.rendering.session", sys.modules.get("daguerre.rendering.session")
+    )
     fake_session.install(lambda where, name, value: monkeypatch.setattr(where, name, value))
     monkeypatch.chdir(tmp_path)
 
@@ -345,7 +347,7 @@ def test_killed_leaves_no_half_picture_and_the_checkpoint_goes_on(tmp_path: Path
 def interrupted_checkpoint() -> None:
     """A checkpoint of the first samples, made by the parts that the loop uses."""
     from daguerre.camera.camera import Camera
-    from daguerre.io.passes import pass_of, write_pass
+    from daguerre.rendering.passes import pass_of, write_pass
     from daguerre.scene.scene import Scene
 
     session = fake_session.FakeSession(Scene(), Camera(), resolution=(8, 6))
@@ -466,7 +468,7 @@ def test_stats_count_light_beside_the_frame(
             self.flare_spots, self.survey_rays = 3, 1000
             self.camera_rays, self.stopped_rays = 400, 100
 
-    monkeypatch.setattr(sys.modules["daguerre.session"], "Session", Lit)
+    monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0
     said = capsys.readouterr().err
     assert "light paths: 200 (50,0 per sample), 30 beside the frame" in said
@@ -515,7 +517,7 @@ def test_the_package_runs_as_the_command() -> None:
 def test_denoising_without_the_extra_says_how_to_get_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("daguerre.denoise.find_spec", lambda name: None)
+    monkeypatch.setattr("daguerre.rendering.denoise.find_spec", lambda name: None)
     assert main(["render", "s.glb", "-o", "a.exr", "--denoise", *SMALL]) == 2
     assert 'pip install "daguerre[denoise]"' in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
@@ -535,8 +537,8 @@ def test_denoising_needs_the_picture_only(tmp_path: Path, monkeypatch: pytest.Mo
         return color * 0 + 0.5
 
     monkeypatch.setitem(sys.modules, "pyoidn", types.SimpleNamespace(denoise=stand_in))  # type: ignore[arg-type]
-    monkeypatch.setattr("daguerre.denoise.find_spec", lambda name: True)
-    monkeypatch.setattr("daguerre.denoise.version", lambda name: "2.5.1")
+    monkeypatch.setattr("daguerre.rendering.denoise.find_spec", lambda name: True)
+    monkeypatch.setattr("daguerre.rendering.denoise.version", lambda name: "2.5.1")
     assert main(["render", "s.glb", "-o", "a.exr", "--denoise", "--spp", "2", *SMALL]) == 0
     planes = pixels(tmp_path / "a.exr")
     assert (planes["R"] == 0.5).all()
@@ -547,8 +549,8 @@ def test_denoising_needs_the_picture_only(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_real_denoiser_lowers_the_error() -> None:
     pytest.importorskip("pyoidn")
-    from daguerre.denoise import denoise
     from daguerre.frame.frame import Frame
+    from daguerre.rendering.denoise import denoise
 
     clean = np.full((64, 64, 3), (0.2, 0.5, 3.0), np.float32)
     noise = np.random.default_rng(1).exponential(1, (64, 64, 1)).astype(np.float32)

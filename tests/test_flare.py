@@ -14,8 +14,8 @@ from daguerre import analysis
 from daguerre.analysis.ghosts import Ghosts
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
-from daguerre.io.merging import merge
-from daguerre.session import Session
+from daguerre.rendering.merging import merge
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .pass_files import through_files

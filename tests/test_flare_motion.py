@@ -19,7 +19,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .blur import Case, case

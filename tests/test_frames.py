@@ -18,7 +18,9 @@ SMALL = ["--res", "8x6", "--spp", "1"]
 
 @pytest.fixture(autouse=True)
 def _fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(sys.modules, "daguerre.session", sys.modules.get("daguerre.session"))
+    monkeypatch.setitem(
+        sys.modules, "daguerre.rendering.session", sys.modules.get("daguerre.rendering.session")
+    )
     fake_session.install(lambda where, name, value: monkeypatch.setattr(where, name, value))
     monkeypatch.chdir(tmp_path)
 
@@ -27,13 +29,13 @@ def _fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def times(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Scene times of the sessions that are opened."""
     seen: list[float] = []
-    session = sys.modules["daguerre.session"].Session
+    session = sys.modules["daguerre.rendering.session"].Session
 
     def opened(scene: dg.Scene, camera: dg.Camera, **options: object) -> object:
         seen.append(scene.time)
         return session(scene, camera, **options)
 
-    monkeypatch.setattr(sys.modules["daguerre.session"], "Session", opened)
+    monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", opened)
     return seen
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import daguerre as dg
 from daguerre.checks import frozen, given_up
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 from daguerre.setup.scene import build
 
 from . import scenes

@@ -13,9 +13,9 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import MismatchError, UsageError
-from daguerre.io.merging import merge
-from daguerre.io.passes import pass_of, read_pass, write_pass
-from daguerre.session import Session
+from daguerre.rendering.merging import merge
+from daguerre.rendering.passes import pass_of, read_pass, write_pass
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .statistical import batch_means, differences

@@ -14,9 +14,9 @@ from daguerre.camera.overscan import NONE, Overscan, check_overscan
 from daguerre.cli import main
 from daguerre.errors import UsageError
 from daguerre.io.exr.rows import ExrReader
-from daguerre.io.merging import merge
-from daguerre.io.passes import pass_of
-from daguerre.session import Session
+from daguerre.rendering.merging import merge
+from daguerre.rendering.passes import pass_of
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .make_gltf import triangle

@@ -13,8 +13,8 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError
-from daguerre.io import merging, passes, ranges
-from daguerre.session import Session
+from daguerre.rendering import merging, passes, ranges
+from daguerre.rendering.session import Session
 
 from . import scenes
 

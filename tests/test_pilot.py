@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.light_paths import OFF
-from daguerre.session import Session
+from daguerre.rendering.light_paths import OFF
+from daguerre.rendering.session import Session
 
 from . import scenes
 

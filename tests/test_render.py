@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .statistical import batch_means, differences

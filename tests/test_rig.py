@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import charts, session
+from daguerre import charts
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
-from daguerre.rig import disparity
+from daguerre.rendering import session
+from daguerre.rendering.rig import disparity
 from daguerre.setup import built_scene
 
 MODEL = Projection("opencv", (96, 54), (90.0, 90.0), (46.0, 27.0), (-0.1, 0.02))

@@ -121,7 +121,7 @@ def test_samples_are_kept_when_a_channel_cannot_be_made(monkeypatch: pytest.Monk
     def fails(*given: object) -> None:
         raise InputError("disparity: no")
 
-    monkeypatch.setattr("daguerre.rig.disparity", fails)
+    monkeypatch.setattr("daguerre.rendering.rig.disparity", fails)
     flags = ["--res", "20x12", "--aov", "disparity", *QUICK]
     assert render("-o", "x.exr", "--stereo", "0.2", "-c", "A", *flags) == 3
     assert [str(path) for path in Path().glob("x.*")] == ["x.left.checkpoint.exr"]

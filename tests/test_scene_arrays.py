@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.plots import lens_file as plot
-from daguerre.session import Session
+from daguerre.rendering.session import Session
 
 from . import scenes
 from .make_gltf import Builder

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import _core, adaptive, sensors, waves
+from daguerre import _core, sensors
 from daguerre.errors import InputError, UsageError
-from daguerre.io.merging import merge
+from daguerre.rendering import diffraction as waves
+from daguerre.rendering import rounds
+from daguerre.rendering.diffraction import Diffraction
+from daguerre.rendering.merging import merge
+from daguerre.rendering.session import Session
 from daguerre.sensors import Sensor, bands
 from daguerre.sensors.bands import channels_from_bands
-from daguerre.session import Session
-from daguerre.waves import Diffraction
 
 from . import scenes, test_flare
 from .pass_files import through_files
@@ -184,7 +186,7 @@ def test_a_checkpoint_goes_on() -> None:
 def test_adaptive_rounds_bring_channels() -> None:
     eye = camera(OBSERVER)
     one = Session(scenes.lamp_room(), eye, resolution=SIZE, light_paths="off")
-    for _ in adaptive.rounds(one, 0.1, 64):
+    for _ in rounds.rounds(one, 0.1, 64):
         pass
     frame = one.frame()
     assert len(np.unique(frame.samples)) > 1

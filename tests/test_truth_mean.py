@@ -13,7 +13,7 @@ from daguerre.camera.projection import Projection
 from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.truth import GroundTruth
+from daguerre.rendering.truth import GroundTruth
 
 from . import scenes
 from .test_truth import FPS, PINHOLE, SIZE, at, drifting, truth, turned, wall

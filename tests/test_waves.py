@@ -11,16 +11,18 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre import analysis, lenses, pupil_files, waves
+from daguerre import analysis, lenses
 from daguerre.analysis.diffraction import PlainPupil
 from daguerre.analysis.off_axis import off_axis
 from daguerre.color import spectra as colour
 from daguerre.errors import InputError, UsageError
-from daguerre.io.merging import merge
-from daguerre.io.passes import pass_of, read_pass, write_pass
-from daguerre.session import Session
+from daguerre.rendering import diffraction as waves
+from daguerre.rendering import pupil_files
+from daguerre.rendering.diffraction import Diffraction
+from daguerre.rendering.merging import merge
+from daguerre.rendering.passes import pass_of, read_pass, write_pass
+from daguerre.rendering.session import Session
 from daguerre.setup.camera import set_up
-from daguerre.waves import Diffraction
 
 from . import test_flare
 

@@ -13,7 +13,7 @@ import OpenImageIO as oiio
 from place import Place
 
 import daguerre as dg
-from daguerre.denoise import denoise
+from daguerre.rendering.denoise import denoise
 
 #: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
 SPP, DEPTH, EDITION = 16, 4, 1

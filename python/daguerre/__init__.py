@@ -39,9 +39,10 @@ if TYPE_CHECKING:
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
-    from .rig import render_rig, stereo_pair
-    from .session import Session, iter_render, render
-    from .waves import Diffraction
+    from .rendering.diffraction import Diffraction
+    from .rendering.render import iter_render, render
+    from .rendering.rig import render_rig, stereo_pair
+    from .rendering.session import Session
 
 __all__ = [
     "Camera",
@@ -106,18 +107,18 @@ _LAZY = {
     "annotate": "labels.annotations",
     "calibrate": "analysis.calibrate",
     "calibrate_all": "analysis.calibrate",
-    "Diffraction": "waves",
+    "Diffraction": "rendering.diffraction",
     "Frame": "frame.frame",
     "Raw": "frame.raw",
     "RayMap": "maps.ray_map",
     "raymap": "maps.ray_map",
     "StMaps": "maps.st_maps",
     "stmaps": "maps.st_maps",
-    "Session": "session",
-    "iter_render": "session",
-    "render": "session",
-    "render_rig": "rig",
-    "stereo_pair": "rig",
+    "Session": "rendering.session",
+    "iter_render": "rendering.render",
+    "render": "rendering.render",
+    "render_rig": "rendering.rig",
+    "stereo_pair": "rendering.rig",
 }
 
 

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.io import passes
 from daguerre.io.gltf import reader as gltf
-from daguerre.session import Session
+from daguerre.rendering import passes
+from daguerre.rendering.session import Session
 
 from .bases import seen
 from .case import Case

@@ -12,9 +12,6 @@ import daguerre._core as _core
 from daguerre.checks import number, numbers, short
 from daguerre.errors import UsageError
 
-#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
-PER_PIXEL = 2.0
-
 
 @dataclass(frozen=True)
 class LensScatter:

@@ -15,9 +15,9 @@ from . import console
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
-    from daguerre.session import Session
+    from daguerre.rendering.loop import Loop
+    from daguerre.rendering.session import Session
 
-    from .loop import Loop
     from .plan import Plan
 
 INTERRUPTED = 75
@@ -42,9 +42,10 @@ class Job:
 
     def run(self, *, resume: bool, quiet: bool, as_json: bool) -> int:
         """Draws and saves; returns the exit code."""
+        from daguerre.rendering.loop import Loop, Signals
+        from daguerre.rendering.schedule import Range, Rounds, Work
+
         from . import progress
-        from .loop import Loop, Signals
-        from .work import Range, Rounds, Work
 
         plan = self.plan
         work: Work = Range(self.session, plan.wanted)
@@ -117,14 +118,14 @@ class Job:
         }
         frame = replace(frame, metadata={**frame.metadata, **facts})
         if self.plan.denoise:
-            from daguerre.denoise import denoise
+            from daguerre.rendering.denoise import denoise
 
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
             if self.plan.photograph.sensor is not None:
                 console.note("denoised: the sensor's channels are fitted from the clean colours")
         frame = self.session.with_truth(frame)
         if "disparity" in self.plan.aovs:
-            from daguerre.rig import disparity
+            from daguerre.rendering.rig import disparity
 
             apart = disparity(frame, self.plan.baseline)
             frame = replace(frame, aovs={**frame.aovs, "disparity.X": apart})
@@ -140,7 +141,7 @@ class Job:
         return replace(frame, aovs=keep)
 
     def _write(self, frame: Frame, paths: list[Path]) -> None:
-        from daguerre.io.passes import pass_of, write_pass
+        from daguerre.rendering.passes import pass_of, write_pass
 
         passes = [p for p in paths if self.plan.is_pass and p.suffix.lower() == ".exr"]
         for path in passes:
@@ -177,7 +178,7 @@ class Job:
 
     def _light_stats(self) -> dict[str, str]:
         """Of light paths, and how many passed the lens and missed the frame."""
-        from daguerre.light_paths import show_plan
+        from daguerre.rendering.light_paths import show_plan
 
         session = self.session
         plan = show_plan(session.light_paths)
@@ -210,8 +211,8 @@ class Job:
     def _print_stats(self, elapsed: float) -> None:
         import resource
 
-        from .loop import frame_pixels
-        from .progress import quantity
+        from daguerre.rendering.loop import frame_pixels
+        from daguerre.rendering.progress import quantity
 
         usage = resource.getrusage(resource.RUSAGE_SELF)
         drawn = round(self.loop.drawn_here * frame_pixels(self.session))

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from daguerre.errors import MismatchError, UsageError
-from daguerre.io.ranges import Range, missing_ranges, show_ranges
+from daguerre.rendering.ranges import Range, missing_ranges, show_ranges
 
 from . import console
 from .flags import option
@@ -33,8 +33,8 @@ def merge(
     """Adds passes to one picture, with the bits of a render in one go."""
     from daguerre.files import atomic
     from daguerre.frame.frame import TONES, check_format
-    from daguerre.io import merging
-    from daguerre.io.passes import write_pass
+    from daguerre.rendering import merging
+    from daguerre.rendering.passes import write_pass
 
     console.quiet = quiet
     formats = [check_format(path) for path in output]
@@ -45,13 +45,13 @@ def merge(
     for path in output:
         atomic.check_writable(path)
     if denoise:
-        from daguerre.denoise import check_available
+        from daguerre.rendering.denoise import check_available
 
         check_available()
     frame, total = merging.merge(passes)
     _name_missing(total.ranges, strict=strict)
     if denoise:
-        from daguerre.denoise import denoise as clean
+        from daguerre.rendering.denoise import denoise as clean
 
         frame = clean(frame)
     frame = replace(frame, aovs=frame.aovs | total.truth)

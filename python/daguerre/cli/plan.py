@@ -74,7 +74,7 @@ class Plan:
         wanted = means or any(name in self.aovs for name in (*TRUTH, DISPARITY))
         if gt_time is None and gt_rays is None and not wanted:
             return self
-        from daguerre.truth import check_gt_lens, check_gt_time
+        from daguerre.rendering.truth import check_gt_lens, check_gt_time
 
         check_gt_lens(gt_lens, gt_rays, where=("--gt-lens", "--gt-rays"))
         moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
@@ -160,7 +160,7 @@ def make_plan(
     if samples and DISPARITY in groups:
         raise UsageError("--samples: wanted no --aov disparity; depth comes through a pass")
     if denoise:
-        from daguerre.denoise import check_available
+        from daguerre.rendering.denoise import check_available
 
         check_available()
     return Plan(
@@ -178,7 +178,7 @@ def make_plan(
 
 def _ceiling(noise: float, spp: int | None, samples: str | None) -> int:
     """Most samples of a pixel on the way to a noise."""
-    from daguerre.adaptive import check_noise
+    from daguerre.rendering.adaptive import check_noise
 
     if samples:
         raise UsageError(

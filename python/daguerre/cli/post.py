@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from daguerre.errors import UsageError
+from daguerre.rendering.progress import RowStatus, Silent
 
 from . import console, progress
 from .flags import option
@@ -98,7 +99,7 @@ def _run(
     output: Path,
     planned: list[Planned],
     roles: dict[str, str],
-    shown: progress.Silent,
+    shown: Silent,
 ) -> Report:
     from daguerre.files.atomic import check_writable
     from daguerre.post.run import process
@@ -110,7 +111,7 @@ def _run(
         elapsed = time.monotonic() - start
         rate = rows * width / max(elapsed, 1e-9)
         left = (height - rows) * width / rate if rows else None
-        shown.update(progress.RowStatus(rows / height, rate, elapsed, left))
+        shown.update(RowStatus(rows / height, rate, elapsed, left))
 
     return process(picture, output, planned, roles=roles, progress=update)
 

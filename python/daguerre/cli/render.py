@@ -10,8 +10,12 @@ from typing import Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.light_paths import check_light_paths, check_paths
-from daguerre.setup.body import check_highlights, check_used
+from daguerre.rendering.light_paths import (
+    check_highlights,
+    check_light_paths,
+    check_paths,
+    check_used,
+)
 
 from . import console
 from .calibration_flags import CalibrationFlags
@@ -387,7 +391,7 @@ def render(
                 f"--bands {bands} and --diffraction-bands {diffraction_bands}: wanted one number"
             )
     if diffraction:
-        from daguerre.waves import Diffraction
+        from daguerre.rendering.diffraction import Diffraction
 
         settings["diffraction"] = Diffraction(diffraction_bands, diffraction_zones)
     elif (diffraction_bands, diffraction_zones) != (16, 1):

@@ -18,8 +18,8 @@ from .job import INTERRUPTED, Job, core_errors
 if TYPE_CHECKING:
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
+    from daguerre.rendering.session import Session
     from daguerre.scene.scene import Scene
-    from daguerre.session import Session
     from daguerre.setup.built_scene import BuiltScene
 
     from .calibration_flags import CalibrationFlags
@@ -185,9 +185,9 @@ class Shoot:
         from daguerre.camera.shutter import interval
         from daguerre.distortion.overscan import note, to_undistort
         from daguerre.distortion.rectified import Sight
+        from daguerre.rendering.truth import focused
         from daguerre.setup.camera import set_up
         from daguerre.setup.scene import build
-        from daguerre.truth import focused
 
         plan, scene = picture.plan, self._scene_of(picture)
         camera = picture.view.of(scene, self.calibrations, self.changes)
@@ -238,7 +238,7 @@ class Shoot:
 
     def _session(self, picture: Picture) -> Session:
         from daguerre.analysis.camera_facts import camera_warnings, lit
-        from daguerre.session import Session
+        from daguerre.rendering.session import Session
 
         plan, view = picture.plan, picture.view
         scene = self._scene_of(picture)
@@ -270,7 +270,7 @@ class Shoot:
         self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)
         if DISPARITY in plan.aovs:
-            from daguerre.rig import check_straight
+            from daguerre.rendering.rig import check_straight
 
             check_straight(session.metadata)
         if plan.exposed:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color.display import _into_gamut, _shoulder, _srgb
-from daguerre.errors import InputError, MismatchError, UsageError, suggest
-
-from .aovs import AOV_NAMES
+from daguerre.errors import UsageError, suggest
 
 if TYPE_CHECKING:
     import os
@@ -81,7 +79,7 @@ class Frame:
     def motion(self) -> NDArray[np.float32] | None:
         """Where what is seen goes until the next frame, px, +x right and +y down, (H, W, 2).
 
-        None without ground truth; see ``daguerre.truth``.
+        None without ground truth; see ``daguerre.rendering.truth``.
         """
         return self._flow("motion")
 
@@ -290,68 +288,3 @@ def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> st
             f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
         )
     return suffix
-
-
-def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
-    """Puts sums that ``film.state`` gave, by part, into a film of the same size.
-
-    Raises:
-        MismatchError: A part is missing, unknown or of another size; the film is as it was then.
-    """
-    shapes = {part: film.state(part).shape for part in film.state_parts()}
-    given = {part: words.shape for part, words in state.items()}
-    if given != shapes:
-        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
-    for part, words in state.items():
-        film.set_state(part, np.ascontiguousarray(words, np.uint32))
-
-
-def frame_of(
-    film: Any,
-    metadata: dict[str, Any],
-    *,
-    aovs: bool,
-    waves: bool = True,
-) -> Frame:
-    """The picture of a film: means, variance and counts as plain arrays.
-
-    Args:
-        film: The core's.
-        metadata: Facts of the frame.
-        aovs: Whether the film has auxiliary channels.
-        waves: Whether its light is diffracted, if the film has bands; variance is always that
-            before.
-    """
-    planes: dict[str, NDArray[Any]] = {}
-    alpha = np.ones(film.shape, np.float32)
-    if aovs:
-        planes = {name: film.aov(name) for name in AOV_NAMES}
-        planes["object_id"] = film.object_ids()
-        alpha = film.aov("alpha")
-    parts, keep = film.state_parts(), bool(metadata.get("bands"))
-    if waves and "bands" in parts and ("pupils" in metadata or not keep):
-        from daguerre.waves import developed, rgb_of
-
-        made = developed(film, metadata.get("pupils"), keep=keep)
-        xyz, channels, bands = made.xyz, made.channels, made.bands
-        rgb = rgb_of(xyz)
-    else:
-        xyz, rgb = film.mean_xyz(), film.mean_rgb()
-        channels = film.mean_channels() if "channels" in parts else None
-        bands = film.mean_bands() if keep and "bands" in parts else None
-    names = metadata.get("sensor_channels") or []
-    if channels is not None and channels.shape[2] != len(names):
-        raise InputError(f"sensor_channels: wanted {channels.shape[2]} names, got {names}")
-    return Frame(
-        rgb=rgb,
-        xyz=xyz,
-        alpha=alpha,
-        variance=film.variance_rgb(),
-        samples=film.sample_counts(),
-        aovs=planes,
-        metadata=metadata,
-        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
-        flare=film.flare_rgb() if "flare" in parts else None,
-        channels=channels,
-        bands=bands,
-    )

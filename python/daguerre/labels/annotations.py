@@ -17,9 +17,9 @@ import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.checks import short
 from daguerre.errors import UsageError
+from daguerre.rendering.session import Session
+from daguerre.rendering.truth import GroundTruth, Moment
 from daguerre.scene.scene import Scene
-from daguerre.session import Session
-from daguerre.truth import GroundTruth, Moment
 
 from .boxes import Box3, box_of
 from .categories import Categories, Category, Thing

@@ -20,10 +20,10 @@ from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
 from daguerre.errors import UsageError, suggest
+from daguerre.rendering.truth import GT_TIMES, check_gt_time, instants
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
 from daguerre.setup.metadata import camera_metadata
-from daguerre.truth import GT_TIMES, check_gt_time, instants
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -103,7 +103,7 @@ def raymap(
     Raises:
         UsageError: A parameter is out of its range.
     """
-    from daguerre.session import check_resolution
+    from daguerre.rendering.session import check_resolution
 
     size = check_resolution(resolution)
     check_frame(frame)

@@ -13,8 +13,8 @@ def pictures(light: Pencil, steps: list[Step], kind: str) -> bytes:
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    from daguerre.plots.panels import box
-    from daguerre.plots.sheet import STYLE, saved
+    from .panels import box
+    from .sheet import STYLE, saved
 
     columns = min(len(steps), 3)
     rows = -(-len(steps) // columns)

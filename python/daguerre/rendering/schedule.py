@@ -8,14 +8,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol
 
 from daguerre.errors import MismatchError
-from daguerre.io.ranges import missing_ranges
+
+from . import rounds
+from .ranges import missing_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from daguerre.adaptive import Round
-    from daguerre.io.passes import Pass
-    from daguerre.session import Session
+    from .adaptive import Round
+    from .passes import Pass
+    from .session import Session
 
 
 class Work(Protocol):
@@ -106,9 +108,9 @@ class Rounds:
 
     def prepare(self, limit: float) -> float:
         """A part of the round under way, or of the next one."""
-        from daguerre import adaptive
+        from . import adaptive
 
-        if not adaptive.plan_round(self.session, self.noise, self.ceiling):
+        if not rounds.plan_round(self.session, self.noise, self.ceiling):
             return 0.0
         now = self._round
         part = float(now.count.mean()) / adaptive.PARTS

@@ -13,20 +13,14 @@ what a pixel has drawn comes back to its count after three rounds at the earlies
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-
-from .checks import number, whole
-from .errors import MismatchError
-
-if TYPE_CHECKING:
-    from .session import Session
+from daguerre.checks import number, whole
 
 #: Samples of every pixel before anything is decided, and step of all counts: aligned powers of two
 #: keep the sampler's points stratified.
@@ -86,40 +80,6 @@ def check_noise(noise: object, spp: object, where: str = "noise") -> tuple[float
     """
     ceiling = MAX_SPP if spp is None else whole(spp, "spp", 2, 1 << 31, "2 .. 2^31")
     return number(noise, where, high=1.0, above=0.0), ceiling
-
-
-def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[Round]:
-    """Draws round after round, and yields each, until the noise or ``spp`` is reached."""
-    noise, ceiling = check_noise(noise, spp)
-    while plan_round(session, noise, ceiling):
-        session.draw_round(PARTS)
-        assert session.round is not None
-        yield session.round
-
-
-def plan_round(session: Session, noise: float, ceiling: int) -> bool:
-    """Decides what is drawn next, unless a round is under way.
-
-    Returns:
-        False if nothing: the noise is reached, or no pixel may have more.
-    """
-    if session.round is not None and not session.round.complete:
-        return True
-    counts = session.sample_counts()
-    if session.round is None and session.ranges not in ([], [(0, int(counts.min()))]):
-        raise MismatchError(f"noise: wanted samples from 0 on, got {session.ranges}")
-    start = min(START, ceiling)
-    if counts.min() < start:
-        first = np.maximum(counts, np.uint32(start)) - counts
-        session.round = Round(counts, first, expected=float(min(4 * START, ceiling)))  # a guess
-        return True
-    variance = session.relative_variance(DARK)
-    reached = noise_of(variance, counts)
-    more, expected = np.zeros_like(counts), float(counts.mean())
-    if reached > noise:
-        more, expected = next_counts(variance, counts, (noise / reached) ** 2, ceiling)
-    session.round = Round(counts, more, 0 if more.any() else PARTS, reached, expected)
-    return bool(more.any())
 
 
 def noise_of(variance: Plane, counts: Counts) -> float:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .color.spectra import xyz_of
-from .errors import InputError, UsageError
+from daguerre.color.spectra import xyz_of
+from daguerre.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from .frame.frame import Frame
+    from daguerre.frame.frame import Frame
 
 
 def check_available() -> None:

@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .camera.camera import Camera
-from .checks import number, short
-from .errors import InputError, UsageError
-from .frame.frame import Frame
-from .scene.scene import Scene
-from .session import Session, finish
-from .setup.built_scene import BuiltScene
-from .setup.pose import moved_right
+from daguerre.camera.camera import Camera
+from daguerre.checks import number, short
+from daguerre.errors import InputError, UsageError
+from daguerre.frame.frame import Frame
+from daguerre.scene.scene import Scene
+from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.pose import moved_right
+
+from .render import finish
+from .session import Session
 
 
 def render_rig(

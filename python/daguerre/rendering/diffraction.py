@@ -16,17 +16,17 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import whole
-from .color.spectra import band_colours, band_wavelengths
-from .errors import InputError, UsageError
-from .sensors.bands import MOST_BANDS, weights_of_bands
+from daguerre.checks import whole
+from daguerre.color.spectra import band_colours, band_wavelengths
+from daguerre.errors import InputError, UsageError
+from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
-    from .analysis.diffraction import Pupil
-    from .camera.camera import Camera
-    from .lenses.focus import By
-    from .sensors import Sensor
-    from .setup.camera import CameraSetup
+    from daguerre.analysis.diffraction import Pupil
+    from daguerre.camera.camera import Camera
+    from daguerre.lenses.focus import By
+    from daguerre.sensors import Sensor
+    from daguerre.setup.camera import CameraSetup
 
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
@@ -95,13 +95,13 @@ def plan(
 
 
 def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[list[Pupil]]:
-    from .analysis import set_up
-    from .analysis.diffraction import PlainPupil
-    from .analysis.iris import iris_of
-    from .analysis.lens_pupil import zone_pupils
-    from .analysis.off_axis import off_axis
-    from .setup.checks import TRACED, lens_and_model
-    from .setup.lens import decenters
+    from daguerre.analysis import set_up
+    from daguerre.analysis.diffraction import PlainPupil
+    from daguerre.analysis.iris import iris_of
+    from daguerre.analysis.lens_pupil import zone_pupils
+    from daguerre.analysis.off_axis import off_axis
+    from daguerre.setup.checks import TRACED, lens_and_model
+    from daguerre.setup.lens import decenters
 
     facts = setup.facts
     if facts.get("f_stop") is None:
@@ -154,7 +154,8 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
     Raises:
         InputError: A plan out of a damaged file.
     """
-    from .convolution.convolve import spread
+    from daguerre.convolution.convolve import spread
+
     from .pupil_files import from_json
 
     bands = film.mean_bands()
@@ -209,13 +210,13 @@ def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[n
 
 def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
     """Linear Rec.709 of XYZ, shape (H, W, 3)."""
-    from .color.spectra import rgb_from_xyz
+    from daguerre.color.spectra import rgb_from_xyz
 
     return np.asarray(xyz @ rgb_from_xyz().T.astype(np.float32))
 
 
 def _size(pupils: list[list[Pupil]], pitch: float, frame: tuple[int, ...]) -> int:
-    from .analysis.diffraction import window_of
+    from daguerre.analysis.diffraction import window_of
 
     most = ONE_ZONE if len(pupils) == 1 else MANY_ZONES
     most = min(most, 2 * max(frame[0], frame[1]) - 1)
@@ -231,7 +232,7 @@ def _kernels(
         Their right halves, shape (B, Z, Z, size, size // 2 + 1): kernels of perfect waves are
         symmetric about their middle.
     """
-    from .analysis.diffraction import far_fields, light_of
+    from daguerre.analysis.diffraction import far_fields, light_of
 
     each = nm.shape[1]
     out = np.zeros((len(nm), len(pupils), len(pupils), size, size // 2 + 1), np.float32)
@@ -245,6 +246,6 @@ def _kernels(
 
 def _whole(half: NDArray[np.float32]) -> NDArray[np.float32]:
     """Kernels (Z, Z, h, w, 1, 1) of their right halves."""
-    from .analysis.diffraction import both_halves
+    from daguerre.analysis.diffraction import both_halves
 
     return both_halves(half)[..., None, None]

@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import daguerre._core as _core
-
-from .camera.overscan import Overscan
+from daguerre.camera.overscan import Overscan
 
 if TYPE_CHECKING:
-    from .setup.camera import CameraSetup
+    from daguerre.setup.camera import CameraSetup
 
 Box = tuple[int, int, int, int]
 Counts = tuple[int, ...]

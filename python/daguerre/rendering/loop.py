@@ -12,16 +12,15 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+from daguerre.cli import console
 from daguerre.errors import DaguerreError
-from daguerre.io import passes as pass_files
 
-from . import console
+from . import passes as pass_files
 from .progress import Silent, Status
 
 if TYPE_CHECKING:
-    from daguerre.session import Session
-
-    from .work import Work
+    from .schedule import Work
+    from .session import Session
 
 #: A pass lasts about this long, so that Ctrl-C and checkpoints need not wait.
 PASS_S = 3.0

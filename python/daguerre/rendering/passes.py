@@ -6,10 +6,10 @@ per pixel, in a picture of four channels that is seven times as wide. Its header
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
 which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
 channels in the same way, and parts ``splats`` and ``flare`` what light paths
-(``daguerre.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were drawn; a part
-``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among the facts
-(``daguerre.waves``), or those that the frame keeps; parts ``channels`` and ``channel_splats`` have
-those of its sensor.
+(``daguerre.rendering.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were
+drawn; a part ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among
+the facts (``daguerre.rendering.diffraction``), or those that the frame keeps; parts ``channels``
+and ``channel_splats`` have those of its sensor.
 The sums are integers, so adding them in any order gives the same bits.
 The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
 ``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
@@ -29,18 +29,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.adaptive import Round
 from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
+from daguerre.io.exr.write import Channels, attributes, channels, jsonable, write_parts
 
-from .exr.write import Channels, attributes, channels, jsonable, write_parts
+from .adaptive import Round
 from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
-    from daguerre.session import Session
+
+    from .session import Session
 
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
@@ -69,7 +70,7 @@ class Pass:
         metadata: Facts of the frame.
         path: Where it was read, for messages.
         round: Of adaptive sampling, else None.
-        truth: Channels of ground truth (``daguerre.truth``) by name, if the pass has them.
+        truth: Channels of ground truth (``rendering.truth``) by name, if the pass has them.
     """
 
     state: State

@@ -12,8 +12,7 @@ from typing import Any
 from daguerre.camera.overscan import NONE, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
-
-from .exr import write as exr
+from daguerre.io.exr import write as exr
 
 
 def _is_number(value: Any) -> bool:

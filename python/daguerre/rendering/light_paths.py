@@ -9,8 +9,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from .checks import short
-from .errors import UsageError
+from daguerre.checks import short
+from daguerre.errors import UsageError
 
 #: Light paths per sample index, straight from an emitter to the lens and with bounces.
 Plan = tuple[float, float]
@@ -81,3 +81,43 @@ def _pair(value: Any) -> Sequence[Any]:
 def show_plan(plan: Plan) -> str | None:
     """As ``--light-paths`` takes it; None if off."""
     return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)
+
+
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = 2.0
+
+
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = 0.5
+
+
+def check_highlights(value: object, where: str = "flare_highlights") -> bool:
+    """Whether light that other things send to the lens has ghosts, too.
+
+    Raises:
+        UsageError: Neither on nor off.
+    """
+    if value in ("on", "off"):
+        return value == "on"
+    if isinstance(value, bool):
+        return value
+    raise UsageError(f"{where}: wanted on or off, got {short(value)}")
+
+
+def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
+    """What says how light is followed wants some that is.
+
+    Args:
+        given: Parameters, and whether they are other than they are by themselves: of flare alone,
+            then of flare or scatter.
+        flare: Ghosts are drawn.
+        scatter: So is what the lens scatters.
+
+    Raises:
+        UsageError: A parameter that nothing would heed.
+    """
+    for (name, other), drawn in zip(given.items(), (flare, flare or scatter), strict=True):
+        if other and not drawn:
+            dashes = "--" if name.startswith("--") else ""
+            also = f" or {dashes}scatter" if "highlights" in name else ""
+            raise UsageError(f"{name}: wanted with {dashes}flare{also}")

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame.frame import Frame, frame_of, set_film_state
+from daguerre.frame.frame import Frame
 from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
+from .film_frame import frame_of, set_film_state
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
 

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .analysis.diffraction import PlainPupil, Pupil
-from .analysis.iris import Iris
-from .analysis.lens_pupil import LensPupil
+from daguerre.analysis.diffraction import PlainPupil, Pupil
+from daguerre.analysis.iris import Iris
+from daguerre.analysis.lens_pupil import LensPupil
 
 MOST_SIDE = 4096  # px of a raster
 MOST_DEGREE = 16

@@ -8,7 +8,7 @@ import math
 import operator
 import platform
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -17,39 +17,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre import sensors
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import without_exposure
+from daguerre.camera.overscan import NONE, Overscan, check_overscan
+from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
+from daguerre.distortion.overscan import note as overscan_note
+from daguerre.distortion.overscan import to_undistort
+from daguerre.distortion.rectified import Sight
+from daguerre.errors import InputError, MismatchError, UsageError, suggest
+from daguerre.frame.frame import Frame
+from daguerre.frame.seen_by import sensor_metadata
+from daguerre.scene.scene import Scene
+from daguerre.sensors.bands import check_bands, responses
+from daguerre.setup.body import scatter_facts
+from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.camera import set_up
+from daguerre.setup.checks import check_surfaces
+from daguerre.setup.metadata import camera_metadata
 
-from . import sensors
-from .adaptive import Round, check_noise, rounds
-from .camera import shutter
-from .camera.camera import Camera
-from .camera.exposure import without_exposure
-from .camera.lens_scatter import PER_PIXEL as SCATTER_PER_PIXEL
-from .camera.overscan import NONE, Overscan, check_overscan
-from .checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
-from .distortion.overscan import note as overscan_note
-from .distortion.overscan import to_undistort
-from .distortion.rectified import Sight
-from .errors import InputError, MismatchError, UsageError, suggest
+from .adaptive import Round
+from .diffraction import Diffraction, check_diffraction, with_bands
+from .diffraction import plan as plan_waves
+from .film_frame import frame_of, set_film_state
 from .film_parts import Box, FilmPart, area, core_settings, frame_around, inside
-from .frame.frame import Frame, frame_of, set_film_state
-from .frame.seen_by import sensor_metadata
-from .io.ranges import join_ranges
-from .light_paths import OFF, TECHNIQUES, Plan, check_light_paths, check_paths, show_plan
-from .scene.scene import Scene
-from .sensors.bands import check_bands, responses
-from .setup.body import PER_PIXEL as FLARE_PER_PIXEL
-from .setup.body import check_highlights, check_used, scatter_facts
-from .setup.built_scene import BuiltScene
-from .setup.camera import set_up
-from .setup.checks import check_surfaces
-from .setup.metadata import camera_metadata
+from .light_paths import (
+    OFF,
+    TECHNIQUES,
+    Plan,
+    check_highlights,
+    check_light_paths,
+    check_paths,
+    check_used,
+    show_plan,
+)
+from .light_paths import PER_PIXEL as FLARE_PER_PIXEL
+from .light_paths import PER_PIXEL as SCATTER_PER_PIXEL
+from .ranges import join_ranges
 from .truth import GroundTruth, Moment, check_gt_lens, check_gt_time, focused
-from .waves import Diffraction, check_diffraction, with_bands
-from .waves import plan as plan_waves
 
 Progress = Callable[[float], bool]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
-DEFAULT_SPP = 64
 
 
 class Session:
@@ -370,7 +379,7 @@ class Session:
         return True
 
     def draw_round(self, until: int, progress: Progress | None = None) -> bool:
-        """Draws the parts of ``round`` up to ``until``; see ``daguerre.adaptive``.
+        """Draws the parts of ``round`` up to ``until``; see ``daguerre.rendering.adaptive``.
 
         Returns:
             False if stopped; as of ``draw``.
@@ -559,76 +568,6 @@ class Session:
             "samples_max": int(counts.max()),
             "noise": self.round.noise if self.round.complete else None,
         }
-
-
-def render(
-    scene: Scene,
-    camera: Camera | str | None = None,
-    *,
-    spp: int | None = None,
-    noise: float | None = None,
-    **options: Any,
-) -> Frame:
-    """Renders a picture.
-
-    Args:
-        scene: What is seen.
-        camera: What sees it; None: the scene's own.
-        spp: Samples per pixel, by default 64; with ``noise`` the most that a pixel may get, by
-            default 16384.
-        noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
-            pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
-            samples as each needs.
-        **options: As of :class:`Session`: resolution, seed, filter, aovs, gt_time, gt_lens,
-            motion, crop, threads, max_depth.
-
-    Returns:
-        The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
-    """
-    _most_samples(spp, noise)  # before anything is built
-    return finish(Session(scene, camera, **options), spp, noise)
-
-
-def finish(session: Session, spp: int | None = None, noise: float | None = None) -> Frame:
-    """The picture of a session; arguments as of :func:`render`."""
-    spp = _most_samples(spp, noise)
-    if noise is None:
-        session.draw(0, spp)
-    else:
-        for _ in rounds(session, noise, spp):
-            pass
-    return session.frame()
-
-
-def iter_render(
-    scene: Scene,
-    camera: Camera | str | None = None,
-    *,
-    spp: int | None = None,
-    noise: float | None = None,
-    **options: Any,
-) -> Iterator[Frame]:
-    """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
-
-    With ``noise``, after each round of adaptive sampling. Arguments as of :func:`render`.
-    """
-    spp = _most_samples(spp, noise)
-    session = Session(scene, camera, **options)
-    if noise is not None:
-        for _ in rounds(session, noise, spp):
-            yield session.frame()
-        return
-    begin, end = 0, 1
-    while begin < spp:
-        session.draw(begin, min(end, spp))
-        yield session.frame()
-        begin, end = end, 2 * end
-
-
-def _most_samples(spp: int | None, noise: float | None) -> int:
-    if noise is not None:
-        return check_noise(noise, spp)[1]
-    return whole(DEFAULT_SPP if spp is None else spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")
 
 
 def check_resolution(resolution: tuple[int, int]) -> tuple[int, int]:

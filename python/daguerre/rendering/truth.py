@@ -14,16 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-
-from .camera import rolling_shutter, shutter
-from .camera.camera import Camera
-from .camera.overscan import NONE, Overscan
-from .checks import short, whole
-from .errors import UsageError, suggest
-from .frame.aovs import COVERAGE, MOTION, PLANES
-from .scene.scene import Scene
-from .setup.camera import CameraSetup, set_up
-from .setup.scene import build
+from daguerre.camera import rolling_shutter, shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.overscan import NONE, Overscan
+from daguerre.checks import short, whole
+from daguerre.errors import UsageError, suggest
+from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
+from daguerre.scene.scene import Scene
+from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.scene import build
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
 #: When in the exposure of a pixel: as a fraction of its length.

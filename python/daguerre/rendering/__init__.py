@@ -1,0 +1,1 @@
+"""Renders: sessions, passes, checkpoints, merging, ground truth."""

@@ -1,0 +1,78 @@
+"""Frames made of a film's sums."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError, MismatchError
+from daguerre.frame.aovs import AOV_NAMES
+from daguerre.frame.frame import Frame
+
+
+def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
+    """Puts sums that ``film.state`` gave, by part, into a film of the same size.
+
+    Raises:
+        MismatchError: A part is missing, unknown or of another size; the film is as it was then.
+    """
+    shapes = {part: film.state(part).shape for part in film.state_parts()}
+    given = {part: words.shape for part, words in state.items()}
+    if given != shapes:
+        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
+    for part, words in state.items():
+        film.set_state(part, np.ascontiguousarray(words, np.uint32))
+
+
+def frame_of(
+    film: Any,
+    metadata: dict[str, Any],
+    *,
+    aovs: bool,
+    waves: bool = True,
+) -> Frame:
+    """The picture of a film: means, variance and counts as plain arrays.
+
+    Args:
+        film: The core's.
+        metadata: Facts of the frame.
+        aovs: Whether the film has auxiliary channels.
+        waves: Whether its light is diffracted, if the film has bands; variance is always that
+            before.
+    """
+    planes: dict[str, NDArray[Any]] = {}
+    alpha = np.ones(film.shape, np.float32)
+    if aovs:
+        planes = {name: film.aov(name) for name in AOV_NAMES}
+        planes["object_id"] = film.object_ids()
+        alpha = film.aov("alpha")
+    parts, keep = film.state_parts(), bool(metadata.get("bands"))
+    if waves and "bands" in parts and ("pupils" in metadata or not keep):
+        from .diffraction import developed, rgb_of
+
+        made = developed(film, metadata.get("pupils"), keep=keep)
+        xyz, channels, bands = made.xyz, made.channels, made.bands
+        rgb = rgb_of(xyz)
+    else:
+        xyz, rgb = film.mean_xyz(), film.mean_rgb()
+        channels = film.mean_channels() if "channels" in parts else None
+        bands = film.mean_bands() if keep and "bands" in parts else None
+    names = metadata.get("sensor_channels") or []
+    if channels is not None and channels.shape[2] != len(names):
+        raise InputError(f"sensor_channels: wanted {channels.shape[2]} names, got {names}")
+    return Frame(
+        rgb=rgb,
+        xyz=xyz,
+        alpha=alpha,
+        variance=film.variance_rgb(),
+        samples=film.sample_counts(),
+        aovs=planes,
+        metadata=metadata,
+        bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
+        flare=film.flare_rgb() if "flare" in parts else None,
+        channels=channels,
+        bands=bands,
+    )
