@@ -522,7 +522,7 @@ def test_the_wrong_arguments_are_errors() -> None:
 
 
 def test_a_calibration_without_an_iris_and_shares_of_its_size(chain: Path) -> None:
-    from daguerre.cli.calibration_flags import CalibrationFlags
+    from daguerre.cli.flags.calibration import CalibrationFlags
 
     flags = CalibrationFlags(calibration=[f"{chain}:cam1"])
     (found,) = flags.found.values()

@@ -209,7 +209,7 @@ def test_noise_is_reached_and_told(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_noise_goes_on_from_checkpoints_that_fit(capsys: pytest.CaptureFixture[str]) -> None:
-    from daguerre.cli import job
+    from daguerre.cli.render import job
 
     noise = ["--noise", "0.01", *QUICK]
     assert main(["render", "s.glb", "-o", "whole.exr", *noise]) == 0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.cli.scene_flags import SceneFlags
+from daguerre.cli.flags.scene import SceneFlags
 from daguerre.scene.illuminance import illuminance
 
 

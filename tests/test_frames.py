@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.cli.frames import frame_numbers, numbered
+from daguerre.cli.render.frames import frame_numbers, numbered
 
 from . import fake_session
 

@@ -11,7 +11,7 @@ import pytest
 import daguerre as dg
 from daguerre.camera import shutter
 from daguerre.camera.shutter_curve import read_curve
-from daguerre.cli.shutter_flags import ShutterFlags
+from daguerre.cli.flags.shutter import ShutterFlags
 
 from . import scenes
 

@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 import re
 from fractions import Fraction
-from pathlib import Path
-from typing import Any
 
 from .errors import UsageError, suggest
 
@@ -169,23 +167,6 @@ def sensor_mm(flag: str, text: str) -> tuple[float, float]:
     if not (0 < width < math.inf and 0 < height < math.inf):
         raise _bad(flag, "a size above 0 such as 36x24", text)
     return width, height
-
-
-def sensor(flag: str, text: str) -> dict[str, Any]:
-    """Parameters of a camera: a size as of ``sensor_mm``, or a sensor of the library or a file."""
-    name = text.strip().lower()
-    if name in SENSORS or (name[:1].isdigit() and "x" in name):
-        return {"sensor_size": sensor_mm(flag, text)}
-    from . import sensors
-
-    known = sensors.names()
-    if text not in known and Path(text).suffix.lower() != ".json":
-        raise UsageError(
-            f"{flag}: wanted a sensor ({', '.join(known)}, or a .json file), a size in mm such as "
-            f"36x24, or one of {', '.join(SENSORS)}; got {text!r}"
-            f"{suggest(name, [*known, *SENSORS])}"
-        )
-    return {"sensor": sensors.load(text)}
 
 
 def resolution(flag: str, text: str, default: tuple[int, int]) -> tuple[int, int]:

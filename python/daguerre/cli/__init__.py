@@ -22,11 +22,11 @@ from .calibrate import calibrate
 from .chart import chart
 from .develop import develop
 from .info import info
-from .lens import lens
+from .lens.command import lens
 from .lenses import lenses
 from .merge import merge
 from .post import post
-from .render import render
+from .render.command import render
 from .sensor import sensor
 from .sensors import sensors
 from .stocks import stocks

@@ -13,8 +13,8 @@ from daguerre.errors import UsageError, suggest
 
 from . import console
 from .drawings import check_drawing
-from .flags import option, with_flags
-from .map_flags import MapFlags
+from .flags.groups import option, with_flags
+from .flags.map import MapFlags
 
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit

@@ -13,7 +13,7 @@ from daguerre import units as q
 from daguerre.errors import UsageError
 
 from . import console
-from .flags import option
+from .flags.groups import option
 
 
 def chart(

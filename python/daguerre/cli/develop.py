@@ -14,7 +14,7 @@ from daguerre import units as q
 from daguerre.errors import InputError, UsageError
 
 from . import console
-from .flags import option
+from .flags.groups import option
 
 if TYPE_CHECKING:
     from daguerre.development import Picture

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import console
-from .calibration_flags import CalibrationFlags
-from .camera_flags import CameraFlags
-from .flags import option, with_flags
-from .scene_flags import SceneFlags
-from .shutter_flags import ShutterFlags
-from .views import views_of
+from .flags.calibration import CalibrationFlags
+from .flags.camera import CameraFlags
+from .flags.groups import option, with_flags
+from .flags.scene import SceneFlags
+from .flags.shutter import ShutterFlags
+from .render.views import views_of
 
 if TYPE_CHECKING:
     from daguerre.analysis.camera_facts import Facts

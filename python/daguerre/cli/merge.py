@@ -12,7 +12,7 @@ from daguerre.errors import MismatchError, UsageError
 from daguerre.rendering.ranges import Range, missing_ranges, show_ranges
 
 from . import console
-from .flags import option
+from .flags.groups import option
 
 
 def merge(
@@ -66,7 +66,7 @@ def merge(
             frame.save(path, tone=tone)
     count, places = frame.bad_samples
     if count:
-        from .job import bad_samples
+        from .render.job import bad_samples
 
         console.warn(bad_samples(count, places))
     names = ", ".join(map(str, output))

@@ -12,7 +12,7 @@ from daguerre.errors import UsageError
 from daguerre.rendering.progress import RowStatus, Silent
 
 from . import console, progress
-from .flags import option
+from .flags.groups import option
 
 if TYPE_CHECKING:
     from daguerre.post.effect import Effect

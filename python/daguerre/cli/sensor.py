@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .drawings import check_drawing
-from .flags import option
+from .flags.groups import option
 
 if TYPE_CHECKING:
     from daguerre.sensors import Sensor
@@ -41,7 +41,7 @@ def sensor(
     if json:
         from json import dumps
 
-        from .lens import _finite
+        from .lens.command import _finite
 
         print(dumps(_finite(facts(item)), indent=2))
     elif plot is None:

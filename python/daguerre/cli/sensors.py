@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from .flags import option
+from .flags.groups import option
 
 
 def sensors(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from .flags import option
+from .flags.groups import option
 
 
 def version(json: Annotated[bool, option("--json", help="As one JSON object.")] = False) -> int:

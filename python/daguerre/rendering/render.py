@@ -8,10 +8,11 @@ from typing import Any
 from daguerre.camera.camera import Camera
 from daguerre.checks import MAX_SAMPLES, whole
 from daguerre.frame.frame import Frame
-from daguerre.rendering.adaptive import check_noise
-from daguerre.rendering.rounds import rounds
-from daguerre.rendering.session import Session
 from daguerre.scene.scene import Scene
+
+from .adaptive import check_noise
+from .rounds import rounds
+from .session import Session
 
 DEFAULT_SPP = 64
 

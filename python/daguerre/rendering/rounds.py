@@ -8,18 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from daguerre.errors import MismatchError
-from daguerre.rendering.adaptive import (
-    DARK,
-    PARTS,
-    START,
-    Round,
-    check_noise,
-    next_counts,
-    noise_of,
-)
+
+from .adaptive import DARK, PARTS, START, Round, check_noise, next_counts, noise_of
 
 if TYPE_CHECKING:
-    from daguerre.rendering.session import Session
+    from .session import Session
 
 
 def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[Round]:

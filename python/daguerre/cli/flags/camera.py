@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.errors import UsageError, suggest
+from daguerre.units import SENSORS, sensor_mm
 
-from .flags import Text, option
+from .groups import Text, option
 
 _CAMERA = "Camera"
 
@@ -348,7 +350,7 @@ class CameraFlags:
             if getattr(self, name) is not None:
                 out[parameter] = getattr(self, name)
         if self.sensor is not None:
-            out |= q.sensor("--sensor", self.sensor)
+            out |= sensor("--sensor", self.sensor)
         if self.decenter:
             out["decenter"] = tuple(q.decenter("--decenter", text) for text in self.decenter)
         for name in ("aperture_image", "front_mask", "iris_mask"):
@@ -389,3 +391,20 @@ def _refuse_rivals(changes: dict[str, Any]) -> dict[str, Any]:
             flags = " and ".join(rivals[name] for name in given)
             raise UsageError(f"{flags}: wanted one of them, got {len(given)}")
     return changes
+
+
+def sensor(flag: str, text: str) -> dict[str, Any]:
+    """Parameters of a camera: a size as of ``sensor_mm``, or a sensor of the library or a file."""
+    name = text.strip().lower()
+    if name in SENSORS or (name[:1].isdigit() and "x" in name):
+        return {"sensor_size": sensor_mm(flag, text)}
+    from daguerre import sensors
+
+    known = sensors.names()
+    if text not in known and Path(text).suffix.lower() != ".json":
+        raise UsageError(
+            f"{flag}: wanted a sensor ({', '.join(known)}, or a .json file), a size in mm such as "
+            f"36x24, or one of {', '.join(SENSORS)}; got {text!r}"
+            f"{suggest(name, [*known, *SENSORS])}"
+        )
+    return {"sensor": sensors.load(text)}

@@ -9,20 +9,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.cli import console
 from daguerre.errors import UsageError
 from daguerre.frame.aovs import DISPARITY
 
-from . import console
 from .job import INTERRUPTED, Job, core_errors
 
 if TYPE_CHECKING:
+    from daguerre.cli.flags.calibration import CalibrationFlags
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
     from daguerre.rendering.session import Session
     from daguerre.scene.scene import Scene
     from daguerre.setup.built_scene import BuiltScene
 
-    from .calibration_flags import CalibrationFlags
     from .plan import Plan
     from .views import View
 

@@ -20,9 +20,8 @@ from .frames import before_number
 if TYPE_CHECKING:
     from daguerre.calibration import Calibration
     from daguerre.camera.camera import Camera
+    from daguerre.cli.flags.calibration import CalibrationFlags
     from daguerre.scene.scene import Scene
-
-    from .calibration_flags import CalibrationFlags
 
 #: Stands for the name of a camera in the name of a file.
 PLACE = "{camera}"

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
 
-    from .shoot import Picture
+    from .pictures import Picture
 
 
 def coco_of(

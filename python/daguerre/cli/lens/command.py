@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from daguerre.cli.console import note
+from daguerre.cli.drawings import check_drawing
+from daguerre.cli.flags.groups import option
 from daguerre.errors import InputError, UsageError
 from daguerre.units import SENSORS, angle_deg, distance_m, f_number, length_mm
 
-from .console import note
-from .drawings import check_drawing
-from .flags import option
-from .lens_export import Export
-from .lens_flare import Flare
+from .export import Export
+from .flare import Flare
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
@@ -187,13 +187,13 @@ def lens(
     if ghosts.wanted:
         return ghosts.show(bench(), plot=plot, drawing=drawing, json=json)
     if veiling_glare:
-        from .lens_glare import show_glare
+        from .glare import show_glare
 
         return show_glare(bench(), json=json)
     if drawing is not None:
         _write_drawing(bench(), drawing)
     if point is not None:
-        from .lens_psf import show_psf
+        from .psf import show_psf
 
         return show_psf(bench(), *point, plot=plot, json=json, through_focus=through_focus)
     if plot is not None or json:

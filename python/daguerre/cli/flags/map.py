@@ -8,8 +8,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from . import console
-from .flags import option
+from daguerre.cli import console
+
+from .groups import option
 
 _MAPS = "Maps of the camera"
 

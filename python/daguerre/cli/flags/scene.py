@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from daguerre import units as q
 
-from .flags import Text, option
+from .groups import Text, option
 
 _LIGHT = "Scene and light"
 

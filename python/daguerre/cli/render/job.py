@@ -9,9 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.cli import console
 from daguerre.errors import InputError
-
-from . import console
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -42,10 +41,9 @@ class Job:
 
     def run(self, *, resume: bool, quiet: bool, as_json: bool) -> int:
         """Draws and saves; returns the exit code."""
+        from daguerre.cli import progress
         from daguerre.rendering.loop import Loop, Signals
         from daguerre.rendering.schedule import Range, Rounds, Work
-
-        from . import progress
 
         plan = self.plan
         work: Work = Range(self.session, plan.wanted)

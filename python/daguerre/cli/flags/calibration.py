@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.cli import console
 
-from . import console
-from .flags import Text, option
+from .groups import Text, option
 
 _CAMERA = "Camera"
 #: Parameters of lenses, and their flags.

@@ -9,6 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
+from daguerre.cli import console
+from daguerre.cli.flags.calibration import CalibrationFlags
+from daguerre.cli.flags.camera import CameraFlags
+from daguerre.cli.flags.groups import option, with_flags
+from daguerre.cli.flags.map import MapFlags
+from daguerre.cli.flags.scene import SceneFlags
+from daguerre.cli.flags.shutter import ShutterFlags
 from daguerre.errors import UsageError
 from daguerre.rendering.light_paths import (
     check_highlights,
@@ -17,18 +24,11 @@ from daguerre.rendering.light_paths import (
     check_used,
 )
 
-from . import console
-from .calibration_flags import CalibrationFlags
-from .camera_flags import CameraFlags
-from .flags import option, with_flags
+from .coco import coco_of
 from .frames import check_names, frame_numbers
-from .labels import coco_of
-from .map_flags import MapFlags
 from .photograph import Photograph
+from .pictures import Shoot, check_distinct, interrupted_early, pictures
 from .plan import DEFAULT_RESOLUTION, check_outputs, make_plan
-from .scene_flags import SceneFlags
-from .shoot import Shoot, check_distinct, interrupted_early, pictures
-from .shutter_flags import ShutterFlags
 from .views import check_places, views_of
 
 _OUTPUT = "Output"

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
+from daguerre.cli import console
 from daguerre.errors import DaguerreError, UsageError
-
-from . import console
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame

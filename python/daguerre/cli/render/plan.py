@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from daguerre import units as q
+from daguerre.cli.flags.map import MapFlags
 from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import ALWAYS, AOVS, DISPARITY, EXPOSED, TRUTH
 
 from .frames import numbered
-from .map_flags import MapFlags
 from .photograph import Photograph
 from .views import View, named
 

@@ -1,0 +1,1 @@
+"""``daguerre lens``: numbers, drawings and exports of a lens."""

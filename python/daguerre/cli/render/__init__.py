@@ -1,0 +1,1 @@
+"""``daguerre render``: from flags to finished files."""
