@@ -6,7 +6,7 @@
 Renders a scene through a pinhole in an instant, with depth and motion, and as its camera does;
 prints the errors of the pinhole's picture and of the fake: relMSE, less the noise of the truth, and
 PSNR on a screen (gamma 2.2, cut at 1). With --time for motion blur, without for depth of field.
-Scenes: examples/lens_scenes.py, examples/motion.py.
+Scenes: scenes/lens_scenes.py, scenes/motion.py.
 """
 
 from __future__ import annotations

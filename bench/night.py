@@ -3,7 +3,7 @@
     python bench/night.py --json [--radius 2 10 40] [--spp 32] [--w 960] [--h 540] [--plain]
     python bench/night.py --json --check [--spp 65536] [--batches 16]
 
-The scene is examples/lens_scenes/photographer.py without its glasses: a table in focus at 1.2 m
+The scene is scenes/lens_scenes/photographer.py without its glasses: a table in focus at 1.2 m
 and 100 sphere lamps, 3 to 8 m away, through the double Gauss 50 mm at f/2. --radius is the lamps',
 in mm; they shine as much whatever their size. Both sides draw --spp samples per pixel with each
 seed, in turn, on one thread; the pilot and the light paths are in the CPU seconds.
@@ -37,7 +37,7 @@ import daguerre as dg
 from daguerre.rendering.session import Session
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
+sys.path[:0] = [str(ROOT), str(ROOT / "scenes")]
 DATA = ROOT.parent / "shared" / "data"
 LENS = "double-gauss-50mm-f2"
 F_STOP = 2.0
@@ -123,7 +123,7 @@ def compare(scene: dg.Scene, camera: dg.Camera, options: argparse.Namespace) -> 
 
 
 def loaded(glb: Any) -> dg.Scene:
-    """A scene of the examples."""
+    """One of the scenes that the repository makes."""
     with tempfile.TemporaryDirectory() as folder:
         glb.write(Path(folder) / "scene.glb")
         return dg.load(Path(folder) / "scene.glb")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "script" / "docs" / "gallery"))
 from blender_lens import set_lens
 
 

@@ -42,7 +42,7 @@ def test_command_line_page_names_every_command():
 @pytest.mark.parametrize(
     "name",
     [
-        *("README.md", "examples/README.md", "script/demo"),
+        *("README.md", "scenes/README.md", "script/demo"),
         *("docs/motion.md", "docs/ground-truth.md", "docs/coming-from.md"),
         *("docs/gallery/README.md", "docs/gallery/calibrated.md"),
     ],

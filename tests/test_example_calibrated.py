@@ -16,7 +16,8 @@ from daguerre.calibration import read, read_kalibr
 from daguerre.cli import main
 
 ROOT = Path(__file__).resolve().parent.parent
-FILES = ROOT / "examples" / "calibrated"
+FILES = ROOT / "scenes" / "calibrated"
+GALLERY = ROOT / "script" / "docs" / "gallery"
 COLUMNS, ROWS, SQUARE, MARKER = 8, 5, 0.030, 0.021  # of the board on the desk
 
 
@@ -24,7 +25,7 @@ COLUMNS, ROWS, SQUARE, MARKER = 8, 5, 0.030, 0.021  # of the board on the desk
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("calibrated")
     for part in ("a", "b"):
-        script = [sys.executable, ROOT / "examples" / "calibrated.py", "-o", folder / part]
+        script = [sys.executable, ROOT / "scenes" / "calibrated.py", "-o", folder / part]
         subprocess.run(script, check=True, capture_output=True)
     first, second = (folder / part / "desk.glb" for part in ("a", "b"))
     assert first.read_bytes() == second.read_bytes()
@@ -127,7 +128,7 @@ def test_pictures_of_depth_and_of_boxes(
         ["depth_map.py", "d.exr", "depth.png", "0.4", "1.3"],
         ["coco_boxes.py", "c.json", "p.png", "boxes.png"],
     ):
-        subprocess.run([sys.executable, ROOT / "examples" / script, *given], check=True)
+        subprocess.run([sys.executable, GALLERY / script, *given], check=True)
     assert cv2.imread("depth.png").shape == (61 + 40, 81, 3)
     boxes, plain = cv2.imread("boxes.png"), cv2.imread("p.png")
     assert boxes.shape == plain.shape == (61, 81, 3)

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 def pinwheels(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("exposure")
     for part in ("a", "b"):
-        script = [sys.executable, str(ROOT / "examples" / "exposure.py"), "-o", str(folder / part)]
+        script = [sys.executable, str(ROOT / "scenes" / "exposure.py"), "-o", str(folder / part)]
         subprocess.run(script, check=True, capture_output=True)
     first, second = (folder / part / "pinwheels.glb" for part in ("a", "b"))
     assert first.read_bytes() == second.read_bytes()

@@ -1,4 +1,4 @@
-"""The six scenes of examples/extensions.py: every extension that is read has its picture."""
+"""The six scenes of scenes/extensions.py: every extension that is read has its picture."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PACKAGES = ("DracoPy", "opengl_basisu")
 
 
 def make(folder: Path, *flags: str) -> None:
-    script = ROOT / "examples" / "extensions.py"
+    script = ROOT / "scenes" / "extensions.py"
     subprocess.run([sys.executable, script, "-o", folder, *flags], check=True, capture_output=True)
 
 
@@ -68,7 +68,7 @@ def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
 
 
 def test_packed_meshes_are_what_was_packed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
+    monkeypatch.syspath_prepend(str(ROOT / "scenes"))
     from extensions import packed
 
     wanted = {"shell": packed._shell(), "urchin": packed._urchin(), "vase": packed._twisted_vase()}
@@ -116,7 +116,7 @@ def test_the_shelf_has_its_variants(folder: Path) -> None:
 def test_mosaics_have_a_stone_for_every_block(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
+    monkeypatch.syspath_prepend(str(ROOT / "scenes"))
     from extensions import plants
 
     scene = dg.load(folder / "garden.glb")

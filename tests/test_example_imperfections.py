@@ -1,4 +1,4 @@
-"""The scenes of examples/imperfections.py, and the page of the gallery that is made with them."""
+"""The scenes of scenes/imperfections.py, and the page of the gallery that is made with them."""
 
 from __future__ import annotations
 
@@ -20,16 +20,15 @@ from daguerre.post.recipe import from_words
 
 ROOT = Path(__file__).resolve().parent.parent
 GALLERY = ROOT / "docs" / "gallery"
-sys.path[:0] = [str(GALLERY), str(ROOT / "examples")]
+sys.path.insert(0, str(ROOT / "script" / "docs" / "gallery"))
 
+import axial_colour  # noqa: E402
+import polynomial_ghosts  # noqa: E402
 import word_page  # noqa: E402
 from agreement import compare, displacement, fringes  # noqa: E402
 from sheet import compose  # noqa: E402
 from ways import Panel, Word  # noqa: E402
 from words import WEAK, WORDS  # noqa: E402
-
-import axial_colour  # noqa: E402
-import polynomial_ghosts  # noqa: E402
 
 SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk")
 COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in panel.commands]
@@ -43,7 +42,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def make(folder: Path) -> None:
-    script = ROOT / "examples" / "imperfections.py"
+    script = ROOT / "scenes" / "imperfections.py"
     subprocess.run([sys.executable, script, "-o", folder], check=True, capture_output=True)
 
 
@@ -93,7 +92,7 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which the page's commands find their scenes."""
     made = tmp_path_factory.mktemp("page")
     make(made / "out" / "imperfections")
-    lamps = [ROOT / "examples" / "lens_scenes.py", "--only", "lamps"]
+    lamps = [ROOT / "scenes" / "lens_scenes.py", "--only", "lamps"]
     subprocess.run([sys.executable, *lamps], check=True, cwd=made, capture_output=True)
     return made
 
@@ -120,7 +119,7 @@ def small(command: str) -> str:
         command = re.sub(flag, lambda m: re.sub(r"\d+", tenth, m[0]), command)
     for flag, value in (("spp", 2), ("light-paths", 1000), ("flare", 1000)):
         command = re.sub(rf"--{flag} \d+", f"--{flag} {value}", command)
-    command = re.sub(r"(?<![\w/])examples/", f"{ROOT}/examples/", command)
+    command = re.sub(r"(?<![\w/])(?=(scenes|script)/)", f"{ROOT}/", command)
     return f"{command} --count 2" if "polynomial_ghosts" in command else command
 
 

@@ -1,4 +1,4 @@
-"""The scenes of examples/lens_scenes.py: the same every time, read without a note, and lit."""
+"""The scenes of scenes/lens_scenes.py: the same every time, read without a note, and lit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def make(folder: Path, *flags: str) -> None:
-    script = ROOT / "examples" / "lens_scenes.py"
+    script = ROOT / "scenes" / "lens_scenes.py"
     subprocess.run([sys.executable, script, "-o", folder, *flags], check=True, capture_output=True)
 
 

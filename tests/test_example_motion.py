@@ -1,4 +1,4 @@
-"""The scenes of examples/motion.py: the same every time, read without a note, and they move."""
+"""The scenes of scenes/motion.py: the same every time, read without a note, and they move."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOVING = {
 
 
 def make(folder: Path) -> None:
-    script = ROOT / "examples" / "motion.py"
+    script = ROOT / "scenes" / "motion.py"
     subprocess.run([sys.executable, script, "-o", folder], check=True, capture_output=True)
 
 
@@ -76,7 +76,7 @@ def test_the_street_zooms(folder: Path) -> None:
 def test_propellers_agree_or_differ_as_their_interpolations_say(
     folder: Path, tmp_path: Path
 ) -> None:
-    script, sheet = ROOT / "examples" / "propellers.py", tmp_path / "sheet.png"
+    script, sheet = ROOT / "script" / "docs" / "gallery" / "propellers.py", tmp_path / "sheet.png"
     flags = ["--scene", folder / "plane.glb", "--size", "32", "--spp", "4"]
     subprocess.run([sys.executable, script, sheet, *flags], check=True, capture_output=True)
     pixels = decode(sheet.read_bytes(), "sheet").astype(float)

@@ -1,4 +1,4 @@
-"""The example scene: made the same twice, small, and full of what the demo is to show."""
+"""The scene of the demo: made the same twice, small, and full of what the demo is to show."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def make(path: Path) -> None:
-    script = ROOT / "examples" / "night_table.py"
+    script = ROOT / "scenes" / "night_table.py"
     subprocess.run([sys.executable, str(script), str(path)], check=True, capture_output=True)
 
 
 @pytest.fixture(scope="module")
 def night_table(tmp_path_factory) -> Path:
-    path = tmp_path_factory.mktemp("examples") / "night_table.glb"
+    path = tmp_path_factory.mktemp("scenes") / "night_table.glb"
     make(path)
     return path
 

@@ -17,7 +17,7 @@ PAGE = (ROOT / "docs" / "lens-catalogue.md").read_text(encoding="utf-8")
 
 
 def module(monkeypatch: pytest.MonkeyPatch, name: str) -> ModuleType:
-    monkeypatch.syspath_prepend(str(ROOT / "docs" / "lenses"))
+    monkeypatch.syspath_prepend(str(ROOT / "script" / "docs" / "lenses"))
     return __import__(name)
 
 
@@ -27,7 +27,7 @@ def numbers(text: str) -> list[float]:
 
 def test_every_lens_has_its_section_and_its_numbers() -> None:
     sections = {part.split("\n", 1)[0]: part for part in PAGE.split("\n### ")[1:]}
-    assert set(sections) == set(library.names()), "run script/make-lens-catalogue"
+    assert set(sections) == set(library.names()), "run script/docs/make-lens-catalogue"
     for entry in library.entries():
         text = sections[entry.name]
         assert f"**{entry.title}** ({entry.year})" in text

@@ -171,6 +171,6 @@ def test_the_folder_is_part_of_the_package() -> None:
 def test_the_page_of_the_library_is_up_to_date(tmp_path: Path) -> None:
     root = Path(__file__).parents[1]
     page = tmp_path / "page.md"
-    command = [sys.executable, str(root / "script" / "make-lens-table"), str(page)]
+    command = [sys.executable, str(root / "script" / "docs" / "make-lens-table"), str(page)]
     subprocess.run(command, check=True)
     assert page.read_bytes() == (root / "docs" / "lens-library.md").read_bytes()

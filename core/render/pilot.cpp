@@ -20,7 +20,7 @@ constexpr std::uint64_t kPathsPerTask = 1024;
 constexpr std::uint64_t kOwnRandom = 0x9170;
 
 // Prices in rays, one of which with all that happens where it ends takes 350 to 750 ns. Measured on the
-// table of examples/lens_scenes/photographer.py with bench/night.py's cameras; they need not be sharp, as
+// table of scenes/lens_scenes/photographer.py with bench/night.py's cameras; they need not be sharp, as
 // the error is flat about the best plan.
 constexpr double kSample = 0.4;             // a camera sample without its rays and its lens
 constexpr double kPath = 0.4;               // a light path without these

@@ -1,6 +1,6 @@
 """A small glTF 2.0 writer: meshes, pictures, materials, nodes and animations into one .glb file.
 
-Charts and the example scenes are made with it.
+Public: charts, and the programs in ``scenes/``, write their files with it.
 """
 
 from __future__ import annotations

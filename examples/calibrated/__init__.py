@@ -1,1 +1,0 @@
-"""Scenes of examples/calibrated.py, and files of calibrations."""

@@ -1,1 +1,0 @@
-"""Scenes of examples/exposure.py."""

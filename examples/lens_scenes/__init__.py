@@ -1,1 +1,0 @@
-"""Scenes in which lenses are compared; see examples/lens_scenes.py."""

@@ -1,1 +1,0 @@
-"""Scenes of examples/motion.py: each shows one way in which a picture blurs."""

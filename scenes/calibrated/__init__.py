@@ -1,0 +1,1 @@
+"""Parts of the scene that calibrated.py makes, and files of calibrations."""

@@ -1,0 +1,1 @@
+"""Scenes that exposure.py makes."""

@@ -1,0 +1,17 @@
+#!/usr/bin/env python3
+"""Makes scenes for the imperfections of lenses: wheel, chart, fair, strings, wall, trees, dusk.
+
+    python scenes/imperfections.py [-o FOLDER] [--only NAME]     (default: out/imperfections)
+
+Everything is made by arithmetic: no downloads, the same bytes on every run. What is seen shines by
+itself, so that `--max-depth 1` is enough, and differences between pictures are those of the lens.
+"""
+
+from __future__ import annotations
+
+from kit.command import write_scenes
+
+SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk")
+
+if __name__ == "__main__":
+    write_scenes("imperfections", SCENES, __doc__ or "")

@@ -1,0 +1,1 @@
+"""Scenes in which lenses are compared; see scenes/lens_scenes.py."""

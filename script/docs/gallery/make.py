@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""Renders the gallery and writes its page, so that each picture stands above its own command.
+
+    .venv/bin/python script/docs/gallery/make.py [--data FOLDER] [--only NAME] [--page]
+
+FOLDER holds the chess set (scenes/open_chess_set_512.glb) and the panorama
+(hdri/st_peters_square_night_1k.hdr) that the repository does not ship; without it those pictures
+stay as they are. --page writes the pages alone. What is shown is in pictures.py and words.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import calibrations
+import numpy as np
+import OpenImageIO as oiio
+import photograph_page
+import photographs
+import word_page
+from numpy.typing import NDArray
+from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
+from words import WORDS
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = ROOT / "docs" / "gallery"
+SCENES = (
+    ["night_table.py", NIGHT],
+    ["extensions.py"],
+    ["motion.py"],
+    ["lens_scenes.py"],
+    ["imperfections.py"],
+    ["exposure.py"],
+    ["calibrated.py"],
+)
+
+INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
+
+ABOUT_MOTION = """## Motion
+
+What moves while the shutter is open is blurred; [motion.md](../motion.md) tells how. A sheet of
+several pictures has a command for each.
+"""
+
+ABOUT_GLASS = """## Glass
+
+Real lenses, by their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
+through each of the library.
+"""
+
+ABOUT_LIGHT = """## Light that finds its way to the sensor
+
+Light is followed from the lamps too; [light-paths.md](../light-paths.md) tells how. Nothing is
+denoised here.
+"""
+
+ABOUT_WORDS = """## Imperfections
+
+Spherical aberration, coma, colour, astigmatism, distortion, vignetting, flares, bloom, halos and
+stars, each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
+"""
+
+ABOUT_PHOTOGRAPHS = """## Photographs
+
+What sensors and films make of the light: the exposure triangle, ISO 100 beside ISO 25600, raw files
+developed by Daguerre and by LibRaw, film: [a page of its own](exposure.md).
+"""
+
+ABOUT_CALIBRATED = """## Calibrated cameras
+
+![A desk through a phone, a fisheye, and a stereo camera with its depth.](calibrated.jpg)
+
+One desk through files as OpenCV, ROS and Kalibr write them: a phone, a fisheye of 190 degrees, the
+left one of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
+"""
+
+ABOUT_BLENDER = """## A lens that left
+
+![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
+
+Blender's default scene through a double Gauss at f/2 that Daguerre exported; the commands, and the
+same by Blender's own camera: [export.md](../export.md).
+"""
+
+CREDITS = """
+The night table is made by [scenes/night_table.py](../../scenes/night_table.py), what lies in
+`out/extensions` by [scenes/extensions.py](../../scenes/extensions.py), in `out/motion` by
+[scenes/motion.py](../../scenes/motion.py), and in `out/lens_scenes` by
+[scenes/lens_scenes.py](../../scenes/lens_scenes.py). The chess set is
+"Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
+The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
+holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
+`--denoise` needs the extra of that name: `pip install ".[denoise]"`; the garden's mosaics need
+`".[compression]"`.
+"""
+
+
+def run(command: str, data: Path | None) -> None:
+    """Runs one command of the page, in the root of the repository."""
+    program, *rest = shlex.split(command.replace("DATA", str(data)))
+    own = [sys.executable] if program == "python" else [sys.executable, "-m", "daguerre.cli"]
+    subprocess.run([*own, *rest], check=True, cwd=ROOT)
+
+
+def pixels_of(output: str, squeeze: float) -> list[NDArray[np.uint8]]:
+    """The picture, or those of a sequence, that a command wrote."""
+    files = sorted(ROOT.glob(output.replace("#", "[0-9]")))
+    return [shown(oiio.ImageBuf(str(file)), squeeze) for file in files]
+
+
+def shown(panel: oiio.ImageBuf, squeeze: float) -> NDArray[np.uint8]:
+    """The pixels of a panel, less high by the squeeze of its lens."""
+    if squeeze != 1:
+        size = panel.spec().width, round(panel.spec().height / squeeze)
+        panel = oiio.ImageBufAlgo.resize(panel, roi=oiio.ROI(0, size[0], 0, size[1]))
+    return panel.get_pixels(oiio.UINT8)[..., :3]
+
+
+def render(picture: Picture, data: Path | None) -> None:
+    """Renders one picture, panel by panel, and keeps it as a JPEG."""
+    (ROOT / "out" / "gallery").mkdir(parents=True, exist_ok=True)
+    panels = []
+    for command, output in picture.commands("out/gallery"):
+        for old in ROOT.glob(output.replace("#", "[0-9]")):
+            old.unlink()
+        run(command, data)
+        panels += pixels_of(output, picture.squeeze)
+    rows = [panels[k : k + picture.columns] for k in range(0, len(panels), picture.columns)]
+    sheet = np.concatenate([np.concatenate(row, axis=1) for row in rows])
+    pixels = oiio.ImageBuf(np.ascontiguousarray(sheet))
+    pixels.specmod().attribute("Compression", "jpeg:90")
+    if not pixels.write(str(PAGES / f"{picture.name}.jpg")):
+        raise SystemExit(pixels.geterror())
+
+
+def section(pictures: list[Picture]) -> list[str]:
+    """Pictures, titles and commands of those that have been rendered."""
+    parts = []
+    for picture in pictures:
+        if (PAGES / f"{picture.name}.jpg").exists():
+            typed = "\n".join(command for command, _ in picture.commands("out"))
+            shown = f"![{picture.title}]({picture.name}.jpg)"
+            parts.append(f"{shown}\n\n{picture.title}\n\n```\n{typed}\n```\n")
+    return parts
+
+
+def main() -> None:
+    """Renders what was asked for, then writes the page."""
+    every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
+    sheets = [*photographs.SHEETS, *calibrations.SHEETS]
+    names = [picture.name for picture in [*every, *WORDS, *sheets]]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path)
+    parser.add_argument("--only", action="append", choices=["calibrated", *names])
+    parser.add_argument("--page", action="store_true")
+    given = parser.parse_args()
+    if not given.page:
+        for script, *rest in SCENES:
+            subprocess.run([sys.executable, f"scenes/{script}", *rest], check=True, cwd=ROOT)
+        for picture in every:
+            wanted = not given.only or picture.name in given.only
+            if wanted and (given.data or not picture.needs_data):
+                render(picture, given.data and given.data.resolve())
+        for word in WORDS:
+            if not given.only or word.name in given.only:
+                word_page.make(word, lambda command: run(command, None))
+        for sheet in sheets:
+            if not given.only or sheet.name in given.only:
+                photograph_page.make(sheet, lambda command: run(command, None))
+        if not given.only or any(name.startswith("calibrated") for name in given.only):
+            photograph_page.overview("calibrated", calibrations.OVERVIEW)
+    page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
+    page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED]
+    page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER, ABOUT_MOTION, *section(MOTION)]
+    (PAGES / "README.md").write_text("\n".join(page) + CREDITS)
+    (PAGES / "imperfections.md").write_text(word_page.page())
+    (PAGES / "exposure.md").write_text(
+        photograph_page.page(photographs.INTRODUCTION, photographs.SHEETS)
+    )
+    (PAGES / "calibrated.md").write_text(
+        photograph_page.page(calibrations.INTRODUCTION, calibrations.SHEETS)
+    )
+
+
+if __name__ == "__main__":
+    main()

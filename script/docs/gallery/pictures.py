@@ -1,0 +1,399 @@
+"""What the gallery shows: each picture with the commands that made it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+NIGHT = "out/night_table.glb"
+GAUSS = "--lens double-gauss-50mm-f2"
+COMMON = "--res 750x500 --tone soft"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One picture: its file, what it shows, and the arguments of `daguerre render`.
+
+    Several flags make a sheet of as many panels, side by side in `columns`; a command that writes
+    `--frames` gives a panel for each. A scene that is a Python script makes the picture by itself.
+    What an anamorphic lens has squeezed is stretched back by making the panels less high.
+    """
+
+    name: str
+    title: str
+    scene: str
+    flags: str | tuple[str, ...]
+    needs_data: bool = False
+    columns: int = 1
+    squeeze: float = 1.0
+
+    def commands(self, folder: str) -> list[tuple[str, str]]:
+        """What is typed for each panel, and the file that comes of it; #### counts frames."""
+        if self.scene.endswith(".py"):
+            output = f"{folder}/{self.name}.png"
+            return [(f"python {self.scene} {output} {self.flags}".strip(), output)]
+        flags = (self.flags,) if isinstance(self.flags, str) else self.flags
+        made = []
+        for k, given in enumerate(flags):
+            number = f"_{k + 1}" if len(flags) > 1 else ""
+            frames = ".####" if "--frames" in given else ""
+            output = f"{folder}/{self.name}{number}{frames}.png"
+            common = COMMON if "--res" not in given else "--tone soft"
+            made.append((f"daguerre render {self.scene} {given} {common} -o {output}", output))
+        return made
+
+
+PICTURES = [
+    Picture(
+        "night_table",
+        "The scene of the demo through a double Gauss at f/2.",
+        NIGHT,
+        f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
+    ),
+    Picture(
+        "pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 64 --denoise"
+    ),
+    Picture(
+        "focus_far",
+        "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",
+        NIGHT,
+        "--lens thin --f-stop 2 --focus 5.6 --spp 64 --denoise",
+    ),
+    Picture(
+        "focus_medium",
+        "The same, focal plane at medium distance: the garland, 2.4 m.",
+        NIGHT,
+        "--lens thin --f-stop 2 --focus 2.4 --spp 64 --denoise",
+    ),
+    Picture(
+        "focus_close",
+        "The same, focal plane close by: dice and bearings, 0.64 m.",
+        NIGHT,
+        "--lens thin --f-stop 2 --focus 0.64 --spp 64 --denoise",
+    ),
+    Picture(
+        "aperture_small",
+        "The double Gauss at f/16: a small aperture, great depth.",
+        NIGHT,
+        f"{GAUSS} --f-stop 16 --spp 64 --denoise",
+    ),
+    Picture(
+        "aperture_large",
+        "The double Gauss at f/2: a large aperture, a shallow plane.",
+        NIGHT,
+        f"{GAUSS} --f-stop 2 --focus 0.64 --spp 64 --denoise",
+    ),
+    Picture(
+        "bokeh",
+        "Bokeh close up: lamps far behind the focus draw the pupil of the glass. In the middle it "
+        "is round; toward the edge of the field the rims of the lens cut it to a cat's eye.",
+        NIGHT,
+        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
+    ),
+    Picture(
+        "bokeh_blades",
+        "The same close-up through six straight blades at f/2.8.",
+        NIGHT,
+        f"{GAUSS} --f-stop 2.8 --focus 0.5 --blades 6 --blade-curvature 0 "
+        "--res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
+    ),
+    Picture(
+        "chess",
+        "Open chess set through the double Gauss at f/2, lit by a night panorama of a square.",
+        "DATA/scenes/open_chess_set_512.glb",
+        f"{GAUSS} --f-stop 2 --env DATA/hdri/st_peters_square_night_1k.hdr --spp 64 --denoise",
+        needs_data=True,
+    ),
+]
+
+EXTENSIONS = "out/extensions"
+SMALL = "--res 600x400 --spp 48 --denoise"
+PICTURES += [
+    Picture(
+        "octopus",
+        "Skins, morph targets and colours 3.4 s into their round, through the double Gauss.",
+        f"{EXTENSIONS}/octopus.glb",
+        f"{GAUSS} --time 3.4 {SMALL}",
+    ),
+    Picture(
+        "garden",
+        "Thousands of instances: grass, poppies and a hedge whose leaves let the low sun through.",
+        f"{EXTENSIONS}/garden.glb",
+        SMALL,
+    ),
+    Picture(
+        "street",
+        "Signs and neon tubes of thousands of emissive triangles, through a wide angle at f/2.",
+        f"{EXTENSIONS}/street.glb",
+        f"--lens wide-angle-35mm-f2 {SMALL}",
+    ),
+    Picture(
+        "glass",
+        "Cut stones and a prism that disperse, coloured glass, a lantern of paper around a bulb.",
+        f"{EXTENSIONS}/glass.glb",
+        SMALL,
+    ),
+]
+
+SCENES = "out/motion"
+DENOISED = "--spp 48 --denoise"
+WIDE, FULL = f"--res 600x300 {DENOISED}", f"--res 600x400 {DENOISED}"
+
+MOTION = [
+    Picture(
+        "billiards",
+        'Moving objects, after "1984" of Cook, Porter and Carpenter: the 1 rests, the 9 strikes '
+        "the white while the shutter is open, the 8 moves only in the middle of the exposure, the "
+        "4 only at its end.",
+        f"{SCENES}/billiards.glb",
+        f"--time 0.25 --shutter 1/24 {FULL}",
+    ),
+    Picture(
+        "panning",
+        "A car at 70 km/h and 1/60 s: a camera that stands, and a fast panning shot that follows "
+        "the car. The body is sharp then; the wheels still turn, and what is far smears as much as "
+        "what is near.",
+        f"{SCENES}/racer.glb",
+        (
+            f"--camera still --time 0.5 --shutter 1/60 {WIDE}",
+            f"--camera pan --time 0.5 --shutter 1/60 {WIDE}",
+        ),
+    ),
+    Picture(
+        "moving_camera",
+        "Moving cameras: a zoom burst from 45.5 to 52.5 mm, and driving down the street at 8 m/s, "
+        "which smears what is near and leaves what is far.",
+        f"{SCENES}/street.glb",
+        (
+            f"--camera zoom --time 0.5 --shutter 1/6 {WIDE}",
+            f"--camera drive --time 0.5 --shutter 1/8 {WIDE}",
+        ),
+    ),
+    Picture(
+        "cradle",
+        "Reflections and shadows of what moves: the ball that comes down is blurred in itself, on "
+        "the board, in its neighbours and in its shadow.",
+        f"{SCENES}/cradle.glb",
+        f"--time 0.15 --shutter 1/30 {FULL}",
+    ),
+    Picture(
+        "strobing",
+        "Strobing. Five frames of a wheel that turns 129 degrees from frame to frame: with the "
+        "shutter at 0 it creeps backwards, sharp; at 180 degrees the spokes are blurred, and the "
+        "eye is not fooled.",
+        f"{SCENES}/racer.glb",
+        (
+            "--camera wheel --time 0.3 --frames 1-5 --shutter 0 --res 120x120 --spp 64 --denoise",
+            "--camera wheel --time 0.3 --frames 1-5 --shutter-angle 180 --res 120x120 --spp 64 "
+            "--denoise",
+        ),
+        columns=5,
+    ),
+    Picture(
+        "propellers",
+        "Two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), interpolated linear, "
+        "by twist, decomposed, and said as a spin (columns). Linear points go straight, so the "
+        "blades shrink: at 170 degrees to the axis, and out again. Keys that are whole turns apart "
+        "are one pose; that is what a spin is for.",
+        "script/docs/gallery/propellers.py",
+        "--spp 64",
+    ),
+    Picture(
+        "shutters",
+        "The same propeller, 24 turns a second, through four shutters: 1/4000 s; 1/250 s; lines "
+        "read out from the top in 25 ms; the same from the left.",
+        f"{SCENES}/plane.glb",
+        tuple(
+            f"--time 0.5 {shutter} --res 300x200 --spp 64 --denoise"
+            for shutter in (
+                "--shutter 1/4000",
+                "--shutter 1/250",
+                "--shutter 1/2000 --rolling top,25ms",
+                "--shutter 1/2000 --rolling left,25ms",
+            )
+        ),
+        columns=2,
+    ),
+    Picture(
+        "focal_plane",
+        "The slit of a focal-plane shutter, 1/500 s wide and 1/12 s on its way from the bottom of "
+        "the picture to the top, in a camera that pans with half the speed of the car: wheels lean "
+        "forward and trees back, as in Lartigue's photograph of 1912.",
+        f"{SCENES}/racer.glb",
+        "--camera slow --time 0.53 --shutter 1/500 --shutter-type focal_plane "
+        f"--rolling bottom,1/12 {FULL}",
+    ),
+    Picture(
+        "leaf",
+        "Bokeh through a shutter that is open at once, and through a leaf shutter that is never at "
+        "rest: the rim of the lens is open for a shorter time than its middle, so discs are soft.",
+        NIGHT,
+        tuple(
+            f"--lens thin --f-stop 2 --focus 0.5 --shutter 1/500 {kind} "
+            "--res 900x600 --crop 0,300,25,325 --spp 64 --denoise"
+            for kind in ("--shutter-type box", "--shutter-type leaf --shutter-curve trapezoid:0.5")
+        ),
+        columns=2,
+    ),
+    Picture(
+        "lamp",
+        "One second of a bulb that swings and goes out five times a second: a lamp that moves and "
+        "dims lights what is around it from all of its places, and writes its way in dashes.",
+        f"{SCENES}/lamp.glb",
+        f"--time 0.5 --shutter 1s {FULL}",
+    ),
+    Picture(
+        "octopus_moving",
+        "Skins and morph targets: the octopus, half a second.",
+        f"{EXTENSIONS}/octopus.glb",
+        f"--time 1.2 --shutter 1/2 --f-stop 8 {FULL}",
+    ),
+    Picture(
+        "chess_moving",
+        "The chess set's knight jumps and its camera moves, from the file alone.",
+        "DATA/scenes/open_chess_set_512.glb",
+        "--time 0.15 --shutter 1/12 --f-stop 8 --env DATA/hdri/st_peters_square_night_1k.hdr "
+        f"{FULL}",
+        needs_data=True,
+    ),
+]
+
+LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
+DISCS = "--max-depth 1 --spp 128 --denoise"
+FINE_DISCS = "--max-depth 1 --spp 512"  # the denoiser would draw cracks into them
+FROM_LAMPS = "--res 375x250 --max-depth 1 --spp 48"
+PANEL = "--res 375x250 --spp 32 --denoise"
+TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8 --focus-at 187,137"
+ZOOM = "--camera zoom --lens nikon-af-s-70-200mm-f2.8 --f-stop 4"
+THIRD = "--res 250x167 --spp 32 --denoise"
+VIEW = "--lens rodenstock-grandagon-n-90mm-f4.5 --sensor 127x102 --f-stop 11 --focus 8"
+
+GLASS = [
+    Picture(
+        "four_lenses",
+        "One scene, one place, four lenses, as in Kolb, Mitchell and Hanrahan 1995: telephoto "
+        "180 mm, double Gauss 50 mm, wide angle 35 mm, fisheye 16 mm.",
+        ARCADE,
+        tuple(
+            f'--camera "one place" --lens {name} --f-stop 2.8 {PANEL}'
+            for name in (
+                "zeiss-olympia-sonnar-180mm-f2.8",
+                "double-gauss-50mm-f2",
+                "wide-angle-35mm-f2",
+                "fisheye-16mm-f2.8",
+            )
+        ),
+        columns=2,
+    ),
+    Picture(
+        "cat_eyes",
+        "Small lamps far behind the focus draw the pupil of a fast lens over the whole frame: "
+        "round in the middle, and cut by the rims of the first and the last glass toward the "
+        "corners. The fringes are its lateral and axial colour.",
+        LAMPS,
+        f"--lens canon-50mm-f0.95 --f-stop 0.95 --res 750x500 {DISCS}",
+    ),
+    Picture(
+        "polynomial",
+        "The same bokeh from exact lenses, left, and from polynomials of degree 9 that were fitted "
+        "to them, right: a lens at f/0.95, and six blades at f/2.8.",
+        LAMPS,
+        tuple(
+            f"{lens} --lens-model {model} {FROM_LAMPS}"
+            for lens in (
+                "--lens canon-50mm-f0.95 --f-stop 0.95",
+                f"{GAUSS} --f-stop 2.8 --blades 6 --blade-curvature 0 --focus 0.5",
+            )
+            for model in ("exact", "polynomial --degree 9")
+        ),
+        columns=2,
+    ),
+    Picture(
+        "bubbles",
+        "Soap bubbles and cream: a Biotar of 1927 draws discs of light with a bright edge, a "
+        "lens for soft portraits without one. That is spherical aberration, over- and "
+        "undercorrected.",
+        LAMPS,
+        (
+            f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
+            f"--crop 375,750,250,500 {FINE_DISCS}",
+            f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
+            f"--crop 375,750,250,500 {FINE_DISCS}",
+        ),
+        columns=2,
+    ),
+    Picture(
+        "tilt",
+        "A lens for product photography at f/2.8, straight and tilted by 7.1 degrees: film, lens "
+        "and the top of the table then meet in one line (Scheimpflug), and all of it is sharp.",
+        "out/lens_scenes/long_table.glb",
+        tuple(f"{TABLE}{tilt} {PANEL}" for tilt in ("", " --tilt=-7.1,0")),
+        columns=2,
+    ),
+    Picture(
+        "shift",
+        "A view camera: turned up, the columns lean; level, with the film shifted, they stand.",
+        ARCADE,
+        (
+            f'--camera "tilted up" {VIEW} --res 375x300 --spp 32 --denoise',
+            f"--camera level {VIEW} --shift 0,32 --res 375x300 --spp 32 --denoise",
+        ),
+        columns=2,
+    ),
+    Picture(
+        "anamorphic",
+        "A true anamorphic lens, stretched back by its squeeze: lamps out of focus are upright "
+        "ovals.",
+        ARCADE,
+        "--camera portrait --lens schneider-anamorphic-60mm --f-stop 2.9 --sensor 24.9x20.7 "
+        "--res 750x624 --spp 24 --denoise",
+        squeeze=1.9,
+    ),
+    Picture(
+        "zoom",
+        "A zoom of 41 surfaces at 72, 100, 140 and 195 mm; and at 140 mm focused at infinity and "
+        "at 1.8 m: the field changes with the focus, it breathes.",
+        ARCADE,
+        tuple(f"{ZOOM} --zoom {mm} {THIRD}" for mm in (72, 100, 140, 195))
+        + tuple(f"{ZOOM} --zoom 140 --focus {m} {THIRD}" for m in ("inf", "1.8")),
+        columns=3,
+    ),
+    Picture(
+        "soft",
+        "A lens for soft focus, wide open and stopped down by two: a sharp picture under a veil, "
+        "and the picture alone.",
+        ARCADE,
+        tuple(
+            f"--camera portrait --lens mamiya-sekor-sf-150mm-f4 --sensor 69.5x46.3 "
+            f"--f-stop {n} {PANEL}"
+            for n in (4, 8)
+        ),
+        columns=2,
+    ),
+]
+
+PHOTOGRAPHER = f"{GAUSS} --f-stop 2 --res 600x338"
+CAUSTICS = f"{GAUSS} --f-stop 4 --res 480x320"
+LIGHT = [
+    Picture(
+        "night_lamps",
+        "A hundred lamps of 2 mm behind a photographer's table, in equal CPU time: paths from the "
+        "lens only, above, and light paths beside them, below.",
+        "out/lens_scenes/photographer.glb",
+        (
+            f"{PHOTOGRAPHER} --spp 48 --light-paths off",
+            f"{PHOTOGRAPHER} --spp 40 --light-paths 65536",
+        ),
+    ),
+    Picture(
+        "caustics",
+        "What a ball of glass, a glass of wine and a ring of brass throw on the table, in equal "
+        "CPU time: paths from the lens only, left, and light paths with bounces beside them, "
+        "right.",
+        "out/lens_scenes/caustics.glb",
+        (
+            f"{CAUSTICS} --spp 120 --light-paths off",
+            f"{CAUSTICS} --spp 64 --light-paths 0,100000",
+        ),
+        columns=2,
+    ),
+]

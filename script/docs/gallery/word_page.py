@@ -1,0 +1,118 @@
+"""The page of imperfections: a sheet, its commands and its figures for each word of the lecture."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+from agreement import Figures, agreement
+from sheet import compose
+from ways import OUT, Panel, Word
+from words import WORDS
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = ROOT / "docs" / "gallery"
+FIGURES = PAGES / "agreement.json"
+
+INTRODUCTION = """# Imperfections, three ways
+
+One sheet of pictures per word of the list that lectures on cameras have: spherical aberration,
+coma, chromatic aberration, astigmatism, radial distortion, vignetting, lens flares, bloom, halos
+and stars; and one of field curvature. From left to right:
+
+- **traced**: exact rays through every surface of a lens;
+- **polynomial**: polynomials that were fitted to those rays ([polynomial.md](../polynomial.md));
+- **2D**: a pinhole's picture, to which effects of the darkroom were added afterwards
+  ([darkroom.md](../darkroom.md), [diffraction.md](../diffraction.md)).
+
+Nothing is denoised. The scenes shine by themselves (`--max-depth 1`), so that what differs is the
+lens; all panels of a sheet are exposed alike. Begin with
+
+```
+python scenes/imperfections.py
+python scenes/lens_scenes.py --only lamps
+```
+
+The commands write OpenEXR pictures; `python script/docs/gallery/make.py --only NAME` runs them,
+composes the sheet (`--tone soft`) and measures, against the traced picture of the row:
+
+| figure | |
+|---|---|
+| light | of the whole picture over the traced one's |
+| moved | how far details lie from where they are traced, px: the largest of 6 x 4 blocks |
+| relMSE | mean of (difference)^2 / (traced^2 + 0.01), with the noise of both |
+| noise | the relMSE that the traced picture's own noise makes |
+
+Polynomials draw with the same random numbers as the lens, so most of their noise is the same.
+Where shapes differ, as of discs and ghosts, displacement says little.
+"""
+
+
+def make(word: Word, run: Callable[[str], None]) -> None:
+    """Renders a word's pictures, composes the sheet and keeps its figures."""
+    (ROOT / OUT).mkdir(parents=True, exist_ok=True)
+    for panel in panels(word):
+        for command in panel.commands:
+            run(command)
+    pixels = oiio.ImageBuf(np.ascontiguousarray(compose(word, ROOT / OUT)))
+    pixels.specmod().attribute("Compression", f"jpeg:{word.quality}")
+    if not pixels.write(str(PAGES / f"{word.name}.jpg")):
+        raise SystemExit(pixels.geterror())
+    known = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
+    known[word.name] = [_rounded(figures) for figures in agreement(word, ROOT / OUT)]
+    FIGURES.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
+
+
+def panels(word: Word) -> Iterable[Panel]:
+    """All pictures of a word."""
+    return (panel for row in word.rows for panel in row)
+
+
+def page() -> str:
+    """The text of the page, of words whose sheets have been made."""
+    known = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
+    made = [word for word in WORDS if (PAGES / f"{word.name}.jpg").exists()]
+    return "\n".join([INTRODUCTION, *(section(word, known.get(word.name, [])) for word in made)])
+
+
+def section(word: Word, figures: list[Figures]) -> str:
+    """A sheet with its text, commands and figures."""
+    parts = [f"## {word.heading}\n", f"![{word.heading}]({word.name}.jpg)\n", f"{word.text}\n"]
+    for panel in panels(word):
+        if panel.commands:
+            typed = "\n".join(panel.commands)
+            parts.append(f"{panel.caption[0].upper()}{panel.caption[1:]}:\n\n```\n{typed}\n```\n")
+    return "\n".join([*parts, *table(figures)])
+
+
+def table(figures: list[Figures]) -> list[str]:
+    """The figures, a line each."""
+    if not figures:
+        return []
+    names = [n for n in ("light", "moved", "relmse", "noise", "red", "blue")
+             if any(n in line for line in figures)]  # fmt: skip
+    shown = {"relmse": "relMSE", "moved": "moved, px", "red": "red from green, px",
+             "blue": "blue from green, px"}  # fmt: skip
+    lines = ["| | " + " | ".join(shown.get(n, n) for n in names) + " |", "|---" * (len(names) + 1)]
+    lines[1] += "|"
+    for line in figures:
+        values = [_number(line.get(n)) for n in names]
+        lines.append(f"| {line['picture']} | " + " | ".join(values) + " |")
+    return [*lines, ""]
+
+
+def _number(value: float | str | None) -> str:
+    return f"{value:.3g}" if isinstance(value, float | int) else ""
+
+
+def _rounded(figures: Figures) -> Figures:
+    """Three digits, and nothing where there is no number."""
+    return {
+        name: float(f"{value:.3g}") if isinstance(value, float) else value
+        for name, value in figures.items()
+        if not (isinstance(value, float) and math.isnan(value))
+    }

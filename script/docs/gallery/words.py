@@ -1,0 +1,499 @@
+"""The lecture's list of imperfections: for each word a sheet of pictures with their commands."""
+
+from __future__ import annotations
+
+from ways import OUT, Panel, Ways, Word, post, render
+
+DARK = "--max-depth 1"
+STRINGS, WHEEL, CHART, FAIR = (
+    f"{OUT}/{name}.glb" for name in ("strings", "wheel", "chart", "fair")
+)
+WALL, TREES, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "dusk"))
+NOKTON = "voigtlander-nokton-50mm-f1.5"
+PANCOLAR = "zeiss-jena-pancolar-50mm-f2"
+PETZVAL = "petzval-100mm-f2.2"
+ROKKOR = "minolta-mc-rokkor-58mm-f1.2"
+BIOTAR = "zeiss-biotar-50mm-f1.4"
+ZOOM, FISHEYE = "nikon-z-14-30mm-f4", "canon-ef-15mm-f2.8-fisheye"
+HOLOGON, CANON = "zeiss-hologon-15mm-f8", "canon-50mm-f0.95"
+GAUSS, SOFT = "double-gauss-50mm-f2", "nikon-fuwatto-soft-90mm-f4.8"
+LAMPS = "out/lens_scenes/lamps.glb"
+WEAK = "scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json"
+
+
+def wide(view: str) -> str:
+    """Flags of a pinhole that sees a tenth more than the frame, which distortion may need."""
+    return f"{view} --sensor 40x26.667"
+
+
+def flat(lens: str, f_stop: float, at: str, zones: int = 9) -> tuple[str, ...]:
+    """All of a lens that 2D knows of one distance, on a picture of `wide`."""
+    return (
+        f"distortion:model=lens,lens={lens},{at},scale=0.9,sensor=36x24,lateral_colour=0",
+        f"lens-psf:lens={lens},f_stop={f_stop:g},{at},zones={zones},waves=0,sensor=36x24",
+        f"vignetting:model=lens,lens={lens},f_stop={f_stop:g},{at},sensor=36x24",
+    )
+
+
+SPHERICAL = Word(
+    "spherical",
+    "Spherical aberration",
+    """\
+Rays through the rim of the lens meet nearer than those through its middle. A lamp behind the
+focus becomes a bubble with a bright edge, one before it a soft ball of cream with a bright
+heart, and what is in focus, the sign, has a veil. This is a Nokton of 1953 wide open. The fake
+of depth of field knows one flat disc for all distances; the veil around the sign is that of the
+lens, by `lens-psf`, which also softens the rims of discs where it should not.""",
+    (
+        Ways(
+            "spherical",
+            STRINGS,
+            f"--lens {NOKTON} --focus 1.6",
+            "--f-stop 1.5",
+            f"--res 960x640 --crop 240,720,160,480 {DARK} --spp 48",
+            (
+                "depth-of-field:f_stop=1.5,focus=1.6m",
+                f"lens-psf:lens={NOKTON},f_stop=1.5,focus=1.6m,zones=3,waves=0",
+                f"vignetting:model=lens,lens={NOKTON},f_stop=1.5,focus=1.6m",
+            ),
+            wide=f"--res 960x640 --crop 200,760,120,520 {DARK} --spp 48",
+            more="--light-paths 300000",
+            needs="--aov depth --gt-time mid",
+        ).panels(),
+    ),
+)
+
+COMA = Word(
+    "coma",
+    "Coma",
+    """\
+Off the axis each zone of the pupil draws a circle of its own, one beside the other: a star
+grows the tail of a comet, toward the middle of the frame or away from it. Here is the upper
+left of a fair at night through a Pancolar of its first kind at f/2. All lights are far away, so
+2D can have the spread of points of the lens in every place: it is nearly the same picture, with
+less noise, since what is drawn through a pinhole has no lens to sample. Lamps that stood at
+other distances would be wrong.""",
+    (
+        Ways(
+            "coma",
+            FAIR,
+            f"--lens {PANCOLAR} --focus 60",
+            "--f-stop 2",
+            f"--res 1440x960 --crop 40,520,80,400 {DARK} --spp 32",
+            flat(PANCOLAR, 2, "focus=60m"),
+            wide=wide(f"--res 1440x960 --crop 0,620,0,480 {DARK} --spp 32"),
+            more="--light-paths 300000",
+        ).panels(),
+    ),
+)
+
+AXIAL = Word(
+    "axial_colour",
+    "Chromatic aberration along the axis",
+    """\
+Blue, green and red have their focus at different distances. Thin dark twigs before white show
+it best: in focus they are black; out of focus they take a colour, one before and another
+behind, and no two edges alike. In 2D there is a depth of field for each of red, green and blue
+with the focus that the lens has for 650, 545 and 443 nm (script/docs/gallery/axial_colour.py). Real
+channels are broad, so its hues are too loud; twigs thinner than a pixel break, and the warm
+green of the single-layer coatings is missing.""",
+    (
+        (
+            *Ways(
+                "axial",
+                TREES,
+                f"--lens {ROKKOR} --focus 3",
+                "--f-stop 1.2",
+                f"--res 960x640 --crop 240,720,160,480 {DARK} --spp 56",
+                (),
+                more="--light-paths off",
+            ).panels()[:2],
+            Panel(
+                "2D",
+                "axial_2d",
+                (
+                    render(
+                        TREES,
+                        f"--lens {ROKKOR} --focus 3 --lens-model pinhole --res 960x640 --crop "
+                        f"180,780,100,540 {DARK} --spp 32 --aov depth --gt-time mid",
+                        "axial_pinhole",
+                    ),
+                    f"python script/docs/gallery/axial_colour.py {OUT}/axial_pinhole.exr "
+                    f"{OUT}/axial_blurred.exr --lens {ROKKOR} --f-stop 1.2 --focus 3",
+                    post(
+                        "axial_blurred",
+                        "axial_2d",
+                        f"vignetting:model=lens,lens={ROKKOR},f_stop=1.2,focus=3m,sensor=36x24",
+                    ),
+                ),
+            ),
+        ),
+    ),
+)
+
+LATERAL = Word(
+    "lateral_colour",
+    "Lateral chromatic aberration",
+    """\
+Here the colours are all in focus, but blue is drawn larger than red (or smaller): edges that
+run around the middle get a blue and a yellow side, more so toward the corner. This is the upper
+left of the frame through a Biotar of 1927 at f/8. How far red and blue lie from green is in the
+table. It is the one aberration that is easily taken away: `lateral-colour:...,inverse=1`.""",
+    (
+        Ways(
+            "lateral",
+            TREES,
+            f"--lens {BIOTAR} --focus 3",
+            "--f-stop 8",
+            f"--res 1920x1280 --crop 48,528,60,380 {DARK} --spp 40",
+            flat(BIOTAR, 8, "focus=3m", 3),
+            wide=wide(f"--res 1920x1280 --crop 0,720,0,520 {DARK} --spp 24"),
+            more="--light-paths off",
+        ).panels(),
+    ),
+    fringes=True,
+)
+
+_BOARD = f"--res 1080x720 --crop 520,1000,200,520 {DARK} --spp 64"
+CURVATURE = Word(
+    "field_curvature",
+    "Field curvature",
+    """\
+A lens draws a flat chart on a bowl, and film is flat. Few lenses have that alone: a Canon 50 mm
+f/0.95 that is stopped down to f/2 comes near. Its sagittal and tangential foci are within 0.04 mm
+of each other, and 13 mm off the axis both lie 0.31 mm before those on it. The middle of the frame
+is near the left edge of these pictures, the edge 15 mm away at their right. Focused at the chart,
+2.2 m, the middle is sharp, and stars far from it have grey hearts; at 2.65 m it is the other way
+round. No focus has both. 2D does this well, as all of the chart is at one distance; it has not the
+tint of the glass, which is a little green, hence the 5 % of light.
+
+| rms radius of a point's image, um | on the axis | 4 mm | 8 mm | 11 mm | 13 mm | 15 mm |
+|---|---|---|---|---|---|---|
+| focused at 2.2 m | 4 | 9 | 25 | 36 | 38 | 30 |
+| 2.3 m | 11 | 8 | 17 | 27 | 28 | 21 |
+| 2.4 m | 20 | 14 | 11 | 18 | 19 | 13 |
+| 2.5 m | 28 | 22 | 10 | 11 | 11 | 9 |
+| 2.6 m | 35 | 29 | 14 | 8 | 5 | 11 |
+| 2.7 m | 42 | 35 | 20 | 10 | 7 | 16 |""",
+    tuple(
+        Ways(
+            f"field_curvature_{what}",
+            CHART,
+            f"--lens {CANON} --focus {focus}",
+            "--f-stop 2",
+            _BOARD,
+            (
+                f"distortion:model=lens,lens={CANON},focus={focus}m,scale=0.9,sensor=36x24",
+                f"lens-psf:lens={CANON},f_stop=2,focus=2.2m,defocus={defocus},zones=9,waves=0,"
+                "sensor=36x24",
+                f"vignetting:model=lens,lens={CANON},f_stop=2,focus={focus}m,sensor=36x24",
+            ),
+            wide=wide(f"--res 1080x720 --crop 460,1080,160,560 {DARK} --spp 48"),
+            more="--light-paths off",
+            note=f", {what} in focus",
+        ).panels()
+        for what, focus, defocus in (("middle", 2.2, 0), ("edge", 2.65, -0.2133))
+    ),
+)
+
+_RIM = f"--sensor 30x30 --res 420x420 {DARK} --spp 20"
+ASTIGMATISM = Word(
+    "astigmatism",
+    "Astigmatism of a lens that is round, off its axis",
+    """\
+A fan of rays in the plane through the axis meets at another distance than one across it. On a
+flat wheel 2.2 m away that faces a Petzval lens at f/2.2 the middle is sharp at 2.2 m; at 2.09 m
+the rings are sharp up to the rim and the spokes fade, at 2.6 m it is the other way round.
+Petzval lenses owe their swirl to it. 2D does this well, as all of the wheel is at one distance.""",
+    tuple(
+        Ways(
+            f"astigmatism_{what}",
+            WHEEL,
+            f"--lens {PETZVAL} --focus {focus}",
+            "--f-stop 2.2",
+            _RIM,
+            (
+                f"lens-psf:lens={PETZVAL},f_stop=2.2,focus=2.2m,defocus={defocus},zones=9,waves=0",
+                f"vignetting:model=lens,lens={PETZVAL},f_stop=2.2,focus={focus}m",
+            ),
+            more="--light-paths off",
+            note=f", {what} in focus",
+        ).panels()
+        for what, focus, defocus in (("rings", 2.09, 0.2587), ("spokes", 2.6, -0.7484))
+    ),
+)
+
+CYLINDER = Word(
+    "cylinder",
+    "Astigmatism of an element that is not radially symmetric",
+    """\
+The same wheel through a portrait lens behind the weakest glass that opticians sell to eyes with
+astigmatism, a cylinder of a quarter dioptre ([its
+file](../../scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json)). Now the axis is no
+better than the rim, and not rings and spokes differ but level and upright: at 1.73 m level
+lines are sharp, at 3.03 m upright ones, wherever they are. Polynomials of such a lens have the
+terms of two mirror planes instead of those of rotation. 2D lacks that a cylinder before the
+pupil also stretches the picture, by 1 % across, 2 px at the rim.""",
+    tuple(
+        Ways(
+            f"cylinder_{what}",
+            WHEEL,
+            f"--lens {WEAK} --focus {focus}",
+            "--f-stop 2",
+            _RIM.replace("30x30", "26x26"),
+            (
+                f"lens-psf:lens={WEAK},f_stop=2,focus=2.2m,defocus={defocus},zones=5,waves=0",
+                f"vignetting:model=lens,lens={WEAK},f_stop=2,focus={focus}m",
+            ),
+            more="--light-paths off",
+            note=f", {what} lines in focus",
+        ).panels()
+        for what, focus, defocus in (("level", 1.73, 0.9745), ("upright", 3.03, -0.9523))
+    ),
+)
+
+_SMALL = f"--res 480x320 {DARK} --spp 32"
+DISTORTION = Word(
+    "distortion",
+    "Radial distortion",
+    """\
+Chief rays land nearer to the middle than a pinhole's (barrel), or farther away (pincushion), so
+that straight cornices bend. One zoom does both: at 14.5 mm barrel, at 29 mm pincushion. A
+fisheye does so on purpose, to see what no flat picture holds. 2D bends a pinhole's picture by
+the chief rays of the same lens; of the fisheye it lacks the corners, 90 degrees off the axis
+where a pinhole sees nothing, and the middle is soft, because a flat picture spends its pixels
+on the edge.""",
+    tuple(
+        Ways(
+            f"distortion_{what}",
+            WALL,
+            f'--camera "{camera} mm" --lens {lens}{zoom} --focus {focus}',
+            f"--f-stop {f_stop}",
+            _SMALL,
+            (
+                f"distortion:model=lens,lens={lens},focus={focus}m{at},scale={scale},sensor=36x24",
+                f"vignetting:model=lens,lens={lens},f_stop={f_stop},focus={focus}m{at},sensor=36x24",
+            ),
+            degree=11,
+            wide=f"{_SMALL} --sensor {36 / scale:.6g}x{24 / scale:.6g}",
+            more="--light-paths off",
+            note=f", {what}",
+        ).panels()
+        for what, camera, lens, zoom, at, focus, f_stop, scale in (
+            ("barrel", 15, ZOOM, " --zoom 14.5", ",zoom=14.5", 5.6, 8, 0.8),
+            ("pincushion", 35, ZOOM, " --zoom 29", ",zoom=29", 13, 8, 0.95),
+            ("fisheye", 8, FISHEYE, "", "", 3, 8, 0.4),
+        )
+    ),
+    quality=78,
+)
+
+VIGNETTING = Word(
+    "vignetting",
+    "Vignetting",
+    """\
+First row: a wall through a Hologon, darker by cos^4 of the angle, which no stop cures (it was
+sold with a filter that is dark in its middle). Second row: the rims of a lens at f/0.95 cut the
+pupil off the axis, which takes light, and makes cats' eyes of lamps out of focus; 2D takes the
+light but keeps the discs round. Third row: paler colours. A lens does not do that by itself,
+but printing, film and taste do; it is there as an effect.""",
+    (
+        Ways(
+            "vignetting_natural",
+            WALL,
+            f'--camera "15 mm" --lens {HOLOGON} --focus 5.6',
+            "--f-stop 8",
+            _SMALL,
+            (f"vignetting:model=lens,lens={HOLOGON},f_stop=8,focus=5.6m",),
+            more="--light-paths off",
+            note=", cos^4 of a symmetric wide angle",
+        ).panels(),
+        Ways(
+            "vignetting_mounts",
+            LAMPS,
+            f"--lens {CANON} --focus 1",
+            "--f-stop 0.95",
+            _SMALL,
+            (
+                "depth-of-field:f_stop=0.95,focus=1m",
+                f"vignetting:model=lens,lens={CANON},f_stop=0.95,focus=1m",
+            ),
+            needs="--aov depth --gt-time mid",
+            more="--light-paths 300000",
+            note=", mounts cut the pupil",
+        ).panels(),
+        (
+            Panel("traced, colours as they are", "vignetting_natural_traced"),
+            Panel(
+                "polynomial", none="No lens takes colour away:\nonly light that it scatters does."
+            ),
+            Panel(
+                "2D, paler toward the corners",
+                "vignetting_saturation_2d",
+                (
+                    post(
+                        "vignetting_natural_traced",
+                        "vignetting_saturation_2d",
+                        "saturation-vignetting:k1=-0.8",
+                    ),
+                ),
+            ),
+        ),
+    ),
+)
+
+_FLARED = f"--lens {BIOTAR} --focus inf"
+_SEEN = f"--res 480x320 {DARK} --spp 32 --light-paths off"
+
+
+def _flare_row(file: str, camera: str, sun: str, note: str) -> tuple[Panel, ...]:
+    """Ghosts traced, by polynomials, and made up."""
+    seen = f"{camera}{_FLARED}"
+    return (
+        Panel(
+            f"traced{note}",
+            f"{file}_traced",
+            (render(DUSK, f"{seen} --f-stop 4 {_SEEN} --flare 150000", f"{file}_traced"),),
+        ),
+        Panel(
+            f"polynomial{note}",
+            f"{file}_polynomial",
+            (
+                render(
+                    DUSK,
+                    f"{seen} --f-stop 4 --lens-model polynomial --degree 9 {_SEEN}",
+                    f"{file}_none",
+                ),
+                f"python script/docs/gallery/polynomial_ghosts.py {OUT}/{file}_none.exr "
+                f"{OUT}/{file}_polynomial.exr --lens {BIOTAR} --f-stop 4 --sun={sun}",
+            ),
+        ),
+        Panel(
+            f"2D{note}",
+            f"{file}_2d",
+            (
+                render(DUSK, f"{seen} --lens-model pinhole {_SEEN}", f"{file}_pinhole"),
+                post(
+                    f"{file}_pinhole",
+                    f"{file}_2d",
+                    "fake-flare:threshold=50,reflectance=0.04,ghosts=12,seed=3",
+                ),
+            ),
+        ),
+    )
+
+
+FLARES = Word(
+    "flares",
+    "Lens flares",
+    """\
+A sun in the frame, 11 degrees off the axis, through a Biotar of 1927: its glass is not coated,
+each surface sends 4 % back, and 45 pairs of surfaces make as many ghosts, strung along the line
+through the sun and the middle of the picture. Some are patches of the round iris, some have
+caustics, and their edges have colours. The second row is the ghosts alone; in the third the
+camera has turned away until the sun stands at the very edge, just outside of a pinhole's frame,
+and ghosts are still in it. Polynomials draw them by the construction kit of Hullin, Hanika and
+Heidrich (script/docs/gallery/polynomial_ghosts.py): a Taylor series for each pair and colour, about
+the middle of its light. They know front and iris, but no other mounts, take the light of each ghost
+from `daguerre lens NAME --flare`, and leave out ghosts that have no series there, of which the
+crescent at the right edge of the third row is one; the thin streaks are series beyond their
+reach. The fake knows neither lens nor sun: its ghosts are
+made up, and are gone with the sun. Light that barrel, blades and glass scatter is another part
+of flare: [scatter.md](../scatter.md).""",
+    (
+        _flare_row("flare", "", "-11,4.2", ""),
+        (
+            Panel("traced, ghosts alone", "flare_traced", layer="flare"),
+            Panel("polynomial, ghosts alone", "flare_polynomial", layer="flare"),
+            Panel("2D", none="The fake keeps no layer of its own."),
+        ),
+        _flare_row("flare_aside", "--camera aside ", "-21,4.41", ", sun at the edge"),
+    ),
+    quality=82,
+)
+
+_STARS = "--f-stop 16 --blades 6 --blade-curvature 0"
+STARS = Word(
+    "stars",
+    "Stars",
+    """\
+At f/16 light bends at the six straight blades, and each lamp becomes a star with six spikes.
+Where there is a lens they are drawn by waves through its pupil, on top of its rays; polynomials
+pass through the same step. The fake is the same convolution on a pinhole's picture. Eight times
+brighter than the others, or spikes would not be seen.""",
+    (
+        Ways(
+            "stars",
+            FAIR,
+            f"--lens {GAUSS} --focus 60",
+            f"{_STARS} --diffraction",
+            f"--res 480x320 {DARK} --spp 16",
+            (
+                f"distortion:model=lens,lens={GAUSS},focus=60m,scale=0.9,sensor=36x24",
+                "diffraction:f_number=16,blades=6,sensor=36x24",
+            ),
+            wide=wide(f"--res 480x320 {DARK} --spp 32"),
+            more="--light-paths 300000",
+        ).panels(),
+    ),
+    exposure=8.0,
+)
+
+BLOOM = Word(
+    "bloom",
+    "Bloom",
+    """\
+A lens for soft portraits spreads much of the light into a wide disc on purpose: lights bloom,
+and the sky between them glows. The 2D bloom is a round glow that falls as 1 / r^3, as strong
+and wide as one likes; it is no disc, and the same in all places.""",
+    (
+        Ways(
+            "bloom",
+            FAIR,
+            f"--lens {SOFT} --focus 60",
+            "--f-stop 4.8",
+            f"--res 480x320 {DARK} --spp 20",
+            (
+                f"distortion:model=lens,lens={SOFT},focus=60m,scale=0.9,sensor=36x24",
+                "bloom:radius=7,share=0.85",
+            ),
+            wide=wide(f"--res 480x320 {DARK} --spp 32"),
+            more="--light-paths 300000",
+        ).panels(),
+    ),
+)
+
+HALOS = Word(
+    "halos",
+    "Halos",
+    """\
+Film has halos: light goes through the emulsion, is reflected at the back of the base, and comes
+back as a ring, red because the layer next to the base is the red one. That happens behind the
+lens, so it is an effect of the darkroom only.""",
+    (
+        (
+            Panel(
+                "traced, a sensor without halos",
+                "halos_traced",
+                (
+                    render(
+                        FAIR,
+                        f"--lens {GAUSS} --f-stop 4 --focus 60 --res 960x640 --crop 0,480,320,640 "
+                        f"{DARK} --spp 24 --light-paths 300000",
+                        "halos_traced",
+                    ),
+                ),
+            ),
+            Panel("polynomial", none="Halation happens in the film,\nbehind the lens."),
+            Panel(
+                "2D, on film",
+                "halos_2d",
+                (post("halos_traced", "halos_2d", "halo:thickness=0.13,share=0.12"),),
+            ),
+        ),
+    ),
+    exposure=3.0,
+)
+
+WORDS = [SPHERICAL, COMA, AXIAL, LATERAL, CURVATURE, ASTIGMATISM, CYLINDER, DISTORTION]
+WORDS += [VIGNETTING, FLARES, STARS, BLOOM, HALOS]
