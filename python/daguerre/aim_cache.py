@@ -40,7 +40,7 @@ def folder() -> Path | None:
 
 
 def identity(path: Path) -> str:
-    """What tells one build of the core from any other: each may aim a lens differently."""
+    """Text that differs between builds of the core: each may aim a lens differently."""
     with contextlib.suppress(OSError):
         facts = path.stat()
         return f"{path} {facts.st_size} {facts.st_mtime_ns}"

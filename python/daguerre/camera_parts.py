@@ -1,4 +1,4 @@
-"""What every kind of lens shares: the frame on the film, the place of the camera, the iris."""
+"""Parts that all lens models share: frame on the film, place of the camera, iris."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def frame_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, floa
     return columns * scale, rows * scale
 
 
-#: Of a camera from the origin, m: rays from further away overflow in the ray tracer.
+#: Largest distance of a camera from the origin, m: longer rays overflow in the ray tracer.
 MAX_DISTANCE = 1e18
 
 

@@ -28,19 +28,19 @@ from .sensors.library import load
 from .sensors.sensor import Sensor
 
 FloatArray = NDArray[np.float64]
-#: Of a sensor's noise the render's own is a part as long as it is this much less in variance.
+#: Share of pixels with more noise of the render than of photons, above which a note says so.
 NOISY_SHARE = 0.01
 _STRIPE = 256  # rows
 
 
 @dataclass(frozen=True)
 class Light:
-    """What falls on a sensor, plane by plane.
+    """Light on a sensor, plane by plane.
 
     Attributes:
         planes: Shape (H, W, P).
-        electrons: Of a plane's 1 in each channel, shape (C, P).
-        source: "channels", "bands" or "xyz": what the planes are.
+        electrons: Electrons that a plane's 1 makes in each channel, shape (C, P).
+        source: Kind of the planes: "channels", "bands" or "xyz".
         lux_s: Luminance exposure of a value of 1.
     """
 

@@ -31,16 +31,16 @@ def check_highlights(value: object, where: str = "flare_highlights") -> bool:
 
 
 def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
-    """What says how light is followed wants some that is.
+    """Refuses parameters of flare or scatter where neither is on.
 
     Args:
-        given: Parameters, and whether they are other than they are by themselves: of flare alone,
+        given: Parameters, and whether they differ from their defaults: of flare alone,
             then of flare or scatter.
-        flare: Ghosts are drawn.
-        scatter: So is what the lens scatters.
+        flare: Whether ghosts are drawn.
+        scatter: Whether scatter is drawn.
 
     Raises:
-        UsageError: A parameter that nothing would heed.
+        UsageError: A parameter would have no effect.
     """
     for (name, other), drawn in zip(given.items(), (flare, flare or scatter), strict=True):
         if other and not drawn:
@@ -50,7 +50,7 @@ def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:
-    """What the body adds to the surfaces of the lens.
+    """Surfaces that the body adds to those of the lens.
 
     Raises:
         UsageError: Glass or a sensor that cannot be.
@@ -77,7 +77,7 @@ def stack_of(camera: Camera) -> _core.SensorStack:
 
 
 def stack_facts(camera: Camera) -> dict[str, Any]:
-    """Of the body, for metadata and hashes; nothing if it declares nothing."""
+    """Facts of the body, for metadata and hashes; empty if it declares nothing."""
     facts: dict[str, Any] = {}
     if camera.cover_glass is not None:
         facts["cover_glass"] = list(camera.cover_glass)

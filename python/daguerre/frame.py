@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 TONES = ("srgb", "soft")
 FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
-#: Of linear Rec.709 (ITU-R BT.709-6).
+#: Luminance of linear Rec.709 (ITU-R BT.709-6).
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 #: Auxiliary channels of a film, in the names of the files.
 AOV_NAMES = (
@@ -41,23 +41,23 @@ AOV_NAMES = (
 
 @dataclass
 class Frame:
-    """A picture in the making or made.
+    """A rendered picture, or one in the making.
 
     Attributes:
         rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
-        xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
-        alpha: Share of the samples that hit something, shape (H, W); by default 1.
+        xyz: CIE 1931 XYZ of the same light, shape (H, W, 3).
+        alpha: Share of the samples that hit something, shape (H, W); default: 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
-        flare: What ghosts brought to ``rgb``, shape (H, W, 3), if they were drawn.
+        flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
         metadata: Facts of camera and render; see ``daguerre.io.exr``.
-        channels: What the sensor named in the metadata sees, shape (H, W, C), where one was named:
+        channels: Channels of the sensor named in the metadata, shape (H, W, C), if one was named:
             D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
         bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
-            of luminance 1 is some 1 in each.
-        bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
+            of luminance 1 is about 1 in each.
+        bad_samples: Number of samples that were NaN or Inf, and the first of them, (x, y, sample).
     """
 
     rgb: NDArray[np.float32]
@@ -147,7 +147,7 @@ class Frame:
         return shown
 
     def _encoded(self, tone: str) -> NDArray[np.float32]:
-        """As ``display``, 0 to 1."""
+        """Display values like ``display``, 0 to 1."""
         shown = np.empty(self.rgb.shape, np.float32)
         for rows, encoded in self._stripes(tone):
             shown[rows] = encoded
@@ -202,22 +202,22 @@ class Frame:
         white_balance: Any = None,
         temperature: float | None = None,
     ) -> Raw:
-        """What a sensor makes of this light: a raw picture, with the noise of photons and sensor.
+        """Exposes a sensor to this light: a raw picture, with the noise of photons and sensor.
 
         A pixel of the frame is one photosite, whatever the frame's resolution.
 
         Args:
-            sensor: Name of the library (``dg.sensors.names()``), file, or sensor. By default the
-                one whose channels the frame holds, else "ideal".
-            iso: By default the camera's, where the sensor has it, else the sensor's base ISO.
-            seed: Of the shot's noise. The sensor's fixed pattern is by its serial number.
-            ev: Exposure compensation: light times 2^ev; by default the camera's.
-            white_balance: K or (x, y) that the neutral of the raw file is set to; by default the
-                camera's, else D65.
-            temperature: Of the sensor, deg C; by default that at which it was measured.
+            sensor: Library name (``dg.sensors.names()``), file, or sensor; default: the one whose
+                channels the frame holds, else "ideal".
+            iso: ISO; default: the camera's, if the sensor has it, else the sensor's base ISO.
+            seed: Seed of the shot's noise. The serial number seeds the sensor's fixed pattern.
+            ev: Exposure compensation: light times 2^ev; default: the camera's.
+            white_balance: White of the raw file's neutral, K or (x, y); default: the camera's,
+                else D65.
+            temperature: Temperature of the sensor, deg C; default: that of its measurement.
 
         Raises:
-            DaguerreError: No such sensor, an ISO beyond it, or a frame whose facts do not tell its
+            DaguerreError: No such sensor, an ISO beyond it, or a frame without the facts of its
                 exposure; the message names the field.
         """
         from .exposing import expose
@@ -238,7 +238,7 @@ class Frame:
         iso: float | None = None,
         ev: float | None = None,
     ) -> dict[str, NDArray[np.float32]]:
-        """What a photograph is measured against, without noise: channels to put into ``aovs``.
+        """True exposure and saturation, without noise, for ``aovs``: references for photographs.
 
         Returns:
             ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the

@@ -79,5 +79,5 @@ def _pair(value: Any) -> Sequence[Any]:
 
 
 def show_plan(plan: Plan) -> str | None:
-    """As ``--light-paths`` takes it; None if off."""
+    """Text of a plan in the form of ``--light-paths``; None if off."""
     return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)

@@ -37,10 +37,10 @@ class Blending(Protocol):
 
     @property
     def form(self) -> tuple[Any, ...]:
-        """What all keys have in common."""
+        """Form that all keys have in common."""
 
     def blended(self, other: Any, share: float) -> Any:
-        """What lies between it and another of the same form, that share of the way."""
+        """Blends with another value of the same form, that share of the way."""
 
 
 class Dynamic(Protocol):
@@ -60,7 +60,7 @@ class Keys:
     Attributes:
         times: Rising, shape (K,), s.
         values: K numbers, tuples or arrays of one shape, names or flags, or projections.
-        interpolation: Of matrices (4, 4) one of ``OF_MATRICES``, of all else of ``OF_NUMBERS``.
+        interpolation: One of ``OF_MATRICES`` for matrices (4, 4), else one of ``OF_NUMBERS``.
         pivot: Point in local space about which decomposed matrices turn, m.
     """
 
@@ -153,14 +153,14 @@ def keys(
     interpolation: str | None = None,
     pivot: ArrayLike | None = None,
 ) -> Keys:
-    """A value at some times, for any parameter that may change.
+    """Makes a value over time from keys, for any parameter that may change.
 
     Args:
         pairs: (time in s, value), times rising strictly. Values are numbers, tuples or arrays of
             numbers of one shape, projections of one model and size, or names and flags, which
             step.
-        interpolation: Of matrices (4, 4): decomposed (default), linear, twist or slerp. Of other
-            numbers: linear (default) or step.
+        interpolation: Interpolation of matrices (4, 4): decomposed (default), linear, twist or
+            slerp; of other numbers: linear (default) or step.
         pivot: Point in local space, m, about which decomposed matrices turn; absent: the origin.
 
     Raises:
@@ -345,7 +345,7 @@ def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, floa
 
 
 def _in_core(made: Keys | Spin, where: str) -> None:
-    """What the core cannot interpolate is refused where it is written down."""
+    """Refuses motions that the core cannot interpolate where they are written down."""
     try:
         _ = made.motion
     except ValueError as error:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-#: As much as a straightened picture of the same size takes its light from.
+#: Overscan that lets a later undistortion leave no holes.
 UNDISTORT = "undistort"
 WANTED = "pixels such as 64px, a share such as 10%, left,top,right,bottom (px), or undistort"
 #: Pixels that the filters of ``daguerre post`` read around a point.
@@ -62,15 +62,15 @@ NONE = Overscan()
 def check_overscan(
     value: Any, resolution: tuple[int, int], where: str = "overscan"
 ) -> Overscan | None:
-    """What is asked for: pixels for all sides, ``"10%"``, ``"64px"``, or one number for each side.
+    """Parses overscan: pixels for all sides, ``"10%"``, ``"64px"``, or one number for each side.
 
     Args:
         value: A number, a text, (left, top, right, bottom), an ``Overscan``, or None for none.
-        resolution: Of the picture, px.
+        resolution: Width and height of the picture, px.
         where: For messages.
 
     Returns:
-        None: ``"undistort"``, which the camera decides.
+        Overscan; None: ``"undistort"``, which the camera decides.
 
     Raises:
         UsageError: It is none of these; or the data window is too large.
@@ -128,7 +128,7 @@ def _check_size(found: Overscan, resolution: tuple[int, int], where: str) -> Non
 
 
 def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
-    """What a straightened picture of the same size needs beside the picture that it is made of.
+    """Finds the overscan with which undistorting leaves no holes in a picture of the same size.
 
     Raises:
         UsageError: It would need what the camera does not show, or a picture many times as large.
@@ -137,13 +137,13 @@ def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
 
 
 def note(overscan: Overscan) -> str:
-    """What ``"undistort"`` was found to be, for people."""
+    """Note on the overscan found for ``"undistort"``."""
     told = f"{overscan} px" if overscan else "none is needed"
     return f"overscan (left, top, right, bottom) to straighten the picture: {told}"
 
 
 def to_redistort(sight: Sight) -> Overscan | None:
-    """What an ideal picture needs beside it to be bent into one without holes; None: no bounds."""
+    """Finds the overscan with which an ideal picture redistorts without holes; None: no bounds."""
 
     def place(points: FloatArray) -> FloatArray:
         found = sight.straight_from_bent(points)

@@ -55,10 +55,10 @@ class Projection:
         model: One of ``MODELS``.
         size: Width and height of the picture that the numbers are about, px. A picture may be
             rendered in any size of the same shape.
-        focal: Focal lengths, px, along x and y; of ``equirectangular`` pixels per radian, of
+        focal: Focal lengths, px, along x and y; for ``equirectangular`` pixels per radian, for
             ``cube`` per side of a face.
         principal: Where the axis meets the picture, px; None: its middle.
-        parameters: Of the model; see ``MODELS``.
+        parameters: Parameters of the model; see ``MODELS``.
     """
 
     model: str
@@ -102,13 +102,13 @@ class Projection:
     def of_field(
         cls, model: str, size: tuple[int, int], field: float, parameters: Sequence[float] = ()
     ) -> Projection:
-        """With the focal length that shows a field of view across the width, in the middle.
+        """Makes a projection with a field of view across the width, its axis in the middle.
 
         Args:
             model: One of ``MODELS``.
             size: px.
-            field: Of view across the width, degrees; of ``cube`` all six faces fill it.
-            parameters: Of the model.
+            field: Field of view across the width, degrees; ``cube`` fills it with all six faces.
+            parameters: Parameters of the model.
 
         Raises:
             UsageError: The model does not see so far.
@@ -150,9 +150,9 @@ class Projection:
         return bool(self.core.is_wide)
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """Of its picture: across, down and along the diagonal, degrees; NaN where nothing is seen.
+        """Field of view across, down and along the diagonal, degrees; NaN where nothing is seen.
 
-        The angles of the two edges from the axis, one after the other; of a panorama all around.
+        Each is the sum of the angles of two edges from the axis; for a panorama all around.
         """
         (width, height), (x, y) = self.size, self.center
         left, right, top, bottom = -0.5, width - 0.5, -0.5, height - 0.5
@@ -170,7 +170,7 @@ class Projection:
         return self.model, self.size
 
     def blended(self, other: Projection, share: float) -> Projection:
-        """What lies between it and another of the same form, number by number."""
+        """Blends with another projection of the same form, number by number."""
 
         def mix(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
             both = zip_longest(a, b, fillvalue=0.0)  # parameters that are not given are 0

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(eq=False)
 class Raw:
-    """A mosaic of digital numbers, as a camera's file has it.
+    """A raw picture: digital numbers behind a colour filter mosaic.
 
     Attributes:
         mosaic: Digital numbers of the photosites, uint16, shape (H, W).
-        sensor: That took them.
-        iso: As set.
+        sensor: Sensor that took them.
+        iso: ISO setting.
         black_level: DN of no light.
         white_level: DN from which on a photosite is saturated.
         gain: DN per electron.
-        neutral: What a white surface reads above black in the light that the white balance is set
+        neutral: Reading of a white surface above black, in the light that the white balance is set
             to, its strongest channel 1, shape (C,): the "as shot neutral" of DNG.
         white_balance: That white, chromaticity (x, y).
         metadata: Facts of the frame: ``expTime`` (s), ``aperture``, ``lensModel``, ...
@@ -36,7 +36,7 @@ class Raw:
             as the numbers say.
         luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None: not
             known.
-        notes: What a user should know of it.
+        notes: Remarks for the user.
     """
 
     mosaic: NDArray[np.uint16]

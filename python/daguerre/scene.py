@@ -85,7 +85,7 @@ class Environment:
 
 @dataclass
 class Scene:
-    """What the camera looks at.
+    """A scene: meshes, materials, lights, cameras and environment.
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
 

@@ -73,7 +73,7 @@ class Distortion:
 
     Attributes:
         height_mm: Real, mm, shape (N,).
-        angle_deg: Of the chief ray in front of the lens, shape (N,).
+        angle_deg: Angle of the chief ray in front of the lens, shape (N,).
         ideal_mm: By the law, shape (N,).
         law: ``f tan`` or the fisheye's.
     """

@@ -17,7 +17,7 @@ from .source import Source, load
 if TYPE_CHECKING:
     from daguerre.camera import Camera
 
-#: What samples say of a camera, beside its projection.
+#: Facts of a camera that samples hold, beside its projection.
 TRACKED = ("transform", "f_stop", "focus_distance")
 
 

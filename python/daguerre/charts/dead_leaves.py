@@ -31,7 +31,7 @@ def make(
 
     Args:
         width: m.
-        seed: Of the places, sizes and greys.
+        seed: Seed of the places, sizes and greys.
         smallest: Smallest radius over the chart's height.
         largest: Largest radius over it.
         contrast: Half the range of light over its mean.

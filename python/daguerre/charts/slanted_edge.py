@@ -18,9 +18,9 @@ def make(
 
     Args:
         width: m.
-        angle: By which they are turned counter-clockwise, degrees; not 0 nor 45.
+        angle: Turn of the squares counter-clockwise, degrees; not 0 nor 45.
         contrast: Light of the ground over that of the squares; ISO 12233 has 4.
-        white: Of the ground, share of the chart's white.
+        white: Light of the ground, share of the chart's white.
     """
     number(angle, "chart: angle", 1, 44)
     number(white, "chart: white", 0, 1, above=0)

@@ -27,7 +27,7 @@ WELL = 1.0  # px: what is worse is told
 
 @with_flags(map_flags=MapFlags)
 def calibrate(
-    name: Annotated[str, typer.Argument(metavar="LENS", help="Of the library, or a file.")],
+    name: Annotated[str, typer.Argument(metavar="LENS", help="Library name or lens file.")],
     map_flags: MapFlags,
     model: Annotated[
         str,
@@ -49,19 +49,27 @@ def calibrate(
         str | None, option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].")
     ] = None,
     f_stop: Annotated[
-        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].")
+        str | None, option("--f-stop", metavar="N", help="F-stop as engraved [wide open].")
     ] = None,
     zoom: Annotated[
         str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.")
     ] = None,
     focus_by: Annotated[
-        str, option("--focus-by", metavar="paraxial|best", help="As of render [paraxial].")
+        str,
+        option(
+            "--focus-by",
+            metavar="paraxial|best",
+            help="Focus where rays near the axis meet, or where the spot is smallest [paraxial].",
+        ),
     ] = "paraxial",
     sensor: Annotated[
-        str, option("--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="mm [36x24].")
+        str,
+        option(
+            "--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="Size of the sensor, mm [36x24]."
+        ),
     ] = "36x24",
     resolution: Annotated[
-        str, option("--res", metavar="WxH", help="Of the picture, px [1920x1280].")
+        str, option("--res", metavar="WxH", help="Size of the picture, px [1920x1280].")
     ] = "1920x1280",
     shift: Annotated[
         str | None, option("--shift", metavar="X,Y", help="Film shift right and up, mm [0,0].")
@@ -74,14 +82,18 @@ def calibrate(
     ] = None,
     file_format: Annotated[
         str | None,
-        option("--format", metavar="opencv|ros|kalibr|opentrackio", help="Of that file [opencv]."),
+        option(
+            "--format",
+            metavar="opencv|ros|kalibr|opentrackio",
+            help="Format of the calibration file [opencv].",
+        ),
     ] = None,
     residuals: Annotated[
         Path | None,
         option(
             "--residuals",
             metavar="FILE.png|svg|pdf",
-            help="What the model leaves, over the picture. Extra `plot`.",
+            help="Plot the residuals of the fit over the picture. Extra `plot`.",
         ),
     ] = None,
     json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
@@ -180,7 +192,7 @@ def _write(
 
 
 def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:
-    """Of the lens, not of its fit."""
+    """Writes maps of the lens, not of its fit."""
     from daguerre import Scene
     from daguerre.overscan import NONE
 

@@ -41,7 +41,12 @@ class CameraFlags:
     ] = None
     degree: Annotated[
         int | None,
-        option("--degree", metavar="N", help="Of a polynomial lens, odd [7].", panel=_CAMERA),
+        option(
+            "--degree",
+            metavar="N",
+            help="Degree of a polynomial lens, odd, 1 to 13 [7].",
+            panel=_CAMERA,
+        ),
     ] = None
     fit_tolerance: Annotated[
         float | None,
@@ -180,7 +185,7 @@ class CameraFlags:
         option(
             "--sensor-reflectance",
             metavar="R",
-            help="What the sensor sends back into the lens, 0 to 1 [0].",
+            help="Share of light that the sensor sends back into the lens, 0 to 1 [0].",
             panel=_CAMERA,
         ),
     ] = None
@@ -266,7 +271,7 @@ class CameraFlags:
         option(
             "--exposure-time",
             metavar="S",
-            help="Of the light, where motion blur is to be of another [--shutter].",
+            help="Exposure time that sets brightness, s; motion blur keeps --shutter [--shutter].",
             panel=_CAMERA,
         ),
     ] = None
@@ -275,7 +280,7 @@ class CameraFlags:
         option(
             "--exposure-f-stop",
             metavar="N",
-            help="Of the light, where blur is to be of another [--f-stop; of a pinhole 8].",
+            help="F-stop that sets brightness; blur keeps --f-stop [--f-stop; of a pinhole 8].",
             panel=_CAMERA,
         ),
     ] = None

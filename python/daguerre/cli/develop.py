@@ -56,7 +56,7 @@ def develop(
         option("--iso", metavar="N", help="Sensitivity; the frame's, else 100.", panel=_SENSOR),
     ] = None,
     seed: Annotated[
-        int, option("--seed", metavar="N", help="Of noise and grain [0].", panel=_SENSOR)
+        int, option("--seed", metavar="N", help="Seed of noise and grain [0].", panel=_SENSOR)
     ] = 0,
     ev: Annotated[
         str | None,
@@ -115,14 +115,19 @@ def develop(
     ] = 0,
     colorspace: Annotated[
         str,
-        option("--colorspace", metavar="srgb|p3|rec2020", help="Of the file [srgb].", panel=_FILE),
+        option(
+            "--colorspace",
+            metavar="srgb|p3|rec2020",
+            help="Color space of the file [srgb].",
+            panel=_FILE,
+        ),
     ] = "srgb",
     quality: Annotated[
-        int, option("--quality", metavar="N", help="Of JPEG, 1 to 100 [95].", panel=_FILE)
+        int, option("--quality", metavar="N", help="JPEG quality, 1 to 100 [95].", panel=_FILE)
     ] = 95,
     bits: Annotated[
         int | None,
-        option("--bits", metavar="8|16", help="Of PNG [8] and TIFF [16].", panel=_FILE),
+        option("--bits", metavar="8|16", help="Bits per channel: PNG [8], TIFF [16].", panel=_FILE),
     ] = None,
     quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
 ) -> int:
@@ -179,7 +184,7 @@ def _named(source: Path) -> Iterator[None]:
 
 
 def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
-    """What can be refused before anything is read."""
+    """Refuses wrong flags before anything is read."""
     from daguerre.io.atomic import check_writable
     from daguerre.io.picture_files import ENDINGS, check_ending
 
@@ -244,7 +249,7 @@ def _taken(
     seed: int,
     wb: str,
 ) -> Raw | Frame:
-    """What a sensor makes of the frame; the frame itself without one."""
+    """Exposes the sensor to the frame; without a sensor returns the frame itself."""
     from daguerre.development.white import numbers_of
     from daguerre.exposure import luminance_exposure
 

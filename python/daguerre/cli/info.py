@@ -36,7 +36,7 @@ def info(
     res: Annotated[
         str | None, option("--res", metavar="WxH", help="Shape of the picture, px [960x540].")
     ] = None,
-    json: Annotated[bool, option("--json", help="As one JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="Print one JSON object.")] = False,
 ) -> int:
     """Says what is in a scene; each camera with field of view and depth of field.
 

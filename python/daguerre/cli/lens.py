@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 #: the wavelength of the helium d line, at which lenses are specified, nm
 DESIGN_NM = 587.56
 FOCUS_BY = ("best", "paraxial")
-BENCH, FILES = "On the bench", "What is written"
+BENCH, FILES = "On the bench", "Files written"
 
 
 def lens(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
     json: Annotated[bool, option("--json", help="All numbers as one JSON object, mm.")] = False,
     plot: Annotated[
         Path | None,
@@ -61,7 +61,12 @@ def lens(
     ] = None,
     degree: Annotated[
         int | None,
-        option("--degree", metavar="N", help="Of those: odd, 1 to 13 [7].", panel=FILES),
+        option(
+            "--degree",
+            metavar="N",
+            help="Degree of the exported polynomials, odd, 1 to 13 [7].",
+            panel=FILES,
+        ),
     ] = None,
     sensor: Annotated[
         str | None,
@@ -74,7 +79,12 @@ def lens(
     ] = None,
     blades: Annotated[
         int | None,
-        option("--blades", metavar="N", help="Of their iris, 0 is round [0].", panel=FILES),
+        option(
+            "--blades",
+            metavar="N",
+            help="Blades of the exported lens's iris; 0 is round [0].",
+            panel=FILES,
+        ),
     ] = None,
     blade_rotation: Annotated[
         str | None, option("--blade-rotation", metavar="DEG", help="Degrees [0].", panel=FILES)
@@ -144,7 +154,8 @@ def lens(
         option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].", panel=BENCH),
     ] = None,
     f_stop: Annotated[
-        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].", panel=BENCH)
+        str | None,
+        option("--f-stop", metavar="N", help="F-stop as engraved [wide open].", panel=BENCH),
     ] = None,
     focus_by: Annotated[
         str,
@@ -156,7 +167,10 @@ def lens(
         ),
     ] = "best",
     wavelength: Annotated[
-        float, option("--wavelength", metavar="NM", help="Of the first-order data, nm [587.56].")
+        float,
+        option(
+            "--wavelength", metavar="NM", help="Wavelength of the first-order data, nm [587.56]."
+        ),
     ] = DESIGN_NM,
 ) -> int:
     """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""

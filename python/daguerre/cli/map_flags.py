@@ -23,7 +23,7 @@ class MapFlags:
         option(
             "--export-raymap",
             metavar="FILE.exr",
-            help="Of each pixel: where its ray starts, its direction, and when.",
+            help="Ray of each pixel: origin, direction and time.",
             panel=_MAPS,
         ),
     ] = None
@@ -97,9 +97,9 @@ class MapFlags:
         """Writes the maps that are asked for.
 
         Args:
-            scene: For its time.
+            scene: Scene, for its time.
             camera: Its focus stated.
-            size: Of the picture, px.
+            size: Width and height of the picture, px.
             overscan: An ``Overscan``.
             gt_time: When in the exposure rays are seen.
         """

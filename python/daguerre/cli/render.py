@@ -106,7 +106,12 @@ def render(
     ] = "chief",
     gt_rays: Annotated[
         int | None,
-        option("--gt-rays", metavar="N", help="Of a pixel, for such means [64].", panel=_OUTPUT),
+        option(
+            "--gt-rays",
+            metavar="N",
+            help="Rays per pixel for --gt-lens mean [64].",
+            panel=_OUTPUT,
+        ),
     ] = None,
     coco: Annotated[
         Path | None,
@@ -159,7 +164,7 @@ def render(
         option(
             "--look",
             metavar="NAME",
-            help="Of developed pictures: neutral, standard, film, filmic, ocio:VIEW [neutral].",
+            help="Tone curve of a photo: neutral, standard, film, filmic, ocio:VIEW [neutral].",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -255,7 +260,12 @@ def render(
     ] = False,
     diffraction_bands: Annotated[
         int,
-        option("--diffraction-bands", metavar="N", help="Of wavelengths [16].", panel=_SAMPLING),
+        option(
+            "--diffraction-bands",
+            metavar="N",
+            help="Number of wavelength bands [16].",
+            panel=_SAMPLING,
+        ),
     ] = 16,
     bands: Annotated[
         int,

@@ -15,7 +15,7 @@ _LIGHT = "Scene and light"
 
 @dataclass(frozen=True)
 class SceneFlags:
-    """What the camera looks at."""
+    """Flags of the scene and its light."""
 
     time: Annotated[
         Text, option("--time", metavar="S", help="Scene time, s [0].", panel=_LIGHT)

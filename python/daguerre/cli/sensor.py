@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def sensor(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or sensor file.")],
     json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
     plot: Annotated[
         Path | None,

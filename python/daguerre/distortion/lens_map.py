@@ -206,7 +206,7 @@ def _values(coefficients: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def _solved(matrices: FloatArray, values: FloatArray) -> FloatArray:
-    """Of 2 x 2 systems, shape (N, 2)."""
+    """Solutions of 2 x 2 systems, shape (N, 2)."""
     (a, b), (c, d) = matrices.transpose(1, 2, 0)
     det = a * d - b * c
     det = np.where(np.abs(det) < 1e-30, np.inf, det)

@@ -1,4 +1,4 @@
-"""What the things of a scene are: which instances belong together, and the category of each.
+"""Things of a scene and their categories: which instances belong together, and how they are named.
 
 Without a file each node with a mesh is a thing, and copies are of one category: ``Chair``,
 ``Chair.001`` and ``Chair_2`` are chairs. A file says it otherwise::
@@ -23,14 +23,14 @@ from daguerre.io.json_item import Item
 from daguerre.io.json_text import parse
 from daguerre.scene import Scene
 
-#: What programs append to the names of copies.
+#: Endings that programs append to the names of copies.
 _COPY = re.compile(r"(?:[ ._-]\d+|\s*\(\d+\))$")
 _MAX_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
 class Category:
-    """What a thing is; numbers as COCO has them, from 1."""
+    """Category of a thing; numbered from 1, like COCO's."""
 
     name: str
     id: int

@@ -35,7 +35,7 @@ class _Fields:
 
 @dataclass(frozen=True)
 class Nominal(_Fields):
-    """What the source claims of the lens; None: it does not say."""
+    """Claims of the source about the lens; None: it does not say."""
 
     efl_mm: float | None = None
     f_number: float | None = None
@@ -90,18 +90,18 @@ class Lens:
 
     Attributes:
         name: The lens's own name.
-        source: File that it was read from.
+        source: File from which it was read.
         patent: Patent or book that the numbers come from.
         note: Remarks of the file.
-        nominal: What the source claims: focal length, f-number, field.
-        surfaces: From the object side to the film.
-        coating: Of surfaces between air and glass.
+        nominal: Claims of the source: focal length, f-number, field.
+        surfaces: Surfaces from the object side to the film.
+        coating: Coating of surfaces between air and glass.
         prescription: The core's version.
-        data: The file as parsed.
+        data: The parsed file.
         configurations: Zoom and focus positions of the file.
-        object_medium: Before the first surface.
+        object_medium: Medium before the first surface.
         zoom_mm: Focal length at which a zoom stands; None: not a zoom.
-        notes: What is not as the file says: what could not be honoured, what was found wrong.
+        notes: Deviations from the file: what could not be honoured, what was found wrong.
     """
 
     name: str
@@ -186,10 +186,10 @@ class Lens:
     def t_stop(
         self, f_stop: float | None = None, wavelength_nm: ArrayLike = DESIGN_WAVELENGTH_NM
     ) -> float:
-        """The f-number of a lens without losses that would be as bright on the axis.
+        """Returns the f-number of a lens without losses that would be as bright on the axis.
 
         Args:
-            f_stop: Of the iris; wide open if None.
+            f_stop: F-stop of the iris; default: wide open.
             wavelength_nm: Wavelengths over which the transmittance is averaged, nm.
 
         Returns:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from daguerre.camera import Camera
 
 FloatArray = NDArray[np.float64]
-#: What coordinates of rays are about.
+#: Frames of rays, and what their coordinates mean.
 FRAMES = {
     "camera": "x right, y down, z ahead (OpenCV); from the entrance pupil; m",
     "world": "the scene's: y up; m",
@@ -88,17 +88,17 @@ def raymap(
     frame: str = "camera",
     overscan: Any = None,
 ) -> RayMap:
-    """The ray of each pixel of any camera.
+    """Returns the ray of each pixel of any camera.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.
-        resolution: Of the picture, px.
-        scene: For its time, and for a camera that focuses by itself; without one it then focuses at
+        resolution: Width and height of the picture, px.
+        scene: Scene, for its time and for autofocus; without it the camera then focuses at
             infinity.
-        gt_time: open, mid or close: when in the exposure of each pixel.
+        gt_time: Moment in the exposure of each pixel: open, mid or close.
         frame: ``"camera"``: OpenCV's, x right, y down, z ahead, from the entrance pupil, as the
             camera stands at the ray's time; ``"world"``: the scene's.
-        overscan: As of ``Session``: pixels beside the picture.
+        overscan: Pixels beside the picture, see ``Session``.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -130,7 +130,7 @@ def rays_of(
     frame: str,
     overscan: Overscan = NONE,
 ) -> RayMap:
-    """As ``raymap``, of what is checked."""
+    """Returns the rays, like ``raymap``, for arguments that are checked."""
     now = instants(camera, size)
     opens, _ = shutter.interval(camera, scene.time, size)
     begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)

@@ -114,16 +114,16 @@ def stmaps(
     scene: Scene | None = None,
     overscan: Any = None,
 ) -> StMaps:
-    """STMaps of any camera, as it is in the middle of its exposure.
+    """Returns STMaps of any camera, in the middle of its exposure.
 
     The straight picture is that of the pinhole with the same focal length near the axis and the
     same principal point; what lies on the plane in focus is in its place.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.
-        resolution: Of the picture, px.
-        scene: For a camera that focuses by itself; without one it then focuses at infinity.
-        overscan: As of ``Session``: the maps have these pixels, too.
+        resolution: Width and height of the picture, px.
+        scene: Scene, for autofocus; without it the camera then focuses at infinity.
+        overscan: Pixels beside the picture, which the maps also cover; see ``Session``.
 
     Raises:
         UsageError: A cube, which cannot be straightened; or a parameter of the camera.

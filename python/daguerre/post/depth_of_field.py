@@ -27,7 +27,7 @@ SCAN = 256  # rows
 
 @dataclass(frozen=True)
 class ThinLens:
-    """What the size of a blur depends on.
+    """A thin lens: all that the size of a blur depends on.
 
     Attributes:
         aperture_mm: Diameter of the entrance pupil.

@@ -54,11 +54,11 @@ def distort(
 
     Args:
         image: Scene-linear, shape (H, W, C).
-        model: One, or one each for red, green and blue.
+        model: One model, or one each for red, green and blue.
         focal_px: Focal length, px, or those across and down.
-        centre: Of the distortion, px from the top left corner of the picture; its middle if None.
-            OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
-        scale: Of the ideal picture: above 1 it shows less of the scene, larger.
+        centre: Centre of the distortion, px from the top left corner of the picture; default: its
+            middle. OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
+        scale: Scale of the ideal picture: above 1 it shows less of the scene, larger.
         filter: cubic or linear.
         antialias: Whether to average where the map shrinks.
         inverse: Straightens instead.

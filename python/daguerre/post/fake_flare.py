@@ -34,9 +34,9 @@ class Ghost:
     """A spot that each highlight makes.
 
     Attributes:
-        place: Of the spot, as a multiple of the highlight's own from the middle of the picture.
+        place: Place of the spot, as a multiple of the highlight's own from the picture's middle.
         radius: In halves of the picture's diagonal.
-        tint: Of R, G, B; their mean is 1.
+        tint: Factors on R, G, B; their mean is 1.
     """
 
     place: float

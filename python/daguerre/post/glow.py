@@ -42,7 +42,7 @@ def _shared(canvas: Canvas, share: float | Floats, kernel: Floats) -> Step:
 
 
 def _shape(canvas: Canvas) -> tuple[int, int, int]:
-    """Of its colours without alpha."""
+    """Shape of the picture's colours, without alpha."""
     return canvas.height, canvas.width, len(canvas.colours) - canvas.alpha
 
 

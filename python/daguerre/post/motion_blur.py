@@ -84,7 +84,7 @@ class _MotionBlur(Step):
         return np.asarray(flow * self._scale, np.float32)
 
     def _nearness(self, band: Band, ahead: Floats, back: Floats) -> tuple[Floats, float]:
-        """What hides what, from which difference on: by depth, else the faster the slower."""
+        """Nearness, and the difference that hides: by depth, else the faster hides the slower."""
         if self._depth is None:
             way = sum(abs(t) * np.hypot(*flow.T).T for flow, t in self._ends(ahead, back))
             return np.asarray(np.arcsinh(way), np.float32), SPEED_STEP

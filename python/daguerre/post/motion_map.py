@@ -66,7 +66,7 @@ class MotionMap:
         return out
 
     def remarks(self) -> list[str]:
-        """What could not be turned."""
+        """Remarks on motions that could not be turned."""
         said = []
         if self._lost:
             said.append(f"{self._lost} motions, whose ends the map does not show, were set to NaN")
@@ -80,7 +80,7 @@ class MotionMap:
     def _by_ends(
         self, motion: FloatArray, moved: NDArray[np.float32], goes: NDArray[np.bool_], rows: Rows
     ) -> FloatArray:
-        """As m + d(s + m) - d(s): errors of the displacement d that both have leave nothing."""
+        """Computes m + d(s + m) - d(s): errors of the displacement d that both have cancel."""
         y, x = np.nonzero(goes)
         start = np.column_stack([x, y + rows.begin]).astype(np.float64) + moved[goes]
         out = np.empty_like(motion)

@@ -38,7 +38,7 @@ class Plane:
 
     Attributes:
         centre: Where the axis meets it, px.
-        pitch_mm: Of a pixel.
+        pitch_mm: Pixel pitch, mm.
     """
 
     centre: tuple[float, float]
@@ -88,7 +88,7 @@ def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
 
 
 def _pitch_mm(canvas: Canvas, values: Values) -> float | None:
-    """Of a pixel; None: nobody says it."""
+    """Pixel pitch, mm; None: nobody says it."""
     size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
     if size is None and _positive(pitch):
         return pitch[0] * 1e-3

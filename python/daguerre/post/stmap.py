@@ -101,14 +101,14 @@ def stmap(
     scale: float = 1.0,
     inverse: bool = False,
 ) -> Image:
-    """The map of a distortion; see :func:`daguerre.post.distort`.
+    """Returns the STMap of a distortion; see :func:`daguerre.post.distort`.
 
     Args:
-        model: What bends.
+        model: The distortion.
         size: Width and height of the picture, px.
         focal_px: Focal length, px, or those across and down.
-        centre: Of the distortion, px; the middle if None.
-        scale: Of the ideal picture.
+        centre: Centre of the distortion, px; default: the middle.
+        scale: Scale of the ideal picture.
         inverse: The map that straightens.
 
     Returns:
@@ -168,7 +168,7 @@ def write_stmap(
         path: An .exr.
         warp: The map.
         canvas: Its windows.
-        attributes: Of the file.
+        attributes: Attributes of the file.
 
     Raises:
         OutputError: It cannot be written.

@@ -26,7 +26,7 @@ FILTER = (
 
 
 def how(values: Values) -> dict[str, Any]:
-    """What ``FILTER`` says, for a step."""
+    """Options of a step from the values of ``FILTER``."""
     motion = {parameter.name: values[parameter.name] for parameter in MOTION}
     return {"filter": values["filter"], "antialias": values["antialias"], "motion": motion}
 
@@ -40,7 +40,7 @@ class WarpStep(Step):
         filter: cubic or linear.
         antialias: Whether to average where a map shrinks.
         forward: Where the light of a point of the source goes, if that is known: motion follows it.
-        motion: What motion channels count, as ``MOTION`` has it.
+        motion: Meaning of motion channels, in the form of ``MOTION``.
     """
 
     def __init__(
