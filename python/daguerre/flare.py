@@ -46,7 +46,7 @@ def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
         if other and not drawn:
             dashes = "--" if name.startswith("--") else ""
             also = f" or {dashes}scatter" if "highlights" in name else ""
-            raise UsageError(f"{name}: wanted with {dashes}flare{also}")
+            raise UsageError(f"{name}: needs {dashes}flare{also} to be on")
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:

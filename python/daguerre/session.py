@@ -201,7 +201,7 @@ class Session:
         self._settings.prepare_light(self._core_scene, self._setup.core)
         dark = "no light of this scene makes a ghost in this lens"
         self.flare = self._prepare("flare", flare_paths, FLARE_PER_PIXEL, dark)
-        dark = "nothing shines in this scene, or the lens scatters nothing"
+        dark = "the scene has no lights, or the lens scatters nothing"
         self.scatter = self._prepare("scatter", scatter_paths, SCATTER_PER_PIXEL, dark)
         self._parts = self._parts_of(plan, wanted is None, core_shutter, options)
         self._film = self._new_film()

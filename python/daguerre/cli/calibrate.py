@@ -34,7 +34,8 @@ def calibrate(
         option(
             "--model",
             metavar="NAME",
-            help="opencv, fisheye, double_sphere, ...; all: how well each fits [opencv].",
+            help="Projection model: opencv, fisheye, double_sphere, ...; all compares them "
+            "[opencv].",
         ),
     ] = "opencv",
     terms: Annotated[
@@ -42,7 +43,7 @@ def calibrate(
         option(
             "--terms",
             metavar="N",
-            help="Parameters of the model [5 of opencv, else all; for Kalibr 4].",
+            help="Number of parameters to fit [5 of opencv, else all; for Kalibr 4].",
         ),
     ] = None,
     focus: Annotated[
@@ -52,7 +53,7 @@ def calibrate(
         str | None, option("--f-stop", metavar="N", help="F-stop as engraved [wide open].")
     ] = None,
     zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.")
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.")
     ] = None,
     focus_by: Annotated[
         str,
@@ -72,13 +73,14 @@ def calibrate(
         str, option("--res", metavar="WxH", help="Size of the picture, px [1920x1280].")
     ] = "1920x1280",
     shift: Annotated[
-        str | None, option("--shift", metavar="X,Y", help="Film shift right and up, mm [0,0].")
+        str | None,
+        option("--shift", metavar="X,Y", help="Shift of the film, right and up, mm [0,0]."),
     ] = None,
     wavelength: Annotated[
-        float, option("--wavelength", metavar="NM", help="nm [587.56].")
+        float, option("--wavelength", metavar="NM", help="Wavelength, nm [587.56].")
     ] = 587.56,
     output: Annotated[
-        Path | None, option("-o", "--output", metavar="FILE", help="A calibration file.")
+        Path | None, option("-o", "--output", metavar="FILE", help="Calibration file to write.")
     ] = None,
     file_format: Annotated[
         str | None,
@@ -96,7 +98,7 @@ def calibrate(
             help="Plot the residuals of the fit over the picture. Extra `plot`.",
         ),
     ] = None,
-    json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
 ) -> int:
     """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
     from daguerre.analysis.calibrate import calibrate as fit
@@ -169,7 +171,7 @@ def _check_files(output: Path | None, file_format: str | None, residuals: Path |
             f"{suggest(file_format, FORMATS)}"
         )
     if file_format is not None and output is None:
-        raise UsageError("--format: wanted with -o FILE")
+        raise UsageError("--format: needs -o FILE")
     if output is not None:
         check_writable(output)
     check_drawing("--residuals", residuals, formats=PICTURES)

@@ -33,8 +33,8 @@ class CalibrationFlags:
         option(
             "--calibration",
             metavar="FILE[:NAME,...|all]",
-            help="Instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO, COLMAP; several cameras of "
-            "a file by their names, or all; may be repeated.",
+            help="Calibration instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO or COLMAP; "
+            "cameras of a file by name, or all; repeatable.",
             panel=_CAMERA,
         ),
     ] = None
@@ -79,7 +79,7 @@ class CalibrationFlags:
         bool,
         option(
             "--rectified",
-            help="Pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
+            help="Read pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
             panel=_CAMERA,
         ),
     ] = False
@@ -87,7 +87,7 @@ class CalibrationFlags:
         bool,
         option(
             "--timeshift",
-            help="Shutters of a chain open later by their timeshift_cam_imu, less that of cam0.",
+            help="Delay shutters of a Kalibr chain by timeshift_cam_imu, less that of cam0.",
             panel=_CAMERA,
         ),
     ] = False

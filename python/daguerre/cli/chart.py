@@ -17,10 +17,17 @@ from .flags import option
 
 
 def chart(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="See --list.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Kind of chart; see --list.")
+    ] = None,
     output: Annotated[
         Path | None,
-        option("-o", "--output", metavar="FILE.glb", help="The truth goes beside it, as .json."),
+        option(
+            "-o",
+            "--output",
+            metavar="FILE.glb",
+            help="Scene to write; its truth goes beside it, as .json.",
+        ),
     ] = None,
     parameter: Annotated[
         list[str] | None,
@@ -30,7 +37,11 @@ def chart(
         float, option("--luminance", metavar="X", help="Luminance of white, cd/m2 [100].")
     ] = 100.0,
     paint: Annotated[
-        bool, option("--paint", help="Matt paint for light of your own, instead of shining.")
+        bool,
+        option(
+            "--paint",
+            help="Write matt paint for light of your own, instead of a chart that shines.",
+        ),
     ] = False,
     focal_length: Annotated[
         str, option("--focal-length", metavar="MM", help="Focal length of the camera, mm [50].")
@@ -38,7 +49,9 @@ def chart(
     sensor_width: Annotated[
         str, option("--sensor-width", metavar="MM", help="Sensor width of the camera, mm [36].")
     ] = "36",
-    list_charts: Annotated[bool, option("--list", help="Every chart with its parameters.")] = False,
+    list_charts: Annotated[
+        bool, option("--list", help="List every chart with its parameters.")
+    ] = False,
 ) -> int:
     """Writes a test chart as a scene, with a camera that it fills, and its truth."""
     from daguerre import charts

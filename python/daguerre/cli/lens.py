@@ -30,7 +30,9 @@ BENCH, FILES = "On the bench", "Files written"
 
 def lens(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
-    json: Annotated[bool, option("--json", help="All numbers as one JSON object, mm.")] = False,
+    json: Annotated[
+        bool, option("--json", help="Print all numbers as one JSON object, mm.")
+    ] = False,
     plot: Annotated[
         Path | None,
         option(
@@ -46,7 +48,7 @@ def lens(
         option(
             "--drawing",
             metavar="FILE.svg|png|pdf",
-            help="The section with rays of three fields; .png, .pdf: extra `plot`.",
+            help="Section with rays of three fields; .png, .pdf: extra `plot`.",
             panel=FILES,
         ),
     ] = None,
@@ -73,7 +75,7 @@ def lens(
         option(
             "--sensor",
             metavar="WxH|" + "|".join(SENSORS),
-            help="Film that they cover, mm [the lens's format].",
+            help="Size of the film for --export and --flare, mm [the lens's format].",
             panel=FILES,
         ),
     ] = None,
@@ -87,24 +89,35 @@ def lens(
         ),
     ] = None,
     blade_rotation: Annotated[
-        str | None, option("--blade-rotation", metavar="DEG", help="Degrees [0].", panel=FILES)
+        str | None,
+        option(
+            "--blade-rotation",
+            metavar="DEG",
+            help="Rotation of the exported lens's iris blades, degrees [0].",
+            panel=FILES,
+        ),
     ] = None,
     blade_curvature: Annotated[
         float | None,
-        option("--blade-curvature", metavar="C", help="-1 to 1; 1 is round [0].", panel=FILES),
+        option(
+            "--blade-curvature",
+            metavar="C",
+            help="Curvature of its iris blades, -1 to 1; 1 is round [0].",
+            panel=FILES,
+        ),
     ] = None,
     psf: Annotated[
         str | None,
         option(
             "--psf",
             metavar="FIELD,DISTANCE",
-            help="Point spread: image height (mm) or angle (deg), distance (m) or inf.",
+            help="Point spread function: image height (mm) or angle (deg), distance (m) or inf.",
             panel=BENCH,
         ),
     ] = None,
     through_focus: Annotated[
         bool,
-        option("--through-focus", help="The PSF on nine films around the focus.", panel=BENCH),
+        option("--through-focus", help="Show the PSF on nine films around the focus.", panel=BENCH),
     ] = False,
     flare: Annotated[
         str | None,
@@ -121,7 +134,7 @@ def lens(
         option(
             "--ghost",
             metavar="I,J",
-            help="Surfaces of the one that is drawn [the brightest].",
+            help="Surfaces of the ghost that --drawing shows [the brightest].",
             panel=BENCH,
         ),
     ] = None,
@@ -130,24 +143,29 @@ def lens(
         option(
             "--cover-glass",
             metavar="MM,GAP[,INDEX]",
-            help="Glass before the sensor, for --flare.",
+            help="Cover glass before the sensor, for --flare: thickness, gap (mm), index.",
             panel=BENCH,
         ),
     ] = None,
     sensor_reflectance: Annotated[
         float | None,
-        option("--sensor-reflectance", metavar="R", help="0 to 1, for --flare [0].", panel=BENCH),
+        option(
+            "--sensor-reflectance",
+            metavar="R",
+            help="Reflectance of the sensor, 0 to 1, for --flare [0].",
+            panel=BENCH,
+        ),
     ] = None,
     veiling_glare: Annotated[
         bool,
         option(
             "--veiling-glare",
-            help="How much of a white world a black patch shows, by ghosts and by scatter.",
+            help="Print the veiling glare of a black patch in a white world: ghosts and scatter.",
             panel=BENCH,
         ),
     ] = False,
     zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.", panel=BENCH)
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.", panel=BENCH)
     ] = None,
     focus: Annotated[
         str | None,
@@ -162,7 +180,7 @@ def lens(
         option(
             "--focus-by",
             metavar="best|paraxial",
-            help="Smallest spot on the axis, or rays close to it [best].",
+            help="Focus at the smallest spot on the axis, or of rays close to it [best].",
             panel=BENCH,
         ),
     ] = "best",
@@ -185,7 +203,7 @@ def lens(
     if focus_by not in FOCUS_BY:
         raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
     if through_focus and psf is None:
-        raise UsageError("--through-focus: wanted with --psf FIELD,DISTANCE")
+        raise UsageError("--through-focus: needs --psf FIELD,DISTANCE")
     point = None if psf is None else _point(psf)
     item = library.load(name)
     for text in item.notes:

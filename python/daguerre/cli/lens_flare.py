@@ -40,7 +40,7 @@ class Flare:
         }
         for flag, value in others.items():
             if value is not None and angle is None:
-                raise UsageError(f"{flag}: wanted with --flare ANGLE")
+                raise UsageError(f"{flag}: needs --flare ANGLE")
         if angle is None:
             return
         self.angle = angle_deg("--flare", angle)

@@ -32,7 +32,8 @@ class MapFlags:
         option(
             "--raymap-frame",
             metavar="camera|world",
-            help="In the camera's frame (x right, y down, z ahead), or the scene's [camera].",
+            help="Frame of --export-raymap: the camera's (x right, y down, z ahead) or the "
+            "world's [camera].",
             panel=_MAPS,
         ),
     ] = "camera"

@@ -278,7 +278,8 @@ class Shoot:
             luminance_exposure(session.metadata)  # or an error that names what is missing
         if first and not lit(scene):
             console.warn(
-                f"{self.scene_path}: nothing shines, so the picture will be black; --env lights it"
+                f"{self.scene_path}: the scene has no lights, so the picture will be black; "
+                "add one or use --env"
             )
         for text in session.warnings:
             console.warn(f"{self.scene_path}: {text}")
