@@ -341,8 +341,9 @@ class Camera:
     def with_(self, **changes: Any) -> Camera:
         """A copy with some parameters changed.
 
-        What the change makes obsolete goes: the focal length of an ideal lens when a prescription
-        takes its place, the f-stop for an aperture diameter, one way to focus for another.
+        Values that the change makes obsolete go: the focal length of an ideal lens when a
+        prescription takes its place, the f-stop for an aperture diameter, one way to focus for
+        another.
 
         Raises:
             UsageError: An unknown name (the nearest is suggested), or values that exclude others.

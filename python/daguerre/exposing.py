@@ -218,8 +218,8 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
 def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
     """Share of the pixels whose variance over samples exceeds that of their photons.
 
-    Of luminance, in the strongest channel. Red, green and blue of a sample vary together (a path
-    is bright or dark), so their deviations add.
+    It compares luminance, in the strongest channel. Red, green and blue of a sample vary together
+    (a path is bright or dark), so their deviations add.
     """
     if frame.variance is None:
         return 0.0

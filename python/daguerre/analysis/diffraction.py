@@ -119,7 +119,7 @@ class Pattern:
     def on_pixels(self, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
         """Shares of the light in pixels, rows from the top, shape (size, size), odd.
 
-        Of a perfect wave the right half alone, from the middle column on: (size, size // 2 + 1).
+        A perfect wave gives the right half alone, from the middle column on: (size, size // 2 + 1).
         """
         pixel = pitch_mm / (1e-6 * wavelength_nm * self.spacing)
         reach = len(self.light) // 2
@@ -204,7 +204,7 @@ def far_fields(
 ) -> Iterator[Floats]:
     """``far_field`` of one wavelength after the other, as many at a time as there are threads.
 
-    Of perfect waves right halves alone, as of ``Pattern.on_pixels``.
+    Perfect waves give right halves alone, see ``Pattern.on_pixels``.
     """
     if size % 2 == 0:
         raise ValueError(f"size: wanted an odd number, got {size}")
@@ -261,7 +261,7 @@ def _intensity(
 ) -> Floats:
     """|Fourier sum|^2 at samples -reach .. reach of x (columns) and of y (rows, from the top).
 
-    Of real waves, whose rows have no more than ``reach + 1`` columns, as ``Pattern`` has them.
+    Real waves have only ``reach + 1`` columns; the result is then the half that ``Pattern`` keeps.
     """
     halved = lines[0].shape[1] == reach + 1
     out = np.empty((2 * reach + 1, lines[0].shape[1] + TAPS * halved), np.float32)

@@ -172,7 +172,7 @@ def psf_of(
 def strehl_ratio(wave: Wavefront) -> float:
     """Peak of the light against that of a perfect wave through the same pupil.
 
-    Of the brightest point within half an Airy disc about the wave's own point.
+    It is that of the brightest point within half an Airy disc about the wave's own point.
     """
     reach = 0.6e-6 * wave.wavelength_nm / (0.5 * wave.step * len(wave.amplitude))
     x = np.linspace(-reach, reach, 21)

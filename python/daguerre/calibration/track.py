@@ -30,7 +30,7 @@ def read_track(
 ) -> Camera:
     """The camera of several samples, keyed at their times; the first is at 0 s.
 
-    What is the same for all of a take (``static``) may be in the first of them alone.
+    Facts that are the same for all of a take (``static``) may be in the first of them alone.
 
     Args: as of :meth:`Camera.from_opentrackio`.
 

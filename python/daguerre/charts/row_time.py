@@ -106,7 +106,7 @@ def row_time(
 class _View:
     """A region of a picture, its lines of pixels across the edge.
 
-    Of an upright edge they are rows, and the camera turns to the right; of a level one they are
+    With an upright edge they are rows, and the camera turns right; with a level one they are
     columns, and it turns up.
     """
 
@@ -177,7 +177,7 @@ class _View:
 def _follow(light: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
     """Rows that see the edge, and where: the middle of its slope, near a curve through all.
 
-    What is looked at narrows to the edge's own width, so that noise of what it parts is left out.
+    The window narrows to the edge's own width, so that noise of what it parts is left out.
     """
     slope, rows = np.diff(light, axis=1), np.arange(len(light))
     at = np.arange(slope.shape[1]) + 0.5

@@ -31,7 +31,7 @@ CHUNK = 1 << 14  # points at a time
 class LensMap(Distortion):
     """Where a lens puts the points of a flat picture at its focus distance, in two dimensions.
 
-    As ``LensDistortion``, but a polynomial of both coordinates, fitted to the chief rays of a grid
+    Unlike ``LensDistortion``, a polynomial of both coordinates, fitted to the chief rays of a grid
     of film points: to their direction cosines, which stay smooth where tangents run away. The ideal
     picture is a pinhole's whose pixels have the lens's own scales near the axis: of an anamorphic
     lens it is as squeezed as the lens's own.

@@ -1,6 +1,6 @@
 """STMaps of a camera, both ways: to straighten its pictures, and to bend straight ones.
 
-What ``s`` and ``t`` are is told in ``daguerre.post.stmap`` and in docs/darkroom.md.
+``daguerre.post.stmap`` and docs/darkroom.md explain ``s`` and ``t``.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ from .picture import Canvas, Rows
 from .warp import CELL, FloatArray, PointMap, Warp, displacements
 
 MOTION = (
-    Parameter("motion_scale", "px of a motion vector of 1; -1: from the last frame", "", 1.0),
-    Parameter("v_up", "motion counts upward, not down", kind="flag", default=False),
+    Parameter("motion_scale", "px per unit of motion; -1: motion from the last frame", "", 1.0),
+    Parameter("v_up", "whether motion counts upward, not down", kind="flag", default=False),
 )
 CHUNK = 1 << 20  # points at a time
 

@@ -87,7 +87,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 STMAP = Effect(
     "stmap",
     "moves pixels by an STMap: R and G are s and t, from 0 at the left and at the bottom",
-    (Parameter("file", "an .exr", kind="text", default=REQUIRED), *FILTER),
+    (Parameter("file", "STMap, an .exr", kind="text", default=REQUIRED), *FILTER),
     _make,
 )
 

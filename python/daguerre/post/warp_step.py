@@ -18,9 +18,13 @@ from .warp import PointMap, Warp
 
 FILTER = (
     Parameter(
-        "filter", "between pixels", kind="choice", default="cubic", choices=("cubic", "linear")
+        "filter",
+        "interpolation between pixels",
+        kind="choice",
+        default="cubic",
+        choices=("cubic", "linear"),
     ),
-    Parameter("antialias", "average where the map shrinks", kind="flag", default=True),
+    Parameter("antialias", "whether to average where the map shrinks", kind="flag", default=True),
     *MOTION,
 )
 

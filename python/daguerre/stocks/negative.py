@@ -76,7 +76,7 @@ class Negative:
     def scan(self) -> Frame:
         """A frame of the light that made the densities, scene-linear, for any look.
 
-        What lies on the toe or shoulder comes back as it went, noisier; grain stays.
+        Light on the toe or shoulder comes back as it went, noisier; grain stays.
         """
         from daguerre.frame import Frame
 
