@@ -66,7 +66,7 @@ RIVALS = (
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera; ``with_`` makes changed copies.
+    """A camera in a photographer's terms; ``with_`` makes changed copies.
 
     Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
     kept in ``motion``, and the parameter itself has the value of one moment; ``at`` chooses it.
@@ -261,9 +261,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A camera by its ROS ``camera_info``: the raw picture, in its place of a stereo rig.
+        """Reads a camera from ROS ``camera_info``: the raw picture, in its place of a stereo rig.
 
-        Args: as of :meth:`from_opencv`; ``camera`` stands where the rig's first, rectified, does.
+        Args: those of :meth:`from_opencv`; ``camera`` stands where the rig's first rectified one does.
             ``rectified`` draws that picture, by P.
         """
         from .calibration import read_ros
@@ -280,9 +280,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A camera of Kalibr's chain, ``cam0`` or of another name.
+        """Reads a camera of Kalibr's chain, ``cam0`` or of another name.
 
-        Args: as of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
+        Args: those of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
             ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
         """
         from .calibration import read
@@ -300,9 +300,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """The camera of a picture of a COLMAP model as text, where it stood in COLMAP's world.
+        """Reads the camera of a picture of a COLMAP text model, with its pose in COLMAP's world.
 
-        Args: as of :meth:`from_opencv`; ``name`` is that of the picture.
+        Args: those of :meth:`from_opencv`; ``name`` is that of the picture.
         """
         from .calibration import read
 
@@ -318,9 +318,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A tracked camera: lens, f-stop, focus and pose of an OpenTrackIO sample, or of several.
+        """Reads a tracked camera: lens, f-stop, focus and pose of OpenTrackIO samples.
 
-        Args: as of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
+        Args: those of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
         """
         from .calibration import read_opentrackio, read_track
 
@@ -329,17 +329,17 @@ class Camera:
         return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
 
     def at(self, time: float) -> Camera:
-        """The camera as it is at a time in s; nothing in it moves."""
+        """Returns the camera frozen at a time, s; nothing in it moves."""
         return replace(self.moved_to(time), motion={}) if self.motion else self
 
     def moved_to(self, time: float) -> Camera:
-        """The same camera, whose parameters show their values of another time, s."""
+        """Returns the camera evaluated at another time, s; its motion stays."""
         if not self.motion:
             return self
         return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
 
     def with_(self, **changes: Any) -> Camera:
-        """A copy with some parameters changed.
+        """Returns a copy with some parameters changed.
 
         Values that the change makes obsolete go: the focal length of an ideal lens when a
         prescription takes its place, the f-stop for an aperture diameter, one way to focus for

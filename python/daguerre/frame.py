@@ -90,7 +90,7 @@ class Frame:
 
     @property
     def motion(self) -> NDArray[np.float32] | None:
-        """Where what is seen goes until the next frame, px, +x right and +y down, (H, W, 2).
+        """Motion of each pixel's surface to the next frame, px, +x right, +y down, (H, W, 2).
 
         None without ground truth; see ``daguerre.truth``.
         """
@@ -98,7 +98,7 @@ class Frame:
 
     @property
     def motion_back(self) -> NDArray[np.float32] | None:
-        """Where what is seen was in the frame before, from where it is now; as ``motion``."""
+        """Motion of each pixel's surface back to the frame before, like ``motion``."""
         return self._flow("motion_back")
 
     def _flow(self, name: str) -> NDArray[np.float32] | None:
@@ -108,7 +108,7 @@ class Frame:
         return np.stack([self.aovs[n] for n in names], axis=2)
 
     def without_overscan(self) -> Frame:
-        """The pixels of the picture alone, without those beside it: what a sensor records.
+        """Crops the overscan: the pixels of the picture alone, which a sensor records.
 
         Raises:
             UsageError: The frame is a crop that has none of them.
@@ -132,7 +132,7 @@ class Frame:
         return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
 
     def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
-        """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
+        """Encodes the picture for a screen, shape (H, W, 3): linear 1.0 is the screen's white.
 
         Args:
             tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
@@ -164,17 +164,17 @@ class Frame:
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
     def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
-        """Writes the frame, whole or not at all; the end of the name chooses the format.
+        """Writes the frame, whole or not at all; the suffix chooses the format.
 
         Args:
             path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
-                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. What an
-                exposure makes of it is ``expose``, and ``daguerre.development.develop``. They have
-                no overscan.
-            tone: For those; see :meth:`display`.
+                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. For a
+                photograph use ``expose`` and ``daguerre.development.develop``. They have no
+                overscan.
+            tone: Tone curve of pictures for the eye; see :meth:`display`.
 
         Raises:
-            UsageError: Another ending.
+            UsageError: Unknown suffix.
             OutputError: The file cannot be written.
         """
         suffix = check_format(path)

@@ -76,12 +76,12 @@ class Keys:
 
     @cached_property
     def motion(self) -> _core.Motion:
-        """The same in the core; of matrices only."""
+        """The core's version; only for matrices."""
         matrices = np.array(self.values, np.float64)
         return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot or (0, 0, 0))
 
     def at(self, time_s: float) -> Any:
-        """The value at a time, s: held before the first key and behind the last."""
+        """Returns the value at a time, s: held before the first key and after the last."""
         if self.moves_matrices and len(self.times) > 1:
             return np.asarray(self.motion.at(time_s))
         i = int(np.searchsorted(self.times, time_s, side="right")) - 1
@@ -129,7 +129,7 @@ class Spin:
         return np.asarray(self.motion.at(time_s))
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """Those of its transform."""
+        """Breaks of its transform, s."""
         return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else []
 
 
@@ -200,7 +200,7 @@ def spin(
     transform: ArrayLike | Keys | None = None,
     time: float = 0.0,
 ) -> Spin:
-    """A transform that turns evenly about an axis: a wheel, a propeller.
+    """Makes a transform that turns evenly about an axis: a wheel, a propeller.
 
     Args:
         axis: Direction in local space; it turns counter-clockwise as seen from its tip.

@@ -49,7 +49,7 @@ NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
 
 @dataclass(frozen=True)
 class Projection:
-    """How directions become pixels.
+    """Projection of directions to pixels: a camera model with its numbers.
 
     Attributes:
         model: One of ``MODELS``.
@@ -57,7 +57,7 @@ class Projection:
             rendered in any size of the same shape.
         focal: Focal lengths, px, along x and y; for ``equirectangular`` pixels per radian, for
             ``cube`` per side of a face.
-        principal: Where the axis meets the picture, px; None: its middle.
+        principal: Principal point, where the axis meets the picture, px; None: its middle.
         parameters: Parameters of the model; see ``MODELS``.
     """
 
@@ -106,7 +106,7 @@ class Projection:
 
         Args:
             model: One of ``MODELS``.
-            size: px.
+            size: Width and height of the picture, px.
             field: Field of view across the width, degrees; ``cube`` fills it with all six faces.
             parameters: Parameters of the model.
 
@@ -141,12 +141,12 @@ class Projection:
 
     @property
     def largest_angle(self) -> float:
-        """From the axis, up to which the model is valid, degrees."""
+        """Largest angle from the axis at which the model is valid, degrees."""
         return math.degrees(self.core.largest_angle)
 
     @property
     def is_wide(self) -> bool:
-        """Whether what lies beside the camera or behind it may be seen."""
+        """Whether it may see what lies beside the camera or behind it."""
         return bool(self.core.is_wide)
 
     def field_of_view(self) -> tuple[float, float, float]:
@@ -166,7 +166,7 @@ class Projection:
 
     @property
     def form(self) -> tuple[str, tuple[int, int]]:
-        """Model and size: what all keys of a projection over time have in common."""
+        """Model and size, which all keys of a projection over time share."""
         return self.model, self.size
 
     def blended(self, other: Projection, share: float) -> Projection:
@@ -183,7 +183,7 @@ class Projection:
         )
 
     def project(self, points: ArrayLike) -> FloatArray:
-        """Pixels of points of the camera's own frame as OpenCV has it: x right, y down, z ahead.
+        """Projects points to pixels; the camera's frame is OpenCV's: x right, y down, z ahead.
 
         Args:
             points: Shape (N, 3), of any unit.
@@ -195,7 +195,7 @@ class Projection:
         return np.asarray(self.core.project(given) * self.focal + self.center)
 
     def unproject(self, pixels: ArrayLike) -> FloatArray:
-        """Unit directions (x right, y down, z ahead) that pixels see; NaN where they see none.
+        """Returns unit directions (x right, y down, z ahead) that pixels see; NaN: none.
 
         Args:
             pixels: Shape (N, 2), pixel centres at integers.
@@ -207,7 +207,7 @@ class Projection:
         return np.asarray(self.core.unproject(np.ascontiguousarray(given)))
 
     def film(self, width_mm: float) -> dict[str, Any]:
-        """Focal lengths and principal point on a film that is so wide, mm, upright.
+        """Focal lengths and principal point on a film of this width, mm, upright.
 
         Pixels of the numbers have their centres at integers, those of a picture at halves.
         """
@@ -222,7 +222,7 @@ class Projection:
         }
 
     def facts(self) -> dict[str, Any]:
-        """For metadata and hashes."""
+        """Facts for metadata and hashes."""
         return {
             "model": self.model,
             "size": list(self.size),

@@ -76,7 +76,7 @@ class Raw:
 
     @property
     def saturated(self) -> NDArray[np.bool_]:
-        """Where a photosite was full or its number the highest, shape (H, W)."""
+        """Mask of photosites that were full or at the highest number, shape (H, W)."""
         if self.clipped is not None:
             return self.clipped
         return np.asarray(self.mosaic >= self.white_level)
@@ -101,17 +101,17 @@ class Raw:
         return self.sensor.pattern.channel_map(self.height, self.width)
 
     def develop(self, **look: Any) -> Picture:
-        """The picture of it; see ``daguerre.development.develop``."""
+        """Develops it to a picture; see ``daguerre.development.develop``."""
         from .development import develop
 
         return develop(self, **look)
 
     def save(self, path: str | os.PathLike[str], **look: Any) -> None:
-        """Writes it, whole or not at all; the end of the name chooses the format.
+        """Writes it, whole or not at all; the suffix chooses the format.
 
         Args:
             path: ``.dng`` keeps the numbers; others are developed first.
-            look: For those; see ``daguerre.development.develop``.
+            look: Look of developed files; see ``daguerre.development.develop``.
         """
         from .development import save_raw
 

@@ -60,13 +60,13 @@ def render_rig(
 
 
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
-    """Two cameras side by side, in whose middle the given one stands; they look in parallel.
+    """Makes a stereo pair of parallel cameras, with the given one in the middle between them.
 
-    Where it moves, they move with it.
+    They move with it.
 
     Args:
-        camera: It gives all else.
-        baseline: Between them, m.
+        camera: Camera that gives all other parameters.
+        baseline: Distance between them, m.
     """
     number(baseline, "stereo_pair: baseline", above=0)
     return {

@@ -243,7 +243,7 @@ class Session:
 
     @property
     def focused_camera(self) -> Camera:
-        """The camera with the focus that was found."""
+        """Camera with the focus that autofocus found."""
         return focused(self.camera, self._setup.facts)
 
     def _plan(self) -> Plan:
@@ -345,7 +345,7 @@ class Session:
         Args:
             begin: First sample index.
             end: One past the last.
-            progress: Told the fraction done, now and then, from any thread; False stops.
+            progress: Called with the fraction done, from any thread; returning False stops.
 
         Returns:
             False if stopped. Part of the pass is in the sums then, so the session refuses to go
@@ -371,7 +371,7 @@ class Session:
         """Draws the parts of ``round`` up to ``until``; see ``daguerre.adaptive``.
 
         Returns:
-            False if stopped; as of ``draw``.
+            False if stopped, see ``draw``.
         """
         if self.round is None:
             raise UsageError("draw_round: wanted a planned round, got none")
@@ -410,17 +410,17 @@ class Session:
         return True
 
     def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
-        """The picture of the samples drawn so far, with all that was asked for.
+        """Returns the picture of the samples drawn so far, with all channels asked for.
 
         Args:
-            truth: With ground truth, or without.
-            waves: With diffraction, or without (which is quicker).
+            truth: Whether to add ground truth.
+            waves: Whether to add diffraction, which takes time.
         """
         frame = frame_of(self._whole_film(), self.metadata, aovs=self.aovs, waves=waves)
         return self.with_truth(frame) if truth else frame
 
     def with_truth(self, frame: Frame) -> Frame:
-        """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""
+        """Adds the channels of ``gt_time`` to a frame: by scene and camera, not by the sums."""
         if self.gt_time is None:
             return frame
         frame = replace(frame, aovs=frame.aovs | self._truth)
@@ -494,7 +494,7 @@ class Session:
         ranges: list[tuple[int, int]],
         round: Round | None = None,
     ) -> None:
-        """Continues from sums that ``state`` gave, drawn from these sample ranges, or in rounds.
+        """Restores sums that ``state`` returned, drawn in these sample ranges, or in rounds.
 
         Raises:
             MismatchError: A part is missing, unknown or of another size.
@@ -588,7 +588,7 @@ def render(
 
 
 def finish(session: Session, spp: int | None = None, noise: float | None = None) -> Frame:
-    """The picture of a session; arguments as of :func:`render`."""
+    """Draws and returns the picture of a session; arguments are those of :func:`render`."""
     spp = _most_samples(spp, noise)
     if noise is None:
         session.draw(0, spp)
@@ -608,7 +608,7 @@ def iter_render(
 ) -> Iterator[Frame]:
     """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
 
-    With ``noise``, after each round of adaptive sampling. Arguments as of :func:`render`.
+    With ``noise``, after each round of adaptive sampling. Arguments are those of :func:`render`.
     """
     spp = _most_samples(spp, noise)
     session = Session(scene, camera, **options)

@@ -52,7 +52,7 @@ class Diffraction:
 
     @property
     def words(self) -> str:
-        """For metadata."""
+        """Text for metadata."""
         return f"{self.bands} bands, {self.zones} x {self.zones} zones"
 
 

@@ -142,7 +142,7 @@ def calibrate_all(
 ) -> list[ProjectionFit]:
     """Fits every model that can show what the lens sees, the best (by RMS) first.
 
-    Args: as of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
+    Args: those of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
 
     Raises:
         UsageError: Numbers that are no picture's.

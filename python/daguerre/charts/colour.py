@@ -26,7 +26,7 @@ def make(width: float = 0.9) -> Chart:
     """The chart, 3 : 2.
 
     Args:
-        width: m.
+        width: Width of the chart, m.
     """
     field = width / (COLUMNS + 0.8)
     top_left = np.array([-(COLUMNS - 1) / 2, (ROWS - 1) / 2 * 1.0]) * field

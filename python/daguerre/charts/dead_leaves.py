@@ -30,7 +30,7 @@ def make(
     Their light is even around 0.5.
 
     Args:
-        width: m.
+        width: Width of the chart, m.
         seed: Seed of the places, sizes and greys.
         smallest: Smallest radius over the chart's height.
         largest: Largest radius over it.

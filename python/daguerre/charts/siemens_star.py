@@ -22,8 +22,8 @@ def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: flo
     """A star in the middle, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
 
     Args:
-        width: m.
-        cycles: Around, 4 to 360.
+        width: Width of the chart, m.
+        cycles: Cycles around the star, 4 to 360.
         profile: sine (its light is (white / 2) (1 + 0.95 cos)) or bar (white and 0.025 of it).
         white: Share of the chart's white.
     """

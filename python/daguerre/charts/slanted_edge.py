@@ -17,7 +17,7 @@ def make(
     """Dark squares on a light ground, 5 x 3 of them.
 
     Args:
-        width: m.
+        width: Width of the chart, m.
         angle: Turn of the squares counter-clockwise, degrees; not 0 nor 45.
         contrast: Light of the ground over that of the squares; ISO 12233 has 4.
         white: Light of the ground, share of the chart's white.

@@ -56,7 +56,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Categories:
-    """How the things of a scene are found; without rules by the names of nodes.
+    """Rules that find the things of a scene; without rules, node names do.
 
     Attributes:
         rules: In their order; None: names are categories.
@@ -68,7 +68,7 @@ class Categories:
 
     @classmethod
     def read(cls, path: str | Path) -> Categories:
-        """A file of patterns.
+        """Reads a file of patterns.
 
         Raises:
             InputError: With file and JSON path of what cannot be used.
@@ -85,14 +85,14 @@ class Categories:
         return cls(_rules(parse(data, str(path))), str(path))
 
     def all(self, scene: Scene) -> list[Category]:
-        """All that there may be, by number, whether a picture shows some or not."""
+        """All categories by number, whether a picture shows some or not."""
         if self.rules is None:
             return list(_by_name(scene).values())
         found = {rule.category.name: rule.category for rule in self.rules if rule.category}
         return sorted(found.values(), key=lambda category: category.id)
 
     def things(self, scene: Scene) -> list[Thing]:
-        """The things of a scene.
+        """Finds the things of a scene.
 
         Raises:
             UsageError: A pattern that names no node.

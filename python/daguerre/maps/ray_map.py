@@ -43,12 +43,12 @@ class RayMap:
     """The ray of each pixel; NaN where a pixel sees nothing.
 
     Attributes:
-        origin: Where the ray starts, m, shape (H, W, 3): of ideal lenses and projections the centre
-            of the camera, of a traced lens a point on the ray in front of the glass.
-        direction: Unit, shape (H, W, 3).
-        time: When the pixel sees it, s after the scene's time, shape (H, W).
+        origin: Start of the ray, m, shape (H, W, 3): the centre of the camera for ideal lenses and
+            projections, a point on the ray in front of the glass for a traced lens.
+        direction: Unit vectors, shape (H, W, 3).
+        time: Time at which the pixel sees it, s after the scene's time, shape (H, W).
         frame: One of ``FRAMES``: the camera's own as it stands at each ray's time, or the world's.
-        metadata: Facts of the camera, as of frames.
+        metadata: Facts of the camera, like those of frames.
     """
 
     origin: FloatArray

@@ -158,7 +158,7 @@ class Sensor:
         return f"<Sensor {self.name}: {columns}x{rows}, {self.pattern.name}>"
 
     def with_(self, **changes: Any) -> Sensor:
-        """A copy with other values, such as ``read_noise``, ``serial`` or ``infrared_cut=None``.
+        """Returns a copy with other values, such as ``serial`` or ``infrared_cut=None``.
 
         ``pattern`` may be a name; ``read_noise`` one number for every ISO.
 
@@ -186,7 +186,7 @@ class Sensor:
 
     @property
     def photosite_area(self) -> float:
-        """um2, without fill factor."""
+        """Area of a photosite, without fill factor, um2."""
         return self.pixel_pitch**2
 
     # Light to electrons ---------------------------------------------------------------------
@@ -284,7 +284,7 @@ class Sensor:
         return self.full_well
 
     def white_level(self, iso: float) -> int:
-        """The number of a full photosite, DN: of the converter or of the full well."""
+        """Number of a full photosite, DN: the limit of the converter or of the full well."""
         full = self.black_level + self.gain(iso) * self.full_well_at(iso)
         return int(min(self.highest_dn, math.floor(full + 0.5)))
 
@@ -298,14 +298,14 @@ class Sensor:
         return float(np.interp(math.log2(iso), np.log2(isos), noises))
 
     def dynamic_range(self, iso: float) -> float:
-        """Stops between what saturates and what is as strong as the noise in the dark."""
+        """Stops between saturation and a signal as strong as the noise in the dark."""
         gain = self.gain(iso)
         most = (self.white_level(iso) - self.black_level) / gain
         dark = math.hypot(self.read_noise_at(iso), math.sqrt(1 / 12) / gain)
         return math.log2(most / dark)
 
     def check_iso(self, iso: float) -> None:
-        """Raises ``UsageError`` for what cannot be set."""
+        """Raises ``UsageError`` for an ISO that cannot be set."""
         low, high = self.iso_range
         try:
             fits = not isinstance(iso, str | bool) and low <= float(iso) <= high
@@ -317,7 +317,7 @@ class Sensor:
     # Colour -----------------------------------------------------------------------------------
 
     def channels_from_xyz(self) -> FloatArray:
-        """A frame's channels from its XYZ, (C, 3), fitted; D65 white is exact. See ``fit``."""
+        """Matrix from XYZ to a frame's channels, (C, 3), fitted; D65 is exact. See ``fit``."""
         return fit.channels_from_xyz(self)
 
     def colour_matrix(self, white: Any = None) -> FloatArray:
@@ -338,5 +338,5 @@ class Sensor:
         return np.asarray(raw / raw.max())
 
     def rgb_from_channels(self, white: Any = None) -> FloatArray:
-        """Linear Rec.709 from a frame's channels, (3, C), balanced: that white is (1, 1, 1)."""
+        """Matrix from channels to linear Rec.709, (3, C), balanced: white is (1, 1, 1)."""
         return fit.rgb_from_channels(self, illuminants.white_xy(white))

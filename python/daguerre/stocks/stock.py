@@ -68,14 +68,14 @@ class Stock:
         name: Name by which it is loaded.
         kind: ``negative`` or ``reversal``.
         source: Source of the numbers.
-        iso: Speed.
+        iso: Film speed, ISO.
         wavelengths: Wavelengths of the sensitivities, nm, shape (L,).
-        layers: Three (R, G, B) or one (Y).
+        layers: Three layers (R, G, B) or one (Y).
         balance: Colour temperature of the light that it draws neutral, K.
         granularity: RMS granularity x 1000: standard deviation of density behind a hole of 48 um,
             1 above base.
         spread: Standard deviation of light's way in the emulsion, um.
-        halation: None: a backing that swallows all.
+        halation: Halation by the back; None: the backing absorbs all light.
         paper: Curve of the paper that negatives are printed on, x in log10 of its own exposure.
     """
 
@@ -98,7 +98,7 @@ class Stock:
         return f"<Stock {self.name}: {self.kind}, ISO {self.iso:g}>"
 
     def with_(self, **changes: Any) -> Stock:
-        """A copy with other values, such as ``granularity``, ``balance`` or ``halation=None``."""
+        """Returns a copy with other values, such as ``balance`` or ``halation=None``."""
         return replace(self, **changes)
 
     @property
@@ -144,8 +144,8 @@ class Stock:
         """Exposes the film to a frame and develops it.
 
         Args:
-            frame: With exposure metadata.
-            ev: Light times 2^ev.
+            frame: Frame with exposure metadata.
+            ev: Exposure compensation: light times 2^ev.
             seed: Seed of the grain.
 
         Raises:
