@@ -263,7 +263,7 @@ class Camera:
     ) -> Camera:
         """Reads a camera from ROS ``camera_info``: the raw picture, in its place of a stereo rig.
 
-        Args: those of :meth:`from_opencv`; ``camera`` stands where the rig's first rectified one does.
+        Args: those of :meth:`from_opencv`; ``camera`` stands at the rig's first rectified one.
             ``rectified`` draws that picture, by P.
         """
         from .calibration import read_ros

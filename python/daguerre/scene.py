@@ -256,7 +256,7 @@ class Scene:
         Args:
             mesh: Index from ``add_mesh``.
             material: Index from ``add_material`` or a material; default: grey diffuse.
-            transform: World from local, shape (4, 4), which may change over time; default: identity.
+            transform: World from local, shape (4, 4), may change over time; default: identity.
             name: Name for messages, ids and ``focus_on``.
             shown: Whether it is there, which may change over time.
 

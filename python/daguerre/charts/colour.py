@@ -23,7 +23,7 @@ _GAP = 0.12  # of a field
 
 
 def make(width: float = 0.9) -> Chart:
-    """The chart, 3 : 2.
+    """A color chart of 24 patches, 3 : 2.
 
     Args:
         width: Width of the chart, m.

@@ -19,7 +19,7 @@ _PARTS = {
 
 
 def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: float = 0.9) -> Chart:
-    """A star in the middle, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
+    """A Siemens star, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
 
     Args:
         width: Width of the chart, m.

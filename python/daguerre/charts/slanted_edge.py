@@ -14,7 +14,7 @@ COLUMNS, ROWS = 5, 3
 def make(
     width: float = 0.9, angle: float = 5.0, contrast: float = 4.0, white: float = 0.8
 ) -> Chart:
-    """Dark squares on a light ground, 5 x 3 of them.
+    """Slanted edges: 5 x 3 dark squares on a light ground.
 
     Args:
         width: Width of the chart, m.

@@ -18,7 +18,7 @@ def make(width: float = 0.9, steps: int = 20, step: float = 0.1, first: float = 
         width: Width of the chart, m.
         steps: Number of patches, 2 to 100.
         step: Step of density.
-        first: Density of the lightest.
+        first: Density of the lightest patch.
     """
     steps = whole(steps, "chart: steps", 2, 100)
     number(step, "chart: step", 0, 1, above=0)
