@@ -287,7 +287,7 @@ class Session:
         return parts
 
     def _prepare(self, name: str, paths: float | None, per_pixel: float, dark: str) -> float:
-        """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
+        """Paths per sample index of flare or scatter, of a crop those of its frame; 0: none."""
         if paths == 0:
             return 0.0
         check_surfaces(self._setup.facts["lens_model"], name)

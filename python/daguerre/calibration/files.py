@@ -77,7 +77,7 @@ def read_all(
 ) -> dict[str, Calibration]:
     """All cameras of a calibration file, by name; the only one of a file has the file's own.
 
-    Args: as of :func:`read`.
+    Args: those of :func:`read`.
     """
     kind = format_of(source) if format is None else _format(format, FORMATS)
     pair = kind == "opencv" and stereo.is_stereo(load(source))

@@ -32,7 +32,7 @@ def read_track(
 
     Facts that are the same for all of a take (``static``) may be in the first of them alone.
 
-    Args: as of :meth:`Camera.from_opentrackio`.
+    Args: those of :meth:`Camera.from_opentrackio`.
 
     Raises:
         InputError: A sample cannot be used, or times do not rise; the message names it.

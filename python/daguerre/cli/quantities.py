@@ -172,7 +172,7 @@ def sensor_mm(flag: str, text: str) -> tuple[float, float]:
 
 
 def sensor(flag: str, text: str) -> dict[str, Any]:
-    """Parameters of a camera: a size as of ``sensor_mm``, or a sensor of the library or a file."""
+    """Parameters of a camera: a size (``sensor_mm``), or a sensor of the library or a file."""
     name = text.strip().lower()
     if name in SENSORS or (name[:1].isdigit() and "x" in name):
         return {"sensor_size": sensor_mm(flag, text)}

@@ -155,7 +155,7 @@ def spread(planes: Real, kernels: Real, *, threads: int = 0, out: Real | None = 
 
     Args:
         planes: Shape (H, W, I).
-        kernels: Shape (Y, X, h, w, J, I), as of ``Spreader``.
+        kernels: Shape (Y, X, h, w, J, I), see ``Spreader``.
         threads: 0: all cores.
         out: Where to put the result; None: somewhere new.
 
