@@ -17,13 +17,13 @@ AOV_NAMES = (
 )
 
 
-#: What is seen, in the names of the files.
+#: Channels of what is seen, in the names of the files.
 PLANES = (
     "depth.Z", "distance.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object_id", "material_id",
 )  # fmt: skip
 
 
-#: What only means have: the share of the light whose rays meet a surface.
+#: Channel of means alone: the share of the light whose rays meet a surface.
 COVERAGE = "coverage.Y"
 
 
