@@ -53,7 +53,10 @@ def is_python(path: Path) -> bool:
     )
 
 
-@pytest.mark.parametrize("folder", ["python/daguerre", "bench", "examples", "scenes", "script", "tests"])
+FOLDERS = ("python/daguerre", "bench", "examples", "scenes", "script", "tests")
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
 def test_python(folder: str) -> None:
     files = [path for path in (ROOT / folder).rglob("*") if is_python(path)]
     assert files
