@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "camera/pupil_view.h"
+#include "camera/inverse/pupil_view.h"
 #include "camera/sensor.h"
 #include "light/emission.h"
 #include "light/emission_ray.h"

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "camera/pixel_cone.h"
+#include "camera/inverse/pixel_cone.h"
 #include "render/light_path.h"
 #include "render/light_weight.h"
 #include "render/ray_on_film.h"

@@ -18,7 +18,7 @@ struct LightPaths::Walk {
     bool delta = false;
     Ray ray{};
     Spectrum flux{0.f}, start{0.f};
-    double odds = 0;           // the ratio of bounce_share.h so far, from the light on
+    double odds = 0;           // the ratio of path_mis.h so far, from the light on
     int vertices = 0;
     float straight = 0;        // m from the last vertex or the light, through windows
     float unknown = 0;         // m within whatever the light is in
@@ -95,7 +95,7 @@ bool LightPaths::bounce(Walk& walk, std::vector<LightArrival>& arrivals) const {
         walk.flux *= walk.volume.interior.transmittance(hit.t);
     walk.straight += hit.t;
     const MaterialAt material = scene_.material(hit);
-    TwoWay both(material, scene_.textures(), hit, walk.wavelengths);
+    PathVertex both(material, scene_.textures(), hit, walk.wavelengths);
     // Direct light is left to the camera's paths.
     if (!last && walk.vertices > 0 && !is_specular(both.seen_from(hit.wo))) connect(walk, both, hit, u_lens, u_pixel, arrivals);
     const auto step = both.step(hit.wo, u_lobe, u_direction);
@@ -145,7 +145,7 @@ double LightPaths::camera_density(const Walk& walk, const SurfaceHit& hit, float
 }
 
 /// Sends light from a vertex to the lens.
-void LightPaths::connect(const Walk& walk, TwoWay& both, const SurfaceHit& hit, Vec2f u_lens,
+void LightPaths::connect(const Walk& walk, PathVertex& both, const SurfaceHit& hit, Vec2f u_lens,
                          Vec2f u_pixel, std::vector<LightArrival>& arrivals) const {
     const Affine3d to_camera = inverse(weight_.pose(walk.ray.time));
     const auto lens =
@@ -177,7 +177,7 @@ void LightPaths::connect(const Walk& walk, TwoWay& both, const SurfaceHit& hit, 
 }
 
 /// Beyond a vertex, or a window. False: the path ends.
-bool LightPaths::advance(Walk& walk, TwoWay& both, const SurfaceHit& hit,
+bool LightPaths::advance(Walk& walk, PathVertex& both, const SurfaceHit& hit,
                          const LightStep& step) const {
     const Bsdf& bsdf = both.seen_from(step.to_camera);
     const bool bounds = std::visit([](const auto& b) { return b.bounds_volume(); }, bsdf);

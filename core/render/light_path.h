@@ -3,7 +3,7 @@
 // that a path from the camera meets by chance.
 //
 // Each path finds what the camera's find by next-event estimation and by meeting emitters, and no more, and
-// not what comes straight to the first surface that the lens sees (bounce_share.h):
+// not what comes straight to the first surface that the lens sees (path_mis.h):
 // light of a delta light begins at the first surface that scatters it, and none of it passes the boundary
 // of a volume before.
 #pragma once
@@ -12,8 +12,8 @@
 
 #include "render/light_arrival.h"
 #include "render/light_weight.h"
+#include "render/path_vertex.h"
 #include "render/render.h"
-#include "render/two_way.h"
 #include "render/volume_walk.h"
 
 namespace dg {
@@ -30,9 +30,9 @@ class LightPaths {
     struct Walk;
     std::optional<Walk> begin(std::uint64_t index) const;
     bool bounce(Walk& walk, std::vector<LightArrival>& arrivals) const;
-    void connect(const Walk& walk, TwoWay& both, const SurfaceHit& hit, Vec2f u_lens, Vec2f u_pixel,
+    void connect(const Walk& walk, PathVertex& both, const SurfaceHit& hit, Vec2f u_lens, Vec2f u_pixel,
                  std::vector<LightArrival>& arrivals) const;
-    bool advance(Walk& walk, TwoWay& both, const SurfaceHit& hit, const LightStep& step) const;
+    bool advance(Walk& walk, PathVertex& both, const SurfaceHit& hit, const LightStep& step) const;
     std::optional<Spectrum> enter(const Walk& walk, VolumeWalk& volume, const Bsdf& bsdf,
                                   const SurfaceHit& hit, Vec3f w) const;
     double camera_density(const Walk& walk, const SurfaceHit& hit, float bsdf_pdf) const;

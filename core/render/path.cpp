@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/bounce_share.h"
+#include "render/path_mis.h"
 
 namespace dg {
 namespace {
@@ -30,7 +30,7 @@ struct Walk {
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
     const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
-    BounceShare* bounces = nullptr;    // while light paths may find what comes next
+    PathMis* bounces = nullptr;    // while light paths may find what comes next
 };
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
@@ -141,7 +141,7 @@ Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& b
 template <typename BsdfKind>
 Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
                       const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
-                      BounceShare::Vertex* both, PathSettings::Strategy strategy,
+                      PathMis::Vertex* both, PathSettings::Strategy strategy,
                       bool& hero_only, std::uint64_t& rays) {
     const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wl);
     if (!light || light->pdf <= 0) return 0.f;
@@ -164,7 +164,7 @@ Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind&
 /// it came from: light sampling there sees through the sheet too.
 template <typename BsdfKind>
 void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
-             const BsdfSample& sample, BounceShare::Vertex* both) {
+             const BsdfSample& sample, PathMis::Vertex* both) {
     walk.throughput *= sample.weight;
     if (sample.transmitted) {
         walk.eta_squared *= sample.eta * sample.eta;
@@ -218,7 +218,7 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
     walk.ray = ray;
     walk.previous = ray.origin;
     walk.first = first;
-    std::optional<BounceShare> bounces;
+    std::optional<PathMis> bounces;
     if (first) bounces.emplace(*first);
     if (bounces && bounces->open()) walk.bounces = &*bounces;
     std::uint64_t rays = 0;
@@ -262,7 +262,7 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         SurfaceHit bare;
         if (walk.bounces) bare = hit;
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
-        std::optional<BounceShare::Vertex> both;
+        std::optional<PathMis::Vertex> both;
         if (walk.bounces) both.emplace(scene, material, bare, wavelengths, bsdf);
         if (aov && !aov->hit) record_first_hit(scene, material, hit, *aov);
         const bool alive = std::visit(

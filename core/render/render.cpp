@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "camera/pixel_cone.h"
+#include "camera/inverse/pixel_cone.h"
 #include "math/error.h"
 #include "render/dispersion.h"
 #include "render/flare/flare_pass.h"

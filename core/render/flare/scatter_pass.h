@@ -1,11 +1,11 @@
 // scatter_pass.h -- light that the lens's own parts scatter, drawn from the emitters: a point that shines, a ray
-// to the front lens, and a walk through it (optics/scatter_lens.h) that barrel, blades or a rough surface turn.
+// to the front lens, and a walk through it (optics/stray/scatter_lens.h) that barrel, blades or a rough surface turn.
 // What comes to the film and nothing is in the way of lands in a pixel, in the layer of flare.
 //
 // Units and weights are those of light_pass.h; no other technique finds this light.
 #pragma once
-#include "render/ray_on_film.h"
 #include "render/flare/scatter_guide.h"
+#include "render/ray_on_film.h"
 
 namespace dg {
 
