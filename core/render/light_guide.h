@@ -6,8 +6,8 @@
 #include "camera/sensor.h"
 #include "light/emission.h"
 #include "light/emission_ray.h"
-#include "render/light_plan.h"
 #include "scene/scene.h"
+#include "transport/light_plan.h"
 
 namespace dg {
 

@@ -14,6 +14,7 @@
 #include "render/dispersion.h"
 #include "render/flare/flare_pass.h"
 #include "render/flare/scatter_pass.h"
+#include "render/camera_first_ray.h"
 #include "render/light_pass.h"
 #include "render/parallel.h"
 
@@ -304,15 +305,15 @@ class Renderer {
         if (end_secondary_) sample.wavelengths.end_secondary();
         const std::size_t traced = std::size_t(std::max(0, end_traced_ - first_traced_));
         const std::span landings(work.reprojections.data() + passed * traced, traced);
-        std::optional<FirstRay> first;
+        std::optional<CameraFirstRay> first;
         if (!weight_.off())
             first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
-        AovSample aov;
-        AovSample* const wanted = film_.layout().aovs ? &aov : nullptr;
+        FirstHit hit;
+        FirstHit* const wanted = film_.layout().aovs ? &hit : nullptr;
         const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler,
                                         settings_.path, wanted, &work.counters.rays,
                                         first ? &*first : nullptr);
-        if (wanted) add_aov(sample, ray.time, aov);
+        if (wanted) add_aov(sample, ray.time, hit);
         if (exact_) {
             splat(sample, camera_ray, landings.subspan(1 - first_traced_), light);
         } else {
@@ -340,11 +341,12 @@ class Renderer {
         }
     }
 
-    void add_aov(const Sample& sample, float time, AovSample& aov) const {
-        aov.alpha = aov.hit ? 1 : 0;
-        if (aov.hit) {
+    void add_aov(const Sample& sample, float time, const FirstHit& hit) const {
+        AovSample aov{.hit = hit.found, .position = hit.position, .normal = hit.normal, .albedo = hit.albedo,
+                      .object_id = hit.found ? hit.instance + 1 : 0, .alpha = hit.found ? 1.f : 0.f};
+        if (hit.found) {
             const Affine3d camera = camera_.world_from_camera.at(time);
-            aov.depth = float(-dot(to_double(aov.position) - camera.origin, camera.z));
+            aov.depth = float(-dot(to_double(hit.position) - camera.origin, camera.z));
         }
         film_.add_aov(sample.pixel.x, sample.pixel.y, sample.index, aov);
     }

@@ -11,9 +11,9 @@
 #include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
-#include "render/light_plan.h"
-#include "render/path.h"
 #include "scene/scene.h"
+#include "transport/light_plan.h"
+#include "transport/path.h"
 
 namespace dg {
 

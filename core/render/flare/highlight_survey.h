@@ -9,7 +9,7 @@
 
 #include "camera/shutter.h"
 #include "light/emitter_points.h"
-#include "render/path.h"
+#include "transport/path.h"
 
 namespace dg {
 

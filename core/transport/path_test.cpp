@@ -1,5 +1,5 @@
 // The path tracer without camera and film: closed worlds whose radiance is known.
-#include "render/path.h"
+#include "transport/path.h"
 
 #include <doctest/doctest.h>
 

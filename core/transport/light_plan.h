@@ -1,5 +1,5 @@
 // light_plan.h -- how much light is followed from the emitters to the film, beside the paths from the
-// camera. Both find the same light, and share it by the balance heuristic (light_weight.h).
+// camera. Both find the same light, and share it by the balance heuristic (light_sharing.h).
 #pragma once
 
 namespace dg {

@@ -1,10 +1,10 @@
-#include "render/path.h"
+#include "transport/path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "render/path_mis.h"
+#include "transport/path_mis.h"
 
 namespace dg {
 namespace {
@@ -186,13 +186,8 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
     walk.straight = 0;
 }
 
-void record_first_hit(const Scene& scene, const Material& material, const SurfaceHit& hit,
-                      AovSample& aov) {
-    aov.hit = true;
-    aov.position = hit.position;
-    aov.normal = hit.ns;
-    aov.albedo = albedo(material, scene.textures(), hit);
-    aov.object_id = hit.instance + 1;
+FirstHit first_hit(const Scene& scene, const Material& material, const SurfaceHit& hit) {
+    return {true, hit.position, hit.ns, albedo(material, scene.textures(), hit), hit.instance};
 }
 
 /// False: the path ends. Only paths that carry less than kRouletteThreshold are at stake (without the
@@ -210,7 +205,7 @@ bool survives_roulette(Walk& walk, float u) {
 }  // namespace
 
 Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count,
+                  const PathSettings& settings, FirstHit* first_surface, std::uint64_t* ray_count,
                   const FirstRay* first) {
     Radiance light;
     Spectrum* gathered = &light.shared;
@@ -244,7 +239,7 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
                                               : scene.lights().pdf_sphere(
                                                     sphere, walk.previous, hit.time);
             const float left =
-                walk.first ? walk.first->share_of_sphere(sphere, hit).value_or(1.f)
+                walk.first ? walk.first->share_of_sphere(scene.lights(), sphere, hit).value_or(1.f)
                            : bounced_share(walk, scene.lights().sphere_index(sphere),
                                            walk.straight + hit.t, pdf);
             *gathered += walk.throughput *
@@ -264,7 +259,7 @@ Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSam
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
         std::optional<PathMis::Vertex> both;
         if (walk.bounces) both.emplace(scene, material, bare, wavelengths, bsdf);
-        if (aov && !aov->hit) record_first_hit(scene, material, hit, *aov);
+        if (first_surface && !first_surface->found) *first_surface = first_hit(scene, material, hit);
         const bool alive = std::visit(
             [&](const auto& kind) {
                 const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);

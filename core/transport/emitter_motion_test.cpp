@@ -4,7 +4,7 @@
 
 #include "math/hash.h"
 #include "math/statistics.h"
-#include "render/path.h"
+#include "transport/path.h"
 
 namespace dg {
 namespace {

@@ -5,7 +5,7 @@
 #include "material/fresnel.h"
 #include "math/hash.h"
 #include "math/statistics.h"
-#include "render/path.h"
+#include "transport/path.h"
 
 namespace dg {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/path_vertex.h"
+#include "transport/path_vertex.h"
 
 namespace dg {
 namespace {

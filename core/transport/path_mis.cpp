@@ -1,4 +1,4 @@
-#include "render/path_mis.h"
+#include "transport/path_mis.h"
 
 namespace dg {
 namespace {
@@ -65,12 +65,12 @@ float PathMis::of_sample(const Scene& scene, Vertex& vertex, const LightSample& 
         scene.visibility(spawn_ray(hit, light.wi, hit.time), light.distance, false, {}, wavelengths)
             .is_black())
         return 1;
-    const float emission = first_.weight().emission_rays().pdf(light.light, hit.position, light.wi,
+    const float emission = first_.sharing().emission_rays().pdf(light.light, hit.position, light.wi,
                                                                light.distance, hit.time);
     const double found = double(light.pdf) + (light.delta ? 0 : s.camera_pdf);
-    const double ratio = first_.weight().of_bounced(emission) * back(vertex, s) *
+    const double ratio = first_.sharing().of_bounced(emission) * back(vertex, s) *
                          std::abs(double(dot(hit.ng, light.wi))) / found;
-    return ratio > 0 ? first_.weight().camera_share(ratio, 1) : 1;
+    return ratio > 0 ? first_.sharing().camera_share(ratio, 1) : 1;
 }
 
 float PathMis::of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance,
@@ -78,10 +78,10 @@ float PathMis::of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float
     if (!open_ || vertices_ < 2) return 1;
     const bool infinite = light == LightSet::kEnvironment;
     if (infinite && volume_.where != VolumeWalk::Where::air) return 1;
-    const float emission = first_.weight().emission_rays().pdf(std::int32_t(light), from, direction,
+    const float emission = first_.sharing().emission_rays().pdf(std::int32_t(light), from, direction,
                                                                distance, time);
-    const double ratio = first_.weight().of_bounced(emission) * odds_ / (1 + double(light_over_bsdf));
-    return ratio > 0 ? first_.weight().camera_share(ratio, 1) : 1;
+    const double ratio = first_.sharing().of_bounced(emission) * odds_ / (1 + double(light_over_bsdf));
+    return ratio > 0 ? first_.sharing().camera_share(ratio, 1) : 1;
 }
 
 void PathMis::leave(Vertex& vertex, const BsdfSample& sample) {

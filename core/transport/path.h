@@ -1,6 +1,5 @@
 // path.h -- radiance along a ray. Knows neither camera nor film, so it can be held against a furnace.
 #pragma once
-#include "film/film.h"
 #include "geometry/ray.h"
 #include "math/sampler.h"
 #include "scene/scene.h"
@@ -23,13 +22,20 @@ struct Radiance {
     Spectrum sum() const { return shared + hero; }
 };
 
-class FirstRay;   // light_weight.h
+/// The first surface on the way.
+struct FirstHit {
+    bool found = false;
+    Vec3f position, normal, albedo;   // m, world; unit
+    std::uint32_t instance = 0;
+};
+
+class FirstRay;   // first_ray.h
 
 /// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
-/// sampling. `aov`, if given, receives the first hit; `first`, if given, says which share of what emitters
+/// sampling. `hit`, if given, receives the first surface; `first`, if given, says which share of what emitters
 /// send straight along the ray is left to this path.
 Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, AovSample* aov, std::uint64_t* ray_count,
+                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first = nullptr);
 
 }  // namespace dg

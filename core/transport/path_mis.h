@@ -1,5 +1,5 @@
 // path_mis.h -- what is left to a path from the camera of the light that it finds after a bounce or
-// more, where light paths find it too (light_path.h). Direct light (k = 2) is the camera's own: next-event
+// more, where light paths find it too (light_walk.h). Direct light (k = 2) is the camera's own: next-event
 // estimation has less noise there than light that lands by chance.
 //
 // Path x_0 (lens), x_1, ..., x_k (emitter), k >= 3. With densities p' per projected solid angle all
@@ -13,15 +13,16 @@
 // light paths have none. Where a light path ends the ratio is 0: at x_1 if it only has a delta lobe, where
 // wavelengths part, at normals that a delta lobe sees bent, and in volumes within volumes.
 #pragma once
-#include "render/light_weight.h"
-#include "render/path_vertex.h"
-#include "render/volume_walk.h"
+#include "scene/scene.h"
+#include "transport/first_ray.h"
+#include "transport/path_vertex.h"
+#include "transport/volume_walk.h"
 
 namespace dg {
 
 class PathMis {
   public:
-    explicit PathMis(const FirstRay& first) : first_(first), open_(first.weight().bounces()) {}
+    explicit PathMis(const FirstRay& first) : first_(first), open_(first.sharing().bounces()) {}
 
     /// Light paths may find what the path finds from here on.
     bool open() const { return open_; }
