@@ -14,6 +14,7 @@ struct LightPlan {
     double m2 = 0;   // over two surfaces or more; direct light is the camera's
 
     bool off() const { return m1 <= 0 && m2 <= 0; }
+    friend LightPlan operator*(LightPlan plan, double factor) { return {plan.m1 * factor, plan.m2 * factor}; }
 };
 
 /// Who draws what both could find: tests hold one against the other. What only one can find is always its
