@@ -30,62 +30,8 @@ struct Walk {
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
     const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
-    PathMis* bounces = nullptr;    // while light paths may find what comes next
+    PathMis* bounces = nullptr;        // while light paths may find what comes next
 };
-
-/// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
-float emission_weight(const Walk& walk, float light_pdf, PathSettings::Strategy strategy) {
-    if (walk.from_delta || light_pdf <= 0 || strategy == PathSettings::Strategy::bsdf) return 1;
-    if (strategy == PathSettings::Strategy::light) return 0;
-    return power_heuristic(walk.bsdf_pdf, light_pdf);
-}
-
-/// What light paths leave of an emitter that the path has met.
-float bounced_share(const Walk& walk, std::int64_t light, float distance, float light_pdf) {
-    if (!walk.bounces) return 1;
-    const float ratio = walk.from_delta ? 0 : light_pdf / walk.bsdf_pdf;
-    return walk.bounces->of_emitter(light, walk.previous, walk.ray.direction, distance,
-                                    walk.ray.time, ratio);
-}
-
-Spectrum environment_emission(const Scene& scene, const Walk& walk, const Wavelengths& wl,
-                              PathSettings::Strategy strategy) {
-    const LightSet& lights = scene.lights();
-    if (!lights.has_environment()) return 0.f;
-    const float pdf =
-        walk.from_delta
-            ? 0
-            : lights.pdf_environment(walk.ray.direction, walk.previous, walk.ray.time);
-    const float left = walk.first ? walk.first->share_of_sky(walk.ray.direction).value_or(1.f)
-                                  : bounced_share(walk, LightSet::kEnvironment, kInfinity, pdf);
-    return lights.environment_radiance(walk.ray.direction, walk.ray.time, wl) *
-           (left * emission_weight(walk, pdf, strategy));
-}
-
-Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& material,
-                          const SurfaceHit& hit, const Wavelengths& wl,
-                          PathSettings::Strategy strategy) {
-    if (!emits(material)) return 0.f;
-    SurfaceHit seen = hit;
-    // What light sampling and light paths could find too must be the same light: that of a point. Light paths
-    // straight to the lens know the cone of the camera's sample, and see what it covers.
-    if (!walk.in_view) seen.footprint[0] = seen.footprint[1] = {};
-    const Rgb luminance = emitted(material, scene.textures(), seen);
-    if (max_component(luminance) <= 0) return 0.f;
-    const LightSet& lights = scene.lights();
-    const float distance = walk.straight + hit.t;
-    const float pdf =
-        walk.from_delta
-            ? 0
-            : lights.pdf_triangle(hit.instance, hit.primitive, distance,
-                                  std::abs(dot(hit.ng, hit.wo)), walk.previous, hit.time);
-    float share = walk.first ? walk.first->share_of_triangle(hit).value_or(1.f) : 1.f;
-    if (walk.bounces) {
-        const std::int64_t light = lights.triangle_index(hit.instance, hit.primitive);
-        if (light >= 0) share *= bounced_share(walk, light, distance, pdf);
-    }
-    return wl.emission(luminance) * (share * emission_weight(walk, pdf, strategy));
-}
 
 /// The cone that leaves a hit. Curvature is asked for only where it matters.
 RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit, const BsdfSample& sample) {
@@ -137,29 +83,6 @@ Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& b
     return medium_beyond(walk.medium, bsdf.interior(), bsdf.bounds_volume(), side < 0);
 }
 
-/// Next-event estimation at one vertex. hero_only: see Evaluation.
-template <typename BsdfKind>
-Spectrum direct_light(const Scene& scene, const SurfaceHit& hit, const BsdfKind& bsdf,
-                      const VertexRandom& u, const Walk& walk, const Wavelengths& wl,
-                      PathMis::Vertex* both, PathSettings::Strategy strategy,
-                      bool& hero_only, std::uint64_t& rays) {
-    const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wl);
-    if (!light || light->pdf <= 0) return 0.f;
-    if (strategy == PathSettings::Strategy::bsdf && !light->delta) return 0.f;
-    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
-    if (f_cos.is_black()) return 0.f;
-    hero_only = alone_bent;
-    ++rays;
-    const Spectrum visible =
-        scene.visibility(spawn_ray(hit, light->wi, walk.ray.time), light->distance,
-                         light->delta, medium_after(walk, hit, bsdf, light->wi), wl);
-    if (visible.is_black()) return 0.f;
-    const bool alone = light->delta || strategy == PathSettings::Strategy::light;
-    float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
-    if (both) weight *= walk.bounces->of_sample(scene, *both, *light, wl);
-    return f_cos * light->radiance * visible * (weight / light->pdf);
-}
-
 /// Carries on from a vertex. What goes straight on through a clear sheet comes from where
 /// it came from: light sampling there sees through the sheet too.
 template <typename BsdfKind>
@@ -186,10 +109,6 @@ void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
     walk.straight = 0;
 }
 
-FirstHit first_hit(const Scene& scene, const Material& material, const SurfaceHit& hit) {
-    return {true, hit.position, hit.ns, albedo(material, scene.textures(), hit), hit.instance};
-}
-
 /// False: the path ends. Only paths that carry less than kRouletteThreshold are at stake (without the
 /// 1/eta^2 of radiance inside glass): ending stronger ones saves little and was measured to cost more
 /// noise than time. What survives is raised by what was ended, so that the mean does not change.
@@ -202,98 +121,220 @@ bool survives_roulette(Walk& walk, float u) {
     return true;
 }
 
+/// One path: its state, what it has found, and the steps from vertex to vertex.
+class Path {
+  public:
+    Path(const Scene& scene, const PathSettings& settings, Wavelengths& wavelengths, PathSampler& sampler,
+         FirstHit* first_hit)
+        : scene_(scene), settings_(settings), wavelengths_(wavelengths), sampler_(sampler), first_hit_(first_hit) {}
+    Path(const Path&) = delete;
+    Path& operator=(const Path&) = delete;
+
+    void start(const Ray& ray, const FirstRay* first);
+    bool follow();
+    const Radiance& light() const { return light_; }
+    std::uint64_t rays() const { return rays_; }
+
+  private:
+    bool step(int vertex);
+    bool scatter(const Material& material, SurfaceHit& hit, bool last);
+    template <typename BsdfKind>
+    bool leave(const BsdfKind& bsdf, const SurfaceHit& hit, bool last, PathMis::Vertex* both);
+    template <typename BsdfKind>
+    Spectrum direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
+                          PathMis::Vertex* both, bool& hero_only);
+
+    Spectrum environment_emission() const;
+    Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;
+    Spectrum sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const;
+    float emission_weight(float light_pdf) const;
+    float bounced_share(std::int64_t light, float distance, float light_pdf) const;
+    void record_first_hit(const Material& material, const SurfaceHit& hit);
+
+    const Scene& scene_;
+    const PathSettings& settings_;
+    Wavelengths& wavelengths_;
+    PathSampler& sampler_;
+    FirstHit* first_hit_;
+    Walk walk_;
+    std::optional<PathMis> bounces_;
+    Radiance light_;
+    Spectrum* gathered_ = &light_.shared;
+    std::uint64_t rays_ = 0;
+};
+
+void Path::start(const Ray& ray, const FirstRay* first) {
+    walk_.ray = ray;
+    walk_.previous = ray.origin;
+    walk_.first = first;
+    if (first) bounces_.emplace(*first);
+    if (bounces_ && bounces_->open()) walk_.bounces = &*bounces_;
+}
+
+/// False: a ray that cannot be traced. The film counts the sample as bad; the ray tracer never sees it.
+bool Path::follow() {
+    for (int vertex = 0;; vertex += walk_.straight == 0) {  // a window is no vertex
+        if (!is_traceable(walk_.ray)) return false;
+        if (!step(vertex)) return true;
+        if (vertex + 1 >= settings_.roulette_depth && !survives_roulette(walk_, sampler_.next_1d())) return true;
+    }
+}
+
+/// To what the ray meets, and on from it. False: the path ends.
+bool Path::step(int vertex) {
+    ++rays_;
+    const bool caustic = walk_.from_delta && !walk_.in_view;
+    const bool counts = (settings_.straight || vertex > 0) && (settings_.caustics || !caustic);
+    auto found = scene_.intersect(walk_.ray);
+    if (!found) {
+        if (counts) *gathered_ += walk_.throughput * environment_emission();
+        return false;
+    }
+    SurfaceHit& hit = found->surface;
+    if (walk_.medium.present) walk_.throughput *= walk_.medium.transmittance(hit.t);
+    if (found->sphere_light >= 0) {
+        if (counts) *gathered_ += sphere_light(std::uint32_t(found->sphere_light), hit);
+        return false;
+    }
+    const MaterialAt material = scene_.material(hit);
+    if (counts) *gathered_ += walk_.throughput * surface_emission(material, hit);
+    const bool last = vertex == settings_.max_depth;  // behind it only windows count
+    if (last && !scene_.has_clear()) return false;
+    return scatter(material, hit, last);
+}
+
+/// At a surface: its BSDF, and the way on. False: the path ends.
+bool Path::scatter(const Material& material, SurfaceHit& hit, bool last) {
+    SurfaceHit bare;
+    if (walk_.bounces) bare = hit;
+    const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths_);
+    std::optional<PathMis::Vertex> both;
+    if (walk_.bounces) both.emplace(scene_, material, bare, wavelengths_, bsdf);
+    if (first_hit_ && !first_hit_->found) record_first_hit(material, hit);
+    return std::visit(
+        [&](const auto& kind) { return leave(kind, hit, last, both ? &*both : nullptr); }, bsdf);
+}
+
+/// Direct light, and a direction to go on in. False: the path ends.
+template <typename BsdfKind>
+bool Path::leave(const BsdfKind& bsdf, const SurfaceHit& hit, bool last, PathMis::Vertex* both) {
+    const VertexRandom u = draw_vertex(bsdf, !scene_.lights().empty(), sampler_);
+    if (!last && !bsdf.is_specular()) {
+        bool hero_only = false;
+        const Spectrum direct = walk_.throughput * direct_light(bsdf, hit, u, both, hero_only);
+        (hero_only ? light_.hero : *gathered_) += direct;
+    }
+    const auto sample = bsdf.sample(hit.wo, u.lobe, u.direction);
+    if (!sample || sample->weight.is_black()) return false;
+    advance(walk_, hit, bsdf, *sample, both);
+    if (last && walk_.straight == 0) return false;
+    if (sample->hero_only) {
+        // The throughput carries the hero's share from here on, so the weights of what was
+        // gathered before stay. A BSDF disperses no path whose wavelengths have ended.
+        wavelengths_.secondary_ended = true;
+        gathered_ = &light_.hero;
+    }
+    const RayCone cone = next_cone(scene_, walk_.ray.cone, hit, *sample);
+    walk_.ray = spawn_ray(hit, sample->wi, walk_.ray.time);
+    walk_.ray.cone = cone;
+    return true;
+}
+
+/// Next-event estimation at one vertex. hero_only: see Evaluation.
+template <typename BsdfKind>
+Spectrum Path::direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
+                            PathMis::Vertex* both, bool& hero_only) {
+    using Strategy = PathSettings::Strategy;
+    const auto light = scene_.sample_light(u.select, u.light, hit.position, hit.time, wavelengths_);
+    if (!light || light->pdf <= 0) return 0.f;
+    if (settings_.strategy == Strategy::bsdf && !light->delta) return 0.f;
+    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
+    if (f_cos.is_black()) return 0.f;
+    hero_only = alone_bent;
+    ++rays_;
+    const Spectrum visible =
+        scene_.visibility(spawn_ray(hit, light->wi, walk_.ray.time), light->distance, light->delta,
+                          medium_after(walk_, hit, bsdf, light->wi), wavelengths_);
+    if (visible.is_black()) return 0.f;
+    const bool alone = light->delta || settings_.strategy == Strategy::light;
+    float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
+    if (both) weight *= walk_.bounces->of_sample(scene_, *both, *light, wavelengths_);
+    return f_cos * light->radiance * visible * (weight / light->pdf);
+}
+
+/// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
+float Path::emission_weight(float light_pdf) const {
+    using Strategy = PathSettings::Strategy;
+    if (walk_.from_delta || light_pdf <= 0 || settings_.strategy == Strategy::bsdf) return 1;
+    if (settings_.strategy == Strategy::light) return 0;
+    return power_heuristic(walk_.bsdf_pdf, light_pdf);
+}
+
+/// What light paths leave of an emitter that the path has met.
+float Path::bounced_share(std::int64_t light, float distance, float light_pdf) const {
+    if (!walk_.bounces) return 1;
+    const float ratio = walk_.from_delta ? 0 : light_pdf / walk_.bsdf_pdf;
+    return walk_.bounces->of_emitter(light, walk_.previous, walk_.ray.direction, distance, walk_.ray.time, ratio);
+}
+
+Spectrum Path::environment_emission() const {
+    const LightSet& lights = scene_.lights();
+    if (!lights.has_environment()) return 0.f;
+    const Vec3f direction = walk_.ray.direction;
+    const float pdf =
+        walk_.from_delta ? 0 : lights.pdf_environment(direction, walk_.previous, walk_.ray.time);
+    const float left = walk_.first ? walk_.first->share_of_sky(direction).value_or(1.f)
+                                   : bounced_share(LightSet::kEnvironment, kInfinity, pdf);
+    return lights.environment_radiance(direction, walk_.ray.time, wavelengths_) * (left * emission_weight(pdf));
+}
+
+/// With the path's throughput.
+Spectrum Path::sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const {
+    const LightSet& lights = scene_.lights();
+    const float pdf = walk_.from_delta ? 0 : lights.pdf_sphere(sphere, walk_.previous, hit.time);
+    const float left =
+        walk_.first ? walk_.first->share_of_sphere(lights, sphere, hit).value_or(1.f)
+                    : bounced_share(lights.sphere_index(sphere), walk_.straight + hit.t, pdf);
+    return walk_.throughput * lights.sphere_radiance(sphere, hit.time, wavelengths_) *
+           (left * emission_weight(pdf));
+}
+
+Spectrum Path::surface_emission(const Material& material, const SurfaceHit& hit) const {
+    if (!emits(material)) return 0.f;
+    SurfaceHit seen = hit;
+    // What light sampling and light paths could find too must be the same light: that of a point. Light paths
+    // straight to the lens know the cone of the camera's sample, and see what it covers.
+    if (!walk_.in_view) seen.footprint[0] = seen.footprint[1] = {};
+    const Rgb luminance = emitted(material, scene_.textures(), seen);
+    if (max_component(luminance) <= 0) return 0.f;
+    const LightSet& lights = scene_.lights();
+    const float distance = walk_.straight + hit.t;
+    const float pdf =
+        walk_.from_delta ? 0
+                         : lights.pdf_triangle(hit.instance, hit.primitive, distance,
+                                               std::abs(dot(hit.ng, hit.wo)), walk_.previous, hit.time);
+    float share = walk_.first ? walk_.first->share_of_triangle(hit).value_or(1.f) : 1.f;
+    if (walk_.bounces) {
+        const std::int64_t light = lights.triangle_index(hit.instance, hit.primitive);
+        if (light >= 0) share *= bounced_share(light, distance, pdf);
+    }
+    return wavelengths_.emission(luminance) * (share * emission_weight(pdf));
+}
+
+void Path::record_first_hit(const Material& material, const SurfaceHit& hit) {
+    *first_hit_ = {true, hit.position, hit.ns, albedo(material, scene_.textures(), hit), hit.instance};
+}
+
 }  // namespace
 
 Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, FirstHit* first_surface, std::uint64_t* ray_count,
+                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first) {
-    Radiance light;
-    Spectrum* gathered = &light.shared;
-    Walk walk;
-    walk.ray = ray;
-    walk.previous = ray.origin;
-    walk.first = first;
-    std::optional<PathMis> bounces;
-    if (first) bounces.emplace(*first);
-    if (bounces && bounces->open()) walk.bounces = &*bounces;
-    std::uint64_t rays = 0;
-    for (int vertex = 0;; vertex += walk.straight == 0) {  // a window is no vertex
-        if (!is_traceable(walk.ray))   // the film counts the sample as bad; the ray tracer never sees it
-            return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
-        ++rays;
-        const bool caustic = walk.from_delta && !walk.in_view;
-        const bool counts = (settings.straight || vertex > 0) && (settings.caustics || !caustic);
-        auto found = scene.intersect(walk.ray);
-        if (!found) {
-            if (counts)
-                *gathered += walk.throughput *
-                             environment_emission(scene, walk, wavelengths, settings.strategy);
-            break;
-        }
-        SurfaceHit& hit = found->surface;
-        if (walk.medium.present) walk.throughput *= walk.medium.transmittance(hit.t);
-        if (found->sphere_light >= 0) {
-            if (!counts) break;
-            const auto sphere = std::uint32_t(found->sphere_light);
-            const float pdf = walk.from_delta ? 0
-                                              : scene.lights().pdf_sphere(
-                                                    sphere, walk.previous, hit.time);
-            const float left =
-                walk.first ? walk.first->share_of_sphere(scene.lights(), sphere, hit).value_or(1.f)
-                           : bounced_share(walk, scene.lights().sphere_index(sphere),
-                                           walk.straight + hit.t, pdf);
-            *gathered += walk.throughput *
-                         scene.lights().sphere_radiance(sphere, hit.time, wavelengths) *
-                         (left * emission_weight(walk, pdf, settings.strategy));
-            break;
-        }
-        const MaterialAt material = scene.material(hit);
-        if (counts)
-            *gathered += walk.throughput * surface_emission(scene, walk, material, hit, wavelengths,
-                                                            settings.strategy);
-        const bool last = vertex == settings.max_depth;  // behind it only windows count
-        if (last && !scene.has_clear()) break;
-
-        SurfaceHit bare;
-        if (walk.bounces) bare = hit;
-        const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
-        std::optional<PathMis::Vertex> both;
-        if (walk.bounces) both.emplace(scene, material, bare, wavelengths, bsdf);
-        if (first_surface && !first_surface->found) *first_surface = first_hit(scene, material, hit);
-        const bool alive = std::visit(
-            [&](const auto& kind) {
-                const VertexRandom u = draw_vertex(kind, !scene.lights().empty(), sampler);
-                if (!last && !kind.is_specular()) {
-                    bool hero_only = false;
-                    const Spectrum direct =
-                        walk.throughput * direct_light(scene, hit, kind, u, walk, wavelengths,
-                                                       both ? &*both : nullptr,
-                                                       settings.strategy, hero_only, rays);
-                    (hero_only ? light.hero : *gathered) += direct;
-                }
-                const auto sample = kind.sample(hit.wo, u.lobe, u.direction);
-                if (!sample || sample->weight.is_black()) return false;
-                advance(walk, hit, kind, *sample, both ? &*both : nullptr);
-                if (last && walk.straight == 0) return false;
-                if (sample->hero_only) {
-                    // The throughput carries the hero's share from here on, so the weights of what was
-                    // gathered before stay. A BSDF disperses no path whose wavelengths have ended.
-                    wavelengths.secondary_ended = true;
-                    gathered = &light.hero;
-                }
-                const RayCone cone = next_cone(scene, walk.ray.cone, hit, *sample);
-                walk.ray = spawn_ray(hit, sample->wi, walk.ray.time);
-                walk.ray.cone = cone;
-                return true;
-            },
-            bsdf);
-        if (!alive) break;
-        if (vertex + 1 >= settings.roulette_depth &&
-            !survives_roulette(walk, sampler.next_1d()))
-            break;
-    }
-    if (ray_count) *ray_count += rays;
-    return light;
+    Path path(scene, settings, wavelengths, sampler, hit);
+    path.start(ray, first);
+    if (!path.follow()) return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
+    if (ray_count) *ray_count += path.rays();
+    return path.light();
 }
 
 }  // namespace dg
