@@ -10,9 +10,9 @@
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
-#include "camera/chief.h"
+#include "camera/inverse/chief.h"
 #include "math/error.h"
-#include "render/ray_map.h"
+#include "render/truth/ray_map.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -15,10 +15,10 @@
 
 #include "bind/arrays.h"
 #include "bind/thread_seconds.h"
-#include "camera/fit_state.h"
+#include "camera/kept/fit_state.h"
 #include "math/error.h"
-#include "optics/paraxial.h"
-#include "optics/polynomial/lens_fit_simd.h"
+#include "optics/first_order/paraxial.h"
+#include "optics/expansion/lens_fit_simd.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -9,9 +9,9 @@
 
 #include "bind/arrays.h"
 #include "bind/thread_seconds.h"
-#include "camera/aim_state.h"
+#include "camera/kept/aim_state.h"
 #include "camera/exact.h"
-#include "camera/fit_state.h"
+#include "camera/kept/fit_state.h"
 #include "math/error.h"
 
 namespace nb = nanobind;

@@ -16,7 +16,7 @@
 #include "bind/arrays.h"
 #include "bind/bind_first_order.h"
 #include "math/error.h"
-#include "optics/ghost.h"
+#include "optics/stray/ghost.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

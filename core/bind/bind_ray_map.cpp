@@ -2,7 +2,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
-#include "render/ray_map.h"
+#include "render/truth/ray_map.h"
 #include "render/render.h"
 
 namespace nb = nanobind;

@@ -6,8 +6,8 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "render/truth_mean.h"
-#include "render/truth_objects.h"
+#include "render/truth/truth_mean.h"
+#include "render/truth/truth_objects.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

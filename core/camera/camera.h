@@ -61,6 +61,9 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
 void reproject(const Camera& camera, std::span<const CameraRay> rays,
                std::span<const float> wavelength_nm, std::span<Reprojection> out);
 
+/// Film points of the picture from those on the film, which lay elsewhere where it is shifted at the rays' times.
+void undo_film_shift(const Camera& camera, std::span<const CameraRay> rays, std::span<Reprojection> landings);
+
 /// The camera's setting at a time.
 inline LensSetting setting_at(const Camera& camera, float time) {
     return camera.setting.values.empty() ? LensSetting{} : camera.setting.at(time);

@@ -10,7 +10,7 @@
 
 #include "camera/camera_sample.h"
 #include "camera/projection_model.h"
-#include "optics/stop.h"
+#include "optics/lens/stop.h"
 
 namespace dg {
 

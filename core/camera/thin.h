@@ -4,7 +4,7 @@
 
 #include "camera/camera_sample.h"
 #include "camera/tilt.h"
-#include "optics/stop.h"
+#include "optics/lens/stop.h"
 
 namespace dg {
 

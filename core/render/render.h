@@ -11,9 +11,9 @@
 #include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
-#include "render/light_plan.h"
-#include "render/path.h"
 #include "scene/scene.h"
+#include "transport/light_plan.h"
+#include "transport/path.h"
 
 namespace dg {
 
@@ -86,6 +86,7 @@ struct RenderCounters {
     std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
     std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: with some wavelength
 };
+RenderCounters& operator+=(RenderCounters& a, const RenderCounters& b);
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.
 /// `progress` is called from worker threads with the fraction done; returning false stops early (the film is then invalid).

@@ -1,6 +1,6 @@
 // scene_lights.cpp -- the lights of a scene: those it was given, and those that its meshes are.
-#include "scene/emission.h"
 #include "scene/emission_motion.h"
+#include "scene/emissive_mesh.h"
 #include "scene/scene.h"
 
 namespace dg {
