@@ -16,7 +16,9 @@ from typing import Any
 import numpy as np
 
 import daguerre
+from daguerre import _core
 from daguerre.camera.camera import Camera
+from daguerre.errors import InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering.ranges import join_ranges
 from daguerre.scene.scene import Scene
@@ -51,7 +53,7 @@ class FakeSession:
     ) -> None:
         self.built = built or self
         if camera.f_stop is not None and camera.f_stop <= 0:
-            raise ValueError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
+            raise InputError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
         self.width, self.height = resolution
         self.crop = crop or (0, 0, *resolution)
         self.aovs = aovs
@@ -70,10 +72,7 @@ class FakeSession:
         }
         self.ranges: list[tuple[int, int]] = []
         self.round = None
-        self.rays = self.samples = self.light_path_count = self.splats_off_film = 0
-        self.scatter_path_count = self.scatter_hits = 0
-        self.camera_rays = self.stopped_rays = 0
-        self.flare_path_count = self.flare_rays = self.flare_hits = 0
+        self.counters = _core.RenderCounters()
         self.flare_spots = self.survey_rays = 0
         self.light_paths = (0.0, 0.0)
         x0, y0, x1, y1 = self.crop
@@ -98,7 +97,7 @@ class FakeSession:
             sums += sample_value(i, *self.shape).astype(np.uint64)
         self.sums = sums
         self.ranges = join_ranges([*self.ranges, (begin, end)])
-        self.rays += (end - begin) * sums.size * 3
+        self.counters += _core.RenderCounters(rays=(end - begin) * sums.size * 3)
         return True
 
     def with_truth(self, frame: Frame) -> Frame:

@@ -17,6 +17,7 @@ import OpenEXR
 import pytest
 
 import daguerre
+from daguerre import _core
 from daguerre.cli import console, main
 from daguerre.rendering.schedule import pass_size
 
@@ -185,6 +186,20 @@ def test_internal_errors_ask_for_a_report(
     monkeypatch.setenv("DAGUERRE_DEBUG", "1")
     assert main(["render", "s.glb", "-o", "a.exr", "--quiet", *SMALL]) == 70
     assert "Traceback" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unexpected_value_error_is_internal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def draw(*_: Any) -> bool:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr(sys.modules["daguerre.rendering.session"].Session, "draw", draw)
+    assert main(["render", "s.glb", "-o", "a.exr", "--quiet", *SMALL]) == 70
+    err = capsys.readouterr().err
+    assert "ValueError: operands could not be broadcast together" in err
+    assert "please report" in err
     assert not list(tmp_path.iterdir())
 
 
@@ -463,10 +478,17 @@ def test_stats_count_light_beside_the_frame(
     class Lit(fake_session.FakeSession):
         def __init__(self, *args: Any, **options: Any) -> None:
             super().__init__(*args, **options)
-            self.light_paths, self.light_path_count, self.splats_off_film = (50.0, 0.0), 200, 30
-            self.flare_path_count, self.flare_rays, self.flare_hits = 100, 400, 300
+            self.light_paths = (50.0, 0.0)
             self.flare_spots, self.survey_rays = 3, 1000
-            self.camera_rays, self.stopped_rays = 400, 100
+            self.counters = _core.RenderCounters(
+                camera_rays=400,
+                stopped_rays=100,
+                light_paths=200,
+                splats_off_film=30,
+                flare_paths=100,
+                flare_rays=400,
+                flare_hits=300,
+            )
 
     monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0

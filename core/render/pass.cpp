@@ -6,14 +6,6 @@
 
 namespace dg {
 
-RenderCounters& operator+=(RenderCounters& a, const RenderCounters& b) {
-    a.camera_rays += b.camera_rays, a.stopped_rays += b.stopped_rays, a.rays += b.rays;
-    a.light_paths += b.light_paths, a.splats_off_film += b.splats_off_film;
-    a.flare_paths += b.flare_paths, a.flare_rays += b.flare_rays, a.flare_hits += b.flare_hits;
-    a.scatter_paths += b.scatter_paths, a.scatter_hits += b.scatter_hits;
-    return a;
-}
-
 RenderCounters Passes::draw(int threads, const std::function<bool(double)>& progress) {
     std::vector<std::int64_t> ends;   // of each pass among all blocks
     for (const auto& pass : passes_) ends.push_back((ends.empty() ? 0 : ends.back()) + pass->count());

@@ -11,6 +11,7 @@
 #include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
+#include "render/render_counters.h"
 #include "scene/scene.h"
 #include "transport/light_plan.h"
 #include "transport/path.h"
@@ -77,16 +78,6 @@ struct RenderSettings {
     FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
     ScatterPlan scatter;                        // the same; it is in the layer of flare
 };
-
-struct RenderCounters {
-    std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
-    std::uint64_t light_paths = 0;
-    std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
-    std::uint64_t flare_paths = 0;
-    std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
-    std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: with some wavelength
-};
-RenderCounters& operator+=(RenderCounters& a, const RenderCounters& b);
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.
 /// `progress` is called from worker threads with the fraction done; returning false stops early (the film is then invalid).

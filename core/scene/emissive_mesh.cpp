@@ -50,9 +50,9 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
     if (!changes && same_everywhere(record, material)) {
         const Vec2f anywhere{0, 0};
         const Rgb front =
-            emission_at(record, material, textures, primitive, anywhere, true, 0);
+            emission_at(record, material, textures, {primitive, anywhere, true});
         const Rgb back =
-            emission_at(record, material, textures, primitive, anywhere, false, 0);
+            emission_at(record, material, textures, {primitive, anywhere, false});
         Measured m{front, max_component(front) > 0, max_component(back) > 0};
         if (m.back && max_component(back) > max_component(front)) m.mean = back;
         m.even = m.front && (!m.back || front == back);
@@ -69,7 +69,7 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
             const Vec2f b{float(i) / float(n), float(j) / float(n)};
             for (int side = 0; side < 2; ++side) {
                 sums[side] +=
-                    emission_at(record, material, textures, primitive, b, side == 0, 0);
+                    emission_at(record, material, textures, {primitive, b, side == 0});
             }
         }
     }
@@ -95,9 +95,9 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
 }  // namespace
 
 Rgb emission_at(const InstanceRecord& record, const Material& material,
-                const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front, float time, std::optional<Vec3f> toward,
-                float width) {
+                const std::vector<Texture>& textures, const TrianglePoint& point,
+                std::optional<Vec3f> toward, float width) {
+    const auto& [primitive, barycentric, front, time] = point;
     SurfaceHit hit;
     hit.time = time;
     hit.front = front;

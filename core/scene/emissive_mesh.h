@@ -5,13 +5,20 @@
 
 namespace dg {
 
+/// A point of one side of a triangle, at a time of the interval.
+struct TrianglePoint {
+    std::uint32_t primitive;
+    Vec2f barycentric;
+    bool front;
+    float time = 0;
+};
+
 /// Emission (cd/m2) of a point of the triangle toward its front or back, as a ray that
 /// hits it would find it on average: with texture, vertex colour and opacity. `toward` is
 /// where it is seen from, for a clear coat; without it, along the normal. `width` (m): of the
 /// ray's cone there, across it; textures are read as it covers them.
 Rgb emission_at(const InstanceRecord& record, const Material& material,
-                const std::vector<Texture>& textures, std::uint32_t primitive,
-                Vec2f barycentric, bool front, float time,
+                const std::vector<Texture>& textures, const TrianglePoint& point,
                 std::optional<Vec3f> toward = {}, float width = 0);
 
 /// Appends a light for each triangle of the instance that has area and emits anywhere. Of a

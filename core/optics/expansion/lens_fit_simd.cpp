@@ -77,9 +77,15 @@ void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const Fil
     }
 }
 
+struct LaneDescription {
+    V vx, vy, ex, ey;   // direction and offset
+};
+
 /// describe_ray() of rays toward the scene, z from the first vertex.
-HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, V dz,
-                               V& vx, V& vy, V& ex, V& ey) {
+HWY_INLINE LaneDescription describe_lanes(const FitTables& fit, const LaneVec& from,
+                                          const LaneVec& along_ray) {
+    const auto& [x, y, z] = from;
+    const auto& [dx, dy, dz] = along_ray;
     const D d;
     const V one = constant(1), z0 = hn::Sub(z, constant(fit.pupil_z));
     const V away = hn::Sub(one, dz);  // 1 + cos(theta)
@@ -90,12 +96,12 @@ HWY_INLINE void describe_lanes(const FitTables& fit, V x, V y, V z, V dx, V dy, 
     const V ratio = hn::IfThenElse(small, series,
                                    hn::Div(hn::Atan(d, h), hn::Max(h, constant(1e-6f))));
     const V stretch = hn::Div(hn::Add(ratio, ratio), away);  // theta / sin(theta)
-    vx = hn::Mul(dx, stretch), vy = hn::Mul(dy, stretch);
+    const V vx = hn::Mul(dx, stretch), vy = hn::Mul(dy, stretch);
     const V along = hn::MulAdd(x, dx, hn::MulAdd(y, dy, hn::Mul(z0, dz)));
     const V px = hn::NegMulAdd(along, dx, x), py = hn::NegMulAdd(along, dy, y),
             pz = hn::NegMulAdd(along, dz, z0);
     const V turn = hn::Div(pz, hn::Add(ratio, ratio));  // p.z tan(theta / 2) / theta
-    ex = hn::MulAdd(vx, turn, px), ey = hn::MulAdd(vy, turn, py);
+    return {vx, vy, hn::MulAdd(vx, turn, px), hn::MulAdd(vy, turn, py)};
 }
 
 /// The fitted inverse: f and q of v and e.
@@ -152,9 +158,10 @@ void FitToFilm(const FitTables& fit, SceneRays& in, FilmRays& out, int count) {
     for (int i = 0; i < count; i += step) {
         const Pair x = load(in.x + i), y = load(in.y + i), z = load(in.z + i),
                    dx = load(in.dx + i), dy = load(in.dy + i), dz = load(in.dz + i);
-        PairVec v, e, fq[2];
-        describe_lanes(fit, x.a, y.a, z.a, dx.a, dy.a, dz.a, v.x.a, v.y.a, e.x.a, e.y.a);
-        describe_lanes(fit, x.b, y.b, z.b, dx.b, dy.b, dz.b, v.x.b, v.y.b, e.x.b, e.y.b);
+        const LaneDescription a = describe_lanes(fit, {x.a, y.a, z.a}, {dx.a, dy.a, dz.a}),
+                              b = describe_lanes(fit, {x.b, y.b, z.b}, {dx.b, dy.b, dz.b});
+        const PairVec v{{a.vx, b.vx}, {a.vy, b.vy}}, e{{a.ex, b.ex}, {a.ey, b.ey}};
+        PairVec fq[2];
         FitLanes there;
         invert(fit, v, e, wavelength_variable(fit.scale, load(out.nm + i)), fq, there);
         const PairVec m = pupil_slope(fit.pupil, fq[0], fq[1]);

@@ -28,9 +28,16 @@ SeidelSums& operator+=(SeidelSums& a, const SeidelSums& b) {
     return a;
 }
 
-/// dn, dn2: how far the index falls from the short to the long wavelength.
+/// Index of a medium, and how far it falls from the short to the long wavelength.
+struct Medium {
+    double n, dn;
+};
+
+/// u2: slope of the marginal ray behind the surface.
 SeidelSums sums_at(const Surface& s, Ray marginal, Ray chief, double u2, double invariant,
-                   double n, double n2, double dn, double dn2) {
+                   Medium before, Medium behind) {
+    const auto [n, dn] = before;
+    const auto [n2, dn2] = behind;
     const double c = vertex_curvature_y(s), h = marginal.h, hc = chief.h;
     const double a = n * (h * c + marginal.u), ac = n * (hc * c + chief.u);
     const double bend = u2 / n2 - marginal.u / n, petzval = c * (1 / n2 - 1 / n);
@@ -78,7 +85,7 @@ Seidel seidel(const Prescription& lens, double nm, const SeidelRays& rays, doubl
         const double power = (n2 - n) * vertex_curvature_y(s);
         const auto refracted = [&](Ray r) { return (n * r.u - r.h * power) / n2; };
         out.surfaces.push_back(sums_at(s, marginal, chief, refracted(marginal), out.invariant,
-                                       n, n2, dn, dn2));
+                                       {n, dn}, {n2, dn2}));
         out.total += out.surfaces.back();
         for (Ray* r : {&marginal, &chief}) {
             r->u = refracted(*r);

@@ -8,14 +8,15 @@
 
 namespace dg {
 
-/// The message ends in " [code]", by which Python knows it.
+/// what() is the message with " [code]" behind it, for people; programs read the fields.
 struct LensError : Error {
-    LensError(const std::string& message, std::string error_code, int surface_index = -1)
-        : Error(message + " [" + error_code + "]"),
+    LensError(std::string text, std::string error_code, int surface_index = -1)
+        : Error(text + " [" + error_code + "]"),
+          message(std::move(text)),
           code(std::move(error_code)),
           surface(surface_index) {}
 
-    std::string code;
+    std::string message, code;
     int surface;  // -1: the lens as a whole
 };
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import daguerre._core as _core
 from daguerre.checks import number, short
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import UsageError, core_errors, suggest
 
 from .rolling_shutter import RollingShutter
 
@@ -56,12 +56,10 @@ def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
     """
     check(camera)
     order, line_time = scan(camera, resolution)
-    try:
+    with core_errors(UsageError, "camera"):
         return _core.Shutter(
             shutter_time(camera), _curve(camera), order, line_time, _is_leaf(camera), resolution
         )
-    except ValueError as error:
-        raise UsageError(f"camera: {error}") from None
 
 
 def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[float, float]:
@@ -219,12 +217,10 @@ def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
         raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}") from None
     if points.ndim != 2 or points.shape[1] != 2:
         raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}")
-    try:
+    with core_errors(UsageError, "camera"):
         return _core.OpeningCurve.points(
             np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
         )
-    except ValueError as error:
-        raise UsageError(f"camera: {error}") from None
 
 
 def describe(camera: Camera, resolution: tuple[int, int]) -> str:

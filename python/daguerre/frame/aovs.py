@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-#: Auxiliary channels of a film, in the names of the files.
-AOV_NAMES = (
-    "depth.Z",
-    "P.X",
-    "P.Y",
-    "P.Z",
-    "N.X",
-    "N.Y",
-    "N.Z",
-    "albedo.R",
-    "albedo.G",
-    "albedo.B",
-)
+import daguerre._core as _core
+
+ALPHA = "alpha"
+#: Auxiliary channels of a film, in the names of the files; alpha is a member of the frame.
+AOV_NAMES: tuple[str, ...] = tuple(name for name in _core.FILM_AOVS if name != ALPHA)
 
 
-#: Channels of what is seen, in the names of the files.
-PLANES = (
-    "depth.Z", "distance.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "object_id", "material_id",
-)  # fmt: skip
+#: Channels of ground truth, in the names of the files.
+PLANES: tuple[str, ...] = _core.TRUTH_PLANES
 
 
 #: Channel of means alone: the share of the light whose rays meet a surface.
-COVERAGE = "coverage.Y"
+COVERAGE: str = _core.COVERAGE_PLANE
 
 
 #: Where it is in the next frame and where it was in the last one: how many frames later.

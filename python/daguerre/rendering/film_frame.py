@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame.aovs import AOV_NAMES
+from daguerre.frame.aovs import ALPHA, AOV_NAMES
 from daguerre.frame.frame import Frame
 
 
@@ -48,7 +48,7 @@ def frame_of(
     if aovs:
         planes = {name: film.aov(name) for name in AOV_NAMES}
         planes["object_id"] = film.object_ids()
-        alpha = film.aov("alpha")
+        alpha = film.aov(ALPHA)
     parts, keep = film.state_parts(), bool(metadata.get("bands"))
     if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .diffraction import developed, rgb_of

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from daguerre.setup.camera import CameraSetup
 
 Box = tuple[int, int, int, int]
-Counts = tuple[int, ...]
 NOWHERE: Box = (0, 0, 0, 0)
 #: Changes the seed around the picture, which has random numbers of its own.
 _SEED = 0x9E3779B97F4A7C15
@@ -49,7 +48,7 @@ class FilmPart:
         corner: tuple[int, int],
         which: tuple[Any, ...],
         progress: Any,
-    ) -> tuple[bool, Counts]:
+    ) -> tuple[bool, _core.RenderCounters]:
         """Draws samples; returns whether all of them were drawn, and the counts.
 
         Args:
@@ -62,10 +61,10 @@ class FilmPart:
         """
         film.place(corner[0] + self.before[0], corner[1] + self.before[1])
         try:
-            complete, *counts = draw(scene, self.camera, film, self.settings, *which, progress)
+            complete, counters = draw(scene, self.camera, film, self.settings, *which, progress)
         finally:
             film.place(*corner)
-        return bool(complete), tuple(counts)
+        return bool(complete), counters
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:

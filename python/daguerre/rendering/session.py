@@ -26,7 +26,7 @@ from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from daguerre.distortion.overscan import note as overscan_note
 from daguerre.distortion.overscan import to_undistort
 from daguerre.distortion.rectified import Sight
-from daguerre.errors import InputError, MismatchError, UsageError, suggest
+from daguerre.errors import InputError, MismatchError, UsageError, core_errors, suggest
 from daguerre.frame.frame import Frame
 from daguerre.frame.seen_by import sensor_metadata
 from daguerre.scene.scene import Scene
@@ -114,6 +114,7 @@ class Session:
         InputError: The scene or the lens cannot be used.
     """
 
+    @core_errors(InputError, "render")
     def __init__(
         self,
         scene: Scene,
@@ -199,10 +200,8 @@ class Session:
             "flare_highlights": flare_highlights,
         }
         core_shutter = shutter.core_shutter(self.camera, size)
-        try:
+        with core_errors(UsageError):
             self._settings = core_settings(self._setup, size, core_shutter, NONE, options)
-        except ValueError as error:
-            raise UsageError(str(error)) from None
         self._window = inside(self.crop, size)
         plan = self._plan() if wanted is None else wanted
         # The frame decides which plan pays; a crop gets the share that it has of its pixels.
@@ -219,11 +218,8 @@ class Session:
         self._torn = False  # a pass was stopped midway: the sums are of no use
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
-        self.rays = self.camera_rays = self.stopped_rays = self.samples = 0
-        self.light_path_count = self.splats_off_film = 0
+        self.counters = _core.RenderCounters()
         self.flare_spots, self.survey_rays = self._settings.flare_survey
-        self.flare_path_count = self.flare_rays = self.flare_hits = 0
-        self.scatter_path_count = self.scatter_hits = 0
         self._identity = {
             "resolution": [self.width, self.height],
             "crop": list(self.crop),
@@ -303,10 +299,8 @@ class Session:
             return 0.0
         check_surfaces(self._setup.facts["lens_model"], name)
         prepare = getattr(self._settings, f"prepare_{name}")
-        try:
+        with core_errors(InputError, name):
             shines = prepare(self._core_scene, self._setup.core)
-        except ValueError as error:
-            raise InputError(f"{name}: {error}") from None
         if not shines:
             self.notes.append(f"{name}: {dark}")
             return 0.0
@@ -332,15 +326,21 @@ class Session:
 
     def _new_film(self) -> _core.Film:
         x0, y0, x1, y1 = self.crop
-        followed = any(part.settings.light_paths != OFF for part in self._parts)
-        layers = (self.aovs, followed, self.flare > 0 or self.scatter > 0)
-        bands = self.diffraction.bands if self.diffraction is not None else self.bands
-        region = (x1 - x0, y1 - y0, x0, y0)
-        if self.sensor is None:
-            return _core.Film(*region, *layers, bands=bands)
-        curves = responses(self.sensor)
-        film = _core.Film(*region, *layers, bands=bands, channels=len(curves))
-        film.set_responses(curves)
+        curves = None if self.sensor is None else responses(self.sensor)
+        layout = _core.FilmLayout(
+            width=x1 - x0,
+            height=y1 - y0,
+            offset_x=x0,
+            offset_y=y0,
+            aovs=self.aovs,
+            splats=any(part.settings.light_paths != OFF for part in self._parts),
+            flare=self.flare > 0 or self.scatter > 0,
+            bands=self.diffraction.bands if self.diffraction is not None else self.bands,
+            channels=0 if curves is None else len(curves),
+        )
+        film = _core.Film(layout)
+        if curves is not None:
+            film.set_responses(curves)
         return film
 
     def _whole_film(self) -> _core.Film:
@@ -387,16 +387,19 @@ class Session:
         if self.round is None:
             raise UsageError("draw_round: wanted a planned round, got none")
         begin, count, drawn = self.round.begin, self.round.count, self.round.drawn
-        if not self._add(_core.render_round, (begin, count, drawn, until), progress):
+        if not self._add(
+            _core.render_round, (_core.SampleRound(begin, count, drawn, until),), progress
+        ):
             return False
         self.round = replace(self.round, drawn=until)
         self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
         return True
 
+    @core_errors(InputError, "render")
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
-        all_pixels, done, counts = area(self.crop), 0, np.zeros(10, np.int64)
+        all_pixels, done, counters = area(self.crop), 0, self.counters
         for part in self._parts:
             told = _share_of(progress, done / all_pixels, part.pixels / all_pixels)
             corner = self.crop[0], self.crop[1]
@@ -404,22 +407,12 @@ class Session:
             if not complete:
                 return False
             done += part.pixels
-            counts += found
+            counters += found
         self._torn = False
-        camera_rays, stopped, rays, light_paths, off_film, *flare = counts.tolist()
-        self.camera_rays += camera_rays
-        self.stopped_rays += stopped
-        self.rays += rays
-        self.light_path_count += light_paths
-        self.splats_off_film += off_film
-        self.flare_path_count += flare[0]
-        self.flare_rays += flare[1]
-        self.flare_hits += flare[2]
-        self.scatter_path_count += flare[3]
-        self.scatter_hits += flare[4]
-        self.samples += camera_rays
+        self.counters = counters
         return True
 
+    @core_errors(InputError, "render")
     def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
         """Returns the picture of the samples drawn so far, with all channels asked for.
 

@@ -18,7 +18,7 @@ from daguerre.camera import rolling_shutter, shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.checks import short, whole
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import InputError, UsageError, core_errors, suggest
 from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import CameraSetup, set_up
@@ -113,6 +113,7 @@ class GroundTruth:
     core_scene: _core.Scene | None = None
     overscan: Overscan = NONE
 
+    @core_errors(InputError, "render")
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
         """Channels (H, W) by name: ``PLANES``, and with ``motion`` also ``motion.U``, ... in px.
 
@@ -144,6 +145,7 @@ class GroundTruth:
                 planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
         return planes
 
+    @core_errors(InputError, "render")
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """That plane alone, (H, W), of ``moment(0)``."""
         if self.gt_lens == "mean":

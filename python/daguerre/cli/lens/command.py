@@ -299,7 +299,7 @@ def _finite(value: Any) -> Any:
 def _print(item: Lens, wavelength: float) -> None:
     try:
         order = asdict(item.first_order(wavelength))
-    except ValueError as error:
+    except InputError as error:
         raise InputError(f"{item.source}: {error}") from None
     print(item)
     print(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")

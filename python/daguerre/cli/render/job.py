@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.cli import console
-from daguerre.errors import InputError
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -53,7 +50,7 @@ class Job:
         self.loop = Loop(
             self.session, work, plan.checkpoint, plan.interval_s, reporter, self._snapshot
         )
-        with Signals() as signals, reporter, core_errors("render"):
+        with Signals() as signals, reporter:
             if resume:
                 found = self.loop.resume()
                 console.note(
@@ -171,39 +168,40 @@ class Job:
 
     def _stopped(self) -> str:
         """The share of the camera's rays that no light comes along."""
-        share = self.session.stopped_rays / max(1, self.session.camera_rays)
+        counters = self.session.counters
+        share = counters.stopped_rays / max(1, counters.camera_rays)
         return f"{share:.1%} of the camera's rays, by lens, iris or edge of the field"
 
     def _light_stats(self) -> dict[str, str]:
         """Counts of light paths, and of those that passed the lens and missed the frame."""
         from daguerre.rendering.light_paths import show_plan
 
-        session = self.session
-        plan = show_plan(session.light_paths)
+        counters, plan = self.session.counters, show_plan(self.session.light_paths)
         if plan is None:
             return {"light paths": "off"}
         return {
-            "light paths": f"{session.light_path_count} ({plan} per sample), "
-            f"{session.splats_off_film} beside the frame"
+            "light paths": f"{counters.light_paths} ({plan} per sample), "
+            f"{counters.splats_off_film} beside the frame"
         }
 
     def _flare_stats(self) -> dict[str, str]:
         """Counts of ghosts: their sources, and the share of their rays on the frame."""
-        session = self.session
-        if not session.flare_rays:
+        session, counters = self.session, self.session.counters
+        if not counters.flare_rays:
             return {}
-        share = session.flare_hits / session.flare_rays
+        share = counters.flare_hits / counters.flare_rays
         return {
-            "flare": f"{session.flare_path_count} paths, {share:.0%} of their rays on the frame",
+            "flare": f"{counters.flare_paths} paths, {share:.0%} of their rays on the frame",
             "highlights": f"{session.flare_spots} bright spots, by {session.survey_rays} rays",
         }
 
     def _scatter_stats(self) -> dict[str, str]:
         """Counts of light that the lens's parts scatter."""
-        count = self.session.scatter_path_count
+        counters = self.session.counters
+        count = counters.scatter_paths
         if not count:
             return {}
-        share = self.session.scatter_hits / count
+        share = counters.scatter_hits / count
         return {"scatter": f"{count} paths, {share:.1%} of them to the frame"}
 
     def _print_stats(self, elapsed: float) -> None:
@@ -214,7 +212,7 @@ class Job:
 
         usage = resource.getrusage(resource.RUSAGE_SELF)
         drawn = round(self.loop.drawn_here * frame_pixels(self.session))
-        rays = int(self.session.rays)
+        rays = int(self.session.counters.rays)
         rows = {
             "set-up": f"{self.setup_s:.2f} s",
             "drawing": f"{elapsed:.2f} s",
@@ -237,14 +235,3 @@ def bad_samples(count: int, places: list[tuple[int, int, int]]) -> str:
     named = ", ".join(f"sample {sample} of pixel ({x}, {y})" for x, y, sample in places[:4])
     more = ", ..." if len(places) > 4 else ""
     return f"{count} samples were NaN or Inf and are left out: {named}{more}"
-
-
-@contextmanager
-def core_errors(where: str) -> Iterator[None]:
-    """The core raises plain ``ValueError`` for input that it cannot use."""
-    try:
-        yield
-    except ValueError as error:
-        if type(error) is not ValueError:
-            raise
-        raise InputError(f"{where}: {error}") from error

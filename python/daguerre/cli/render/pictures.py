@@ -13,7 +13,7 @@ from daguerre.cli import console
 from daguerre.errors import UsageError
 from daguerre.frame.aovs import DISPARITY
 
-from .job import INTERRUPTED, Job, core_errors
+from .job import INTERRUPTED, Job
 
 if TYPE_CHECKING:
     from daguerre.cli.flags.calibration import CalibrationFlags
@@ -172,8 +172,7 @@ class Shoot:
             return
         from daguerre.labels.annotations import annotations_of
 
-        with core_errors("render"):
-            seen = annotations_of(session, self.categories)
+        seen = annotations_of(session, self.categories)
         # Readers of data sets want files that image libraries open.
         files = picture.plan.files
         plain = (f for f in files if f.suffix.lower() not in (".exr", ".dng"))
@@ -192,15 +191,14 @@ class Shoot:
         plan, scene = picture.plan, self._scene_of(picture)
         camera = picture.view.of(scene, self.calibrations, self.changes)
         size = plan.resolution
-        with core_errors("render"):
-            # Nothing is drawn, but what is in focus may have to be found.
-            setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
-            camera = focused(camera, setup.facts)
-            overscan = check_overscan(plan.overscan, size, "--overscan")
-            if overscan is None:
-                overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
-                console.note(note(overscan))
-            plan.maps.write(scene, camera, size, overscan, plan.gt_time)
+        # Nothing is drawn, but what is in focus may have to be found.
+        setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
+        camera = focused(camera, setup.facts)
+        overscan = check_overscan(plan.overscan, size, "--overscan")
+        if overscan is None:
+            overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+            console.note(note(overscan))
+        plan.maps.write(scene, camera, size, overscan, plan.gt_time)
 
     def describe(self, wanted: list[Picture]) -> int:
         """Prints the facts of pictures: for a sequence its first frame, for a rig each camera."""
@@ -253,20 +251,19 @@ class Shoot:
         settings = dict(self.settings)
         if plan.overscan is not None:
             settings["overscan"] = plan.overscan
-        with core_errors("render"):
-            session = Session(
-                scene,
-                camera,
-                resolution=plan.resolution,
-                aovs=bool(plan.aovs) or plan.denoise,
-                gt_time=plan.gt_time,
-                gt_lens=plan.gt_lens,
-                gt_rays=plan.gt_rays,
-                motion=plan.motion,
-                crop=plan.crop,
-                built=self._built,
-                **settings,
-            )
+        session = Session(
+            scene,
+            camera,
+            resolution=plan.resolution,
+            aovs=bool(plan.aovs) or plan.denoise,
+            gt_time=plan.gt_time,
+            gt_lens=plan.gt_lens,
+            gt_rays=plan.gt_rays,
+            motion=plan.motion,
+            crop=plan.crop,
+            built=self._built,
+            **settings,
+        )
         self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)
         if DISPARITY in plan.aovs:
