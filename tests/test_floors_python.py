@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -50,6 +52,16 @@ def test_package_is_in_order() -> None:
     command = [sys.executable, str(ROOT / "script" / "check-floors")]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stdout + found.stderr
+
+
+def test_design_has_a_row_for_every_room() -> None:
+    """Rows stand in the order of floors."""
+    floors = runpy.run_path(str(ROOT / "script" / "floors_python.py"))["FLOORS"]
+    table = (ROOT / "docs" / "design.md").read_text().split("## The rooms of Python")[1]
+    rows = re.findall(r"^\| `(\w+)/?` \|", table, re.MULTILINE)
+    assert sorted(rows) == sorted(room for rooms in floors for room in rooms if room != "__main__")
+    heights = [next(i for i, rooms in enumerate(floors) if room in rooms) for room in rows]
+    assert heights == sorted(heights)
 
 
 def test_order_without_fault_passes(tmp_path: Path) -> None:
