@@ -360,7 +360,7 @@ void def_time(nb::class_<Builder>& c) {
              [](Builder& b, double open_s, double close_s) {
                  b.description.interval = {open_s, close_s};
              },
-             "open_s"_a, "close_s"_a, "What the picture exposes; keys of time are in s as well.")
+             "open_s"_a, "close_s"_a, "Exposed interval of the picture, s; keys of time are in s as well.")
         .def("fold_materials", &Builder::fold_materials, "times_s"_a,
              "The materials added last, one per time (s), become keys of a single one.")
         .def("fold_lights", &Builder::fold_lights, "times_s"_a,

@@ -63,27 +63,39 @@ Meridional mirrored(const Meridional& m) {
 
 }  // namespace
 
-ChiefRays::ChiefRays(const LensKind& kind) {
-    const auto* lens = std::get_if<ExactLens>(&kind);
-    if (!lens) {
-        if (const auto* pinhole = std::get_if<Pinhole>(&kind))
-            film_distance_mm_ = pinhole->film_distance_mm;
-        if (const auto* thin = std::get_if<ThinLens>(&kind))
-            film_distance_mm_ = thin->film_distance_mm;
-        if (const auto* thick = std::get_if<ThickLens>(&kind)) thick_ = *thick;
-        if (const auto* projection = std::get_if<Projection>(&kind)) {
-            projection_ = *projection;
-            projection_->iris = {};   // chief rays need none
-        }
-        return;
-    }
-    if (!lens->is_axial()) {
-        grid_.emplace(*lens);
-        return;
-    }
-    step_mm_ = lens->half_diagonal_mm() / kSteps;
+ChiefRays::ChiefRays(const LensKind& kind)
+    : ChiefRays(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
+
+ChiefRays ChiefRays::of(const Pinhole& lens) { return ChiefRays(lens.film_distance_mm); }
+
+ChiefRays ChiefRays::of(const ThinLens& lens) { return ChiefRays(lens.film_distance_mm); }
+
+ChiefRays ChiefRays::of(const ThickLens& lens) {
+    ChiefRays rays(0);
+    rays.thick_ = lens;
+    return rays;
+}
+
+ChiefRays ChiefRays::of(const Projection& lens) {
+    ChiefRays rays(0);
+    rays.projection_ = lens;
+    rays.projection_->iris = {};   // chief rays need none
+    return rays;
+}
+
+ChiefRays ChiefRays::of(const ExactLens& lens) {
+    ChiefRays rays(0);
+    if (lens.is_axial())
+        rays.tabulate(lens);
+    else
+        rays.grid_.emplace(lens);
+    return rays;
+}
+
+void ChiefRays::tabulate(const ExactLens& lens) {
+    step_mm_ = lens.half_diagonal_mm() / kSteps;
     for (int i = 0; i <= kSteps; ++i) {
-        const auto ray = mean_ray(passing(*lens, i * step_mm_));
+        const auto ray = mean_ray(passing(lens, i * step_mm_));
         ends_ = !ray || (i > 0 && ray->angle <= table_.back().angle);
         if (ends_) break;  // beyond the image circle
         table_.push_back(*ray);

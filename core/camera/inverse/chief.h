@@ -28,6 +28,11 @@ class ChiefRays {
 
     /// Throws Error if no light passes an exact lens on its axis.
     explicit ChiefRays(const LensKind& lens);
+    static ChiefRays of(const Pinhole& lens);
+    static ChiefRays of(const ThinLens& lens);
+    static ChiefRays of(const ThickLens& lens);
+    static ChiefRays of(const ExactLens& lens);
+    static ChiefRays of(const Projection& lens);
 
     /// Chief ray of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
     /// are continued linearly in the film radius, for points that leave the frame. Where a
@@ -52,6 +57,7 @@ class ChiefRays {
   private:
     friend class ChiefRaysOverTime;
     explicit ChiefRays(double film_distance_mm) : film_distance_mm_(film_distance_mm) {}
+    void tabulate(const ExactLens& lens);
     /// Chief rays between two lenses that change evenly.
     static ChiefRays between(const ChiefRays& a, const ChiefRays& b, double share);
     bool changes_evenly() const { return film_distance_mm_ > 0 || projection_; }

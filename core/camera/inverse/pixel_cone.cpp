@@ -6,16 +6,16 @@
 namespace dg {
 namespace {
 
-/// View direction of a film point on +x.
-Vec3d chief(const ExactLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
-Vec3d chief(const ThickLens& lens, double x_mm) { return lens.chief_direction({x_mm, 0}); }
-Vec3d chief(const Projection& lens, double x_mm) {
-    return lens.chief_direction({x_mm, 0}).value_or(Vec3d{0, 0, 0});
+/// Where a kind sees nothing, 0.
+Vec3d direction(const std::optional<Vec3d>& chief) { return chief.value_or(Vec3d{0, 0, 0}); }
+
+/// Whether a circle about the axis is seen under one angle.
+template <HasChief Lens>
+bool is_round(const Lens&) {
+    return true;
 }
-template <typename Ideal>
-Vec3d chief(const Ideal& lens, double x_mm) {
-    return normalize(Vec3d{x_mm, 0, -lens.film_distance_mm});
-}
+bool is_round(const ExactLens& lens) { return lens.is_axial(); }
+bool is_round(const Projection&) { return false; }
 
 /// Solid angle per mm^2 of film (its root), mean over the directions at a radius: of lenses that are not the
 /// same on all sides.
@@ -32,24 +32,26 @@ double mean_angle_per_mm(const Projection& lens, double radius_mm, double) {
     return lit ? sum / lit : 0;
 }
 
-double mean_angle_per_mm(const ExactLens& lens, double radius_mm, double step_mm) {
+template <HasChief Lens>
+double mean_angle_per_mm(const Lens& lens, double radius_mm, double step_mm) {
     constexpr int kTurns = 8;
     double sum = 0;
     int lit = 0;
     for (int i = 0; i < kTurns; ++i) {
         const double a = 2 * kPiD * i / kTurns;
         const Vec2d at{radius_mm * std::cos(a), radius_mm * std::sin(a)};
-        const Vec3d here = lens.chief_direction(at);
-        const Vec3d x = lens.chief_direction({at.x + step_mm, at.y}) - here;
-        const Vec3d y = lens.chief_direction({at.x, at.y + step_mm}) - here;
+        const Vec3d here = direction(lens.chief_direction(at));
+        const Vec3d x = direction(lens.chief_direction({at.x + step_mm, at.y})) - here;
+        const Vec3d y = direction(lens.chief_direction({at.x, at.y + step_mm})) - here;
         const double area = length(cross(x, y)) / (step_mm * step_mm);
         if (area > 0) sum += std::sqrt(area), ++lit;
     }
     return lit ? sum / lit : 0;
 }
 
-double field_angle(const LensKind& lens, double x_mm) {
-    const Vec3d d = std::visit([&](const auto& kind) { return chief(kind, x_mm); }, lens);
+template <HasChief Lens>
+double field_angle(const Lens& lens, double x_mm) {
+    const Vec3d d = direction(lens.chief_direction({x_mm, 0}));
     return std::atan2(d.x, -d.z);
 }
 
@@ -58,30 +60,40 @@ double largest_radius(const Sensor& s) {
                       0.5 * s.height_mm + std::abs(s.center_mm.y));
 }
 
+double pitch(const Sensor& s) { return std::sqrt(s.width_mm / s.width * s.height_mm / s.height); }
+
 }  // namespace
+
+PixelCone::PixelCone(const Camera& camera, const Sensor& sensor)
+    : PixelCone(std::visit([&](const auto& lens) { return of(lens, sensor); }, camera.lens)) {}
+
+template <HasChief Lens>
+PixelCone PixelCone::of(const Lens& lens, const Sensor& sensor) {
+    PixelCone cone;
+    cone.steps_per_mm_ = float(1 / (largest_radius(sensor) / kSteps));
+    if (is_round(lens))
+        cone.measure_along(lens, sensor);
+    else
+        cone.measure_around(lens, sensor);
+    return cone;
+}
+
+template <HasChief Lens>
+void PixelCone::measure_around(const Lens& lens, const Sensor& sensor) {
+    const double step = largest_radius(sensor) / kSteps;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double angle = mean_angle_per_mm(lens, i * step, 0.5 * step);
+        angles_[i] = angle > 0 || i == 0 ? float(pitch(sensor) * angle) : angles_[i - 1];
+    }
+}
 
 // A circle of radius r on the film is seen under the angle a(r). One mm along r covers a'(r),
 // one mm across covers sin(a) / r.
-PixelCone::PixelCone(const Camera& camera, const Sensor& sensor) {
-    const double radius = largest_radius(sensor), step = radius / kSteps;
-    const double pitch = std::sqrt(sensor.width_mm / sensor.width * sensor.height_mm / sensor.height);
-    steps_per_mm_ = float(1 / step);
-    const auto by_turns = [&](const auto& lens) {
-        for (int i = 0; i <= kSteps; ++i) {
-            const double angle = mean_angle_per_mm(lens, i * step, 0.5 * step);
-            angles_[i] = angle > 0 || i == 0 ? float(pitch * angle) : angles_[i - 1];
-        }
-    };
-    if (const auto* lens = std::get_if<ExactLens>(&camera.lens); lens && !lens->is_axial()) {
-        by_turns(*lens);
-        return;
-    }
-    if (const auto* lens = std::get_if<Projection>(&camera.lens)) {
-        by_turns(*lens);
-        return;
-    }
+template <HasChief Lens>
+void PixelCone::measure_along(const Lens& lens, const Sensor& sensor) {
+    const double step = largest_radius(sensor) / kSteps;
     std::array<double, kSteps + 1> a;
-    for (int i = 0; i <= kSteps; ++i) a[i] = field_angle(camera.lens, i * step);
+    for (int i = 0; i <= kSteps; ++i) a[i] = field_angle(lens, i * step);
     for (int i = 0; i <= kSteps; ++i) {
         const int low = std::max(i - 1, 0), high = std::min(i + 1, kSteps);
         const double radial = (a[high] - a[low]) / ((high - low) * step);
@@ -90,7 +102,7 @@ PixelCone::PixelCone(const Camera& camera, const Sensor& sensor) {
             continue;
         }
         const double across = i ? std::sin(a[i]) / (i * step) : radial;
-        angles_[i] = float(pitch * std::sqrt(radial * across));
+        angles_[i] = float(pitch(sensor) * std::sqrt(radial * across));
     }
 }
 

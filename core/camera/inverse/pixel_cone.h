@@ -15,6 +15,8 @@ class PixelCone {
     /// No cones at all: every texture is read at a point.
     PixelCone() = default;
     PixelCone(const Camera& camera, const Sensor& sensor);
+    template <HasChief Lens>
+    static PixelCone of(const Lens& lens, const Sensor& sensor);
 
     /// Angle (rad) that a pixel covers there: geometric mean of its width and height.
     float angle(Vec2f film_mm) const;
@@ -24,6 +26,10 @@ class PixelCone {
     }
 
   private:
+    template <HasChief Lens>
+    void measure_around(const Lens& lens, const Sensor& sensor);
+    template <HasChief Lens>
+    void measure_along(const Lens& lens, const Sensor& sensor);
     RayCone cone(Vec2f film_mm, const Ray& ray) const;
 
     static constexpr int kSteps = 32;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "camera/inverse/inverse_kind.h"
 #include "camera/inverse/pupil_shape.h"
 #include "camera/tilt.h"
 #include "math/across.h"
@@ -59,28 +60,29 @@ PupilView::Turning PupilView::turning(const Projection::Numbers& numbers, const 
     return {1e-3 * numbers.aperture_radius_mm * shape.iris.outer_radius(), shape.model.is_wide()};
 }
 
-PupilView::Kind PupilView::view_of(const LensKind& kind) {
-    if (const auto* lens = std::get_if<ThinLens>(&kind))
+PupilView PupilView::of(const Pinhole&) { return PupilView(Hole{}); }
 
-        return disc_of(lens->numbers(), std::make_shared<const Iris>(lens->iris));
-    if (const auto* lens = std::get_if<ThickLens>(&kind)) {
-        const FirstOrder& order = lens->first_order();
-        Affine3d frame = lens->turn();
-        frame.origin = {0, 0, lens->pupil_offset_m()};
-        return Disc{frame, 1e-3 * order.entrance_magnification * lens->iris_radius_mm(),
-                    -1e-3 * order.entrance_pupil_z,
-                    std::make_shared<const Iris>(lens->iris())};
-    }
-    if (const auto* lens = std::get_if<ExactLens>(&kind))
-        return std::make_shared<const PupilShape>(*lens);
-    if (const auto* lens = std::get_if<Projection>(&kind)) {
-        if (!(lens->aperture_radius_mm > 0)) return Hole{lens->model.is_wide()};
-        return turning(lens->numbers(), *lens);
-    }
-    return Hole{};
+PupilView PupilView::of(const ThinLens& lens) {
+    return PupilView(disc_of(lens.numbers(), std::make_shared<const Iris>(lens.iris)));
 }
 
-PupilView::PupilView(const LensKind& lens) : kind_(view_of(lens)) {}
+PupilView PupilView::of(const ThickLens& lens) {
+    const FirstOrder& order = lens.first_order();
+    Affine3d frame = lens.turn();
+    frame.origin = {0, 0, lens.pupil_offset_m()};
+    return PupilView(Disc{frame, 1e-3 * order.entrance_magnification * lens.iris_radius_mm(),
+                          -1e-3 * order.entrance_pupil_z, std::make_shared<const Iris>(lens.iris())});
+}
+
+PupilView PupilView::of(const ExactLens& lens) { return PupilView(std::make_shared<const PupilShape>(lens)); }
+
+PupilView PupilView::of(const Projection& lens) {
+    if (!(lens.aperture_radius_mm > 0)) return PupilView(Hole{lens.model.is_wide()});
+    return PupilView(turning(lens.numbers(), lens));
+}
+
+PupilView::PupilView(const LensKind& kind)
+    : PupilView(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
 
 std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
     if (const auto* hole = std::get_if<Hole>(&kind_)) return sample_hole(p, w, hole->all_around);

@@ -26,6 +26,11 @@ class PupilShape;
 class PupilView {
   public:
     explicit PupilView(const LensKind& lens);
+    static PupilView of(const Pinhole& lens);
+    static PupilView of(const ThinLens& lens);
+    static PupilView of(const ThickLens& lens);
+    static PupilView of(const ExactLens& lens);
+    static PupilView of(const Projection& lens);
 
     struct Sample {
         Vec3f origin;  // where rays of the camera start: the lens, or its first surface
@@ -59,7 +64,6 @@ class PupilView {
     };
     using Kind = std::variant<Hole, Turning, Disc, std::shared_ptr<const PupilShape>>;
     explicit PupilView(Kind kind) : kind_(std::move(kind)) {}
-    static Kind view_of(const LensKind& lens);
     static Disc disc_of(const ThinLens::Numbers& numbers,
                         std::shared_ptr<const Iris> iris);
 

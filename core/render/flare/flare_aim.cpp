@@ -102,9 +102,7 @@ void FlareAim::trace(std::size_t state, int ghost, std::span<const CameraRay> ra
                        std::span<const float> nm, std::span<Reprojection> out) const {
     const State& s = states_[state];
     s.lens.reproject(rays, nm, s.ghosts, s.steps[ghost], out);
-    if (camera_.setting.values.empty()) return;
-    for (std::size_t i = 0; i < out.size(); ++i)   // the film lay elsewhere then
-        out[i].film_mm = out[i].film_mm - setting_at(camera_, rays[i].ray.time).film_shift_mm;
+    undo_film_shift(camera_, rays, out);
 }
 
 std::optional<Vec2f> FlareAim::on_frame(const Reprojection& landing, float time) const {

@@ -29,11 +29,11 @@ bool sees(const Camera& camera, const ChiefRays& chief, Vec2d film_mm, float tim
     return light_passes(camera, film_mm, time);
 }
 
-RayMap ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
-               const FilmLayout& region, RayFrame frame, int threads) {
+PixelRays ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
+                  const FilmLayout& region, RayFrame frame, int threads) {
     const std::size_t n = std::size_t(region.width) * region.height;
     const Vec3d none{kNone, kNone, kNone};
-    RayMap map{std::vector<Vec3d>(n, none), std::vector<Vec3d>(n, none), std::vector<double>(n)};
+    PixelRays map{std::vector<Vec3d>(n, none), std::vector<Vec3d>(n, none), std::vector<double>(n)};
     const ChiefRaysOverTime chief(camera);
     parallel_tasks(threads, region.height, [&](std::int64_t row) {
         for (int x = 0; x < region.width; ++x) {

@@ -11,7 +11,7 @@
 namespace dg {
 
 /// Rows from the top; NaN where no light comes to a pixel.
-struct RayMap {
+struct PixelRays {
     std::vector<Vec3d> origins, directions;  // m, unit
     std::vector<double> times;               // fraction of the scene's interval; known for all
 };
@@ -23,7 +23,7 @@ bool sees(const Camera& camera, const ChiefRays& chief, Vec2d film_mm, float tim
 enum class RayFrame { camera, world };
 
 /// Rays of the pixels of a region, which may lie beside the frame. Of the layout its place and size count.
-RayMap ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
-               const FilmLayout& region, RayFrame frame, int threads);
+PixelRays ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
+                  const FilmLayout& region, RayFrame frame, int threads);
 
 }  // namespace dg

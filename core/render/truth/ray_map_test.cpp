@@ -12,7 +12,7 @@ namespace {
 
 const Sensor kSensor{12, 8, 36, 24, {1, -2}};
 
-RayMap map_of(const LensKind& lens, const FilmLayout& region, RayFrame frame = RayFrame::camera) {
+PixelRays map_of(const LensKind& lens, const FilmLayout& region, RayFrame frame = RayFrame::camera) {
     Affine3d pose;
     pose.origin = {1, 2, 3};
     const Shutter shutter({0, {}, ScanOrder::top, 1e-3}, kSensor.width, kSensor.height);
@@ -23,8 +23,8 @@ RayMap map_of(const LensKind& lens, const FilmLayout& region, RayFrame frame = R
 
 TEST_CASE("a ray goes through its pixel's middle, at the time of its line, in either frame") {
     const FilmLayout region{14, 9, -1, 0};
-    const RayMap own = map_of(Pinhole{50, false}, region);
-    const RayMap world = map_of(Pinhole{50, false}, region, RayFrame::world);
+    const PixelRays own = map_of(Pinhole{50, false}, region);
+    const PixelRays world = map_of(Pinhole{50, false}, region, RayFrame::world);
     for (int y = 0; y < region.height; ++y)
         for (int x = 0; x < region.width; ++x) {
             const std::size_t i = std::size_t(y) * region.width + x;
@@ -38,7 +38,7 @@ TEST_CASE("a ray goes through its pixel's middle, at the time of its line, in ei
 
 TEST_CASE("where no light comes there is no ray") {
     const ExactLens lens(test::tessar(), {4, {}, 2, FocusFrom::pupil, 60});
-    const RayMap map = map_of(lens, {40, 1, -14, 4});
+    const PixelRays map = map_of(lens, {40, 1, -14, 4});
     CHECK(std::isnan(map.directions.front().x));
     CHECK(std::isnan(map.origins.back().z));
     CHECK(std::isfinite(map.directions[20].x));
