@@ -86,7 +86,10 @@ class Moving:
         if instance.mesh not in self._corners:
             self._corners[instance.mesh] = corners(self._scene.meshes[instance.mesh])
         box, where = self._corners[instance.mesh], _where(instance, index)
-        self._count(dynamic, where, self._most)
+        try:
+            self._count(dynamic, where, self._most)
+        except TypeError as error:  # its breaks are no list
+            raise InputError(f"{where}: transform: {error}") from None
         with core_errors(InputError, f"{where}: transform"):
             return resample_transform(dynamic, *self.interval, box, self._most, where)
 
