@@ -19,7 +19,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.checks import short, whole
 from daguerre.errors import UsageError, suggest
-from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
+from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import CameraSetup, set_up
 from daguerre.setup.scene import build
@@ -114,34 +114,31 @@ class GroundTruth:
     overscan: Overscan = NONE
 
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
-        """Channels (H, W) by name: ``PLANES``, and with ``motion`` also ``motion.U``, ... in px.
+        """Channels (H, W) by name: those of ground truth, and with ``motion`` also ``motion.U`` (px).
 
         ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
         later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN
-        where it does not appear there, hidden or behind the camera. Means also have ``COVERAGE``.
+        where it does not appear there, hidden or behind the camera. Means also have coverage.
         """
         now = self._shot(0)
         if self.gt_lens == "mean":
             return self._means(now, motion=motion)
         seen = _core.see(*now, self.crop)
-        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in PLANES}
+        planes = {name: np.asarray(seen.plane(name)) for name in TRUTH_CHANNELS}
         if not motion:
             return planes
         here = seen.places(*now)
-        for name, frames in MOTION.items():
-            moved = seen.places(*self._shot(frames)) - here
-            for axis, channel in enumerate("UV"):
-                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        for row in made_by(Source.MOTION):
+            moved = seen.places(*self._shot(row.frames)) - here
+            planes |= _by_channel(row, moved)
         return planes
 
     def _means(self, now: Shot, *, motion: bool) -> dict[str, NDArray[Any]]:
         seen = _core.see_mean(*now, self.crop, self.gt_rays)
-        names = (*PLANES, COVERAGE)
-        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in names}
-        for name, frames in MOTION.items() if motion else ():
-            moved = _core.mean_motion(*now, *self._shot(frames), self.crop, self.gt_rays)
-            for axis, channel in enumerate("UV"):
-                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        planes = {name: np.asarray(seen.plane(name)) for name in MEANS_CHANNELS}
+        for row in made_by(Source.MOTION) if motion else ():
+            moved = _core.mean_motion(*now, *self._shot(row.frames), self.crop, self.gt_rays)
+            planes |= _by_channel(row, moved)
         return planes
 
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
@@ -173,6 +170,11 @@ class GroundTruth:
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
         return Moment((core_scene, setup.core, settings), scene, setup)
+
+
+def _by_channel(row: Aov, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Planes (H, W) of values (H, W, channels)."""
+    return {name: values[:, :, i].astype(np.float32) for i, name in enumerate(row.channels)}
 
 
 def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
