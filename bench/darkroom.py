@@ -75,7 +75,7 @@ def ours(image: np.ndarray, name: str, wavelengths: tuple[float, ...]) -> None:
 
 
 def peak_mb(image: np.ndarray, name: str) -> float:
-    """Of the command line, from file to file."""
+    """Peak memory of the command line, from file to file, MB."""
     import OpenEXR
 
     with tempfile.TemporaryDirectory() as folder:

@@ -19,7 +19,7 @@ import daguerre as dg
 
 
 def errors(image: np.ndarray, truth: dg.Frame) -> str:
-    """Of a picture against a frame."""
+    """Errors of a picture against a frame."""
     square = (image - truth.rgb) ** 2 - truth.variance
     screen = [np.clip(i, 0, 1) ** (1 / 2.2) for i in (image, truth.rgb)]
     psnr = -10 * np.log10(((screen[0] - screen[1]) ** 2).mean())

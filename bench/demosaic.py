@@ -81,7 +81,7 @@ def mosaic_of(linear: NDArray[np.float64], cells: Cells) -> Mosaic:
 def error_of(
     truth: NDArray[np.float64], least: int, cells: Cells, scale: float, method: Any
 ) -> tuple[float, float]:
-    """Of a picture, beside itself until it has the least size."""
+    """Errors of a picture, repeated beside itself until it has the least size."""
     light = tiled(truth, *(max(side, least) for side in truth.shape[:2]))
     return judged(method(mosaic_of(light, cells)) / scale, light)
 

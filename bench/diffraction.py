@@ -72,7 +72,7 @@ def star(options: argparse.Namespace) -> dict[str, Any]:
 
 
 class Film:
-    """What ``waves.developed`` asks of a film."""
+    """Stands in for a film in ``waves.developed``."""
 
     def __init__(self, bands: NDArray[np.float32]) -> None:
         self._bands = bands

@@ -64,7 +64,7 @@ def drawn(arguments: argparse.Namespace, paths: float, seed: int) -> tuple[Sessi
 
 
 def naive_share(arguments: argparse.Namespace, paths: float) -> float:
-    """Of rays on the film, if nothing is learned."""
+    """Share of rays on the film, if nothing is learned."""
     made = session(arguments, paths, 5)
     made._settings.flare_learned = False
     made._settings.prepare_flare(made._core_scene, made._setup.core)
@@ -73,7 +73,7 @@ def naive_share(arguments: argparse.Namespace, paths: float) -> float:
 
 
 def rel_mse(a: NDArray[Any], b: NDArray[Any], r: NDArray[Any]) -> NDArray[Any]:
-    """Of one of two pictures, for each pixel."""
+    """Relative squared error of one of two pictures, for each pixel."""
     error = (a - b) ** 2 / 2 / (r**2 + 0.01 * r.mean() ** 2)
     return error.mean(axis=-1) if error.ndim == 3 else error
 

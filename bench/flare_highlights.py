@@ -5,7 +5,7 @@
 Three balls on a floor, under a sky of one colour, and a sun: matte ones with the sun in the frame,
 whose ghosts must not get noisier; and of chrome with the sun behind the camera, where all that is
 bright comes by way of them. CPU seconds of one thread, without and with highlights; the
-error is relMSE of the flare as of ``bench/flare.py``, from two pictures and their mean.
+error is relMSE of the flare, see ``bench/flare.py``, from two pictures and their mean.
 """
 
 from __future__ import annotations

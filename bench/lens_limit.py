@@ -1,4 +1,4 @@
-"""What the hardware allows: rays a second through a lens if nothing but its arithmetic took time.
+"""Limit of the hardware: rays a second through a lens if nothing but its arithmetic took time.
 
     python bench/lens_limit.py [NAME] [--ghz 3.7] [--lanes 16] [--json]
 
@@ -40,7 +40,7 @@ class Work:
 
     @property
     def cycles(self) -> int:
-        """Of the busier unit."""
+        """Cycles of the busier unit."""
         slow = self.divisions * DIVIDE + self.roots * ROOT
         return max(self.multiplies + ON_THE_PIPE * (self.divisions + self.roots), slow)
 

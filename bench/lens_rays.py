@@ -42,7 +42,7 @@ class Subject:
 
     @classmethod
     def of(cls, name: str, zoom_mm: float | None = None) -> Subject:
-        """Of the library or a file."""
+        """Makes a subject from a lens of the library or a file."""
         focused = dg.lenses.load(name).focused(DISTANCE_M, zoom_mm=zoom_mm)
         film = [float(side) for side in (focused.lens.data.get("format") or "36x24").split("x")]
         return cls(focused.lens, focused.film_z_mm, (film[0], film[1]))
@@ -61,7 +61,7 @@ class Subject:
         return exact, min(times)
 
     def stops(self, f_stops: list[float], seconds: float) -> dict[str, dict[str, float]]:
-        """What is measured at each f-stop."""
+        """Measures at each f-stop."""
         found = {}
         for seed, f_stop in enumerate(f_stops):
             exact, setup = self.set_up(f_stop)

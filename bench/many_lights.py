@@ -152,14 +152,14 @@ def measure(name: str, lamps: int, choice: str, spp: int) -> dict[str, float]:
 
 
 def build(scene: dg.Scene, choice: str) -> _core.Scene:
-    """As daguerre.setup.scene.build, with another way to choose among the lights."""
+    """Builds like daguerre.setup.scene.build, with another way to choose among the lights."""
     builder = _core.SceneBuilder()
     _add_all(builder, scene)
     return builder.build(choice)
 
 
 def set_up(triangles: int) -> dict[str, float]:
-    """What the set-up of a shining mesh costs beside that of a dark one."""
+    """Cost of the set-up of a shining mesh beside that of a dark one."""
     n = int(np.sqrt(triangles / 2))
     y, x = np.mgrid[0 : n + 1, 0 : n + 1]
     points = np.stack([x, np.sin(x * 0.1) + np.cos(y * 0.1), y], -1).reshape(-1, 3)

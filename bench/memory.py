@@ -42,7 +42,7 @@ class Case:
         make: Writes the scene and returns the bytes of its vertices and indices, and of its
             decoded textures.
         arguments: For ``daguerre render``, besides scene and outputs.
-        pixels: Of the picture.
+        pixels: Pixels of the picture.
         outputs: Files that are written. A PNG loads OpenImageIO, 32 MB of code that counts too.
     """
 

@@ -1,4 +1,4 @@
-"""What motion costs: CPU seconds and memory of scenes that move over the same scenes at rest.
+"""Cost of motion: CPU seconds and memory of scenes that move over the same scenes at rest.
 
     python bench/motion.py --json [--only CASE] [--repeats 3] [--spp 16] [--scene-dir DIR]
                            [--baseline PYTHON]

@@ -205,7 +205,7 @@ def check(options: argparse.Namespace) -> dict[str, Any]:
     from tests.statistical import differences, seldom_met
 
     scene, camera = night_table(options.radius[0] / 1e3)
-    # As many light paths as the frame gets: a crop's own plan is its small share of them.
+    # Take as many light paths as the frame gets: a crop's own plan is its small share of them.
     plan = Session(
         scene,
         camera,
@@ -221,7 +221,7 @@ def check(options: argparse.Namespace) -> dict[str, Any]:
         crop = (x0, y0, x0 + CROP_PX, y0 + CROP_PX)
         alone = batches(scene, camera, crop, "off", options.spp // options.batches, 1, options)
         both = batches(scene, camera, crop, plan, options.both_spp, 1001, options)
-        # What light paths bring: all but what is left with next to none of them
+        # Measure the light paths: all but what is left with next to none of them
         few = (1e-6 * (plan[0] > 0), 1e-6 * (plan[1] > 0))
         rest = batches(scene, camera, crop, few, options.both_spp, 2001, options, "light")
         found = both.mean(axis=0) - rest.mean(axis=0)

@@ -1,4 +1,4 @@
-"""What benches of one core share: facts of the machine, and a command line for one result."""
+"""Shared parts of benches of one core: facts of the machine, a command line for one result."""
 
 from __future__ import annotations
 

@@ -55,9 +55,9 @@ def measure(
     """Two seeds of one renderer: cost, error, and cost to a fixed error.
 
     Args:
-        name: Of its files.
-        command: What runs it.
-        options: Of this bench.
+        name: Name of its files.
+        command: Command that runs it.
+        options: Options of this bench.
         **extra: Environment variables.
     """
     paths = [str(options.scene_dir.resolve()), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]

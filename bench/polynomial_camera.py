@@ -125,7 +125,7 @@ def disc(u: Picture) -> Picture:
 
 
 def variants() -> dict[str, Maker]:
-    """What is compared, by name."""
+    """Cameras to compare, by name."""
     return {
         "rear disc": rear_disc,
         "boxes": boxes,
@@ -187,7 +187,7 @@ def ray_error(lens: _core.ExactLens) -> float:
 
 
 def rel_mse(picture: Picture, reference: Picture) -> float:
-    """Of all pixels and channels."""
+    """Relative mean squared error over all pixels and channels."""
     return float(((picture - reference) ** 2 / (reference**2 + 0.01)).mean())
 
 

@@ -1,4 +1,4 @@
-"""What a camera that is known by a calibration costs over a pinhole.
+"""Cost of a camera that is known by a calibration over a pinhole.
 
     python bench/projections.py --json [--rounds 20] [--spp 2] [--f-stop N]
 
@@ -47,7 +47,7 @@ MODELS: dict[str, tuple[str, tuple[float, ...]]] = {
 
 
 def cameras(camera: dg.Camera, f_stop: float | None) -> dict[str, dg.Camera]:
-    """Of one place and one field; the first is what the others are compared with."""
+    """Cameras of one place and one field; the first is the one that others are compared with."""
     focal = 18 / np.tan(np.radians(FIELD / 2))
     hole = "pinhole" if f_stop is None else "thin"
     plain = camera.with_(lens=hole, focal_length=focal, f_stop=f_stop, motion={})

@@ -1,4 +1,4 @@
-"""What a rig of four cameras costs over the sum of its cameras.
+"""Cost of a rig of four cameras over the sum of its cameras.
 
     python bench/rig.py --json [--rounds 5] [--spp 8]
 
@@ -71,7 +71,7 @@ def measure(rounds: int, spp: int) -> dict[str, Any]:
 
 
 def seconds(work: Callable[[], Any]) -> float:
-    """Of the processor."""
+    """Seconds of the processor."""
     started = time.process_time()
     work()
     return time.process_time() - started

@@ -38,7 +38,7 @@ def scene(degrees: float) -> dg.Scene:
 
 
 def noise(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Of two pictures."""
+    """Noise of two pictures."""
     camera = dg.Camera(
         lens=arguments.lens, focus_distance=math.inf, f_stop=arguments.f_stop, blades=7
     )
@@ -81,7 +81,7 @@ def noise(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def glare(name: str, walks: int) -> dict[str, Any]:
-    """Of one lens."""
+    """Veiling glare of one lens."""
     started = time.process_time()
     found = VeilingGlare(set_up(lenses.load(name)), walks=walks)
     return {"lens": name, **found.facts(), "cpu_s": time.process_time() - started}

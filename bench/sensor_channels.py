@@ -1,4 +1,4 @@
-"""What a sensor's channels cost on the film, and how far bands and XYZ are from them.
+"""Cost of a sensor's channels on the film, and how far bands and XYZ are from them.
 
     python bench/sensor_channels.py errors|cost --json
 

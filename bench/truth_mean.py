@@ -1,4 +1,4 @@
-"""What ground truth as means over rays costs, and how well so many rays know a share of light.
+"""Cost of ground truth as means over rays, and how well so many rays know a share of light.
 
     python bench/truth_mean.py --json
 

@@ -37,7 +37,7 @@ class Case:
         interval: When light is let in, s.
         still: Scene and camera of one moment, as plain values.
         window: Weight of the still frame of one moment.
-        options: Of ``dg.render``.
+        options: Options of ``dg.render``.
     """
 
     scene: dg.Scene
@@ -66,8 +66,8 @@ def case(
         scene: With its motion.
         camera: Any.
         shutter_time: s.
-        window: As of :class:`Case`.
-        **options: As of ``dg.render``.
+        window: Weight of moments, see :class:`Case`.
+        **options: Options of ``dg.render``.
     """
 
     def still(t: float) -> tuple[dg.Scene, dg.Camera]:
@@ -118,7 +118,7 @@ def mean_of_stills(case: Case, batches: int, moments: int, spp: int, seed: int =
 
 
 def disagreement(a: Pictures, b: Pictures) -> list[str]:
-    """What differs in the mean; empty: nothing."""
+    """Differences in the mean; empty: none."""
     return differences(a, b, alpha=ALPHA)
 
 

@@ -30,7 +30,7 @@ def greys(*values):
 
 
 def raw_of(sensor, surfaces, *, iso=None, ev=0.0, white=None):
-    """What a sensor without noise reads of patches in a light, exposed so that white is 1."""
+    """Reading of patches by a sensor without noise, in a light exposed so that white is 1."""
     sensor = load(sensor) if isinstance(sensor, str) else sensor
     iso = iso or sensor.base_iso
     light = illuminants.d65() if white is None else illuminants.planck(white)
@@ -70,7 +70,7 @@ def truth(surfaces, white=None):
 
 
 def patch_means(pixels, rows=ROWS, columns=COLUMNS):
-    """Of the middles of patches, shape (rows, columns, 3)."""
+    """Means of the middles of patches, shape (rows, columns, 3)."""
     height, width = pixels.shape[0] // rows, pixels.shape[1] // columns
     cells = pixels.reshape(rows, height, columns, width, 3)
     inner_y = slice(height // 3, height - height // 3)

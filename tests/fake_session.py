@@ -23,7 +23,7 @@ from daguerre.scene.scene import Scene
 
 
 def sample_value(index: int, height: int, width: int) -> np.ndarray:
-    """What sample ``index`` adds to every pixel; not symmetric in the indices."""
+    """Value that sample ``index`` adds to every pixel; not symmetric in the indices."""
     y, x = np.mgrid[:height, :width]
     return ((index + 1) * 2654435761 + 97 * x + 7919 * y) % 65521
 

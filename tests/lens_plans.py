@@ -83,7 +83,7 @@ def made_up(symmetric=True, blades=False, segments=2, aim=True, wide=0.5, rough=
 
 
 def evaluated(plan, film, slope, nm, f_stop):
-    """What evaluate() must say of one ray: origin, direction, iris, transmittance, stopped."""
+    """Expects of evaluate() for one ray: origin, direction, iris, transmittance, stopped."""
     f = (np.array(film) - plan.film_center_mm) / plan.film_half_mm
     q = plan.q_by_film * f + plan.q_by_slope * np.array(slope) + plan.q_shift
     wave = plan.wavelength[0] + plan.wavelength[1] / (nm * 1e-3) ** 2

@@ -113,5 +113,5 @@ def check(case: Case) -> None:
     assert differences(light, both) == []
     assert differences(both, expected) == []
     assert differences(light, expected) == []
-    # What must not go unnoticed: light paths that bring 5 % too much.
+    # Light paths that bring 5 % too much must not go unnoticed.
     assert differences(light * 1.05, expected) != []

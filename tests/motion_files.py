@@ -210,7 +210,7 @@ def morphed() -> Builder:
     return b
 
 
-# What the pointers move ------------------------------------------------------------------------
+# Targets of the pointers -----------------------------------------------------------------------
 
 
 def materials() -> Builder:

@@ -1,4 +1,4 @@
-"""What was drawn in parts, by way of files, as `daguerre merge` finds it."""
+"""Passes drawn in parts, by way of files, in the form that `daguerre merge` finds."""
 
 from __future__ import annotations
 

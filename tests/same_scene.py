@@ -33,7 +33,7 @@ def differences(a: Any, b: Any, where: str, tolerance: float = 1e-6) -> list[str
 
 
 def scene_differences(a: dg.Scene, b: dg.Scene) -> list[str]:
-    """Of all lists."""
+    """Differences of all lists."""
     parts = ("meshes", "materials", "instances", "lights", "cameras", "environment")
     more = ("node_positions", "nodes", "time", "duration")
     return [d for p in (*parts, *more) for d in differences(getattr(a, p), getattr(b, p), p)]

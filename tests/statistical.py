@@ -74,9 +74,9 @@ def seldom_met(
 
     Args:
         batches: Independent pictures, (n, H, W, 3).
-        found: What lamps bring, by other means, (H, W, 3).
+        found: Light that lamps bring, by other means, (H, W, 3).
         brightest: b.
-        samples: Of each pixel, in all batches.
+        samples: Samples of each pixel, in all batches.
     """
     one = brightest / samples
     return Rare(batches, np.where(found < OFTEN * one, np.maximum(found, 0) * one, 0))
@@ -191,7 +191,7 @@ def _expected_spread(a: NDArray[np.float64], b: Values, samples: int) -> Values:
 def differences(
     a: NDArray[np.float64], b: Values, samples: int = 0, alpha: float = ALPHA
 ) -> list[str]:
-    """What is wrong if the pictures have different means; empty: nothing.
+    """Says how pictures have different means; empty: they have the same.
 
     Args:
         a: Independent batches, (n, H, W, 3).

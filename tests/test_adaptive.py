@@ -32,7 +32,7 @@ def same(a: Session, b: Session) -> bool:
 
 
 def relative_mse(a: dg.Frame, b: dg.Frame) -> float:
-    """Of one of two independent pictures."""
+    """Relative squared error of one of two independent pictures."""
     mean = (a.rgb.astype(float) + b.rgb) / 2
     return float(np.mean((a.rgb.astype(float) - b.rgb) ** 2 / 2 / (mean**2 + 0.01)))
 

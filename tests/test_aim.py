@@ -115,7 +115,7 @@ class BruteForce:
 
 
 def midpoints(side: int) -> Array:
-    """Of side x side squares that fill the unit square: (N, 2)."""
+    """Midpoints of side x side squares that fill the unit square: (N, 2)."""
     line = (np.arange(side) + 0.5) / side
     return np.stack(np.meshgrid(line, line), 2).reshape(-1, 2)
 

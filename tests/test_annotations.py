@@ -94,7 +94,7 @@ def test_boxes_are_those_of_opencv(camera: dg.Camera, crop: tuple[int, int, int,
     )  # fmt: skip
     assert found.area == len(rows)
     assert found.visibility == 1
-    # Of pixels whose centres are inside: the true box, or within it by less than a thin corner.
+    # By pixels whose centres are inside: the true box, or within it by less than a thin corner.
     (x, y, width, height), (left, top, across, down) = found.box, found.full_box
     assert left - 0.5 <= x < left + 4
     assert top - 0.5 <= y < top + 4

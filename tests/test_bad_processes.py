@@ -60,7 +60,7 @@ def run(words: list[str], temporary: Path) -> Ended:
 
 
 def check_case(case: Case, folder: Path) -> str:
-    """What is wrong with how the process ended; empty if nothing."""
+    """Says how the process ended wrongly; empty if it did not."""
     try:
         inputs, outputs, temporary = (folder / name for name in ("in", "out", "tmp"))
         for path in (inputs, outputs, temporary):

@@ -191,7 +191,7 @@ def test_rays_meet_what_is_in_focus() -> None:
     ("lens", "model", "session"),
     [
         (FISHEYE, "fisheye", {"count": 20, "square": 0.8, "spp": 24}),
-        # What tells the middle of weak distortion is many corners, all over the picture.
+        # Many corners all over the picture tell the middle of weak distortion.
         (NIKKOR, "opencv", {"count": 24, "columns": 18, "rows": 13, "square": 0.45, "spp": 32}),
     ],
 )

@@ -26,7 +26,7 @@ D2 = np.array([[-0.25, 0.07, -5e-4, 1e-3, 0.0]])
 R = cv2.Rodrigues(np.array([0.03, -0.06, 0.02]))[0]
 T = np.array([[-0.12], [0.004], [0.006]])
 STILL = (np.zeros(3), np.zeros(3))
-#: Of the first camera's frame, y down; off its axis on all sides.
+#: Points in the first camera's frame, y down; off its axis on all sides.
 POINTS = np.array([[0.3, -0.2, 1.2], [-0.3, 0.3, 1.1], [0.02, 0.01, 0.9], [0.25, 0.3, 1.0]])
 FLIP = np.diag((1.0, -1, -1, 1))
 

@@ -185,7 +185,7 @@ def test_both_ways_are_the_identity(name):
 
 @pytest.mark.parametrize("name", ["barrel", "exact", "anamorphic", "decentred"])
 def test_maps_of_pixels_undo_each_other(name):
-    """As a compositor has them: 32-bit s and t at pixels, read between them."""
+    """Maps as compositors have them: 32-bit s and t at pixels, read between them."""
     size = (192, 128)
     camera = CAMERAS[name]
     if camera.projection is not None:

@@ -174,7 +174,7 @@ def test_a_chart_on_disk_is_the_chart(tmp_path: Any, flags: list[str]) -> None:
 def test_the_list_says_what_parameters_are(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["chart", "--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert "    width: m [0.9]" in lines
+    assert "    width: Width of the chart, m [0.9]" in lines
     assert not [line for line in lines if line.startswith("    ") and ":  [" in line]
 
 

@@ -132,7 +132,7 @@ def test_the_command_writes_one_file_of_all_pictures(folder: Path) -> None:
     moving = [a["bbox3d_world"]["center"][0] for a in made["annotations"][::2]]
     np.testing.assert_allclose(np.diff(moving), 0.1, rtol=1e-6)
     assert made["annotations"][0]["bbox3d"]["size"][2] == pytest.approx(0.5)  # both primitives
-    # What is complete is not drawn again, but noted as well.
+    # Complete pictures are not drawn again, but noted as well.
     before = (folder / "c.json").read_bytes()
     (folder / "c.json").unlink()
     (folder / "out" / "x.0001.png").unlink()

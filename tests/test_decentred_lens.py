@@ -231,7 +231,7 @@ def test_an_anamorphic_picture_is_as_wide_as_its_metadata_says(
 
 
 def test_chief_rays_at_a_corner_that_stops_some_rays() -> None:
-    """What is stopped has no direction, and no say in the mean."""
+    """Stopped rays have no direction, and no say in the mean."""
     lens = lenses.load("schneider-anamorphic-60mm")
     exact = _core.ExactLens(lens.prescription, 4.0, _core.Iris(), 5.0, False, 21.64)
     u = (np.indices((48, 48)).reshape(2, -1).T + 0.5) / 48

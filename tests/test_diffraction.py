@@ -116,7 +116,7 @@ def test_the_airy_disc(f_number: float) -> None:
     ring = [spread[np.abs(r - q * airy) < 0.6 * pitch].mean() for q in np.arange(0.9, 1.1, 0.01)]
     assert 0.9 + 0.01 * np.argmin(ring) == pytest.approx(1, abs=0.015)
     assert spread[r < airy].sum() == pytest.approx(0.838, abs=0.004)
-    # Of unit area: P / (lambda N)^2 pi / 4 in the middle.
+    # The kernel has unit area: P / (lambda N)^2 pi / 4 in the middle.
     peak = math.pi / 4 * (pitch / (1e-6 * NM * f_number)) ** 2
     assert spread.max() == pytest.approx(peak, rel=0.01)
 
@@ -324,7 +324,7 @@ def test_effects_of_waves_keep_light_and_colour() -> None:
 
 @pytest.mark.parametrize("rays", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_picture_through_a_lens_has_its_spot(rays: bool) -> None:
-    """Of a point in the corner of a small film: middle and width are those of the bench."""
+    """A point in the corner of a small film: middle and width are those of the bench."""
     image = np.zeros((81, 121, 3), np.float32)
     image[10, 20, 1] = 1
     sensor, lens = (6.05, 4.05), "double-gauss-50mm-f2"

@@ -53,7 +53,7 @@ def lens(name: str = "canon-ef-11-24mm-f4", **setting: float) -> LensDistortion:
 
 @pytest.mark.parametrize("name", ["laikin-projection-28mm-f2.8", "canon-ef-11-24mm-f4"])
 def test_focal_length_is_the_scale_on_the_axis(name: str):
-    # Of two small heights, extrapolated to none; the first lens's chief rays end early.
+    # Two small heights are extrapolated to none; the first lens's chief rays end early.
     bench = set_up(lenses.load(name))
     heights = np.array([0.004, 0.008]) * bench.order.efl
     near, far = heights / chief_rays(bench, heights).angles

@@ -104,7 +104,7 @@ def test_a_white_world_shows_the_vignetting_alone(name: str, stops_down: int) ->
     assert lopsidedness(picture) < 0.02
     if lens.nominal.image_circle_mm and lens.nominal.image_circle_mm >= 43.2:
         assert min(picture[0, 0], picture[0, -1], picture[-1, 0], picture[-1, -1]) > 0.02
-    # What must not go unnoticed: a ring 4 % too bright, a side 5 % too dark.
+    # A ring 4 % too bright or a side 5 % too dark must not go unnoticed.
     r = film_radius()
     ring = np.where((r > 8) & (r < 9), 1.04, 1)
     assert np.abs(ring_errors(picture * ring, radii, profile)).max() > 0.02
@@ -265,7 +265,7 @@ def photograph(
 
 
 def centroid(picture: Array, x: Array, y: Array) -> Array:
-    """Of one channel, mm."""
+    """Centroid of one channel, mm."""
     return np.array([(picture * x).sum(), (picture * y).sum()]) / picture.sum()
 
 

@@ -14,7 +14,7 @@ import daguerre as dg
 from daguerre.io.images import decode
 
 ROOT = Path(__file__).resolve().parent.parent
-#: What moves in each, by the name of its node or camera, and two times at which to look.
+#: Moving nodes or cameras by name, and two times at which to look.
 MOVING = {
     "billiards": ("9", 0.2, 0.3),
     "racer": ("body", 0.4, 0.6),

@@ -205,7 +205,7 @@ def mean_of_stills(made: Case, moments: int) -> Pictures:
 
 
 def difference(a: Pictures, b: Pictures) -> float:
-    """As a share of the light of b."""
+    """Difference as a share of the light of b."""
     return float(np.abs((a - b).sum(2)).sum() / b.sum())
 
 

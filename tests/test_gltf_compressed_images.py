@@ -24,7 +24,7 @@ KTX2 = {
         "files"
     ].items()
 }
-# What was packed: blocks of 4 x 4 pixels of one colour each, and an edge that cuts some.
+# The packed picture: blocks of 4 x 4 pixels of one colour each, and an edge that cuts some.
 _Y, _X = np.mgrid[0:10, 0:18] // 4
 PICTURE = np.stack([_X * 60, _Y * 100, 255 - _X * 50, np.where(_X < 2, 255, 64)], -1)
 PLAIN = np.full((4, 4, 3), 7, np.uint8)

@@ -98,7 +98,7 @@ def test_textures_and_their_colour_space(tmp_path):
         slot = getattr(value, name + "_texture")
         texture = scene.textures[slot.texture]
         assert texture.pixels[0, 0, 0] == 10 * i, name
-        # Of the roughness only alpha is read, which the transfer curve leaves alone.
+        # The roughness is only read from alpha, which the transfer curve leaves alone.
         assert texture.srgb is name.startswith("sheen"), name
         assert slot.uv_set == (1 if name == "clearcoat_normal" else 0), name
     assert value.clearcoat_normal_scale == 0.5

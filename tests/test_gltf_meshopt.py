@@ -20,7 +20,7 @@ STREAMS = {
         "streams"
     ].items()
 }
-# What was packed: 40 elements each, and the 56 triangles of a grid of 8 x 5 vertices.
+# The packed data: 40 elements each, and the 56 triangles of a grid of 8 x 5 vertices.
 STEP = np.arange(40)
 TURN = 2 * np.pi * STEP / 40
 POSITIONS = np.stack([STEP % 8, STEP // 8, (STEP % 8) * (STEP // 8)], axis=1).astype("<f4") / 8

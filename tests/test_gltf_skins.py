@@ -20,7 +20,7 @@ QUARTER = [0, 0, HALF, HALF]  # 90 degrees about z
 
 
 def columns(*matrices):
-    """As they lie in a file."""
+    """Matrices in a file's order."""
     return [np.asarray(m).T.ravel() for m in matrices]
 
 

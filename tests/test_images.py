@@ -98,7 +98,7 @@ def test_integer_formats_are_srgb(tmp_path):
 def test_exif_orientation(tmp_path, orientation):
     upright = np.zeros((4, 8, 3), np.float32)
     upright[0, 0], upright[0, -1] = (1, 0, 0), (0, 1, 0)  # corners that tell all eight apart
-    # What a camera would have stored so that the orientation undoes it (Exif 2.3, 4.6.4 A).
+    # A camera would have stored this so that the orientation undoes it (Exif 2.3, 4.6.4 A).
     stored = {
         1: upright,
         2: upright[:, ::-1],

@@ -216,7 +216,7 @@ def test_the_text_decides_where_the_suffix_does_not(tmp_path: Path) -> None:
     assert dat.first_order().efl == pytest.approx(50, rel=0.02)
 
 
-# What a file says of the beam --------------------------------------------------------------------
+# The beam that a file states ---------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -253,7 +253,7 @@ def test_a_finite_object_widens_the_working_aperture(tmp_path: Path) -> None:
     assert math.sin(math.atan(half)) == pytest.approx(0.02, rel=1e-9)
 
 
-# What is not honoured is said ---------------------------------------------------------------------
+# Notes on what is not honoured --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def test_rays_come_back_and_keep_their_etendue(name: str) -> None:
 
 @pytest.mark.parametrize("name", ASPHERIC)
 def test_lanes_follow_the_reference(name: str) -> None:
-    """What the kernels draw, traced back in double, lands on the film point it was drawn for."""
+    """Rays of the kernels, traced back in double, land on the film point they were drawn for."""
     lens = lenses.load(name)
     prescription, order = lens.prescription, lens.first_order()
     exact = _core.ExactLens(prescription, order.f_number, _core.Iris(), 4.0, False, 12.0)

@@ -152,7 +152,7 @@ def over_time(first: Any, last: Any) -> dg.Keys:
 
 
 def calibrated(focal: float, k1: float) -> dg.Projection:
-    """Of SMALL: 267 px are 50 mm."""
+    """Projection of SMALL: 267 px are 50 mm."""
     return dg.Projection("opencv", SIZE, (focal, focal), None, (k1,))
 
 

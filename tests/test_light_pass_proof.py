@@ -187,7 +187,7 @@ def test_behind_smooth_glass_both_find_what_the_camera_finds(camera: dg.Camera) 
 
 
 def test_light_paths_take_the_noise_from_lamps_out_of_focus() -> None:
-    """What all of this is for: at equal samples, discs of small lamps are many times cleaner."""
+    """At equal samples, discs of small lamps are many times cleaner: the point of light paths."""
 
     def small() -> dg.Scene:
         scene = dg.Scene()

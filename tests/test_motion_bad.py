@@ -1,4 +1,4 @@
-"""What a spiteful user moves: one clear error that names the place, or a picture without a NaN."""
+"""Motions of a spiteful user: one clear error that names the place, or a picture without a NaN."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ ODD: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("name", ODD)
 def test_odd_motions_make_a_picture(name):
-    """What has no inverse at a moment is not met then; nothing crashes, nothing is NaN."""
+    """A transform without inverse at a moment is not met then; nothing crashes, nothing is NaN."""
     frame = shoot(scene_of(ODD[name]()))
     assert np.isfinite(frame.rgb).all()
     assert frame.metadata["bad_samples"] == 0

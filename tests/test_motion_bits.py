@@ -74,7 +74,7 @@ def test_long_times_lose_nothing(time):
 
 
 def test_a_motion_beyond_the_exposure_changes_no_bit():
-    """What does not move while the shutter is open costs nothing, and is the same picture."""
+    """Things that rest while the shutter is open cost nothing, and the picture is the same."""
     case = motion_scenes.translation()
     scene = case.scene
     late = case.scene.time + 1

@@ -1,4 +1,4 @@
-"""What moves reaches the core over the interval of the shutter: boxes of what is built, hashes."""
+"""Motion reaches the core over the interval of the shutter: boxes of what is built, hashes."""
 
 from __future__ import annotations
 

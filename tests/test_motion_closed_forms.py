@@ -47,7 +47,7 @@ def pictures(scene: dg.Scene, camera: dg.Camera, spp: int = SAMPLES) -> Picture:
 
 
 def differs(found: Picture, wanted: Picture) -> list[str]:
-    """What differs from a known picture (H, W) of black and white; empty: nothing.
+    """Differences from a known picture (H, W) of black and white; empty: none.
 
     Where light falls so rarely that no sample met it, the known variance of chance stands in for
     the one that was not seen; sums over fine points are good to 1e-3.
@@ -149,7 +149,7 @@ def _bar(begin: float, end: float, fine: int = 8) -> Picture:
     return np.asarray((total / steps).reshape(HEIGHT, fine, WIDTH, fine).mean(axis=(1, 3)))
 
 
-# What stays as it is ---------------------------------------------------------------------------
+# Still parts stay as they are ------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("kind", [dg.Diffuse((0.7, 0.7, 0.7)), dg.Conductor((0.9, 0.9, 0.9), 0.2)])
@@ -246,7 +246,7 @@ def test_a_rolling_shutter_slants_what_runs_across_its_lines(order):
     assert place == pytest.approx(0.5 * picture.shape[1] + speed * middle, abs=0.05)
 
 
-# What others get wrong ---------------------------------------------------------------------------
+# Faults of others ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 1, 0), (1, 2, 3)])

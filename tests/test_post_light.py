@@ -21,7 +21,7 @@ from .test_warp import soft
 
 
 def radius(height: int, width: int) -> np.ndarray:
-    """Of pixels, 1 in the corners."""
+    """Radius of pixels, 1 in the corners."""
     y, x = np.mgrid[:height, :width] + 0.5
     return np.hypot(x - width / 2, y - height / 2) / math.hypot(width / 2, height / 2)
 

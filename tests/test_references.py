@@ -61,7 +61,7 @@ def batches(name: str, **parameters: Any) -> NDArray[np.float64]:
 
 
 def disagreement(pictures: NDArray[np.float64], name: str) -> list[str]:
-    """What differs from the reference; empty: nothing."""
+    """Differences from the reference; empty: none."""
     return differences(pictures, reference(name), BATCHES * SAMPLES)
 
 

@@ -212,7 +212,7 @@ def prisms() -> dg.Scene:
 def test_dispersive_glass_agrees_through_the_exact_lens_with_the_hero_alone(
     resolution: tuple[int, int], crop: tuple[int, int, int, int], spp: int
 ) -> None:
-    """What the glass bent is the hero's alone; what it reflects is shared by four heroes."""
+    """Light that the glass bent is the hero's alone; four heroes share what it reflects."""
     camera = dg.Camera(lens="double-gauss-50mm-f2", f_stop=2, focus_distance=3)
     options = {"resolution": resolution, "filter": "mitchell", "crop": crop}
     both = batch_means(prisms(), camera, 12, spp, **options)

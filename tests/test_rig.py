@@ -42,7 +42,7 @@ def test_a_rig_has_the_bits_of_its_cameras_and_builds_once(monkeypatch: Any) -> 
 
 
 def test_cameras_of_other_moments_see_them() -> None:
-    """What was built for one shutter does not serve another: the scene moves."""
+    """A scene built for one shutter does not serve another: it moves."""
     scene = dg.Scene()
     scene.add_light(dg.SphereLight((1, 1, 1), 0.1), dg.keys([(0, np.eye(4)), (1, 2 * np.eye(4))]))
     early, late = base().with_(shutter_time=0.01), base().with_(shutter_time=0.02)
@@ -71,7 +71,7 @@ def test_disparity_is_focal_length_times_baseline_over_depth() -> None:
 
 
 def test_disparity_is_where_both_pictures_show_a_point() -> None:
-    """What a pixel of one picture shows, projected into the other, lies so much further."""
+    """A point in one picture, projected into the other, lies so much further."""
     scene = charts.make("slanted-edge").scene(1.0)
     model = Projection("rectilinear", (96, 54), (90.0, 80.0), (46.0, 27.0))
     place = np.eye(4)
@@ -118,7 +118,7 @@ def test_bad_rigs_are_errors() -> None:
 
 
 def test_rigs_move_with_the_body_that_they_are_fixed_to() -> None:
-    """Of a camera that turns and whose file scales it: the baseline is in metres of the world."""
+    """The camera turns and its file scales it: the baseline is in metres of the world."""
     turned = np.eye(4)
     turned[:3, :3] = 3.0 * np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])
     turned[:3, 3] = 1, 2, 3

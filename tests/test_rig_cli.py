@@ -288,7 +288,7 @@ def test_pairs_of_opencv_and_of_ros() -> None:
 
 
 def test_a_chain_whose_cameras_are_triggered_apart(built: list[int]) -> None:
-    """Of a scene that stands still, so it is built once for both moments."""
+    """The scene stands still, so it is built once for both moments."""
     Path("late.yaml").write_text(CHAIN + "  timeshift_cam_imu: 0.004\n")
     flags = ["-c", "A", "--calibration", "late.yaml:all", "--fps", "50", *without_lens(QUICK)]
     assert render("-o", "s.exr", *flags, "--timeshift", "--shutter", "10ms") == 0

@@ -1,4 +1,4 @@
-"""What a code of a texture stands for, slot by slot: a grey texture against the factor it equals.
+"""Meaning of a texture's codes, slot by slot: a grey texture against the factor that it equals.
 
 Files are read and rendered whole; both pictures draw the same random numbers, so they agree but for
 rounding. Source: glTF 2.0, 3.9; the texts of the extensions.
@@ -27,7 +27,7 @@ LINEAR = CODE / 255
 
 
 def light(share: float) -> float:
-    """What a share of an sRGB code's range shines with (IEC 61966-2-1), above 0.04."""
+    """Luminance of a share of an sRGB code's range (IEC 61966-2-1), above 0.04."""
     return ((share + 0.055) / 1.055) ** 2.4
 
 
@@ -186,7 +186,7 @@ def test_a_grey_texture_is_the_factor_that_its_code_stands_for(tmp_path, name):
 
 
 def glow(tmp_path, data: bytes) -> np.ndarray:
-    """What a picture shines with as the emission of a black triangle, mean RGB."""
+    """Mean RGB of a picture used as the emission of a black triangle."""
     material = {"emissiveTexture": {"index": 0}, "emissiveFactor": [1] * 3}
     material["pbrMetallicRoughness"] = BLACK
     return picture(tmp_path, material, data, spp=256).mean(axis=(0, 1))

@@ -118,7 +118,7 @@ def test_cutouts_keep_their_coverage_and_no_dark_rim():
         scene.set_environment(color=(1, 1, 1))
         wall(scene, kind)
         rgb = picture(scene, 256)
-        # What stands is white in a white world: 1 everywhere; black: the sky through the holes.
+        # Opaque parts are white in a white world: 1 everywhere; black: the sky through the holes.
         assert rgb.mean() == pytest.approx(1 - 0.25 + expected, abs=0.01)
 
 

@@ -46,7 +46,7 @@ def test_what_is_sharp_is_a_plane_through_the_focus(kind: str, angles: tuple[flo
 def test_near_the_axis_an_exact_lens_is_sharp_where_a_thick_one_is(
     angles: tuple[float, float],
 ) -> None:
-    """What is left is the difference of their focus, which tilt does not change."""
+    """Only the difference of their focus is left, which tilt does not change."""
     exact = EXACT.with_(tilt=angles)
     error = sharp_points(exact, NEAR) - sharp_points(exact.with_(lens_model="thick"), NEAR)
     straight = sharp_points(EXACT, NEAR) - sharp_points(EXACT.with_(lens_model="thick"), NEAR)
@@ -77,7 +77,7 @@ def test_the_sharp_plane_of_a_thin_lens_meets_film_and_lens_in_one_line() -> Non
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_autofocus_makes_the_point_sharp(kind: str) -> None:
-    """What a pixel shows is sharp there, wherever the lens's axis points."""
+    """A pixel's surface is sharp there, wherever the lens's axis points."""
     camera = KINDS[kind].with_(tilt=(5.0, 3.0))
     film = (7.0, -5.0)
     core = set_up(dg.Scene(), camera.with_(focus_distance=2.0), (36, 24), None).core

@@ -32,7 +32,7 @@ def chart() -> dg.Frame:
 
 
 def centre_of_light(image: np.ndarray, guess: np.ndarray) -> np.ndarray:
-    """Of the dot next to a point, px."""
+    """Centre of light of the dot next to a point, px."""
     x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
     near = image * (np.hypot(x - guess[0], y - guess[1]) < 10)
     return np.array([(near * x).sum(), (near * y).sum()]) / near.sum()

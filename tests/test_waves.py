@@ -228,7 +228,7 @@ def test_a_turned_lens_sees_as_the_camera_does() -> None:
 
 
 class Film:
-    """What ``developed`` asks of a film."""
+    """Stands in for a film in ``developed``."""
 
     def __init__(self, bands: Any, xyz: Any) -> None:
         self._bands, self._xyz = np.asarray(bands, np.float32), np.asarray(xyz, np.float32)

@@ -160,7 +160,7 @@ void bind_camera(nb::module_& m) {
         .def_prop_ro("bend", [](const Iris& i) { return i.blades().bend; },
                      "1: arcs bent outward, -1: inward, 0: straight.")
         .def_prop_ro("arc_center", [](const Iris& i) { return i.blades().center; },
-                     "Of the arcs, along the vectors of the edges.")
+                     "Distance of the arcs' centres, along the vectors of the edges.")
         .def_prop_ro("arc_radius", [](const Iris& i) { return i.blades().arc_radius; })
         .def_prop_ro("outer_radius", &Iris::outer_radius);
     nb::class_<ThickLens>(m, "ThickLens")
@@ -231,14 +231,14 @@ void bind_camera(nb::module_& m) {
              "The lens at some moments (fractions of the interval) is that of these cameras.")
         .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,
              "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")
-        .def_rw("sensor_stack", &Camera::sensor_stack, "What of the body reflects: for ghosts and scatter alone.")
+        .def_rw("sensor_stack", &Camera::sensor_stack, "Reflecting parts of the body, for ghosts and scatter alone.")
         .def_rw("scatter", &Camera::scatter, "How the parts of an exact lens scatter, where that is drawn.")
         .def_prop_ro("lens_numbers", &lens_numbers,
-                     "What changes evenly, in groups. Pinhole: film distance (mm). Thin lens: film distance, iris radius (mm), "
+                     "Numbers that change evenly, in groups. Pinhole: film distance (mm). Thin lens: film distance, iris radius (mm), "
              "1 / focus distance (1/m), tilts (deg). Projection: focal lengths; principal point; iris radius (mm); "
              "1 / focus distance.")
         .def("rays", &rays, "film_mm"_a, "u_lens"_a, "wavelength_nm"_a,
              "(origins, directions, weights) in the world for explicit film points (mm, upright).")
         .def("chief_rays", [](const Camera& camera) { return ChiefRays(camera.lens); },
-             "Of the lens, in the camera's frame.");
+             "Chief rays of the lens, in the camera's frame.");
 }

@@ -42,7 +42,7 @@ void bind_develop_expose(nb::module_& m) {
              [](Shot* self, const Weights& electrons, const Cells& cells) {
                  new (self) Shot(shot_of(electrons, cells));
              },
-             "electrons"_a, "cells"_a, "Of a plane's 1 in each channel, (C, P); channels of photosites, (h, w).")
+             "electrons"_a, "cells"_a, "Electrons of a plane's 1 in each channel, (C, P); channels of photosites, (h, w).")
         .def_rw("low_pass_px", &Shot::low_pass_px)
         .def_rw("crosstalk", &Shot::crosstalk)
         .def_rw("prnu", &Shot::prnu)

@@ -81,7 +81,7 @@ void bind_film(nb::module_& m) {
              [](Film& f, const Curves& curves) {
                  f.set_responses(Responses(std::span(curves.data(), curves.size())));
              },
-             "curves"_a, "What the channels see: (channels, 401) weights per nm, 380 to 780 nm.")
+             "curves"_a, "Sensitivity of the channels: (channels, 401) weights per nm, 380 to 780 nm.")
         .def_prop_ro("shape",
                      [](const Film& f) { return std::pair{f.layout().height, f.layout().width}; })
         .def("place", &Film::place, "offset_x"_a, "offset_y"_a, "Where its first pixel lies in the frame.")
@@ -89,7 +89,7 @@ void bind_film(nb::module_& m) {
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
         .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
-             "What ghosts brought to it.")
+             "Light that ghosts added to it.")
         .def("mean_bands", [](const Film& f) { return stacks(f, f.mean_bands(), f.layout().bands); },
              "Mean radiance of each band, (H, W, bands).")
         .def("mean_channels",

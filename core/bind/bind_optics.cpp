@@ -168,7 +168,7 @@ void bind_optics(nb::module_& m) {
                          const std::string state = lens.aim_state();
                          return nb::bytes(state.data(), state.size());
                      },
-                     "What the set-up found out, for `cache` of the same lens another time.")
+                     "Results of the set-up, for `cache` of the same lens another time.")
         .def("state_with_fit", &state_with_fit, "fit"_a,
              "Its aim_state with another fit in place of its own, for comparisons.")
         .def("with_dirt",
@@ -185,7 +185,7 @@ void bind_optics(nb::module_& m) {
              "Dust and scratches: transmittances (H, W) over the clear front and the open iris.")
         .def("without_fit", &ExactLens::without_fit, "The same lens, traced surface by surface.")
         .def_prop_ro("fit", &ExactLens::fit, nb::rv_policy::reference_internal,
-                     "What rays are drawn from instead of the surfaces; None: they are traced.")
+                     "Fit that rays are drawn from instead of the surfaces; None: they are traced.")
         .def_prop_ro("h0", &ExactLens::h0)
         .def_prop_ro("transmittance", &ExactLens::transmittance)
         .def_prop_ro("f_stop", &ExactLens::f_stop)

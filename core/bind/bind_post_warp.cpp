@@ -95,7 +95,7 @@ void bind_post_warp(nb::module_& m) {
                     {std::size_t(end - begin), std::size_t(width), 2});
             },
             "width"_a, "begin"_a, "end"_a,
-            "Of all pixels of some rows, (rows, width, 2), px.")
+            "Displacements of all pixels of some rows, (rows, width, 2), px.")
         .def(
             "displacements_at",
             [](const BoundMap& m, const Points& points) {

@@ -117,10 +117,10 @@ void bind_render(nb::module_& m) {
                      })
         .def_prop_rw("window", [](const RenderSettings& s) { return corners(s.window); },
                      [](RenderSettings& s, Corners box) { s.window = box_of(box); },
-                     "Of the film only these pixels (x0, y0, x1, y1) are drawn; all 0: each.")
+                     "Pixels (x0, y0, x1, y1) of the film that are drawn; all 0: each.")
         .def_prop_rw("hole", [](const RenderSettings& s) { return corners(s.hole); },
                      [](RenderSettings& s, Corners box) { s.hole = box_of(box); },
-                     "Of the film these pixels (x0, y0, x1, y1) are not drawn.")
+                     "Pixels (x0, y0, x1, y1) of the film that are not drawn.")
         .def_rw("seed", &RenderSettings::seed)
         .def_rw("threads", &RenderSettings::threads)
         .def_rw("shutter", &RenderSettings::shutter)

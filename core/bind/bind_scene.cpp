@@ -128,7 +128,7 @@ MinFilter to_min_filter(const std::string& name) {
                               {"linear_mipmap_linear", {kLinear, Mip::linear}}});
 }
 
-/// Of one moment, (N, 3), or of equal steps over the interval, (S, N, 3).
+/// Vectors of one moment, (N, 3), or of equal steps over the interval, (S, N, 3).
 using Vectors3 = std::variant<Rows3f, Steps3f>;
 using Vectors4 = std::variant<Rows4f, Steps4f>;
 
@@ -310,7 +310,7 @@ void bind_scene(nb::module_& m) {
              [](Builder& b, double open_s, double close_s) {
                  b.description.interval = {open_s, close_s};
              },
-             "open_s"_a, "close_s"_a, "What the picture exposes; keys of time are in s as well.")
+             "open_s"_a, "close_s"_a, "Exposed interval of the picture, s; keys of time are in s as well.")
         .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
              "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
         .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,

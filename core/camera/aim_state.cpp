@@ -126,7 +126,7 @@ std::string digest(std::string_view bytes) {
     return digits(hash_bytes(bytes, 1), hash_bytes(bytes, 2));
 }
 
-/// What the kernels index with must fit.
+/// Whether all that the kernels index with fits.
 bool consistent(const Aim& aim) {
     const AimTables& t = aim.tables;
     const FreeAimTables& f = t.free;

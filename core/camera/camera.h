@@ -29,7 +29,7 @@ struct LensMotion {
     std::vector<LensKind> lenses;   // real ones relative to the camera's own (in_the_body_of)
 };
 
-/// What else changes behind and in the lens: the iris's radius, as a fraction of the lens's own, and how
+/// Other changes behind and in the lens: the iris's radius, as a fraction of the lens's own, and how
 /// far the film is shifted (mm, upright), in addition to the sensor's centre.
 struct LensSetting {
     float iris_opening = 1;

@@ -38,7 +38,7 @@ std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
     return rays;
 }
 
-/// Of rays turned to +x.
+/// Mean ray, in the meridional plane, of rays turned to +x.
 std::optional<ChiefRays::Meridional> mean_ray(const std::vector<CameraRay>& rays) {
     Vec3d axis = summed_direction(rays);
     axis.y = 0;  // what is left of it is the grid's

@@ -29,7 +29,7 @@ class ChiefRays {
     /// Throws Error if no light passes an exact lens on its axis.
     explicit ChiefRays(const LensKind& lens);
 
-    /// Of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
+    /// Chief ray of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
     /// are continued linearly in the film radius, for points that leave the frame. Where a
     /// projection has no direction it is 0.
     ChiefRay at(Vec2d film_mm) const;
@@ -52,7 +52,7 @@ class ChiefRays {
   private:
     friend class ChiefRaysOverTime;
     explicit ChiefRays(double film_distance_mm) : film_distance_mm_(film_distance_mm) {}
-    /// Of what lies between two lenses that change evenly.
+    /// Chief rays between two lenses that change evenly.
     static ChiefRays between(const ChiefRays& a, const ChiefRays& b, double share);
     bool changes_evenly() const { return film_distance_mm_ > 0 || projection_; }
     Meridional at_radius(double mm) const;

@@ -35,7 +35,7 @@ std::array<double, 4> cubic(double t) {
 
 }  // namespace
 
-/// As for the lenses of chief.cpp: means over the planes across the mean direction.
+/// Mean ray like that of the lenses of chief.cpp: means over the planes across the mean direction.
 std::optional<ChiefGrid::Node> ChiefGrid::mean_ray(const ExactLens& lens, Vec2d film_mm) {
     const std::vector<CameraSample> samples =
         lens_cells({float(film_mm.x), float(film_mm.y)}, kSide);

@@ -19,7 +19,7 @@ class ChiefGrid {
     };
     /// Between nodes by cubics, past the film linear.
     Line at(Vec2d film_mm) const;
-    /// As ChiefRays::film_point.
+    /// Film point, like ChiefRays::film_point.
     std::optional<Vec2d> film_point(Vec3d p, double w) const;
 
     /// Whether light comes to a film point; unknown between nodes that it reaches and others.

@@ -135,7 +135,7 @@ struct ExactLens::State {
         return {center + Vec3d{0, 0, order.entrance_pupil_z}, back.x, back.y};
     }
 
-    /// Of the degree that is asked for; the film is divided by radius where that must be and helps.
+    /// Fit of the degree that is asked for; the film is divided by radius where that must be and helps.
     LensFit fitted(const AimRequest& aim) const {
         LensFitRequest request{aim.film_z, aim.film_radius, aim.iris, aim.iris_radius, aim.tilted, aim.film};
         request.degree = settings.fitted->degree;
@@ -339,7 +339,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             Reprojection& o = out[begin + i];
             o = {{shift.x - b.film.x[i], shift.y - b.film.y[i]}};
             if (!(pass > 0)) continue;
-            // What the aim misses reaches the film nevertheless.
+            // Light that the aim misses reaches the film nevertheless.
             o.transmittance = pass;
             o.response = pass * inv_h0 * kPerMm2;
             if (!(aim > 0) || !std::isfinite(aim)) continue;

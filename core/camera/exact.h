@@ -58,7 +58,7 @@ class ExactLens {
 
     /// The same lens, traced surface by surface. Not fitted: itself.
     ExactLens without_fit() const;
-    /// What rays are drawn from instead of surfaces, if anything; with its errors.
+    /// The fit that rays are drawn from instead of surfaces, if any; with its errors.
     const LensFit* fit() const;
 
     /// Rays start on the first surface. Film points beyond half_diagonal_mm get weight 0.
@@ -112,7 +112,7 @@ class ExactLens {
     FilmPlane film_plane() const;     // in the lens frame; coordinates upside down
     double film_distance_mm() const;  // from the rear principal point
     double half_diagonal_mm() const;
-    /// What the set-up found out, as bytes: with them the same lens is ready at once, with the same bits.
+    /// Results of the set-up, as bytes: with them the same lens is ready at once, with the same bits.
     std::string aim_state() const;
     const ExactLensSettings& settings() const;
     /// The same on all sides of the camera's axis.
@@ -124,10 +124,10 @@ class ExactLens {
 
   private:
     struct State;
-    /// What an iris lets through there that is open to a fraction of its radius, in addition to the
+    /// Transmission there of an iris that is open to a fraction of its radius, in addition to the
     /// whole one: a leaf shutter on its way.
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
-    /// Of both masks, for a ray of the front point and iris point (lens frame, mm).
+    /// Transmission of both masks, for a ray of the front point and iris point (lens frame, mm).
     float dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const;
     struct Buffers;
     /// Rays [begin, begin + count) of the camera's frame into lanes, of which some more than count are filled;

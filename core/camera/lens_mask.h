@@ -35,7 +35,7 @@ inline void check_mask(const LensMask& mask, const char* what) {
             throw input_error("exact lens", what, "values of 0 to 1", std::to_string(value));
 }
 
-/// What lies on the front and at the iris; both as wide as the glass and the stop are clear.
+/// Dirt on the front and at the iris; both as wide as the glass and the stop are clear.
 struct LensDirt {
     LensMask front, iris;
 };

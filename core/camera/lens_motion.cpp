@@ -56,7 +56,7 @@ struct LensNow {
     }
 };
 
-/// What exposure goes with: the square of iris over image distance.
+/// Measure that exposure is proportional to: the square of iris over image distance.
 double light_cone(const ThinLens::Numbers& n) {
     const double slope = n.aperture_radius_mm / n.film_distance_mm;
     return slope * slope;

@@ -12,7 +12,7 @@ struct Pinhole {
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
 
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
-    /// Of rays through the hole, whose measure across the ray is 1: etendue is in sr.
+    /// Reprojects rays through the hole, whose measure across the ray is 1: etendue is in sr.
     void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
 };
 

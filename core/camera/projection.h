@@ -22,7 +22,7 @@ struct Projection {
     double focus_distance_m = 1;       // infinity is allowed
     Iris iris = {};                    // shape of unit radius
 
-    /// What of it changes evenly while it is on its way; the model's parameters change in steps.
+    /// Numbers that change evenly while it is on its way; the model's parameters change in steps.
     struct Numbers {
         Vec2d focal_mm, principal_mm;
         double aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
@@ -45,7 +45,7 @@ struct Projection {
     /// Unit, camera frame; nothing where the model sees nothing.
     std::optional<Vec3d> chief_direction(Vec2d film_mm) const { return chief_direction(numbers(), film_mm); }
     std::optional<Vec2d> film_point(Vec3d direction) const { return film_point(numbers(), direction); }
-    /// Of the scene per mm2 of film.
+    /// Solid angle of the scene per mm2 of film.
     double solid_angle(Vec2d film_mm) const { return solid_angle(numbers(), film_mm); }
 
   private:

@@ -42,7 +42,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
     return c;
 }
 
-/// Of the plane of a tilted sensor: turned by the angles, then seen from the lens again (OpenCV's tauX, tauY).
+/// Matrix of the plane of a tilted sensor: turned by the angles, then seen from the lens (OpenCV's tauX, tauY).
 Matrix tilt_matrix(double x, double y) {
     const double cx = std::cos(x), sx = std::sin(x), cy = std::cos(y), sy = std::sin(y);
     const Matrix about_x{1, 0, 0, 0, cx, sx, 0, -sx, cx}, about_y{cy, 0, -sy, 0, 1, 0, sy, 0, cy};

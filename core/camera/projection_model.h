@@ -43,7 +43,7 @@ struct ProjectionModel {
     /// Solid angle per area of the picture; 0 where nothing is seen.
     double solid_angle(Vec2d point) const;
 
-    /// Of the valid field: the largest angle from the axis, and the largest radius of the picture, of models that
+    /// Ends of the valid field: the largest angle from the axis, and the largest radius of the picture, of models that
     /// are the same on all sides (opencv: of its radial part); infinite where nothing ends.
     double largest_angle() const { return largest_angle_; }
     double largest_radius() const { return largest_radius_; }

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// Of the rays that the camera draws, at all wavelengths and film points, those at the
+/// Rays that the camera draws, at all wavelengths and film points: those at the
 /// rim of what passes, and some within. `axial`: the lens is the same on all sides.
 std::vector<CameraRay> probe_pupil(const ExactLens& lens, bool axial);
 

@@ -10,7 +10,7 @@
 
 namespace dg {
 
-/// What is known of a cell's rim: the highest and lowest record in fine columns, and the
+/// Rim of a cell, as far as it is known: the highest and lowest record in fine columns, and the
 /// outermost ones.
 struct Rim {
     static constexpr int kFine = 96;

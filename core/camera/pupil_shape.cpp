@@ -44,7 +44,7 @@ PupilShape::Oval PupilShape::oval_at(Vec3d place) const {
     const int i = std::min(int(place.x), columns_ - 1),
               j = std::min(int(place.y), std::max(rows_ - 1, 0)),
               k = std::min(int(place.z), layers_ - 1);
-    // What moves with the distance is linear in its inverse, which is the square of the
+    // Changes with the distance are linear in its inverse, which is the square of the
     // layer.
     const double s = place.x - i, t = place.y - j,
                  r = (place.z * place.z - k * k) / (2 * k + 1);

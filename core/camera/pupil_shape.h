@@ -53,7 +53,7 @@ class PupilShape {
     struct Angles {
         Vec2d low{1e9, 1e9}, high{-1e9, -1e9};
     };
-    /// What a camera ray says of the points along it.
+    /// Record of a camera ray about the points along it.
     struct Record {
         Vec2d angle, at;  // at: where it meets the plane of the region
         double layer;

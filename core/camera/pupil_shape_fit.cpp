@@ -11,7 +11,7 @@
 namespace dg {
 namespace {
 
-// What rays between those that were drawn may reach. Cells in all directions hold fewer
+// Margins for rays between those that were drawn. Cells in all directions hold fewer
 // of them, and of an image no rim is known.
 constexpr float kMargin = 1.03f, kWideMargin = 1.05f;
 constexpr int kFew = 300;    // records below which a cell takes its neighbours' as well

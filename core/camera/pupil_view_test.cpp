@@ -55,7 +55,7 @@ TEST_CASE(
 
 namespace {
 
-/// Of a ray, in the frame across another.
+/// Coordinates of a ray, in the frame across another.
 std::array<double, 4> across(const Ray& ray, Vec3d from, Vec3d x, Vec3d y) {
     const Vec3d d = to_double(ray.direction), z = cross(x, y);
     const Vec3d o = to_double(ray.origin) - from, at = o - d * (dot(o, z) / dot(d, z));
@@ -132,7 +132,7 @@ TEST_CASE(
     }
 }
 
-/// Of every lens with an opening, and its points: check(view, point).
+/// Visits every lens with an opening, and its points: check(view, point).
 template <typename Check>
 void from_each_point(const Check& check) {
     for (const test::ViewCase& c : test::view_cases()) {

@@ -87,9 +87,9 @@ class Shutter {
     /// The time of a sample of no pixel in particular, from u in [0,1). Of lines that roll, with even density:
     /// over all times if two are ever open at once, else over the times at which one is.
     Moment draw_any(float u) const;
-    /// Of draw_any(), where lines roll: density x exposure of one line; 1 where they do not.
+    /// Share of draw_any(), where lines roll: density x exposure of one line; 1 where they do not.
     double any_share() const { return rolls() ? std::max(exposure_, 1.0 / lines_) : 1; }
-    /// What a sample counts that is drawn like this: the mean of s; 1 for a leaf.
+    /// Weight of a sample that is drawn like this: the mean of s; 1 for a leaf.
     float weight() const { return settings_.leaf ? 1.f : float(settings_.curve.mean()); }
     /// s of a row (of a column, if those are scanned) at a time; of an exposure of no length, whether this
     /// is its instant.

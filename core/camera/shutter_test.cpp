@@ -120,7 +120,7 @@ TEST_CASE("times of no line in particular expose each line as its own times do")
                 const float time = shutter.draw_any(float((i + 0.5) / n)).time;
                 for (int row = 0; row < lines; ++row) exposed[row] += shutter.opening(row, time) / n;
             }
-            // Of a time with density q each line gets the integral of s over its window; an instant counts as 1.
+            // With times of density q each line gets the integral of s over its window; an instant counts as 1.
             const double mean = exposure > 0 ? shutter.weight() : 1;
             for (const double e : exposed)
                 CHECK(e / shutter.any_share() == doctest::Approx(mean).epsilon(0.01));

@@ -137,7 +137,7 @@ Vec3d ThickLens::chief_direction(Vec2d film_mm) const {
     return normalize(turn_.vector({-ray.slope.x, -ray.slope.y, -1}));
 }
 
-/// What a patch of the exit pupil is for the film, both cosines over the distance squared: 1/mm2.
+/// Solid angle of a patch of the exit pupil for the film, both cosines over the distance squared: 1/mm2.
 double ThickLens::solid_angle(Vec3d film, Vec2d pupil) const {
     const Vec3d to_pupil{pupil.x - film.x, pupil.y - film.y, order_.exit_pupil_z - film.z};
     const double d2 = length_squared(to_pupil);

@@ -32,7 +32,7 @@ class ThickLens {
     /// Error if the lens cannot open or focus like that, or has no pupils at a finite place.
     ThickLens(const Prescription& lens, const ThickLensSettings& settings);
 
-    /// As ExactLens::in_the_body_of.
+    /// The lens moved to the body of another, like ExactLens::in_the_body_of.
     ThickLens in_the_body_of(const ThickLens& middle) const;
 
     /// Rays start on the plane of the first vertex.
@@ -53,7 +53,7 @@ class ThickLens {
     const Affine3d& turn() const { return turn_; }
     const Iris& iris() const { return iris_; }
 
-    /// As ExactLens::h0: with the transmittance of the glass on the axis, which all rays have here.
+    /// H0 like ExactLens::h0: with the transmittance of the glass on the axis, which all rays have here.
     double h0() const { return transmittance_ * axial_; }
     double transmittance() const { return transmittance_; }
     double f_stop() const { return f_stop_; }

@@ -23,7 +23,7 @@ struct ThinLens {
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
     Vec2d tilt_deg{0, 0};              // see tilt.h
 
-    /// What of it changes evenly while it is on its way.
+    /// Numbers that change evenly while it is on its way.
     struct Numbers {
         double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
         double exposure = 1;                                          // factor on weights

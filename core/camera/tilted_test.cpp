@@ -44,7 +44,7 @@ Estimate drawn(const ExactLens& lens, Vec2d film, double nm, int count, unsigned
     return estimate(sum, squares, passed, count);
 }
 
-/// What the tests know of a tilt on their own: about x, then about y, rows of camera_from_lens.
+/// Rotation of a tilt, computed by the tests themselves: about x, then about y, rows of camera_from_lens.
 struct Rotation {
     double row[3][3];
     explicit Rotation(Vec2d deg) {

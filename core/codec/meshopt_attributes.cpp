@@ -119,7 +119,7 @@ void decode_channel(int mode, const Plane* planes, std::size_t count, std::size_
     }
 }
 
-/// What a stream is made of before its blocks are read.
+/// Layout of a stream before its blocks are read.
 struct Layout {
     int version;
     std::size_t block;  // elements

@@ -153,7 +153,7 @@ private:
         return float(1 - shot_.crosstalk) * row[x] + float(shot_.crosstalk / 4) * sides;
     }
 
-    /// What is fixed for a copy of the sensor.
+    /// Pattern that is fixed for a copy of the sensor.
     struct Pattern {
         double response = 1, offset = 0, dark;
     };

@@ -12,7 +12,7 @@
 
 namespace dg {
 
-/// What becomes of pixels in which a channel is full.
+/// Treatment of pixels in which a channel is full.
 /// clip: every channel ends where the first one is full, so that white stays white.
 /// blend: light above that end keeps its mean, with no more colour than `clip` leaves.
 /// reconstruct: a full channel is what the others are on average, if that is more: highlights are lamps

@@ -11,7 +11,7 @@ namespace dg {
 /// Uniform and normal numbers. The same bits for the same seed, use and place, on any number of threads.
 class PixelRandom {
 public:
-    /// Of a row; `use` tells streams of one place apart. Rows are told apart once, pixels many times.
+    /// Key of a row; `use` tells streams of one place apart. Rows are told apart once, pixels many times.
     static std::uint64_t row_key(std::uint64_t seed, int use, int y) { return hash64(seed, use, y); }
 
     PixelRandom(std::uint64_t row_key, int x) : state_(mix64(row_key ^ std::uint64_t(std::uint32_t(x)))) {}

@@ -60,7 +60,7 @@ class Film {
     const FilmLayout& layout() const { return layout_; }
     /// Says where its region lies from now on: in a frame that begins elsewhere.
     void place(int offset_x, int offset_y) { layout_.offset_x = offset_x, layout_.offset_y = offset_y; }
-    /// What the channels are made of light by; to be set before a film with channels is drawn into. Throws
+    /// Sets the weights of light in the channels, before a film with channels is drawn into. Throws
     /// Error for another number of channels.
     void set_responses(Responses responses);
     const Responses& responses() const { return responses_; }
@@ -78,7 +78,7 @@ class Film {
     /// The same from any thread at any time, as dispersion sends wavelengths to the pixels of other
     /// tiles; a pixel that may be written like this must not be written by add() meanwhile.
     void add_shared(int x, int y, std::uint32_t sample, Vec3f xyz);
-    /// What a light path brings, from any thread at any time; the layout has splats. Their sums are divided
+    /// Adds the light of a light path, from any thread at any time; the layout has splats. Their sums are divided
     /// by the same count. Their squares tell the variance of independent arrivals (compound Poisson), from
     /// which no mean is to be taken off; so they are sums of their own.
     enum class Layer { splats, flare };
@@ -87,7 +87,7 @@ class Film {
     /// their values.
     void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer,
                    std::span<const Spectrum> channels = {});
-    /// What the wavelengths of a sample bring, to XYZ, to their bands and to the channels: what the three
+    /// Adds the light of a sample's wavelengths to XYZ, to their bands and to the channels: what the three
     /// above do with a colour.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance);
     void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -173,9 +173,9 @@ class Film {
                    Spectrum radiance);
     void add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const;
     void add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum values) const;
-    /// Of a row of the region; for splats without bands, and for the channels of all splats.
+    /// Lock of a row of the region; for splats without bands, and for the channels of all splats.
     std::uint32_t& row_lock(int y) { return row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]; }
-    /// Of all that was added to the pixel of this index.
+    /// Sum of all that was added to the pixel of this index.
     Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
     struct Estimate {
@@ -192,7 +192,7 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
-    // Of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
+    // Locks of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
     std::vector<ValueSum> bands_, channels_, channel_splats_;   // those of a pixel side by side

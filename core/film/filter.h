@@ -32,7 +32,7 @@ class Filter {
     Filter(FilterKind kind, float radius);
 
     FilterSample sample(Vec2f u) const;
-    /// Of unit integral; 0 outside.
+    /// Value of the filter, of unit integral; 0 outside.
     float evaluate(Vec2f offset) const { return axis(offset.x) * axis(offset.y); }
     /// Its factor along one axis.
     float axis(float x) const {

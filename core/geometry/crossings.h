@@ -16,7 +16,7 @@ struct RawHit {
     static constexpr std::uint32_t kSphere = 0xffffffffu;
 };
 
-/// What light may go straight on through: nothing, a thin sheet that bends no ray, or the
+/// Surfaces that light may go straight on through: none, a thin sheet that bends no ray, or the
 /// boundary of a volume, which does.
 enum class Clear : std::uint8_t { no, sheet, volume };
 

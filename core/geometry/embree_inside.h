@@ -39,7 +39,7 @@ inline Context inside(std::uint32_t id, const void* outer) {
     return context;
 }
 
-// What follows is for a `Placed` with: RTCScene scene; std::uint32_t id; bool near(const RTCRay&);
+// The rest is for a `Placed` with: RTCScene scene; std::uint32_t id; bool near(const RTCRay&);
 // RTCRay to_local(const RTCRay&); void bounds(unsigned step, RTCBounds&); unsigned steps().
 // Only single rays are traced, so N is 1 and the packets are plain structures.
 

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// What a ray's cone covers of a surface, in texture coordinates: the two axes (whole, not
+/// Footprint of a ray's cone on a surface, in texture coordinates: the two axes (whole, not
 /// half) of an ellipse. 0: a point.
 struct UvFootprint {
     Vec2f across, along;

@@ -46,7 +46,7 @@ class Intersector {
         const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
         std::vector<Keyed<Sphere>> spheres, CutoutFunction cutout);
     virtual ~Intersector() = default;
-    /// Of a ray that is_traceable(), here and below.
+    /// Takes a ray that is_traceable(), here and below.
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
     /// With `crossings` the ray goes through clear surfaces and notes them there.
     virtual bool occluded(const Ray& ray, Crossings* crossings = nullptr) const = 0;

@@ -17,7 +17,7 @@ struct Ray {
     RayCone cone = {};  // about the ray; empty: no texture is averaged
 };
 
-/// What a ray tracer bears: no NaN, nothing infinite, and nothing at which its own numbers overflow.
+/// Whether a ray tracer bears it: no NaN, nothing infinite, and nothing at which its own numbers overflow.
 inline bool is_traceable(Vec3f origin, Vec3f direction) {
     constexpr float kFar = 1e18f;
     return std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + std::abs(direction.x) +

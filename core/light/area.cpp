@@ -6,7 +6,7 @@
 namespace dg {
 namespace {
 
-/// What both sphere functions need: the disc that the sphere shows to `position`.
+/// Disc that the sphere shows to `position`; both sphere functions need it.
 struct VisibleDisc {
     Vec3f to_center;
     float d2;             // squared distance of the centre

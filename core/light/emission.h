@@ -29,7 +29,7 @@ std::optional<EmissionPoint> point_on(const TriangleSampler& triangle, Vec2f u);
 /// On that side which some point of the viewpoint may see; nothing from inside.
 std::optional<EmissionPoint> point_on(const Sphere& sphere, Vec2f u, const Viewpoint& view);
 
-/// What a light brings to a viewpoint (lux) if the view has it in reach, as far as its bounds tell.
+/// Illuminance by a light at a viewpoint (lux) if the view has it in reach, as far as its bounds tell.
 double illuminance_estimate(const LightBounds& bounds, bool moves, const ViewCone& view);
 
 /// Which emitter: by an estimate of the illuminance that it brings to the lens from within the frame's

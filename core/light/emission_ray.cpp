@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-// Of the rays that a light sends, so many go to the balls of the aim, if there are any.
+// Share of a light's rays that go to the balls of the aim, if there are any.
 constexpr float kAimed = 0.5f;
 // Chances of lights follow their power by so much; the rest is even.
 constexpr double kByPower = 0.9;

@@ -49,7 +49,7 @@ class EmissionRays {
     DiscreteDistribution choice_;   // by light; the last is the environment
 };
 
-/// What is left of the light of a point or spot light of finite range after `distance` m; 1 of others.
+/// Attenuation of the light of a point or spot light of finite range after `distance` m; 1 of others.
 float range_attenuation(const Light& light, float distance);
 
 }  // namespace dg

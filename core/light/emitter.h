@@ -21,7 +21,7 @@ LightBounds emitter_bounds(const DirectionalLight& light);
 LightBounds emitter_bounds(const SphereLight& light);
 LightBounds emitter_bounds(const TriangleLight& light);
 
-/// As a LightSample, but the radiance is still an Rgb and the choice of the light is not
+/// Sample like a LightSample, but the radiance is still an Rgb and the choice of the light is not
 /// in the pdf.
 struct EmitterSample {
     Vec3f wi;

@@ -20,7 +20,7 @@ struct EnvironmentImage {
     std::vector<Rgb> pixels;
 };
 
-/// What may change of an environment over time.
+/// Parts of an environment that may change over time.
 struct EnvironmentPose {
     Rgb strength{1, 1, 1};  // times the picture, or the colour
     float turn = 0;         // rad about +y, right-handed; on top of the picture's own transform

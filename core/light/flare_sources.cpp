@@ -83,7 +83,7 @@ void FlareSources::add_sky(std::span<const ViewCone> views) {
             if (const auto p = sample_tile(tile, u, views.front().time))
                 sum += luminance(sky.luminance(p->point.position, views.front().time));
         }
-        // What is dark where it was looked at may shine elsewhere.
+        // A tile that is dark where it was looked at may shine elsewhere.
         const double mean = std::max(sum / 16, 1e-3 * sky.mean_luminance());
         if (mean > 0) sources_.push_back({.strength = mean * tile.solid_angle(), .tile = tile});
     }

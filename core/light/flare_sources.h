@@ -22,7 +22,7 @@ class FlareSources {
     void add(Highlights highlights);
 
     int count() const { return int(sources_.size()); }
-    /// What it brings to the lens, as far as can be known without asking what is in its way, lux.
+    /// Illuminance that it brings to the lens, as far as can be known without asking what is in its way, lux.
     double strength(int source) const { return sources_[source].strength; }
     /// Mirrors may show it: lamps and bright spots of the sky.
     bool has_size(int source) const;

@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-// What has less than this multiple of the mean is no bright spot.
+// Smallest multiple of the mean that makes a bright spot.
 constexpr double kHot = 4;
 
 }  // namespace

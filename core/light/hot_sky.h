@@ -18,7 +18,7 @@ class HotSky {
     HotSky() = default;
     HotSky(const Environment& environment, std::span<const ViewCone> views);
 
-    /// Of all spots together (lux), on a surface that faces them.
+    /// Illuminance by all spots together (lux), on a surface that faces them.
     double illuminance() const { return cells_.empty() ? 0 : strength_ * cells_.sum(); }
     /// World directions and densities (per sr) at a time; pdf is 0 outside the spots.
     Environment::Sample sample(Vec2f u, float time) const;

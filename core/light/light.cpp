@@ -199,7 +199,7 @@ std::int64_t LightSet::triangle_index(std::uint32_t instance, std::uint32_t prim
     return triangle.instance == instance && triangle.primitive == primitive ? light : -1;
 }
 
-/// What is no triangle, or changes.
+/// Samples a light that is no triangle, or changes.
 std::optional<EmitterSample> LightSet::sample_other(std::size_t light, Vec2f u,
                                                     Vec3f position, float time) const {
     const auto toward = [&](const auto& l) { return sample_emitter(l, u, position); };

@@ -57,7 +57,7 @@ struct TriangleLight {
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
-/// What lights do while the shutter is open (fractions of the scene's interval), by their index;
+/// Motion of lights while the shutter is open (fractions of the scene's interval), by their index;
 /// those that are not named stay as they are. See light_keys.h.
 struct LightMotion {
     std::map<std::uint32_t, Keyed<Light>> keys;  // of one kind each; no triangles
@@ -141,7 +141,7 @@ class LightSet {
         return keys_of(light) || motion_.triangles.contains(std::uint32_t(light));
     }
     bool has_environment() const { return environment_.has_value(); }
-    /// What stands for the environment among the indices of lights.
+    /// Index that stands for the environment among those of lights.
     static constexpr std::int32_t kEnvironment = -1;
     /// Whether light sampling looks for it: it is no even sky.
     bool samples_environment() const { return environment_pmf_ > 0; }

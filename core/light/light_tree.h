@@ -20,7 +20,7 @@ class LightTree {
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const { return nodes_.empty(); }
-    /// What the nodes of the cut bring to a point; the sum is an estimate of the
+    /// Illuminance that the nodes of the cut bring to a point; the sum is an estimate of the
     /// illuminance (lux) by all lights together.
     static constexpr std::size_t kCutSize = 8;
     struct Weights {
@@ -43,7 +43,7 @@ class LightTree {
     float probability(Vec3f position, int light) const;
 
   private:
-    /// What the importance needs.
+    /// Facts that the importance needs.
     struct Emission {
         Vec3f center;
         float radius2, radius;  // of the sphere around the box, m

@@ -56,7 +56,7 @@ TEST_CASE("probabilities: they add to 1, and no light that shines has none") {
                 any = true;
                 CHECK(probability > 0);
             }
-            // What is missing belongs to branches whose light turned out to face away.
+            // The missing part belongs to branches whose light turned out to face away.
             CHECK(sum < 1.0001);
             if (any && n == 1) CHECK(sum == doctest::Approx(1));
         }

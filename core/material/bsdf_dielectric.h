@@ -84,7 +84,7 @@ struct DielectricBsdf {
     }
 
   private:
-    /// What a facet whose normal makes cos_h with wo does, and the chance to reflect.
+    /// Split of light at a facet whose normal makes cos_h with wo, and the chance to reflect.
     struct Split {
         Spectrum reflectance, transmittance;
         float probability;
@@ -92,7 +92,7 @@ struct DielectricBsdf {
     Split split(float cos_h, float eta, bool front) const {
         const float r = fresnel_dielectric(cos_h, eta);
         if (!disperses) return {r, 1 - r, r};
-        // What is reflected serves all wavelengths, what is transmitted the hero's.
+        // Reflected light serves all wavelengths, transmitted light the hero's.
         const Spectrum all = fresnel_dielectric(cos_h, iors, front);
         const float mean = all.average();
         return {all, hero_alone() * (1 - r), mean / (mean + 1 - r)};

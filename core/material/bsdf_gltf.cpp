@@ -118,7 +118,7 @@ void GltfBsdf::disperse(const GltfSurface& s) {
     f0_max = std::min(s.specular_color.max() * f0_ior, 1.f) * s.specular;
 }
 
-/// As the volume's share in split(), each wavelength by its own curve.
+/// Reflectance like the volume's share in split(), each wavelength by its own curve.
 Spectrum GltfBsdf::dispersed_reflectance(float cos_h, bool front) const {
     Spectrum r = fresnel_dielectric(cos_h, iors, front);
     for (int k = 0; k < kWavelengths; ++k) {

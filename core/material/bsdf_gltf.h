@@ -123,7 +123,7 @@ struct GltfBsdf {
     float reversed(Vec3f, Vec3f) const { return 1; }
 
   private:
-    /// What a facet whose normal makes cos_h with wo does: colours, and the chance to
+    /// Split of light at a facet whose normal makes cos_h with wo: colours, and the chance to
     /// reflect.
     struct Split {
         Spectrum reflected, transmitted{0.f};

@@ -39,7 +39,7 @@ struct Sheen {
     bool present() const { return largest > 0; }
     /// f |cos wi|, `above` the shading normal on the side of both.
     Spectrum evaluate(Vec3f ns, Vec3f wo, Vec3f wi, float cos_o, float cos_i) const;
-    /// What the base keeps of light between these two cosines.
+    /// Share of light that the base keeps between these two cosines.
     float passed(float cos_o, float cos_i) const;
     float albedo(float cos_o) const { return std::min(1.f, row.at(cos_o)); }
 };
@@ -71,7 +71,7 @@ struct LayeredBsdf {
     float reversed(Vec3f wo, Vec3f wi) const;
 
   private:
-    /// Of the light seen from wo: what the coat takes, and the chances to follow it, the
+    /// Shares of the light seen from wo: what the coat takes, and the chances to follow it, the
     /// sheen and the base.
     struct Shares {
         float coat, coat_probability, sheen_probability, base_probability;

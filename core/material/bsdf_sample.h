@@ -40,7 +40,7 @@ struct Interior {
     }
 };
 
-/// What lies behind a surface that is met in the medium `here`. A thin sheet inside a
+/// Medium behind a surface that is met in the medium `here`. A thin sheet inside a
 /// volume bounds nothing.
 inline Interior medium_beyond(const Interior& here, const Interior& inside,
                               bool bounds_volume, bool entering) {

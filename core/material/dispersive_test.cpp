@@ -51,7 +51,7 @@ SurfaceHit hit(Vec3f ng, Vec3f wo) {
     return h;
 }
 
-/// What leaves a smooth interface by transmission.
+/// Light that leaves a smooth interface by transmission.
 BsdfSample bent(const Material& m, Vec3f ng, Vec3f wo, const Wavelengths& wl) {
     SurfaceHit h = hit(ng, wo);
     const auto s = sample(shade(m, {}, h, wl), wo, 0.99999f, {0.5f, 0.5f});

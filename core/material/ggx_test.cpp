@@ -51,7 +51,7 @@ TEST_CASE("visible normals have the density G1 (h.wo) D / (n.wo): their mean nor
         double mass = 0;
         const double a2 = static_cast<double>(alpha) * alpha;
         for (int i = 0; i < kRings; ++i) {
-            // As above, with y = 1 - v^2 so that 1 / cos of the solid angle stays finite.
+            // Integrate like above, with y = 1 - v^2 so that 1 / cos of the solid angle stays finite.
             const double v = (i + 0.5) / kRings, y = 1 - v * v;
             const double q = 1 - y * (1 - a2), x = a2 * y / q;
             const double dx = a2 / (q * q) * 2 * v / kRings;

@@ -110,7 +110,7 @@ Rgb emitted(const Material& material, const std::vector<Texture>& textures,
 
 /// True when emission changes with the direction it is seen from.
 bool emission_is_coated(const Material& material);
-/// What a glTF material's emission is made of: that of KHR_materials_unlit is its base
+/// Factor of a glTF material's emission: that of KHR_materials_unlit is its base
 /// colour, and vertex colours count there too.
 Rgb emission_factor(const GltfMaterial& material);
 const TextureSlot& emission_texture(const GltfMaterial& material);
@@ -118,7 +118,7 @@ const TextureSlot& emission_texture(const GltfMaterial& material);
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);
 
-/// What light may go straight on through at some point of the material: never less than
+/// Ways in which light may go straight on through at some point of the material: never less than
 /// its BSDFs' straight() says.
 Clear clearness(const Material& material);
 

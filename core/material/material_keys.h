@@ -24,10 +24,10 @@ struct MaterialRange {
 };
 MaterialRange range_of(const Keyed<Material>& keys);
 
-/// As bright as the material ever is, or brighter; its textures lie as they do at the first key.
+/// Material that is as bright as it ever is, or brighter; its textures lie as they do at the first key.
 Material brightest(const Keyed<Material>& keys, const MaterialRange& range);
 
-/// What light may go straight on through at some time; at one time it may be less.
+/// Ways in which light may go straight on through at some time; at one time there may be fewer.
 Clear clearness(const MaterialRange& range);
 
 /// A material at one time: the scene's own where it does not change, which costs nothing.

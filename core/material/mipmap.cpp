@@ -10,7 +10,7 @@
 namespace dg {
 namespace {
 
-/// What lies under one texel of the smaller level along one axis: n = 2 m texels under m are
+/// Texels under one texel of the smaller level along one axis: n = 2 m texels under m are
 /// two for each; n = 2 m + 1 are 2 + 1/m, so three, of which the outer ones in part.
 struct Span {
     int first, count;

@@ -24,7 +24,7 @@ Texture image(int width, int height, int channels, std::vector<T> values, bool s
     return t;
 }
 
-/// As wide as `texels` of the texture, both ways.
+/// Footprint as wide as `texels` of the texture, both ways.
 UvFootprint wide(const Texture& t, float texels) {
     return {{texels / float(t.width), 0}, {0, texels / float(t.height)}};
 }

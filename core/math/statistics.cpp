@@ -128,7 +128,7 @@ ChiSquareResult chi_square_test(std::span<const double> observed,
         pool_expected += expected[i];
         left -= expected[i];
         ++in_pool;
-        // What remains must be able to make a cell of its own, else it joins this one.
+        // The remainder must be able to make a cell of its own, else it joins this one.
         if (pool_expected >= min_expected && (left >= min_expected || i == order.back()))
             close_pool();
     }

@@ -51,7 +51,7 @@ class Motion {
     /// between.
     Motion over(double open, double close) const;
 
-    /// What turns about an axis at rest: M(angle) = mean + cos(angle) cosine + sin(angle) sine.
+    /// Turn about an axis at rest: M(angle) = mean + cos(angle) cosine + sin(angle) sine.
     struct Turn {
         Affine3d mean{}, cosine{}, sine{};
         Affine3d at(double angle) const;
@@ -61,7 +61,7 @@ class Motion {
         Affine3d first{};        // the key, as it was given
         bool turns = false;      // else linear
         bool stretches = false;  // turns, and S changes
-        /// What is added until the next key; if it turns, to S and to the place of the pivot.
+        /// Change added until the next key; if it turns, to S and to the place of the pivot.
         Affine3d change{{}, {}, {}, {}};
         Quaterniond rotation{};  // R at the key
         Vec3d axis{0, 0, 1};     // of the turn until the next key; angle in rad, 0 .. pi

@@ -41,7 +41,7 @@ Box join(const Box& a, const Box& b) {
 Vec3d across(Vec3d v, Vec3d axis) { return v - axis * dot(v, axis); }
 Vec3d row(const Affine3d& m, int k) { return {m.x[k], m.y[k], m.z[k]}; }
 
-/// What moves: the hull, or all that it sweeps while it spins.
+/// Moving body: the hull, or all that it sweeps while it spins.
 struct Body {
     const Hull& hull;
     const Spin* sweep = nullptr;
@@ -178,7 +178,7 @@ struct Demand {
     Box box;
 };
 
-/// What the boxes of a step must hold: of each piece both ends, grown by how much it bends.
+/// Demands on the boxes of a step: of each piece both ends, grown by how much it bends.
 std::vector<Demand> demands(const Body& body, const Track& track, double begin, double end) {
     std::vector<Demand> all;
     const bool spins = track.spins() && !body.sweep;
@@ -240,7 +240,7 @@ Box union_of(const std::vector<Box>& boxes) {
     return all;
 }
 
-/// As many steps as make the boxes small; where they stay nearly one, that one.
+/// Chooses as many steps as make the boxes small; where they stay nearly one, that one.
 std::vector<Box> best_boxes(const Body& body, const Track& track) {
     // Steps that are much longer than the keys' would be wasted work.
     const int keys = int(std::min<std::size_t>(track.segments.size(), 2 * kMostMotionSteps));

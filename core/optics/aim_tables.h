@@ -10,7 +10,7 @@ inline constexpr int kRadialSegments = 64;
 /// over their number.
 inline constexpr int kColumns = 64;
 
-/// What is drawn at a film point: points of the iris shape, of the visible part of the iris, or slopes.
+/// Region drawn at a film point: points of the iris shape, of the visible part of the iris, or slopes.
 enum class AimRegion : int { shape, visible, slopes };
 
 /// Cells a side into which the film of a lens without symmetry is divided.

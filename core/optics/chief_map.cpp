@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = 13;  // nodes a side
 
-/// What a 2 x 2 matrix with columns x, y takes to v.
+/// Solution for v of a 2 x 2 matrix with columns x, y.
 Vec2d solve2(Vec2d x, Vec2d y, Vec2d v) {
     const double det = x.x * y.y - y.x * x.y;
     return {(v.x * y.y - y.x * v.y) / det, (x.x * v.y - v.x * x.y) / det};

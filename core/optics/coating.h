@@ -18,14 +18,14 @@ struct CoatingLayer {
     double index(double nm) const { return a + b * 1e6 / (nm * nm); }
 };
 
-/// What lies on one surface.
+/// Coating of one surface.
 struct SurfaceCoating {
     bool reflects = true;     // false: no surface at all, or a perfect one
     std::vector<CoatingLayer> films;  // from the rarer medium to the glass; none: bare
     double mirror = 0;  // reflectance of a mirror in part: neither glass nor films count
 };
 
-/// What a maker would put between two media, given their indices at 550 nm. Surfaces
+/// Coating that a maker would put between two media, given their indices at 550 nm. Surfaces
 /// between air (or another fluid) and glass are coated, cemented ones are bare.
 SurfaceCoating coat(Coating coating, double n1, double n2);
 

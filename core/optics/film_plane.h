@@ -12,7 +12,7 @@ struct FilmPlane {
     Vec3d at(Vec2d film) const { return center + film.x * x + film.y * y; }
 };
 
-/// What the kernels need of it besides the distance of its centre (LensTables::film_gap).
+/// Tables for the kernels, besides the distance of its centre (LensTables::film_gap).
 struct FilmTables {
     bool across = true;   // as a default FilmPlane on the axis
     float center_x = 0, center_y = 0;

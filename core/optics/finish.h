@@ -34,7 +34,7 @@ class FinishScatter {
 
     /// `u_lobe` chooses the part.
     Vec3d sample(const Vec3d& in, double u_lobe, Vec2d u) const;
-    /// Of sample(), per sr.
+    /// Density of sample(), per sr.
     double pdf(const Vec3d& in, const Vec3d& out) const;
 
   private:

@@ -16,7 +16,7 @@
 
 namespace dg {
 
-/// What lies before the film, and how much light the film sends back. Nothing by default.
+/// Parts before the film, and how much light the film sends back. Nothing by default.
 struct SensorStack {
     double cover_thickness = 0;  // mm; 0: no cover glass
     double cover_index = 1.5168;
@@ -78,7 +78,7 @@ class GhostLens {
     /// Those by four reflections; of all of them the brightest, by what their surfaces reflect straight on: so
     /// many at most, as their number grows with the fourth power of the surfaces'.
     std::vector<Mirrors> four_bounces(std::size_t most) const;
-    /// What a surface reflects straight on, mean over blue, green and red; above 0 where it reflects at all.
+    /// Reflectance of a surface straight on, mean over blue, green and red; above 0 where it reflects at all.
     double reflectance(int surface) const;
     LensPath path(const Mirrors& mirrors) const {
         return ghost_path(passed_, mirrors, true);

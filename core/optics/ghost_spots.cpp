@@ -116,7 +116,7 @@ class Bench {
         return entries;
     }
 
-    /// Of each ghost a window that holds what enters. The front of a fisheye is a thousand times its pupil:
+    /// Windows that hold what enters for each ghost. The front of a fisheye is a thousand times its pupil:
     /// where all ghosts together let light in is looked at more and more closely, then where each does.
     std::vector<Window> windows(const std::vector<Mirrors>& ghosts) const {
         Window all;
@@ -169,7 +169,7 @@ class Bench {
         return spot;
     }
 
-    /// What comes to the film's plane of a source straight ahead, which enters in the middle.
+    /// Light that comes to the film's plane from a source straight ahead, which enters in the middle.
     double straight() const {
         for (double size = 1;; size /= 2) {
             double sum = 0;

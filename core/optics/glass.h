@@ -37,7 +37,7 @@ struct PolynomialGlass {
     std::vector<double> coefficient, power;
 };
 
-/// What the glass swallows along the way: exp(-per_mm * path). Nodes ascend; the
+/// Absorption of glass along the way: exp(-per_mm * path). Nodes ascend; the
 /// coefficient is linear between them, hence the internal transmittance is interpolated in
 /// its logarithm; beyond them it stays as it is at the end. Empty: clear glass.
 struct Absorption {

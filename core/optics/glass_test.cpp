@@ -24,7 +24,7 @@ TEST_CASE("Sellmeier: N-BK7 of the Schott catalogue") {
                   "N-BK7"};
     CHECK(refractive_index(g, 587.5618) == doctest::Approx(1.51680).epsilon(1e-6));
     CHECK(refractive_index(g, 435.8343) == doctest::Approx(1.52668).epsilon(3e-6));
-    // What nd and Vd alone predict stays within the error quoted for the normal line.
+    // Predictions by nd and Vd alone stay within the error quoted for the normal line.
     const Glass abbe{AbbeGlass{1.5168, 64.17}, ""};
     for (double nm = 400; nm <= 700; nm += 10)
         CHECK(std::abs(refractive_index(g, nm) - refractive_index(abbe, nm)) < 1e-3);

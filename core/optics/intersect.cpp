@@ -127,7 +127,7 @@ std::optional<double> scanned(const Search& s, Span span) {
     return std::nullopt;
 }
 
-/// Of the form without its asphere, or of the vertex plane: where steps start.
+/// Distance to the form without its asphere, or to the vertex plane: where steps start.
 double first_guess(const Search& s) {
     const Vec3d &m = s.origin, &d = s.direction;
     const double c = s.form.shape == Shape::conic ? s.form.cy : 0, wz = 1 + s.form.ky;

@@ -80,7 +80,7 @@ std::optional<LensHit<T>> meet_sag(const SurfaceForm& f, const Vec3<T>& m,
     return hit;
 }
 
-/// Of a ray in the surface's frame.
+/// Intersects a ray in the surface's frame.
 template <typename T>
 std::optional<LensHit<T>> meet(const SurfaceForm& f, const Vec3<T>& origin,
                                const Vec3<T>& direction, int sign) {

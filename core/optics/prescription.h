@@ -30,7 +30,7 @@ bool is_axially_symmetric(const Prescription& lens);
 /// beyond the form, NaN, negative gaps, absurd sizes and indices.
 void validate(const Prescription& lens);
 
-/// What lies on a surface: its own coating or the lens's, made for its glass.
+/// Coating of a surface: its own or the lens's, made for its glass.
 SurfaceCoating coating_at(const Prescription& lens, int surface);
 
 /// Whether any of its media swallows light.

@@ -24,7 +24,7 @@ inline constexpr double kShapeMargin = 1.02;
 /// which no one-to-one map follows.
 inline constexpr double kWidened = 1.05;
 
-/// What of a lens is drawn. The others are there to be compared with.
+/// Part of a lens that is drawn. All but the first are there to be compared with.
 enum class PupilDraw : std::uint8_t {
     aimed,        // the iris, through polynomials
     slope_boxes,  // a box of slopes around what passes

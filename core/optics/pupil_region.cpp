@@ -28,7 +28,7 @@ class Sweep {
         if (o_.lit(next_)) swept_.add(o_.low[next_], o_.high[next_]);
         ++next_;
     }
-    /// As far as `to`, which lies before or on the next point.
+    /// Range up to `to`, which lies before or on the next point.
     Range up_to(double to) const {
         Range r = swept_;
         add(r, to);

@@ -8,7 +8,7 @@ using namespace dg;
 
 namespace {
 
-/// What two discs have in common, as a front mount and the iris leave it: radius 1 about 0 and about `shift`.
+/// Overlap of two discs, as a front mount and the iris leave it: radius 1 about 0 and about `shift`.
 double cats_eye(double x, double shift) {
     const double h2 = 1 - std::max(x * x, (x - shift) * (x - shift));
     return h2 > 0 ? std::sqrt(h2) : 0;

@@ -58,7 +58,7 @@ struct ShapeTables {
     float ripple_steps_per_mm = 0;
 };
 
-/// What the media swallow: coefficients (1/mm, base e) at equal steps of l from -1 to 1,
+/// Absorption of the media: coefficients (1/mm, base e) at equal steps of l from -1 to 1,
 /// [medium][node]; empty if all are clear.
 struct AbsorptionTables {
     static constexpr int kNodes = 257;  // 0.6 nm apart at 380 nm, 5 nm at 780 nm

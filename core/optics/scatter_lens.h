@@ -19,7 +19,7 @@
 
 namespace dg {
 
-/// What the parts of a lens send to where they should not.
+/// Scatter of the parts of a lens, which send light to where they should not.
 struct LensScatter {
     Finish barrel{}, blades{};
     double surface_rms_nm = 1;   // roughness of every polished surface; 0: none
@@ -60,8 +60,8 @@ struct ScatterDraw {
 
 class ScatterLens {
   public:
-    /// As GhostLens. Error for a lens that is not the same all around its axis, or whose clear diameters are not
-    /// known, and for a finish that cannot be.
+    /// Sets up like GhostLens. Error for a lens that is not the same all around its axis, or whose clear diameters
+    /// are not known, and for a finish that cannot be.
     ScatterLens(const Prescription& lens, const FilmPlane& film, const Iris& iris, double iris_radius,
                 const SensorStack& stack, double half_diagonal, const LensScatter& scatter);
 

@@ -254,7 +254,7 @@ TEST_CASE("closed blades send back what form factors say, and nothing comes to t
     for (int i = 0; i < kWalks; ++i)
         CHECK_FALSE(lens.walk(Sky(tube()).ray(u), lens.at(550), 0, u.rng(), {}, &all).has_value());
     const double there = disc_to_disc(kTube, 12), wanted = there * there * albedo;
-    // What comes through the tube's front goes to the blades first: they are the only thing that is not black.
+    // Light through the tube's front goes to the blades first: they are the only thing that is not black.
     CHECK(all[int(LightEnd::front)] / kWalks == doctest::Approx(wanted).epsilon(0.03));
     CHECK(all[int(LightEnd::film)] == 0);
 }

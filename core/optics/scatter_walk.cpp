@@ -142,7 +142,7 @@ std::optional<ScatteredLight> ScatterLens::Walk::follow(const LensRay& ray, Lens
     return std::nullopt;
 }
 
-/// What the ray meets first: the surfaces on either side of its gap, each from the gap's side, or the wall.
+/// Nearest meeting of the ray: the surfaces on either side of its gap, each from the gap's side, or the wall.
 ScatterLens::Walk::Meeting ScatterLens::Walk::next() const {
     Meeting nearest;
     const int passed = lens_.ghosts_.passed();
@@ -228,7 +228,7 @@ bool ScatterLens::Walk::cross(const Meeting& at) {
     return weight_ > 0;
 }
 
-/// What a picture of an iris lets through in part meets the blades with the rest of its chance.
+/// Passes the iris: a picture that lets light through in part meets the blades with the rest of its chance.
 bool ScatterLens::Walk::pass_iris(const Meeting& at) {
     const GhostLens& g = lens_.ghosts_;
     const Vec2d p = Vec2d{at.hit.point.x, at.hit.point.y} * (1 / g.iris_radius());
@@ -309,7 +309,7 @@ bool ScatterLens::Walk::off_metal(const FinishScatter& finish, const LensHit<dou
     const Vec3d in = frame.into(-ray_.direction);
     const double albedo = finish.albedo(in.z), absorbed = weight_ * (1 - albedo);
     deposit(LightEnd::metal, absorbed);
-    // What faces the scene has nothing to aim at.
+    // A point that faces the scene has nothing to aim at.
     static const std::vector<Target> kNone;
     const bool aims = draw_.aimed && draw_.toward_film && hit.normal.z > -0.999 &&
                       std::size_t(gap_) < lens_.targets_.size();

@@ -17,7 +17,7 @@ namespace {
 constexpr int kNodes = kRadialSegments + 1;
 constexpr int kMinDegree = 3, kMaxDegree = 6;
 constexpr int kCoverageRays = 16384;
-// What is drawn reaches so far beyond what was seen from the two ends of a segment, in iris radii.
+// Margin of the drawn outline beyond what was seen from the two ends of a segment, in iris radii.
 constexpr double kOutlineMargin = 0.005;
 
 class AimMaker {

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// What the maker of an aim asks of the lens, in the meridional frame.
+/// Rays that the maker of an aim asks of the lens, in the meridional frame.
 class SymmetricRays {
   public:
     /// `outer`: mm, radius around the enlarged iris. Error if no ray leads from the film's centre to it.

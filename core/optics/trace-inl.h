@@ -77,7 +77,7 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     return hn::IfThenElseZero(inside, constant(1));
 }
 
-/// What a medium swallows on the way to a point; costs nothing in a lens of clear glass.
+/// Absorbs light in a medium on the way to a point; costs nothing in a lens of clear glass.
 HWY_INLINE void swallow(const LensTables& lens, int medium, const LaneVec& to, LaneRays& r) {
     if (lens.absorption.absorbs.empty() || !lens.absorption.absorbs[medium]) return;
     const V path = hn::MulAdd(
@@ -96,7 +96,7 @@ HWY_INLINE void finish_transmittance(const LensTables& lens, LaneRays& r) {
     r.transmittance = hn::Mul(r.transmittance, hn::Exp(D(), hn::Neg(r.depth)));
 }
 
-/// What stops the ray where it meets a surface, and what is swallowed on the way there.
+/// Stops rays where they meet a surface, and absorbs light on the way there.
 template <int kSign>
 HWY_INLINE M stop_at_surface(const LensTables& lens, int i, const LaneHit& hit, LaneRays& r) {
     const V x = hit.point.x, y = hit.point.y;
@@ -116,7 +116,7 @@ HWY_INLINE M stop_at_surface(const LensTables& lens, int i, const LaneHit& hit, 
     return ok;
 }
 
-/// What is left of Tracer::cross after the meeting: stops, and Snell's law.
+/// Finishes Tracer::cross after the meeting: stops, and Snell's law.
 template <int kSign>
 HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
                              LaneRays& r) {

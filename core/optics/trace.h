@@ -24,7 +24,7 @@ struct TracedRay {
     double optical_path = 0;   // mm: sum of n x distance, from the origin to there
 };
 
-/// What stops rays besides a miss or total reflection. The iris replaces the stop's clear
+/// Stops of rays besides a miss or total reflection. The iris replaces the stop's clear
 /// diameter.
 struct Clip {
     bool clear_apertures = true;

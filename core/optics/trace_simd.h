@@ -24,7 +24,7 @@ struct alignas(64) SceneRays {
     float pass[kLensBatch];  // transmittance, iris included; 0: stopped
     float iris_x[kLensBatch], iris_y[kLensBatch];  // mm
 };
-/// What the guided sampler starts from: film point, lens sample, wavelength.
+/// Samples that the guided sampler starts from: film point, lens sample, wavelength.
 struct alignas(64) LensSamples {
     float x[kLensBatch], y[kLensBatch], u[kLensBatch], v[kLensBatch], nm[kLensBatch];
 };

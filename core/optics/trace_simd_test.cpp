@@ -210,7 +210,7 @@ TEST_CASE(
                 const double expected =
                     aim.tables.shape_area * std::abs(v.jacobian) / (one_m2 * one_m2);
                 CHECK(weight[i] == doctest::Approx(expected).epsilon(2e-5));
-                // What reprojection finds from the traced ray alone.
+                // The result that reprojection finds from the traced ray alone.
                 if (b.scene->pass[i] > 0)
                     CHECK(again[i] == doctest::Approx(weight[i]).epsilon(2e-4));
             }

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// What samples count for in the integrals along one axis: pixel k is the sum of its weights
+/// Weights of samples in the integrals along one axis: pixel k is the sum of its weights
 /// times the samples from `first[k]` on.
 struct PixelWeights {
     std::span<const std::int32_t> first;

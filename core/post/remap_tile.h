@@ -27,7 +27,7 @@ struct RemapRow {
                                     // offset is 0
 };
 
-/// What places of a row depend on.
+/// Inputs of the places of a row.
 struct RemapPlaces {
     const float *dx, *dy;     // displacements, kTileWidth each
     const float *sx, *sy;     // stretches; null: all are 1

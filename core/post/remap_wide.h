@@ -33,7 +33,7 @@ inline const float* source_row(const RemapSource& s, int y) {
     return s.values.data() + std::size_t(row) * s.width * s.channels;
 }
 
-/// Of Keys' cubic (a = -1/2), or a tent.
+/// Weight of Keys' cubic (a = -1/2), or of a tent.
 inline float filter_weight(RemapFilter filter, float x) {
     x = std::abs(x);
     if (filter == RemapFilter::linear) return std::max(1 - x, 0.f);

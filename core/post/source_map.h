@@ -26,7 +26,7 @@ struct SourceMap {
     /// Throws Error unless the sizes agree.
     void check() const;
 
-    /// Of the pixels of one cell, NaN where the map is not defined; rows are `stride`
+    /// Displacements of the pixels of one cell, NaN where the map is not defined; rows are `stride`
     /// apart.
     void read_cell(int column, int row, float* dx, float* dy, int stride) const;
 
@@ -34,7 +34,7 @@ struct SourceMap {
     /// NaN outside of the cells, and where a cell is exact.
     std::vector<float> displacements_at(std::span<const double> points) const;
 
-    /// Of all pixels of rows [begin, end) of a picture so wide: x and y, pixel by pixel.
+    /// Displacements of all pixels of rows [begin, end) of a picture so wide: x and y, pixel by pixel.
     std::vector<float> displacements(int width, int begin, int end) const;
 };
 

@@ -124,7 +124,7 @@ void spread_into(const Source& from, const SpreadLayer& tile, const Layer& layer
         }
 }
 
-/// What one pixel shows: layers from the nearest on, then what they leave open.
+/// Light that one pixel shows: layers from the nearest on, then what they leave open.
 class SpreadShares {
   public:
     void take(const SpreadLight& l) {

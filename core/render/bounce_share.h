@@ -45,10 +45,10 @@ class BounceShare {
         std::optional<TwoWay> both_;
     };
 
-    /// Of light that next-event estimation finds; `visible` by its shadow ray.
+    /// Share of light that next-event estimation finds; `visible` by its shadow ray.
     float of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
                     const Wavelengths& wavelengths) const;
-    /// Of an emitter that the path meets `distance` m after its last vertex `from`. Next-event estimation has
+    /// Share of an emitter that the path meets `distance` m after its last vertex `from`. Next-event estimation has
     /// its density times `light_over_bsdf`.
     float of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance, float time,
                      float light_over_bsdf) const;

@@ -66,9 +66,9 @@ class FilmDensity {
     const Shutter* rolling() const { return shutter_ && shutter_->rolls() ? shutter_ : nullptr; }
     /// Mean over its window of what the shutter lets pass.
     float shutter_weight() const { return shutter_ ? shutter_->weight() : 1; }
-    /// Of |f| s over film points and times, by which densities are divided.
+    /// Integral of |f| s over film points and times, by which densities are divided.
     float integral() const { return float(filter_.absolute_integral()) * shutter_weight(); }
-    /// As that, of times drawn from all at which any line is open.
+    /// The same integral for times drawn from all at which any line is open.
     double integral_of_any_time() const {
         const Shutter* shutter = rolling();
         return filter_.absolute_integral() * (shutter ? double(shutter->any_share() * shutter->weight()) : 1);

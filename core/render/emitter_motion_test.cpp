@@ -77,7 +77,7 @@ SceneDescription still(SceneDescription d, float fraction) {
     return d;
 }
 
-/// Of n paths to the floor near the origin at one of kTimes times.
+/// Values of n paths to the floor near the origin at one of kTimes times.
 void look(const Scene& scene, Strategy strategy, int time, int n, std::vector<double>& values) {
     PathSettings settings;
     settings.strategy = strategy;

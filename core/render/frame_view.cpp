@@ -64,7 +64,7 @@ std::vector<ViewCone> frame_views(const Camera& camera, const Sensor& sensor, fl
         const float time = still ? 0.5f : float(i) / (kMoments - 1);
         views.push_back(view_at(camera, sensor, margin_px, time));
     }
-    // What lies between two moments is no farther from one of them than they are from each other.
+    // Views between two moments are no farther from one of them than they are from each other.
     float turn = 0, step = 0, radius = 0;
     for (std::size_t i = 1; i < views.size(); ++i) {
         turn = std::max(turn, std::acos(std::clamp(dot(views[i - 1].axis, views[i].axis), -1.f, 1.f)));

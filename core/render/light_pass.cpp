@@ -115,7 +115,7 @@ void LightPass::trace(Workspace& work) const {
     work.paths.clear();
 }
 
-/// What a camera sample finds that draws this ray: of a texture, what its cone covers.
+/// Looks like a camera sample that draws this ray: of a texture, what its cone covers.
 void LightPass::look(LightArrival& path, std::span<const Reprojection> landings) const {
     const auto hero = std::ranges::find_if(landings, [](const auto& l) { return l.etendue > 0; });
     if (hero == landings.end()) return;

@@ -55,7 +55,7 @@ class LightPass {
     bool end_secondary_;
 };
 
-/// What light paths alone would add by one arrival, were it to one pixel; how much more densely camera samples
+/// Light that light paths alone would add by one arrival, were it to one pixel; how much more densely camera samples
 /// draw the same; and RayOnFilm::spread().
 struct LoggedSplat {
     Pixel pixel;

@@ -29,7 +29,7 @@ struct LightPaths::Walk {
     float distance() const {
         return infinite() ? std::numeric_limits<float>::infinity() : straight;
     }
-    /// What a finite range leaves of its light, at the first vertex.
+    /// Share of its light that a finite range leaves, at the first vertex.
     float reach() const { return vertices == 0 ? range_attenuation(light, straight) : 1; }
     bool infinite() const {
         return emission.light == LightSet::kEnvironment ||
@@ -130,7 +130,7 @@ std::optional<Spectrum> LightPaths::enter(const Walk& walk, VolumeWalk& volume, 
         bsdf);
 }
 
-/// What the camera's techniques have toward the light, per projected solid angle. A point light is found by
+/// Density of the camera's techniques toward the light, per projected solid angle. A point light is found by
 /// its choice alone: what its rays have per sr, EmissionRays::pdf() has per m2 at the first vertex.
 double LightPaths::camera_density(const Walk& walk, const SurfaceHit& hit, float bsdf_pdf) const {
     double pdf = bsdf_pdf;

@@ -78,7 +78,7 @@ TEST_CASE("camera, light and both: few bounces") {
 }
 
 TEST_CASE("camera, light and both: light that all comes by way of a dark card behind the lens") {
-    // What leaves the card is weak enough for roulette, and nothing else lights the table: a density that is
+    // Light that leaves the card is weak enough for roulette, and nothing else lights the table: a density that is
     // 6 % wrong, or roulette that is not made up for, is seen.
     Affine3f card;
     card.x = {-0.7f, 0, 0}, card.y = {0, 0.7f, 0}, card.z = {0, 0, -0.7f};

@@ -4,7 +4,7 @@
 
 namespace dg {
 
-/// Of either kind: what no picture needs, and what indices of 64 bits bear.
+/// Largest number of either kind: what no picture needs, and what indices of 64 bits bear.
 inline constexpr double kMostLightPaths = 1e9;
 
 /// Light paths per sample index, for the whole frame; 0: none, and the picture has the bits and the speed

@@ -48,7 +48,7 @@ class LightWeight {
     /// The same for rays that leave emitters on their way to surfaces; `pdf` as EmissionRay::pdf.
     double of_bounced(double pdf) const { return plan_.m2 * scale_ * pdf; }
 
-    /// What a light path's find is divided by, and the share of a camera path's find that counts.
+    /// Divisor of a light path's find, and the share of a camera path's find that counts.
     double divisor(double light, double camera) const {
         return technique_ == Technique::both ? light + camera : light;
     }
@@ -88,7 +88,7 @@ class FirstRay {
 
   private:
     std::optional<float> share(Vec3d at, double w, float emission_pdf, float cosine) const;
-    /// Of the camera's samples; most paths are never asked.
+    /// Density of the camera's samples; most paths are never asked.
     double density() const {
         return RayOnFilm(film_, sensor_, landings_, ray_.time).camera_density();
     }

@@ -18,7 +18,7 @@ float power_heuristic(float pdf, float other) {
     return 1.f / (1.f + ratio * ratio);
 }
 
-/// What the path carries from vertex to vertex.
+/// State of the path from vertex to vertex.
 struct Walk {
     Ray ray;
     Spectrum throughput{1.f};
@@ -40,7 +40,7 @@ float emission_weight(const Walk& walk, float light_pdf, PathSettings::Strategy 
     return power_heuristic(walk.bsdf_pdf, light_pdf);
 }
 
-/// What light paths leave of an emitter that the path has met.
+/// Share of an emitter that the path has met, which light paths leave.
 float bounced_share(const Walk& walk, std::int64_t light, float distance, float light_pdf) {
     if (!walk.bounces) return 1;
     const float ratio = walk.from_delta ? 0 : light_pdf / walk.bsdf_pdf;
@@ -67,7 +67,7 @@ Spectrum surface_emission(const Scene& scene, const Walk& walk, const Material& 
                           PathSettings::Strategy strategy) {
     if (!emits(material)) return 0.f;
     SurfaceHit seen = hit;
-    // What light sampling and light paths could find too must be the same light: that of a point. Light paths
+    // Light that light sampling and light paths could find too must be the same light: that of a point. Light paths
     // straight to the lens know the cone of the camera's sample, and see what it covers.
     if (!walk.in_view) seen.footprint[0] = seen.footprint[1] = {};
     const Rgb luminance = emitted(material, scene.textures(), seen);

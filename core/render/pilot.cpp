@@ -98,7 +98,7 @@ class Pilot {
         return std::clamp(std::uint64_t(pixels()) / kPixelsPerPath, kFewestPaths, kMostPaths);
     }
 
-    /// What camera samples find beside what light paths would bring straight from emitters.
+    /// Looks at what camera samples find beside what light paths would bring straight from emitters.
     std::vector<PilotBlock> look() {
         const Sensor& sensor = coarse_.sensor;
         Film film(FilmLayout{sensor.width, sensor.height});

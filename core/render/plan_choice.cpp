@@ -13,7 +13,7 @@ constexpr double kSure = 2;   // standard errors
 // A sample with light paths may cost four times what it costs without: who asks for so many samples has a time
 // in mind. More would seldom gain a third: where light paths do all, cost x error falls as 1 + 1 / (cost - 1).
 constexpr double kMostCost = 4;
-// Of which paths with bounces may have as much as the camera: rare light asks for paths without end.
+// Largest cost of paths with bounces over that of the camera: rare light asks for paths without end.
 constexpr double kMostBounced = 1;
 
 struct Candidate {

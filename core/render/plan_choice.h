@@ -37,7 +37,7 @@ struct PilotArrivals {
     std::uint64_t paths = 0;
 };
 
-/// What the camera alone finds in a block of pixels, where it leaves emitters that light paths reach
+/// Light that the camera alone finds in a block of pixels, where it leaves emitters that light paths reach
 /// straight away to these: mean and variance of one sample.
 struct PilotBlock {
     Vec3f mean{0, 0, 0}, variance{0, 0, 0};
@@ -50,7 +50,7 @@ struct PilotPicture {
     double pixels = 1;   // of a block
 };
 
-/// What things cost, in any one unit.
+/// Costs of things, in any one unit.
 struct PlanCosts {
     double camera = 1;          // one sample of every pixel
     double sharing = 0;         // what is added to it where light paths share in what it finds

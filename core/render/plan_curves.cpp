@@ -61,7 +61,7 @@ class CurveMaker {
     }
 
   private:
-    /// Of a light path: neighbours in its sequence are stratified together, so groups are runs of them.
+    /// Group of a light path: neighbours in its sequence are stratified together, so groups are runs of them.
     int group_of(const PilotArrival& a) const {
         return int(std::uint64_t(a.path) * kGroups / arrivals_.paths);
     }

@@ -24,7 +24,7 @@ using Curves = std::array<Curve, kGroups + 1>;
 /// much brighter than its surroundings.
 std::vector<Vec3f> weights_of(const PilotPicture& picture, const PilotArrivals& straight);
 
-/// Of what the camera finds beside the straight.
+/// Curve's value for what the camera finds beside the straight.
 double rest_of(const PilotPicture& picture, std::span<const Vec3f> weights);
 
 /// Without the brightest of what the camera finds, as long as a picture of 64 samples would seldom have one of

@@ -22,7 +22,7 @@ bool sees(const Camera& camera, const ChiefRays& chief, Vec2d film_mm, float tim
 /// Which frame rays are in: the camera's own at each ray's time, or the world's.
 enum class RayFrame { camera, world };
 
-/// Of the pixels of a region, which may lie beside the frame. Of the layout its place and size count.
+/// Rays of the pixels of a region, which may lie beside the frame. Of the layout its place and size count.
 RayMap ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
                const FilmLayout& region, RayFrame frame, int threads);
 

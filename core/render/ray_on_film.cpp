@@ -96,7 +96,7 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
     return all;
 }
 
-/// What one wavelength brings by itself: the colour is the same in all pixels.
+/// Splats one wavelength by itself: the colour is the same in all pixels.
 void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
                             Film::Layer layer, const Footprint& at) const {
     const Footprint::Box box = at.box();
@@ -116,7 +116,7 @@ void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavel
     }
 }
 
-/// What landings [first, last) bring, one value for each pixel.
+/// Splats landings [first, last), one value for each pixel.
 void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample, Film::Layer layer, std::size_t first,
                           std::size_t last) const {

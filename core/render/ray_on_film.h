@@ -18,7 +18,7 @@ class RayOnFilm {
     RayOnFilm(const FilmDensity& density, const Sensor& sensor,
               std::span<const Reprojection> landings, float time);
 
-    /// Of camera samples, per m2 sr of rays and sample index; see light_weight.h.
+    /// Density of camera samples, per m2 sr of rays and sample index; see light_weight.h.
     double camera_density() const { return density_; }
     /// Some pixel of the region is in reach.
     bool in_reach() const { return in_reach_; }
@@ -30,12 +30,12 @@ class RayOnFilm {
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                std::uint32_t sample, Film::Layer layer = Film::Layer::splats) const;
 
-    /// What comes of light in one pixel.
+    /// Light that comes to one pixel.
     struct Splat {
         Pixel pixel{};
         Spectrum light{0.f};
     };
-    /// What splat() adds where it chooses, whatever the filter, as camera samples do; how many there are.
+    /// Chooses what splat() adds, whatever the filter, as camera samples do; returns how many there are.
     int choose(Spectrum radiance, Vec2f u, std::array<Splat, kWavelengths>& splats) const;
     /// The sum of squares of what splat() adds, over that of what is chosen.
     float spread() const;

@@ -149,7 +149,7 @@ class Renderer {
         }
         return light_path_range(begin, end, per_sample, settings_.seed);
     }
-    /// What is drawn of the film's region, but for the hole.
+    /// Region of the film that is drawn, but for the hole.
     const FilmLayout& region() const { return region_; }
     void draw_light(Workspace& work, std::uint64_t first, std::uint64_t last, bool bounced) const {
         if (bounced)

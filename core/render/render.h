@@ -36,7 +36,7 @@ struct ScatterPlan {
     std::shared_ptr<const ScatterGuide> guide;   // of this picture; null: each call makes its own
 };
 
-/// What becomes of the other wavelengths of a path once glass has bent the hero's ray.
+/// Treatment of the other wavelengths of a path once glass has bent the hero's ray.
 enum class Dispersion {
     reproject,       // each at its own film point (dispersion.h)
     end_secondary,   // dropped; the hero alone, at four times its weight: the plain reference

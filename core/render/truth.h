@@ -22,14 +22,14 @@ struct TruthFrame {
     const Camera& camera;
 };
 
-/// What a ray of the camera sees: a surface, or a direction at infinity.
+/// Sight of a camera ray: a surface, or a direction at infinity.
 struct Seen {
     RawHit hit;
     bool surface = false;
     Vec3f direction;  // unit: the surface's normal in the world, or where in the sky
 };
 
-/// Of the pixels of a region, in rows from the top. Where there is no surface all is 0.
+/// Planes of the pixels of a region, in rows from the top. Where there is no surface all is 0.
 struct TruthPlanes {
     explicit TruthPlanes(const FilmLayout& region);
 
@@ -46,7 +46,7 @@ struct Truth : TruthPlanes {
     std::vector<Seen> seen;
 };
 
-/// What a ray meets, where it meets a surface.
+/// Surface point that a ray meets, where it meets one.
 struct TruthPoint {
     float depth, distance;
     Vec3f position, normal;

@@ -82,7 +82,7 @@ void for_each_pixel(const TruthView& view, const FilmLayout& region, int rays,
     });
 }
 
-/// Of points that have a place both now and then.
+/// Sums over points that have a place both now and then.
 struct MotionSums {
     Vec2d moved{};
     double weight = 0;

@@ -56,7 +56,7 @@ double share_left(double x) {
     return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPiD;
 }
 
-/// Of pixels of a column, the light that meets the near wall: a ray from p of the iris crosses z = -2 at
+/// Share, for pixels of a column, of the light that meets the near wall: a ray from p of the iris crosses z = -2 at
 /// 2 chief + p (1 - 2 / focus).
 double near_share(int column) {
     double sum = 0;

@@ -58,7 +58,7 @@ void groups_along(const Scene& scene, Ray ray, Groups groups, std::vector<std::u
         if (!hit) return;
         const bool sphere = hit->instance == RawHit::kSphere;
         const std::uint32_t group = sphere ? kNoGroup : groups[hit->instance];
-        // What belongs to nobody hides what is behind it, too: it stands first, or nowhere.
+        // An object that belongs to nobody hides what is behind it, too: it stands first, or nowhere.
         const bool counts = group != kNoGroup || met.empty();
         if (counts && std::ranges::find(met, group) == met.end()) met.push_back(group);
         ray.t_min = past(ray, hit->t);

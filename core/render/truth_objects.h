@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// Of each instance the index of its group, or kNoGroup.
+/// Index of each instance's group, or kNoGroup.
 using Groups = std::span<const std::uint32_t>;
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 

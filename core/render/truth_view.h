@@ -39,7 +39,7 @@ class TruthView {
         return bisected(px_at);
     }
 
-    /// Of the film, mm, beside what the sensor has anyway.
+    /// Shift of the film, mm, beside what the sensor has anyway.
     Vec2d shift(float time) const;
 
     const Scene& scene() const { return scene_; }
@@ -50,7 +50,7 @@ class TruthView {
     static constexpr int kRounds = 16;  // of the plain search for the line of a point
     static constexpr double kSettled = 1e-5;  // px
 
-    /// As fast as the lines, or faster. Before the first line and past the last one time
+    /// Bisects for a point that moves as fast as the lines, or faster. Before the first line and past the last one time
     /// is held, so it lands there or crosses some line in between.
     template <typename PxAt>
     std::optional<Vec2d> bisected(const PxAt& px_at) const {

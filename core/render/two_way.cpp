@@ -18,7 +18,7 @@ bool same_normals(const Bsdf& a, const Bsdf& b) {
     return !coated || coated->coat.ns == std::get<LayeredBsdf>(b).coat.ns;
 }
 
-/// What a delta lobe's weight, sampled from to_light, is for flux.
+/// Factor that makes a delta lobe's weight, sampled from to_light, one of flux.
 float flux_correction(const Bsdf& bsdf, const BsdfSample& s, Vec3f to_light, Vec3f ng) {
     float factor = std::visit([&](const auto& b) { return b.reversed(to_light, s.wi); }, bsdf);
     factor *= std::abs(dot(ng, s.wi) / dot(ng, to_light));

@@ -190,7 +190,7 @@ TEST_CASE("what a delta lobe has from the other side is what reversed() says") {
             const Bsdf bsdf = shade(c.material, c.textures, hit, wavelengths);
             const auto s = sample(bsdf, wo, float(hash_uniform(2, i)), pair(3, i));
             if (!s || !s->specular) continue;
-            // Of coat and base that mirror alike both lobes count.
+            // Both lobes count of coat and base that mirror alike.
             const auto all = [&](Vec3f from, Vec3f to) {
                 double sum = 0, last = -1;
                 for (int k = 0; k < 400; ++k) {

@@ -19,8 +19,8 @@ struct MaterialChange {
 /// By material, null where it stays as it is; empty: they all do.
 using MaterialChanges = std::vector<std::unique_ptr<const MaterialChange>>;
 
-/// What is cut to a single key becomes plain again. In the description materials, lights and environment
-/// are left as they are when the shutter opens, the environment with its poses; the keys are gone.
+/// Changes over time; those cut to a single key become plain again. In the description materials, lights and
+/// environment are left as they are when the shutter opens, the environment with its poses; the keys are gone.
 struct Changes {
     MaterialChanges materials;
     std::map<std::uint32_t, Keyed<Light>> lights;

@@ -12,7 +12,7 @@ namespace {
 
 // Between two keys a motion turns by half a turn at most.
 constexpr int kStepsPerKey = 8, kStepsPerTurn = 16;
-// What takes more is bounded as a whole: every triangle of it may be wherever the mesh ever is.
+// Meshes with more steps are bounded as a whole: every triangle of one may be wherever the mesh ever is.
 constexpr std::size_t kMostSteps = 512;
 
 /// Places of the instance, between which it turns by less than a right angle. Of a jump both sides.

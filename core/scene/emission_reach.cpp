@@ -4,9 +4,9 @@
 namespace dg {
 namespace {
 
-// Of what bends or mirrors light, so many are aimed at one by one; of more, the largest.
+// Number of things that bend or mirror light which are aimed at one by one; of more, the largest.
 constexpr std::size_t kMostAims = 16;
-// What is larger than this share of the scene is met anyway.
+// Larger things than this share of the scene are met anyway.
 constexpr float kLargeAim = 0.5f;
 // GGX alpha above which a lobe is too wide for a caustic to be seen.
 constexpr float kNarrowAlpha = 0.1f;
@@ -33,7 +33,7 @@ void widen(Vec3f& min, Vec3f& max, Vec3f a, Vec3f b) {
 
 }  // namespace
 
-/// Of one instance, at all times.
+/// Bounds of one instance, at all times.
 Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Instance& instance = description_.instances[i];

@@ -15,7 +15,7 @@ struct Placement {
     // Error bound of positions: error_scale * largest |coordinate| in the mesh's space of
     // the triangle + error_base.
     float error_scale, error_base;
-    // Of a mesh that deforms: where the arrays of the step begin, and the share of the next step.
+    // For a mesh that deforms: where the arrays of the step begin, and the share of the next step.
     std::size_t first_vertex = 0;
     float step_share = 0;
 };

@@ -27,7 +27,7 @@ struct Instance {
     std::shared_ptr<const Shown> shown = nullptr;   // times in s; null: always there
 };
 
-/// What a scene is built from. Lights made of meshes are found by Scene::build from the
+/// Parts that a scene is built from. Lights made of meshes are found by Scene::build from the
 /// materials.
 struct SceneDescription {
     std::vector<Mesh> meshes;
@@ -37,10 +37,10 @@ struct SceneDescription {
     std::vector<Light> lights;  // punctual and sphere lights
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
-    /// What the picture exposes, s: the first moment of any row of the film to the last. Inside
+    /// Exposed interval of the picture, s: the first moment of any row of the film to the last. Inside
     /// the scene time is the fraction of it, 0 .. 1.
     TimeInterval interval;
-    /// What changes over time (s), by index; what is not named stays as it is above.
+    /// Changes over time (s), by index; what is not named stays as it is above.
     std::map<std::uint32_t, Keyed<Material, double>> material_keys;
     std::map<std::uint32_t, Keyed<Light, double>> light_keys;
     std::optional<Keyed<EnvironmentPose, double>> environment_keys;
@@ -74,7 +74,7 @@ class Scene {
     Vec3f sky_from_world(Vec3f direction, float time) const;
     Vec3f world_from_sky(Vec3f direction, float time) const;
 
-    /// What is left of light that comes to `ray` (origin as spawn_ray moved it) from
+    /// Visibility of light that comes to `ray` (origin as spawn_ray moved it) from
     /// `distance` metres along it, not counting what lies there: 0 or 1,
     /// and between them where it passes clear surfaces. It goes through smooth sheets,
     /// which bend nothing, as a path does. The boundaries of volumes are passed only by the
@@ -84,12 +84,12 @@ class Scene {
     Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
                         const Wavelengths& wavelengths) const;
 
-    /// What is left of light that runs along `ray` from t_min to t_max, all of it through air and sheets.
+    /// Visibility of light that runs along `ray` from t_min to t_max, all of it through air and sheets.
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
 
-    /// As it is at the hit's time.
+    /// Material at the hit's time.
     MaterialAt material(const SurfaceHit& hit) const {
         return material_at(records_[hit.instance].material, hit.time);
     }
@@ -121,7 +121,7 @@ class Scene {
     struct Bounds {
         Vec3f min, max;
     };
-    /// Of the instances at all times; all 0 without any.
+    /// Bounds of the instances at all times; all 0 without any.
     Bounds bounds() const { return bounds_; }
     std::size_t triangle_count() const { return triangle_count_; }  // instanced
     const SceneDescription& description() const { return description_; }

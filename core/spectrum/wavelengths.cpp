@@ -39,7 +39,7 @@ constexpr double kLuma = product_integral(kCieY, kOne.data());
 constexpr double kD65Scale = kLuma / product_integral(kCieY, kD65);
 constexpr double kCieScale = 1 / kLuma;
 
-/// What one wavelength needs, side by side: two loads of four floats per node.
+/// Data of one wavelength, side by side: two loads of four floats per node.
 struct alignas(32) Node {
     float cie_d65[4];  // x, y, z over 4 wavelengths; d65
     float basis[4];    // red, green, -, -

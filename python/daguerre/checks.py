@@ -37,7 +37,7 @@ def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.
 def optional_array(
     values: ArrayLike | None, where: str, what: str, columns: int, count: int
 ) -> NDArray[np.float32] | None:
-    """As :func:`array`, with a given number of rows; None stays None."""
+    """Checks like :func:`array`, and the number of rows; None stays None."""
     if values is None:
         return None
     numbers = array(values, where, what, columns)

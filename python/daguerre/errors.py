@@ -1,4 +1,4 @@
-"""What can go wrong, and with which exit code. Every message names what, where, wanted and got."""
+"""Errors, each with an exit code. Every message names what, where, wanted and got."""
 
 from __future__ import annotations
 

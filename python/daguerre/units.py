@@ -60,7 +60,7 @@ def distance_m(flag: str, text: str) -> float:
 
 
 def unit_m(flag: str, text: str) -> float:
-    """What a length of 1 is, m: ``mm``, ``25mm``."""
+    """Length of a unit, m: ``mm``, ``25mm``."""
     wanted = "a unit such as mm, 25mm or 0.001"
     if text.isalpha() and text not in LENGTHS:
         raise _bad(flag, wanted, text)

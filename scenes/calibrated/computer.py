@@ -86,7 +86,7 @@ def _add_mouse(stage: Stage) -> None:
 
 
 def _upper(shape: Shape) -> Shape:
-    """What of it lies above y = 0."""
+    """Part of a shape above y = 0."""
     above = (shape.positions[shape.indices][:, :, 1] >= -1e-6).all(axis=1)
     return Shape(shape.positions, shape.normals, shape.uv, shape.indices[above])
 

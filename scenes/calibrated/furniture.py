@@ -44,7 +44,7 @@ def _add_desk(stage: Stage, wood: int) -> None:
     tile = 0.80  # the texture repeats so, m
     top, edge = (0, 0, WIDE / tile, DEEP / tile), (0, 0, WIDE / tile, THICK / tile)
     board = shapes.box((WIDE, THICK, DEEP), [edge, edge, top, top, edge, edge])
-    # Of each face of a box, where u runs, for the normal map.
+    # Direction of u on each face of a box, for the normal map.
     along = [(0, 0, -1), (0, 0, 1), (1, 0, 0), (1, 0, 0), (1, 0, 0), (-1, 0, 0)]
     board.tangents = np.repeat([(*a, 1.0) for a in along], 4, axis=0).astype(np.float32)
     legs: list[Shape] = []
@@ -58,7 +58,7 @@ def _add_desk(stage: Stage, wood: int) -> None:
 
 
 def _add_chair(stage: Stage, wood: int) -> None:
-    """Of wood, with four legs and a back of three bars, turned away from the desk."""
+    """Adds a chair of wood with four legs and a back of three bars, turned away from the desk."""
     parts = [shapes.moved(shapes.box((0.42, 0.025, 0.42)), (0, 0.45, 0))]
     for x in (-0.18, 0.18):
         parts.append(shapes.tube([(x * 1.1, 0, -0.2), (x, 0.45, -0.17)], 0.016, 12))

@@ -1,4 +1,4 @@
-"""What is printed, woven and shown on a screen, by arithmetic; sRGB in [0, 1], shape (H, W, 3)."""
+"""Pictures printed, woven and shown on a screen, by arithmetic; sRGB in [0, 1], shape (H, W, 3)."""
 
 from __future__ import annotations
 

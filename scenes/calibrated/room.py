@@ -161,7 +161,7 @@ def _add_prints(stage: Stage) -> None:
 
 
 def _hand(long: float, wide: float, degrees: float) -> shapes.Shape:
-    """Of a clock: up, turned."""
+    """Hand of a clock: up, then turned."""
     hand = shapes.moved(shapes.box((wide, long + 0.02, 0.002)), (0, -0.02, 0))
     return shapes.turned(hand, about_z(degrees))
 

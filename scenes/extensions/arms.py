@@ -15,7 +15,7 @@ from kit.pose import turn_y
 ARMS, JOINTS, LINK = 8, 7, 0.062  # arms, joints of each, and the way between two, m
 START, HEIGHT = 0.05, 0.085  # where an arm begins: distance from the axis, and height
 KEYS = 9
-#: What each joint bends, degrees: down to the sand, along it, and up into a spiral.
+#: Bend of each joint, degrees: down to the sand, along it, and up into a spiral.
 BEND = np.array([-26, 22, 14, 26, 42, 56, 60])
 
 

@@ -1,4 +1,4 @@
-"""What stands along the street and behind it: fronts with windows, and the sky."""
+"""Houses along the street and behind it: fronts with windows, and the sky."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What grows and lies in the garden, and how one thing comes to stand at thousands of places."""
+"""Plants of the garden, and how one thing comes to stand at thousands of places."""
 
 from __future__ import annotations
 

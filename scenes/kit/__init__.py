@@ -1,1 +1,1 @@
-"""What the example scenes are made with: shapes and textures as arrays, and a small GLB writer."""
+"""Kit of the example scenes: shapes and textures as arrays, and a small GLB writer."""

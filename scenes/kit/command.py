@@ -1,4 +1,4 @@
-"""What the scripts that write several scenes have in common: their command line."""
+"""Command line of the scripts that write several scenes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What moves: tracks of a glTF animation, from the words in which a motion is thought of."""
+"""Moves: tracks of a glTF animation, from the words in which a motion is thought of."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def rolling(
     Args:
         node: The ball's.
         times: s.
-        places: Of its centre, one per time, m.
+        places: Places of its centre, one per time, m.
         radius: m.
         pose: Quaternion that it has at the time of number `posed`.
         posed: Index into `times`.

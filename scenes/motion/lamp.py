@@ -1,6 +1,6 @@
 """A bulb that swings over a still life and goes out five times a second: 0 s to 2 s, one period.
 
-What a long exposure sees: the bulb writes its way in dashes, and shadows sweep.
+A long exposure sees the bulb write its way in dashes, and shadows sweep.
 """
 
 from __future__ import annotations

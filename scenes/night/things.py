@@ -1,4 +1,4 @@
-"""What lies on the table: glasses, candles, a book, cards, dice, marbles, ball bearings."""
+"""Things on the table: glasses, candles, a book, cards, dice, marbles, ball bearings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a bad file is: how it is made, the command that meets it, and how that must end."""
+"""Cases of bad files: how each is made, the command that meets it, and how that must end."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Case:
     Attributes:
         name: Unique; the name of its folder.
         make: Writes the file, and what it needs, into an empty folder; returns its path.
-        error: What the error says behind the file's name, a regular expression; if empty, a
+        error: Error behind the file's name, a regular expression; if empty, a
             picture is drawn.
-        warning: What a warning says then, a regular expression; if empty, there is none.
+        warning: Warning then, a regular expression; if empty, there is none.
         code: The exit code of an error.
         command: Words of the command line; ``{bad}``, ``{folder}`` and ``{out}`` are filled in.
     """

@@ -172,7 +172,7 @@ def _two(folder: Path) -> Path:
 
 
 def _alien(folder: Path) -> Path:
-    """Of another scene."""
+    """Pass of another scene."""
     frame, drawn = _drawn()
     passes.write_pass(folder / "other.exr", frame, drawn)
     key = {**drawn.key, "scene": "0" * 64}
@@ -181,7 +181,7 @@ def _alien(folder: Path) -> Path:
 
 
 def _smaller(folder: Path) -> Path:
-    """Of another size, whatever the key says."""
+    """Pass of another size, whatever the key says."""
     frame, drawn = _drawn()
     passes.write_pass(folder / "other.exr", frame, drawn)
     small = {name: words[:, :8] for name, words in drawn.state.items()}

@@ -20,7 +20,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Surface:
-    """What a mesh is made of: ``value`` is a reflectance, an index or, for a lamp, a luminance."""
+    """Material of a mesh: ``value`` is a reflectance, an index or, for a lamp, a luminance."""
 
     kind: str  # diffuse, conductor, dielectric, lamp
     value: float

@@ -18,7 +18,7 @@ namespace dg {
 using FitTerm = std::array<int, 5>;
 using FitVariables = std::array<double, 5>;
 
-/// What is left of a lens's symmetry: planes that may be mirrors.
+/// Symmetry that is left of a lens: planes that may be mirrors.
 struct FitSymmetry {
     bool axial = true, mirror_x = true, mirror_y = true;  // x -> -x, y -> -y
 };

@@ -76,7 +76,7 @@ class BendSearch {
           degrees_(bend_degrees(fit.symmetry.axial, fit.degree)),
           best_(fit.symmetry, degrees_.bend),
           samples_(clear) {
-        // What higher powers of l miss at low degrees would hide the rest.
+        // Errors of low degrees by higher powers of l would hide the rest.
         basis_ = {degrees_.search, fit.symmetry.axial && degrees_.search < 7 ? 1 : 0};
         const std::size_t rays =
             kRaysPerTerm *
@@ -112,7 +112,7 @@ class BendSearch {
         return {fit_.variables(s.f, q, s.l, tried_), s.f, q};
     }
 
-    /// What each coefficient does to the direction, by the polynomials of the round
+    /// Derivatives of the direction by each coefficient, by the polynomials of the round
     /// before: [sample][coefficient].
     std::vector<std::vector<Vec2d>> derivatives(const Bend& bend) const {
         constexpr double h = 1e-4;

@@ -21,7 +21,7 @@ class Deviations {
     int count_ = 0;
 };
 
-/// What is known of one ray.
+/// Errors of one ray.
 struct Compared {
     double radius = 0, direction = 0, film = -1, iris = 0, mount = 0, transmittance = 0;
     bool exact = false, fitted = false;

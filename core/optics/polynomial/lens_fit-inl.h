@@ -233,7 +233,7 @@ HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairV
     return r;
 }
 
-/// What a fit says of a film ray in units of film and pupil.
+/// Lanes of a fit for film rays, in units of film and pupil.
 struct FitLanes {
     PairVec direction, offset, iris;
     PairVec mounts[kMostMounts];
@@ -252,7 +252,7 @@ HWY_INLINE void choose(const PairMask& m, const PairVec& from, PairVec& to) {
     to.y = {choose(m.a, from.y.a, to.y.a), choose(m.b, from.y.b, to.y.b)};
 }
 
-/// Of the rays of one segment, whatever segment they belong to.
+/// Evaluates the rays of one segment, whatever segment they belong to.
 HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s,
                                  const PairVec& f, const PairVec& q, Pair u, Pair l,
                                  bool all, FitLanes& out) {

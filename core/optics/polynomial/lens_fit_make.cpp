@@ -26,7 +26,7 @@ constexpr double kClearWidened = 1.015, kPointsWidened = 1.15;
 // More powers of l are worth their time if they lower the error to this part of what it
 // was.
 constexpr double kWorthIt = 1.0 / 3;
-// What need not be as good as the direction is fitted as well as it must be, no better.
+// Quantities that need not be as good as the direction are fitted as well as they must be, no better.
 // The offset, in the lowest degree in which it shifts points by no more than the
 // direction does at the distance of focus or, if that is farther, of kFar, and by no more
 // than kOffset (mm);
@@ -126,7 +126,7 @@ DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& bas
     return {VectorFit{place, all, to_direction}.of(basis), basis, left, all};
 }
 
-/// As good as it must be; in wide fields and without axial symmetry, where the film feels
+/// Fits the offset as well as it must be; in wide fields and without axial symmetry, where the film feels
 /// it, in the direction's own basis, so that both err alike.
 FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
                     const DirectionFit& direction, const FitEffort& effort) {

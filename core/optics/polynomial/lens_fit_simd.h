@@ -42,7 +42,7 @@ struct FitPupilTables {
 
 inline constexpr int kMostAngleTerms = 12;
 
-/// What the kernels read of a fit.
+/// Tables of a fit that the kernels read.
 struct FitTables {
     bool axial = true;
     WavelengthScale scale = WavelengthScale::visible();

@@ -169,7 +169,7 @@ TEST_CASE("the pursuit finds the columns of a sparse truth") {
         const auto u = quasi_random<5>(i);
         double sum = 0;
         for (int j = 0; j < kColumns; ++j) {
-            // What all columns share makes any of them look like the sum.
+            // A part that all columns share makes any of them look like the sum.
             const double v =
                 std::cos((j + 1) * 3.1 * u[0] + j * u[1]) + 0.3 * u[2] + 1 + u[3];
             e.matrix.push_back(v);

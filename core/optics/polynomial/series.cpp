@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Of an operand: the terms that are not zero, by degree. Symmetry leaves few.
+/// Terms of an operand that are not zero, by degree. Symmetry leaves few.
 struct Terms {
     std::vector<int> index;
     std::array<int, kMaxSeriesDegree + 1> end{};

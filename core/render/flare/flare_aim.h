@@ -27,7 +27,7 @@ struct FlareArrival {
 /// From where it comes to where rays of the lens start; world.
 Ray flare_shadow(const FlarePoint& from, const Ray& from_lens);
 
-/// What comes from the world along the way of a path, as its wavelengths may reach the film each in its place.
+/// Light from the world along the way of a path, as its wavelengths may reach the film each in its place.
 /// `sampler`: for paths through the scene, which light that other things reflect needs; `rays` counts them all.
 Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,
                      const FlareArrival& path, PathSampler sampler, std::uint64_t& rays);
@@ -48,9 +48,9 @@ class FlareAim {
     std::uint64_t survey_rays() const { return survey_rays_; }
     const Sensor& sensor() const { return sensor_; }
     const Shutter& shutter() const { return shutter_; }
-    /// Of a ghost's mirrors together, straight on.
+    /// Reflectance of a ghost's mirrors together, straight on.
     double reflectance(int ghost) const;
-    /// Of some rays from a source to the front; never 0, as few are looked at.
+    /// Share of some rays from a source to the front that are free; never 0, as few are looked at.
     double visible_share(int source) const;
 
     /// From random numbers by purpose.

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// Of the square that holds the front; all of it by default.
+/// Rectangle in the square that holds the front; all of it by default.
 struct FlareRectangle {
     Vec2f low{-1, -1}, size{2, 2};
 
@@ -33,7 +33,7 @@ struct FlareCells {
     Vec2f sample(Vec2f u) const;
     double pdf(Vec2f at) const;         // per unit of the square
 
-    /// Of what is drawn without knowledge of cells.
+    /// Shares that are drawn without knowledge of cells.
     static constexpr float kOuter = 0.5f, kFront = 0.4f;
 
     FlareLambda lambda(float u) const;

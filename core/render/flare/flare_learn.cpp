@@ -99,7 +99,7 @@ FlareRectangle Learner::scout(int source) const {
     return all.hits.empty() ? FlareRectangle{} : all.narrowed();
 }
 
-/// Of some ghosts the frame sees a tiny part, through a tiny part of the front: around the ray that was nearest.
+/// Searches ghosts of which the frame sees a tiny part, through a tiny part of the front: around the nearest ray.
 FlareFound Learner::search(FlareFound found) const {
     for (int i = 0; i < kZooms && found.hits.empty() && std::isfinite(found.near_px); ++i) {
         const FlareRectangle& old = found.probe.where;
@@ -201,7 +201,7 @@ std::vector<double> Learner::blind() const {
     return weights;
 }
 
-/// Of a dim source few rays were looked at: which ghosts it has is known better from all sources together.
+/// Pools sources: of a dim one few rays were looked at, so all sources together know better which ghosts it has.
 void Learner::pool(std::vector<double>& weights) const {
     std::vector<double> of_ghost(ghosts());
     double all = 0;

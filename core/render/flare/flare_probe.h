@@ -29,11 +29,11 @@ struct FlareFound {
     FlareProbe probe{};
     Vec2f low{1e9f, 1e9f}, high{-1e9f, -1e9f};   // of the hits, on the front
     std::vector<Hit> hits{};
-    /// Of the rays that came to the film's plane beside the frame the one that was nearest to it.
+    /// The nearest to the frame of the rays that came to the film's plane beside it.
     Vec2f near_at{};
     float near_px = std::numeric_limits<float>::infinity();
 
-    /// Of the same source over the same part; shares are as they were.
+    /// Adds a probe of the same source over the same part; shares are as they were.
     void add(const FlareFound& other);
     /// Makes shares those of so many rays in each cell, rows of across x across.
     void share(const std::vector<double>& rays, int across);
@@ -43,7 +43,7 @@ struct FlareFound {
     FlareRectangle narrowed() const;
 };
 
-/// Of across x across of a rectangle, in rows.
+/// Cell of across x across of a rectangle, in rows.
 std::size_t cell_of(const FlareRectangle& where, Vec2f at, int across);
 
 FlareFound probe_flare(const FlareAim& aim, const FlareProbe& probe);

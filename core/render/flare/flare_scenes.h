@@ -58,7 +58,7 @@ inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, do
     return all;
 }
 
-/// What shines straight along a ray of the world.
+/// Light that shines straight along a ray of the world.
 inline Rgb light_along(const Scene& scene, const Ray& ray) {
     if (const auto hit = scene.intersect(ray)) {
         if (hit->sphere_light >= 0)

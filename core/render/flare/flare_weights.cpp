@@ -57,7 +57,7 @@ void FlareWeights::weigh_wavelengths(const FlareFound& found, const FlareTiles& 
     for (int i = 0; i < bins; ++i) wavelengths[i] = weights[i] * (1 - kEvenBins);
 }
 
-/// Of what a path brings, times its chance: wavelengths are drawn by their weights.
+/// Square of a path's light, times its chance: wavelengths are drawn by their weights.
 double FlareWeights::square(const FlareFound::Hit& hit, const FlareTiles& tiles) const {
     const double light = hit.rgb * tiles.importance(hit.px);
     return light * light / wavelengths[place(hit.lambda, int(wavelengths.size()))];

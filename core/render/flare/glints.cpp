@@ -45,7 +45,7 @@ float Glints::seen(Ray ray, float half_angle, Wavelengths wavelengths, PathSampl
     return wavelengths.to_xyz(light).y;
 }
 
-/// Of one point of it.
+/// Light of one point of a lamp.
 Rgb Glints::lamp(int source, const Ray& ray, float half_angle, const Wavelengths& wavelengths,
                  PathSampler& sampler, std::uint64_t& rays) const {
     const float u_select = sampler.next_1d();

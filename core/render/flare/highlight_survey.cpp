@@ -86,7 +86,7 @@ class Surveyor {
     }
 
   private:
-    /// What one path finds, with lamps in mirrors spread out; nothing where no light enters.
+    /// Look along one path, with lamps in mirrors spread out; nothing where no light enters.
     template <typename Toward>
     std::optional<Look> look(const Toward& toward, PathSampler& sampler, float spread, std::uint64_t& rays) const {
         const CameraRandom u = sampler.camera();
@@ -203,7 +203,7 @@ std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int s
     return looks;
 }
 
-/// Of the plane on which what is bright moves least as it is seen from here and there: least squares.
+/// Nearness of the plane on which what is bright moves least as it is seen from here and there: least squares.
 float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks) const {
     HighlightSpot far = spot, near = spot;
     far.nearness = 0, near.nearness = 1;
@@ -305,7 +305,7 @@ bool Surveyor::learn(HighlightSpot& spot, std::span<const HighlightSpot> before,
     return true;
 }
 
-/// What spots leave of a tile.
+/// Rest of a tile without its spots.
 std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const HighlightSpot> spots) const {
     if (looks_[tile].empty()) return std::nullopt;
     std::vector<float> weights(kCells * kCells);
@@ -314,7 +314,7 @@ std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const Hi
         if (held(spots, l.ray)) continue;
         weights[l.cell] += l.luminance / kWide, sum += l.luminance;
     }
-    // What is dark where it was looked at may shine elsewhere.
+    // A cell that is dark where it was looked at may shine elsewhere.
     const double mean = std::max(sum / (kWide * kCells * kCells), 1e-3 * mean_);
     HighlightTile rest{tiles_[tile], Distribution2D(kCells, kCells, raised(weights, kCells, float(mean)))};
     rest.luminance = rest.weights.integral();

@@ -74,7 +74,7 @@ ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64
     return landings;
 }
 
-/// What one walk of one wavelength brings to the frame, if it comes there.
+/// Light that one walk of one wavelength brings to the frame, if it comes there.
 std::optional<double> ScatterGuide::light_of(const FlareArrival& path, float nm, std::uint64_t seed) const {
     const State& state = states_[aim_->state_at(path.lens.ray.time)];
     const auto landing = state.lens.reproject(path.lens, state.parts.at(nm), state.parts, seed);

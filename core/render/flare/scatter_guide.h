@@ -43,7 +43,7 @@ class ScatterGuide {
         Vec2f sample(Vec2f u) const;
         double pdf(Vec2f at) const;   // per unit of the square
     };
-    /// What some walks from a source brought to the frame.
+    /// Results of some walks from a source to the frame.
     struct Found {
         double light = 0;
         int hits = 0;

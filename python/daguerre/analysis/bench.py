@@ -26,14 +26,14 @@ FDC_WEIGHTS = (0.181, 0.783, 0.072)
 
 @dataclass(frozen=True)
 class Rays:
-    """What became of rays, each at the last surface that it met.
+    """Traced rays, each at the last surface that it met.
 
     Attributes:
         points: There, mm, shape (N, 3).
-        directions: Unit vectors behind it, shape (N, 3).
+        directions: Unit vectors behind that surface, shape (N, 3).
         iris: Where they crossed the stop, mm, shape (N, 2); NaN: never.
         path: Optical path from the origins to ``points``, mm, shape (N,).
-        transmittance: Of the surfaces passed, shape (N,).
+        transmittance: Transmittance of the surfaces passed, shape (N,).
         passed: Neither missed, nor reflected, nor stopped; shape (N,).
     """
 
@@ -58,7 +58,7 @@ class Bench:
 
     Attributes:
         lens: With the gaps of its zoom and focus.
-        f_stop: As engraved: at infinity focus.
+        f_stop: Engraved f-stop, at infinity focus.
         film_z: Place of the film, mm.
         focus_mm: Distance of the object in focus from the entrance pupil, mm; may be infinite.
         field_mm: Half of the image circle, mm: the largest image height of the figures.
@@ -110,7 +110,7 @@ class Bench:
 
     @property
     def pupil_diameter(self) -> float:
-        """Of the paraxial entrance pupil at this f-stop, mm."""
+        """Diameter of the paraxial entrance pupil at this f-stop, mm."""
         if math.isinf(self.order.stop_semi_diameter):
             return abs(self.order.efl) / self.f_stop
         open_share = self.iris_radius / self.order.stop_semi_diameter
@@ -123,7 +123,7 @@ class Bench:
 
     @property
     def projection(self) -> str:
-        """Of the lens by its own statement: rectilinear unless a fisheye says its law."""
+        """Projection that the lens claims: rectilinear unless a fisheye says its law."""
         return self.lens.nominal.projection or "rectilinear"
 
     @property
@@ -144,13 +144,13 @@ def set_up(
     """Puts a lens on the bench.
 
     Args:
-        lens: Of the library or a file.
+        lens: A lens of the library, or read from a file.
         f_stop: Wide open if None.
         focus_m: Distance in focus, m from the entrance pupil; may be infinite.
         zoom_mm: Focal length of a zoom, mm.
         by: ``best``: the film where the spot on the axis is smallest; ``paraxial``: where rays
             close to the axis meet.
-        field_mm: Half of the image circle, mm; what the lens is made for if None.
+        field_mm: Half of the image circle, mm; None: the one that the lens is made for.
 
     Raises:
         InputError: A focus, zoom or f-stop that the lens does not have.

@@ -24,14 +24,14 @@ from .least_squares import least_squares
 #: Where models start that are none without parameters.
 STARTS = {"double_sphere": (0.0, 0.5), "eucm": (0.5, 1.0), "omni": (1.0,), "fov": (0.5,)}
 UNFIT = ("equirectangular", "cube")  # pictures of no lens
-#: What formats of calibration files call models.
+#: Names that formats of calibration files use for models.
 OTHER_NAMES = {
     "fisheye": "kannala_brandt",
     "brown_conrady": "opencv",
 }
-#: As OpenCV's own calibration has it, unless more are asked for.
+#: Parameters fitted by default, the number that OpenCV's own calibration fits.
 PARAMETERS = {"opencv": 5}
-#: What is compared.
+#: Numbers of parameters to compare.
 COUNTS = {"opencv": (4, 5, 8, 12)}
 ACROSS = 41  # chief rays across the picture
 LEAST = 50  # chief rays that a fit needs
@@ -47,7 +47,7 @@ class ProjectionFit:
     Attributes:
         projection: The model.
         bench: The lens, as it is used.
-        pixel_pitch_um: Of the picture.
+        pixel_pitch_um: Pixel pitch of the picture, um.
         pixels: Where the lens puts directions, shape (N, 2), pixel centres at integers.
         directions: Unit, x right, y down, z ahead, from the entrance pupil, shape (N, 3).
         unseen: Points of the picture that see nothing.
@@ -69,7 +69,7 @@ class ProjectionFit:
 
     @property
     def rms(self) -> float:
-        """Of the distances, px: OpenCV's reprojection error."""
+        """RMS of the distances, px: OpenCV's reprojection error."""
         return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
 
     @property
@@ -95,15 +95,15 @@ def calibrate(
     """Fits a projection to a lens: least squares of pixels, evenly over the picture.
 
     Args:
-        lens: Of the library, or a file.
+        lens: A lens, its name in the library, or a file.
         model: One of ``MODELS``, but for panoramas; ``fisheye`` is OpenCV's, kannala_brandt.
-        resolution: Of the picture, px.
+        resolution: Width and height of the picture, px.
         sensor_size: mm; the picture's width is the sensor's, its pixels are square.
         f_stop: Wide open if None; it matters to where the film stands.
         focus_distance: m from the entrance pupil; may be infinite.
-        focal_length: Of a zoom, mm.
-        focus_by: As of ``Camera``.
-        shift: Of the sensor, mm, as of ``Camera``.
+        focal_length: Focal length of a zoom, mm.
+        focus_by: paraxial or best; see ``Camera``.
+        shift: Shift of the sensor, mm; see ``Camera``.
         terms: How many parameters of the model are fitted, from the first; None: 5 of ``opencv``,
             all of others.
         wavelength_nm: nm.
@@ -142,7 +142,7 @@ def calibrate_all(
 ) -> list[ProjectionFit]:
     """Fits every model that can show what the lens sees, the best (by RMS) first.
 
-    Args: as of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
+    Args: those of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
 
     Raises:
         UsageError: Numbers that are no picture's.
@@ -169,7 +169,7 @@ def calibrate_all(
 
 @dataclass(frozen=True)
 class _Seen:
-    """What the chief rays of a lens are, before a model is fitted."""
+    """Chief rays of a lens, before a model is fitted."""
 
     bench: Bench
     size: tuple[int, int]
@@ -241,15 +241,15 @@ def fit_projection(
     name: str = "calibrate",
     axis: FloatArray | None = None,
 ) -> Projection:
-    """The model that puts directions closest to pixels.
+    """Fits the model that puts directions closest to pixels.
 
     Args:
         model: One of ``MODELS``.
-        size: Of the picture, px.
+        size: Width and height of the picture, px.
         pixels: Shape (N, 2), pixel centres at integers.
         directions: Shape (N, 3), x right, y down, z ahead.
         terms: Parameters of the model that are fitted.
-        name: Of the lens, for messages.
+        name: Name of the lens, for messages.
         axis: About where the principal point is, px; None: the middle.
 
     Raises:
@@ -287,9 +287,10 @@ def fit_projection(
 
 
 def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
-    """Of points in focus on chief rays, from the paraxial entrance pupil, where cameras stand.
+    """Directions to points in focus on chief rays, from the paraxial entrance pupil.
 
-    In focus is a plane; of fisheyes, which see beside it, the sphere of that radius.
+    Cameras stand there. In focus is a plane, or for fisheyes, which see beside it, the sphere of
+    that radius.
 
     Returns:
         Unit directions, x right, y down, z ahead, shape (N, 3); NaN: none.

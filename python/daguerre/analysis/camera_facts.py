@@ -1,4 +1,4 @@
-"""What a photographer wants to know of a camera and a scene, without rendering.
+"""Facts of a camera and a scene that a photographer asks for, without rendering.
 
 Depth of field and hyperfocal distance: S. F. Ray, Applied Photographic Optics, 3rd ed., ch. 22,
 for a thin lens of focal length f, f-stop N and circle of confusion c (f, c in the same unit):
@@ -31,25 +31,25 @@ class Facts:
 
     Attributes:
         lens: Name of the lens, or thin, or pinhole.
-        focal_length_mm: At infinity.
-        f_stop: None for a pinhole.
-        t_stop: As ``f_stop``, of the light that passes the glass; None without glass.
-        zoom_mm: Where a zoom stands.
+        focal_length_mm: Focal length at infinity focus.
+        f_stop: F-stop; None for a pinhole.
+        t_stop: F-stop of a lens without losses that is as bright; None without glass.
+        zoom_mm: Focal length at which a zoom stands.
         zoom_range_mm: Shortest and longest focal length of a zoom.
         squeeze: How much an anamorphic lens narrows the picture; else 1.
-        tilt_deg: Of the lens about x, then y.
-        decentered: How many elements are off the axis.
+        tilt_deg: Tilt of the lens about x, then y.
+        decentered: Number of elements off the axis.
         sensor_mm: Width, height.
         picture_mm: The part of the sensor that a picture of the wanted shape covers.
-        field_of_view_deg: Of the sensor: horizontal, vertical, diagonal.
-        picture_field_of_view_deg: Of the picture, likewise.
+        field_of_view_deg: Field of view of the sensor: horizontal, vertical, diagonal.
+        picture_field_of_view_deg: Field of view of the picture, likewise.
         focus_m: Distance of the sharp plane from the pupil; inf is infinity.
-        notes: How the focus was found, and what else was decided.
+        notes: How the focus was found, and other decisions.
         coc_mm: Circle of confusion that still counts as sharp.
         hyperfocal_m: Focus here, and everything from half of it to infinity is sharp.
         near_m: Where sharpness begins.
         far_m: Where it ends.
-        pixel_pitch_um: Of the picture.
+        pixel_pitch_um: Pixel pitch of the picture.
         pupil_diameter_mm: Entrance pupil.
         shutter_s: How long a point of the film is exposed.
         shutter: The same in words, with what else the shutter does.
@@ -88,12 +88,12 @@ def camera_facts(
     core_scene: Any = None,
     resolution: tuple[int, int] = (960, 540),
 ) -> Facts:
-    """The numbers of a camera, resolved as for a render.
+    """Returns the numbers of a camera, resolved as for a render.
 
     Args:
-        camera: What is asked about.
-        scene: For ``focus_on``.
-        core_scene: For autofocus; see :func:`needs_autofocus`.
+        camera: The camera.
+        scene: Scene, for ``focus_on``.
+        core_scene: Built scene, for autofocus; see :func:`needs_autofocus`.
         resolution: Shape of the picture, px.
     """
     from daguerre.camera.shutter import describe, shutter_time
@@ -202,7 +202,7 @@ def camera_warnings(camera: Camera) -> list[str]:
 
 
 def scene_facts(scene: Scene) -> dict[str, Any]:
-    """What is in a scene, counted."""
+    """Counts what is in a scene."""
     triangles = [len(mesh.indices) for mesh in scene.meshes]
     corners = bounds(scene)
     environment = scene.environment
@@ -239,7 +239,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
 
 
 def _moves(scene: Scene) -> dict[str, Any]:
-    """What changes over time: how many of each kind, and of the cameras which parameters."""
+    """Counts what changes over time: how many of each kind, and which parameters of cameras."""
     motion = scene.motion
     counts = {
         "instances": len(motion.instances),

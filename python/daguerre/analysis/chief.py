@@ -26,7 +26,7 @@ class ChiefRays:
         film: Film points, mm, shape (N, 2).
         slopes: dx/dz, dy/dz at the film, shape (N, 2).
         points: On the first surface, shape (N, 3), mm.
-        directions: Of the light in front of the lens, toward it, unit, shape (N, 3).
+        directions: Light in front of the lens, toward it, unit vectors, shape (N, 3).
     """
 
     film: FloatArray

@@ -42,7 +42,7 @@ REACH = 700.0  # of a kernel, in fringes of 550 nm: wavelength x f-number
 
 
 class Pupil(Protocol):
-    """What converges on one film point."""
+    """Light that converges on one film point."""
 
     @property
     def low(self) -> tuple[float, float]:
@@ -65,7 +65,7 @@ class PlainPupil:
     """The pupil of an ideal lens: the iris alone, under the cone of its f-number.
 
     Attributes:
-        f_number: As the film sees it (working f-number); sin of the cone's half angle is 1 / (2 N).
+        f_number: Working f-number, which the film sees; sin of the cone's half angle is 1 / (2 N).
         iris: Its shape.
     """
 
@@ -119,7 +119,7 @@ class Pattern:
     def on_pixels(self, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
         """Shares of the light in pixels, rows from the top, shape (size, size), odd.
 
-        Of a perfect wave the right half alone, from the middle column on: (size, size // 2 + 1).
+        A perfect wave gives the right half alone, from the middle column on: (size, size // 2 + 1).
         """
         pixel = pitch_mm / (1e-6 * wavelength_nm * self.spacing)
         reach = len(self.light) // 2
@@ -150,9 +150,9 @@ def pattern_of(
     """The pattern of a pupil, wide enough for a window at this wavelength and at longer ones.
 
     Args:
-        pupil: Of one film point.
-        wavelength_nm: nm. Of a perfect wave it matters to the width alone.
-        pitch_mm: Of the pixels that will be asked for, mm.
+        pupil: Pupil of one film point.
+        wavelength_nm: nm. For a perfect wave it only sets the width.
+        pitch_mm: Pitch of the pixels to be asked for, mm.
         size: Pixels across.
         threads: To work on; they change no bit.
 
@@ -182,9 +182,9 @@ def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) ->
     """The point spread of one wavelength on pixels.
 
     Args:
-        pupil: Of one film point.
+        pupil: Pupil of one film point.
         wavelength_nm: nm.
-        pitch_mm: Of the pixels, mm.
+        pitch_mm: Pixel pitch, mm.
         size: Pixels across, odd: the point is in the middle one.
 
     Returns:
@@ -204,7 +204,7 @@ def far_fields(
 ) -> Iterator[Floats]:
     """``far_field`` of one wavelength after the other, as many at a time as there are threads.
 
-    Of perfect waves right halves alone, as of ``Pattern.on_pixels``.
+    Perfect waves give right halves alone, see ``Pattern.on_pixels``.
     """
     if size % 2 == 0:
         raise ValueError(f"size: wanted an odd number, got {size}")
@@ -261,7 +261,7 @@ def _intensity(
 ) -> Floats:
     """|Fourier sum|^2 at samples -reach .. reach of x (columns) and of y (rows, from the top).
 
-    Of real waves, whose rows have no more than ``reach + 1`` columns, as ``Pattern`` has them.
+    Real waves have only ``reach + 1`` columns; the result is then the half that ``Pattern`` keeps.
     """
     halved = lines[0].shape[1] == reach + 1
     out = np.empty((2 * reach + 1, lines[0].shape[1] + TAPS * halved), np.float32)

@@ -73,7 +73,7 @@ class Distortion:
 
     Attributes:
         height_mm: Real, mm, shape (N,).
-        angle_deg: Of the chief ray in front of the lens, shape (N,).
+        angle_deg: Angle of the chief ray in front of the lens, shape (N,).
         ideal_mm: By the law, shape (N,).
         law: ``f tan`` or the fisheye's.
     """
@@ -94,8 +94,8 @@ class Distortion:
 def distortion(bench: Bench, heights_mm: ArrayLike) -> Distortion:
     """Distortion by exact chief rays.
 
-    Of a rectilinear lens against the image of a plane object at the focus distance, of a fisheye
-    against its own law of angles, both at the scale of the axis.
+    A rectilinear lens is compared with the image of a plane object at the focus distance, a fisheye
+    with its own law of angles, both at the scale of the axis.
 
     Args:
         bench: The lens.
@@ -161,7 +161,7 @@ def _through_the_middle(light: Pencil, nm: float) -> FloatArray:
 def axial_colour(bench: Bench, wavelengths_nm: ArrayLike) -> FloatArray:
     """Paraxial focus of each wavelength against that of 587.56 nm, mm, shape (L,).
 
-    Of an object at the focus distance; positive away from the lens.
+    The object is at the focus distance; positive is away from the lens.
     """
     z = bench.order.entrance_pupil.z - bench.focus_mm
     orders = (

@@ -62,7 +62,7 @@ class Figures:
         curves: F, d, C.
         lateral: Shape (21, 3), mm: F, d, C.
         axial: At COLOURS_NM, mm.
-        spherical: Of F, d and C at PUPIL_SHARES, shape (3, 33), mm.
+        spherical: Spherical aberration of F, d and C at PUPIL_SHARES, shape (3, 33), mm.
         on_axis: The wave of 587.56 nm on the axis.
     """
 
@@ -95,7 +95,7 @@ def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
 
     Args:
         bench: The lens at its setting.
-        psf_pixels: Of the pictures of points, across.
+        psf_pixels: Width of the pictures of points, px.
     """
     bench = within_light(bench)
     field = bench.field_mm

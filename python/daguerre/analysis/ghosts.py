@@ -37,10 +37,11 @@ class Ghost:
     Attributes:
         surfaces: Indices of the surfaces that reflect, in the order in which light meets them;
             those of the body follow those of the lens.
-        light: What lands on the film, over what the picture of the same source straight ahead has.
+        light: Light that lands on the film, over that of the picture of the same source straight
+            ahead.
         everywhere: The same on the whole plane of the film.
-        center: Of the light on the film, x and y, mm.
-        radius: Of the light on the film about its centre, RMS, mm.
+        center: Centre of the light on the film, x and y, mm.
+        radius: RMS radius of the light on the film about its centre, mm.
         points: Where rays land, x, y (mm) and their share, shape (N, 3).
     """
 
@@ -57,10 +58,10 @@ class Ghosts:
 
     Args:
         bench: The lens.
-        angle_deg: Of the source, from the axis.
+        angle_deg: Angle of the source from the axis.
         film: Width and height of what counts as film, mm; None: 3 : 2 within the image circle.
-        stack: What of the body reflects; None: nothing.
-        rays: Over the front of the lens, for each ghost.
+        stack: Reflecting parts of the body; None: nothing.
+        rays: Rays over the front of the lens, for each ghost.
 
     Raises:
         InputError: No light passes the lens, or a body that cannot be.

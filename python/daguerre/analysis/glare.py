@@ -37,12 +37,12 @@ class VeilingGlare:
 
     Args:
         bench: The lens.
-        scatter: How its parts scatter; None: as those of a well-made lens.
-        stack: What of the body reflects; None: nothing.
+        scatter: How its parts scatter; None: those of a well-made lens.
+        stack: Reflecting parts of the body; None: nothing.
         patch_mm: Diameter of the picture of the patch, on the axis; None: a tenth of the image
             circle's.
-        walks: From the film, all wavelengths together.
-        seed: Of all random numbers.
+        walks: Walks from the film, all wavelengths together.
+        seed: Seed of all random numbers.
 
     Attributes:
         index: Veiling glare index, %.
@@ -110,7 +110,7 @@ class VeilingGlare:
 def _light(
     lens: _core.ScatterLens, spot: float, edge: float, walks: int, seed: int
 ) -> NDArray[np.float64]:
-    """Of the picture, of ghosts and of what is scattered, with the eye's shares of wavelengths."""
+    """Light of the picture, of ghosts and of scatter, summed by the eye's shares of wavelengths."""
     total = np.zeros(3)
     for k, (nm, share) in enumerate(zip(NM, WEIGHTS, strict=True)):
         found = np.asarray(lens.from_film((0.0, 0.0), spot, nm, walks, seed * len(NM) + k))

@@ -146,7 +146,7 @@ def pupil_outline(
         bench: The lens.
         height_mm: Image height along y, mm.
         wavelength_nm: Wavelength, nm.
-        corners: Of the outline.
+        corners: Corners of the outline.
 
     Returns:
         Direction cosines about the middle of the light, closed, shape (corners + 1, 2); of length 0

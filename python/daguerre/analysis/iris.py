@@ -23,13 +23,13 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Iris:
-    """A shape, and what dirt lets through.
+    """An iris shape, and the dirt on it.
 
     Attributes:
         blades: How many; 0: round.
-        rotation: Of the blades, degrees.
-        curvature: Of their edges: 1 is round, 0 straight.
-        picture: Transmittance, row 0 on top, shape (H, W); of an iris that is a picture.
+        rotation: Rotation of the blades, degrees.
+        curvature: Curvature of their edges: 1 is round, 0 straight.
+        picture: Transmittance of an iris that is a picture, row 0 on top, shape (H, W).
         mask: Transmittance of dust, scratches, an eyelash, shape (H, W), or None: clean.
         mask_half: Half of the width that the mask covers; None: all of the opening.
     """
@@ -56,7 +56,7 @@ class Iris:
         return float(self.shape.outer_radius)
 
     def amplitude(self, x: Floats, y: Floats, pitch: float) -> Floats:
-        """What is left of a wave's amplitude on cells of a raster: 1 where it is open.
+        """Amplitude of a wave behind cells of a raster: 1 where the iris is open.
 
         Edges count by their share of a cell, greys by the root of the light that they let through.
 

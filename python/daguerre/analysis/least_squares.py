@@ -20,11 +20,11 @@ STUCK = 1e12  # damping at which nothing gets better
 def least_squares(
     misses: Callable[[FloatArray], FloatArray], start: FloatArray, scale: FloatArray
 ) -> FloatArray:
-    """Unknowns with the smallest sum of squares near a start.
+    """Finds the unknowns with the smallest sum of squares near a start.
 
     Args:
-        misses: Of unknowns, shape (N,); NaN where a step leads out of what is known, and the step
-            is not taken.
+        misses: Residuals for unknowns, shape (N,); NaN where a step leads out of what is known, and
+            the step is not taken.
         start: Unknowns, shape (K,), where all misses are known.
         scale: Sizes of steps that mean much the same, shape (K,).
     """

@@ -31,7 +31,7 @@ DESIGN_NM = 550.0
 
 @dataclass(frozen=True)
 class LensPupil:
-    """What of the iris a film point sees, and the wave that comes from there.
+    """The part of the iris that a film point sees, and the wave that comes from there.
 
     Attributes:
         low, high: Direction cosines along x and y of the picture, between which there is light.
@@ -40,8 +40,8 @@ class LensPupil:
             the iris, shape (D, D, 2), rows of y.
         mounts: Whether mounts let light through, on a raster of the cosines, rows of y (upward),
             shape (M, M).
-        paths: W in mm by wavelength (nm), coefficients (D, D) as of ``to_iris``; empty: a perfect
-            wave.
+        paths: W in mm by wavelength (nm), coefficients (D, D) like those of ``to_iris``; empty: a
+            perfect wave.
     """
 
     low: tuple[float, float]
@@ -148,7 +148,7 @@ def zone_pupils(
         frame_mm: Width and height of the frame.
         zones: Points along each side; 1: its middle.
         iris: Its shape.
-        wavelengths_nm: As of ``lens_pupil``.
+        wavelengths_nm: Wavelengths of the waves, nm; see ``lens_pupil``.
         center_mm: Where on the film the middle of the frame is.
 
     Returns:

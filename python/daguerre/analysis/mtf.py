@@ -46,7 +46,7 @@ def diffraction_mtf(
         light: From ``pencil``.
         freq_per_mm: Spatial frequencies, cycles per mm, shape (F,).
         wavelengths_nm: Wavelengths, nm, shape (L,).
-        weights: Of the wavelengths, shape (L,).
+        weights: Weights of the wavelengths, shape (L,).
         grid: Directions across; as many as the aberration asks for if None.
         dz: The film this much further from the lens, mm.
 

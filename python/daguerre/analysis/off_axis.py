@@ -20,9 +20,9 @@ def off_axis(bench: Bench, moves: Sequence[Move] = (), tilt: tuple[float, float]
 
     Args:
         bench: The lens.
-        moves: Of its elements, as ``Camera.decenter`` has them.
-        tilt: Of all of it about the centre of its entrance pupil, about x, then the film's y,
-            degrees, as ``Camera.tilt``. The film stays across z, and where the lens's axis meets
+        moves: Moves of its elements, in the form of ``Camera.decenter``.
+        tilt: Turn of all of it about the centre of its entrance pupil, about x, then the film's
+            y, degrees (``Camera.tilt``). The film stays across z, and where the lens's axis meets
             it it has its distance.
     """
     lens = bench.lens

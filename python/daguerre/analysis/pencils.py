@@ -27,7 +27,7 @@ class Pencil:
     Attributes:
         bench: The lens.
         film: Where the chief ray meets the film, mm, shape (2,).
-        angle: Of the chief ray in front of the lens, rad.
+        angle: Angle of the chief ray in front of the lens, rad.
         source: The object point, mm, shape (3,), or None: infinitely far.
         direction: Unit vector of the chief ray, shape (3,).
         low, high: The window in its axes, mm, shape (2,).
@@ -93,8 +93,8 @@ def pencil(
     Args:
         bench: The lens.
         film_mm: Image height along y, or film point (x, y), mm.
-        distance_mm: Of the object point's plane from the entrance pupil, along the axis, mm; of
-            fields beyond 75 degrees the distance itself. What is in focus if None.
+        distance_mm: Distance of the object point's plane from the entrance pupil, along the axis,
+            mm; for fields beyond 75 degrees the distance itself. None: the plane in focus.
 
     Returns:
         None if none of its light arrives.

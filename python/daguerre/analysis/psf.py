@@ -27,7 +27,7 @@ class Psf:
         image: Share of the light in each pixel, rows along the tangential axis (upward from row
             0), columns along the sagittal one; shape (n, n). The sum is what falls in the window.
         half_mm: Half of the window, mm.
-        center: Of the window: sagittal and tangential, mm from the chief ray's point.
+        center: Centre of the window: sagittal and tangential, mm from the chief ray's point.
         diffraction: Whether light was a wave.
     """
 
@@ -70,9 +70,9 @@ def geometric_psf(
     Args:
         light: From ``pencil``.
         wavelengths_nm: Wavelengths, nm, shape (L,).
-        weights: Of the wavelengths, shape (L,).
+        weights: Weights of the wavelengths, shape (L,).
         half_mm: Half of the window, mm; all of the light if None.
-        pixels: Of the picture, across.
+        pixels: Width of the picture, px.
         grid: Rays across, for each wavelength.
         dz: The film this much further from the lens, mm.
     """
@@ -105,9 +105,9 @@ def diffraction_psf(
     Args:
         light: From ``pencil``.
         wavelengths_nm: Wavelengths, nm, shape (L,), each a wave of its own.
-        weights: Of the wavelengths, shape (L,).
+        weights: Weights of the wavelengths, shape (L,).
         half_mm: Half of the window, mm; the spot and three Airy discs if None.
-        pixels: Of the picture, across.
+        pixels: Width of the picture, px.
         dz: The film this much further from the lens, mm.
         max_grid: Directions across that are traced at most.
 
@@ -172,7 +172,7 @@ def psf_of(
 def strehl_ratio(wave: Wavefront) -> float:
     """Peak of the light against that of a perfect wave through the same pupil.
 
-    Of the brightest point within half an Airy disc about the wave's own point.
+    It is that of the brightest point within half an Airy disc about the wave's own point.
     """
     reach = 0.6e-6 * wave.wavelength_nm / (0.5 * wave.step * len(wave.amplitude))
     x = np.linspace(-reach, reach, 21)

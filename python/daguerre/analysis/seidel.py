@@ -39,7 +39,7 @@ class SeidelSums:
 
     @property
     def total(self) -> FloatArray:
-        """Of the lens, mm, shape (7,)."""
+        """Sums over the lens, mm, shape (7,)."""
         return np.asarray(self.surfaces.sum(axis=0))
 
 

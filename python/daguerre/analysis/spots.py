@@ -21,7 +21,7 @@ class Spot:
     Attributes:
         points: Sagittal and tangential, mm about the chief ray of 587.56 nm, shape (N, 2).
         weights: Share of the light, shape (N,), sum 1.
-        wavelength_nm: Of each ray, nm, shape (N,).
+        wavelength_nm: Wavelength of each ray, nm, shape (N,).
         slopes: dx/dz and dy/dz on the same axes, shape (N, 2).
     """
 
@@ -76,7 +76,7 @@ def spot(
     Args:
         light: From ``pencil``.
         wavelengths_nm: Wavelengths, nm, shape (L,).
-        weights: Of the wavelengths, shape (L,).
+        weights: Weights of the wavelengths, shape (L,).
         grid: Rays across.
         jitter: Each ray somewhere in its cell, always the same: no pattern of the grid is left.
     """
@@ -101,7 +101,7 @@ def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
     """Place of the film (mm) with the smallest mean square of several spots' sizes.
 
     Args:
-        spots: Of the fields that count, all on the film at ``film_z``.
+        spots: Spots of the fields that count, all on the film at ``film_z``.
         film_z: Where that film stands, mm.
     """
     top = bottom = 0.0

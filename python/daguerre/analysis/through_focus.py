@@ -20,7 +20,7 @@ class Step:
     """The point on one film.
 
     Attributes:
-        dz: Of the film, mm from its place, away from the lens.
+        dz: Shift of the film from its place, away from the lens, mm.
         psf: In white light.
         rays: F, d and C.
         facts: Figures for programs: mm, shares.

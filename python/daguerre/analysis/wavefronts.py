@@ -32,7 +32,7 @@ class Wavefront:
     """The pupil of one image point on a regular grid of directions.
 
     Attributes:
-        step: Of the direction cosines, between neighbours.
+        step: Step of the direction cosines between neighbours.
         cosines: Along the sagittal and tangential axes, shape (n, n, 2).
         path: W in mm, 0 on average over the light, shape (n, n).
         amplitude: Square root of the light, 0 where none passes, shape (n, n).

@@ -23,7 +23,7 @@ FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
 WHOLE, FISHEYES = ("opencv", "opencv_inverse"), ("kannala_brandt", "omni")
 #: From the axis, degrees: who sees so far has a picture that ends in a circle, wherever it folds.
 SIDEWAYS = 90.0
-#: Of a lens; a projection stands in its place.
+#: Parameters of a lens, which a projection replaces, with the values that unset them.
 OF_LENSES: dict[str, Any] = {
     **dict.fromkeys(("lens", "lens_model", "degree", "fit_tolerance", "focal_length", "zoom")),
     **dict.fromkeys(("aperture_diameter", "t_stop", "front_mask", "iris_mask", "ripple")),
@@ -37,12 +37,12 @@ class Calibration:
 
     Attributes:
         projection: The model and its numbers.
-        name: Of the camera, if it has one.
+        name: Name of the camera, if it has one.
         rig_from_camera: Where the camera stands, seen from the rig's first camera; shape (4, 4), m.
-            Both frames as Daguerre's cameras have them: x right, y up, looking along -z.
+            Both frames are those of Daguerre's cameras: x right, y up, looking along -z.
         pixel_pitch: um; None where the file does not say.
         settings: Parameters of ``Camera`` that the file says, such as ``f_stop``.
-        notes: What a reader should know, a sentence each.
+        notes: Remarks for the user, a sentence each.
         delay_s: How much later than the rig's first camera it is triggered.
     """
 
@@ -93,11 +93,11 @@ def delayed(camera: Camera, seconds: float) -> Camera:
 
 
 def projection(where: str, *values: Any) -> Projection:
-    """Checked: as a file says it, and valid all over its picture.
+    """Makes a projection of a file, checked to be valid all over its picture.
 
     Args:
         where: File, and place in it.
-        values: As ``Projection`` takes them.
+        values: Arguments of ``Projection``.
 
     Raises:
         InputError: They make no model, or one that folds within its picture.
@@ -148,7 +148,7 @@ def check_field(made: Projection, where: str) -> None:
 
 
 def field_notes(made: Projection) -> list[str]:
-    """What is allowed, and may be meant otherwise, a sentence each."""
+    """Remarks on values that are allowed and may be meant otherwise, a sentence each."""
     notes = []
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
     ends = np.array([[0, y], [width - 1, y], [x, 0], [x, height - 1]])

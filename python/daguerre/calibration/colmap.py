@@ -51,7 +51,7 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
 
     Args:
         source: The folder.
-        unit_m: What a length of 1 of the model is, m: pictures alone do not tell.
+        unit_m: Length of the model's unit, m: pictures alone do not tell.
 
     Raises:
         InputError: A file cannot be used; the message names file and line.
@@ -152,7 +152,7 @@ def _image(
 
 
 def _rotation(q: FloatArray) -> FloatArray:
-    """Of a unit quaternion (w, x, y, z), Hamilton's."""
+    """Matrix of a unit quaternion (w, x, y, z), Hamilton's."""
     w, v = q[0], q[1:]
     cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
     return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
@@ -169,6 +169,6 @@ def _number(where: str, word: str) -> float:
 
 
 def check_unit(unit_m: float) -> None:
-    """What a length of 1 in a file is, m."""
+    """Refuses lengths of a file's unit (m) that cannot be meant."""
     if not 1e-9 <= unit_m <= 1e9:
         raise UsageError(f"calibration: unit_m: wanted 1e-9 .. 1e9 m, got {unit_m:g}")

@@ -44,16 +44,17 @@ def read(
     rectified: bool = False,
     unit_m: float = 1.0,
 ) -> Calibration:
-    """One camera of a calibration file.
+    """Reads one camera of a calibration file.
 
     Args:
-        source: File, or the same as a dict; of COLMAP the folder.
+        source: File, or the same as a dict; for COLMAP the folder.
         camera: Which of several, such as ``cam1``; None: the first.
-        format: One of ``FORMATS``; None: as the names in the file tell.
-        model: Of OpenCV: opencv or fisheye; None: as the file says, else opencv.
-        size: Of the picture, px, where the file does not say it.
-        rectified: The picture after rectification, of ROS and of OpenCV's stereo pairs.
-        unit_m: What a length of 1 in the file is, m, of formats that do not say it: OpenCV's stereo
+        format: One of ``FORMATS``; None: recognized by the names in the file.
+        model: Model of OpenCV's files: opencv or fisheye; None: the file's, else opencv.
+        size: Size of the picture, px, where the file does not say it.
+        rectified: Whether to read the picture after rectification, in ROS files and OpenCV's stereo
+            pairs.
+        unit_m: Length of the file's unit, m, in formats that do not say it: OpenCV's stereo
             pairs, COLMAP, ``transforms.json``.
 
     Raises:
@@ -77,7 +78,7 @@ def read_all(
 ) -> dict[str, Calibration]:
     """All cameras of a calibration file, by name; the only one of a file has the file's own.
 
-    Args: as of :func:`read`.
+    Args: those of :func:`read`.
     """
     kind = format_of(source) if format is None else _format(format, FORMATS)
     pair = kind == "opencv" and stereo.is_stereo(load(source))
@@ -132,7 +133,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
 
     Args:
         path: The file.
-        calibration: Of Kalibr's chains also several, in order.
+        calibration: One calibration; for Kalibr's chains also several, in order.
         format: One of ``WRITTEN``.
 
     Raises:

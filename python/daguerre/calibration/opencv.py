@@ -40,12 +40,12 @@ MODELS = {
 def read_opencv(
     source: Source, *, model: str | None = None, size: tuple[int, int] | None = None
 ) -> Calibration:
-    """A calibration by OpenCV.
+    """Reads a calibration by OpenCV.
 
     Args:
         source: YAML, XML or JSON by ``cv::FileStorage``, or the same as a dict.
-        model: opencv or fisheye; None: as the file says, else opencv.
-        size: Of the picture, px, if the file does not say it.
+        model: opencv or fisheye; None: the file's, else opencv.
+        size: Size of the picture, px, if the file does not say it.
 
     Raises:
         InputError: The file cannot be used; the message names the place.
@@ -78,7 +78,7 @@ def _check_spelling(root: Item) -> None:
 
 
 def model_of(root: Item, model: str | None = None) -> str:
-    """As asked for, or as the file says it: in words, or by a flag of OpenCV's sample."""
+    """Model that was asked for, else the file's: in words, or by a flag of OpenCV's sample."""
     if model is not None:
         if model not in MODELS:
             raise UsageError(
@@ -94,7 +94,7 @@ def model_of(root: Item, model: str | None = None) -> str:
 
 
 def size_of(root: Item, given: tuple[int, int] | None) -> tuple[int, int]:
-    """Of the picture, px; as given where the file does not say it."""
+    """Size of the picture, px: the file's, else the given one."""
     return agreed(root, "image_width and image_height", _size(root), given)
 
 
@@ -112,7 +112,7 @@ def _size(root: Item) -> tuple[int, int] | None:
 
 
 def coefficients(made: Projection, counts: Sequence[int]) -> tuple[float, ...]:
-    """Of a model that OpenCV has, filled up with zeros.
+    """Coefficients of a model that OpenCV has, filled up with zeros.
 
     Args:
         made: opencv, rectilinear or kannala_brandt.

@@ -38,11 +38,11 @@ MODELS = {DISTORTED_TO_IDEAL: "opencv_inverse", IDEAL_TO_DISTORTED: "opencv"}
 
 
 def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> Calibration:
-    """The camera of a sample.
+    """Reads the camera of a sample.
 
     Args:
         source: JSON, or the same as a dict.
-        size: Of the picture, px, if the sample has no ``activeSensorResolution``.
+        size: Size of the picture, px, if the sample has no ``activeSensorResolution``.
 
     Raises:
         InputError: The file cannot be used; the message names the place.

@@ -1,6 +1,6 @@
 """ROS ``camera_info``: the YAML of ``camera_info_manager``, and messages as they are echoed.
 
-What is drawn is the raw picture, by K and D, or the rectified one, by P. R and P say where the
+Cameras draw the raw picture, by K and D, or the rectified one, by P. R and P say where the
 camera stands in a stereo rig. The conventions are OpenCV's.
 
 Source: sensor_msgs/CameraInfo (also for regions and binning), and REP 104.

@@ -1,4 +1,4 @@
-"""What a calibration is read from: a file, or the same as a dict."""
+"""Sources of calibrations: files, or the same as dicts."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def first(root: Item, *names: str) -> Item | None:
 
 
 def needed(root: Item, wanted: str, *names: str) -> Item:
-    """As :func:`first`; one must be there."""
+    """Finds a member like :func:`first`, but requires it."""
     found = first(root, *names)
     if found is None:
         root.fail(f"missing: wanted {wanted} ({' or '.join(names)}), got none of them")
@@ -132,8 +132,8 @@ def agreed(
     """The size of the picture, px: that of a file, or the one that is given where it tells none.
 
     Args:
-        item: Of the file, for messages.
-        names: Which a file has for it.
+        item: Item of the file, for messages.
+        names: Names that the file has for it.
         told: By the file.
         given: By who reads it.
     """

@@ -44,15 +44,15 @@ def read_stereo(
     rectified: bool = False,
     unit_m: float = 1.0,
 ) -> dict[str, Calibration]:
-    """Both cameras of a pair: left, right.
+    """Reads both cameras of a pair: left, right.
 
     Args:
         source: YAML, XML or JSON, or the same as a dict. Where it has no R and T, they are read
             from ``extrinsics`` beside it.
-        model: opencv or fisheye; None: as the file says, else opencv.
-        size: Of the picture, px, if the file does not say it.
+        model: opencv or fisheye; None: the file's, else opencv.
+        size: Size of the picture, px, if the file does not say it.
         rectified: The pictures after rectification, by P1 and P2, instead of the raw ones.
-        unit_m: What the lengths in the file are, m.
+        unit_m: Length of the file's unit, m.
 
     Raises:
         InputError: The file cannot be used; the message names the place.

@@ -18,7 +18,7 @@ from .source import load
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
 
-#: What samples say of a camera, beside its projection.
+#: Facts of a camera that samples hold, beside its projection.
 TRACKED = ("transform", "f_stop", "focus_distance")
 
 
@@ -31,9 +31,9 @@ def read_track(
 ) -> Camera:
     """The camera of several samples, keyed at their times; the first is at 0 s.
 
-    What is the same for all of a take (``static``) may be in the first of them alone.
+    Facts that are the same for all of a take (``static``) may be in the first of them alone.
 
-    Args: as of :meth:`Camera.from_opentrackio`.
+    Args: those of :meth:`Camera.from_opentrackio`.
 
     Raises:
         InputError: A sample cannot be used, or times do not rise; the message names it.

@@ -35,12 +35,12 @@ COEFFICIENTS = ("k1", "k2", "k3", "k4", "p1", "p2")
 def read_transforms(
     source: Source, *, size: tuple[int, int] | None = None, unit_m: float = 1.0
 ) -> dict[str, Calibration]:
-    """The pictures of a file, by their paths.
+    """Reads the pictures of a file, by their paths.
 
     Args:
         source: JSON, or the same as a dict.
-        size: Of the pictures, px, if the file does not say it.
-        unit_m: What a length of 1 of its world is, m.
+        size: Size of the pictures, px, if the file does not say it.
+        unit_m: Length of its world's unit, m.
 
     Raises:
         InputError: The file cannot be used; the message names the place.
@@ -63,7 +63,7 @@ def read_transforms(
 
 
 def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Projection:
-    """What a picture says of its lens comes before what the file says of all."""
+    """Projection of a picture, whose own numbers come before those of the whole file."""
 
     def told(name: str) -> Item | None:
         found = item.get(name)

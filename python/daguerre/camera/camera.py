@@ -67,78 +67,83 @@ RIVALS = (
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera; ``with_`` makes changed copies.
+    """A camera in a photographer's terms; ``with_`` makes changed copies.
 
     Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
     kept in ``motion``, and the parameter itself has the value of one moment; ``at`` chooses it.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
-        lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; None: thin.
-        lens_model: exact, polynomial, thick, thin or pinhole; None: exact if a prescription is
-            named.
-        projection: Instead of a lens: a calibration, or the formula of a fisheye or a panorama. It
-            takes f_stop (none: all is sharp) and focus; the width of ``sensor_size`` counts. Keys
-            are of one model and size.
-        degree: Of a polynomial lens, odd, 1 to 13; None: 7.
-        fit_tolerance: RMS error (px) of a polynomial lens on the film, above which the exact lens
-            takes its place; None: 0.5.
-        focal_length: mm, of an ideal lens; None: 50. A prescription has its own and takes no other.
-        zoom: Focal length at which a zoom stands, mm; None: as its file has it.
-        decenter: Elements that stand off the axis of a prescription, as lenses that were dropped
-            have them: for each the indices of its first and last surface, millimetres along x and
-            y, and degrees about x and y.
-        sensor: Name of the library, file, or ``Sensor``: the frame holds its channels, too, and
-            the sensor has its size unless another is given.
-        sensor_size: Width and height, mm.
-        sensor_fit: horizontal, vertical, auto or fill: which side of the sensor the picture spans.
-        f_stop: Focal length / entrance pupil diameter; None: the file's, else 5.6, or the widest of
-            the lens if that is slower.
-        aperture_diameter: mm; the lecture's parameter, instead of ``f_stop`` (thin lens only).
-        t_stop: As ``f_stop``, of the light that comes through the glass on the axis.
-        focus_distance: m from the entrance pupil along the axis; None: autofocus.
-        focus_at: Pixel (x, y) whose surface is to be sharp.
-        focus_on: Node whose nearest surface point is to be sharp.
-        focus_from: pupil or sensor.
-        focus_by: paraxial, or best: the film stands where a point on the axis is the smallest spot.
-        focus_breathing: Thin lens: keep the focal length, so that the field narrows when it focuses
-            close, as a real lens does that moves as a whole; False keeps the field.
-        blades: Number of straight or curved iris blades; 0: round.
-        blade_rotation: Degrees.
-        blade_curvature: -1 .. 1; 1 is round, 0 straight.
-        aperture_image: Grey picture (H, W) of the iris opening; None: by blades.
+        lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; default: thin.
+        lens_model: exact, polynomial, thick, thin or pinhole; default: exact for a prescription,
+            else by ``lens``.
+        projection: A calibration, or the formula of a fisheye or a panorama, instead of a lens. It
+            takes f_stop (None: all is sharp) and focus; the width of ``sensor_size`` counts. Keys
+            must share model and size.
+        degree: Degree of a polynomial lens, odd, 1 to 13; default: 7.
+        fit_tolerance: RMS error of a polynomial lens on the film, px, above which the exact lens
+            replaces it; default: 0.5.
+        focal_length: Focal length of an ideal lens, mm; default: 50. A prescription has its own and
+            takes no other.
+        zoom: Focal length at which a zoom stands, mm; default: that of its file.
+        decenter: Elements of a prescription off their axis, as in lenses that were dropped:
+            for each the indices of its first and last surface, shift along x and y in mm, and tilt
+            about x and y in degrees.
+        sensor: ``Sensor``, library name, or file. The frame then also holds its channels, and the
+            sensor's size is used unless ``sensor_size`` is given.
+        sensor_size: Width and height of the sensor, mm.
+        sensor_fit: Side of the sensor that the picture spans: horizontal, vertical, auto or fill.
+        f_stop: Focal length / entrance pupil diameter; default: the file's, else 5.6, or the lens's
+            widest if that is slower.
+        aperture_diameter: Entrance pupil diameter, mm, instead of ``f_stop`` (thin lens only).
+        t_stop: F-number of a lens without losses that would be as bright on the axis, instead of
+            ``f_stop``.
+        focus_distance: Distance in focus from the entrance pupil, m; default: autofocus.
+        focus_at: Pixel (x, y) to focus on: the surface that it shows becomes sharp.
+        focus_on: Name of a node to focus on: its nearest surface point becomes sharp.
+        focus_from: Where ``focus_distance`` starts: pupil or sensor.
+        focus_by: paraxial: focus where rays near the axis meet; best: where a point on the axis
+            makes the smallest spot.
+        focus_breathing: Thin lens: keep the focal length, so that the field narrows in close focus,
+            like a real lens that moves as a whole; False keeps the field.
+        blades: Number of iris blades; 0: round.
+        blade_rotation: Rotation of the iris, degrees.
+        blade_curvature: Curvature of the blades' edges, -1 .. 1; 1 is round, 0 straight.
+        aperture_image: Grey picture (H, W) of the iris opening, instead of blades.
         front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens, as
             wide as it is clear: 1 lets all light through.
         iris_mask: The same at the iris, as wide as it opens.
-        ripple: Grooves that grinding left in the aspheric surfaces of an exact lens, which show as
-            onion rings: RMS height (nm), period (um), and a seed if wanted.
-        cover_glass: Of the body, before its sensor: thickness and gap to the sensor (mm), and its
-            index if wanted [1.5168]. It has ghosts (``flare``); the picture is that without it.
-        sensor_reflectance: How much light the sensor sends back into the lens, 0 .. 1.
-        scatter: How barrel, blades and surfaces of an exact lens scatter, where that is drawn
-            (``docs/scatter.md``); None: as a well-made lens does.
+        ripple: Grooves left by grinding in the aspheric surfaces of an exact lens, which show as
+            onion rings: RMS height (nm), period (um), and optionally a seed.
+        cover_glass: Glass of the body before its sensor: thickness and gap to the sensor, mm, and
+            optionally its index [1.5168]. It adds ghosts (``flare``) and nothing else.
+        sensor_reflectance: Share of the light that the sensor sends back into the lens, 0 .. 1.
+        scatter: How barrel, blades and surfaces of an exact lens scatter, where scatter is drawn
+            (``docs/scatter.md``); default: a well-made lens.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
-        shift: Film shift, mm.
-        tilt: The lens is turned about its entrance pupil: degrees about the camera's x (up is
+        shift: Shift of the film, right and up, mm.
+        tilt: Turn of the lens about its entrance pupil: degrees about the camera's x (up is
             positive), then about its y (left). The film stays across the camera's axis and keeps
             what is straight ahead in its middle; the focus distance runs along the lens's axis.
-        shutter_time: How long a point of the film is exposed, s; 0 freezes. Or
-        shutter_angle: the same in degrees of a frame, 360 fps shutter_time. None of both: the
-            file's, else 180 degrees.
+        shutter_time: Time for which a point of the film is exposed, s; 0 freezes. Default:
+            ``shutter_angle``.
+        shutter_angle: The same in degrees of a frame, 360 fps shutter_time. Default, if neither is
+            given: the file's, else 180 degrees.
         fps: Frames per second, for angles, offsets and sequences.
-        shutter_offset: When it opens, in frames from the scene's time; None: the exposure stands
-            around that time.
-        shutter_type: box, leaf, focal_plane, rotary or electronic; None: electronic with a
+        shutter_offset: Time at which the shutter opens, in frames from the scene's time; default:
+            the exposure is centred on that time.
+        shutter_type: box, leaf, focal_plane, rotary or electronic; default: electronic with a
             rolling shutter, else box.
         shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction
-            of the time, opening); of a leaf the radius of the iris.
-        rolling_shutter: Lines of pixels that are exposed in turn; None: as the type has it.
-        iso, exposure_compensation: For development; they never change ``frame.rgb``. Nor do
-        exposure_time: Of the light, s, where that is another than the motion blur's shutter.
-        exposure_f_stop: Of the light, where that is another than the blur's; of a pinhole [8].
+            of the time, opening); for a leaf the radius of the iris.
+        rolling_shutter: Lines of pixels exposed in turn; default: that of the type.
+        iso: Sensitivity of developed pictures. This and the next five never change ``frame.rgb``.
+        exposure_compensation: Exposure compensation of developed pictures, EV.
+        exposure_time: Exposure time that sets brightness, s; default: the shutter time.
+        exposure_f_stop: F-stop that sets brightness; default: ``f_stop``; 8 for a pinhole.
         responsivity: Factor on the exposure.
-        white_balance: For development: colour temperature, K, or chromaticity (x, y).
-        motion: Parameters that change over time.
+        white_balance: White for development: colour temperature, K, or chromaticity (x, y).
+        motion: Parameters that change over time, by name.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -221,17 +226,17 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A camera as OpenCV calibrated it.
+        """Reads a camera that OpenCV calibrated.
 
         Args:
             calibration: YAML, XML or JSON by ``cv::FileStorage``, or a dict of the same names.
             name: left or right of a stereo pair; None: left.
-            model: opencv or fisheye; None: as the file says, else opencv.
-            size: Of the calibrated picture, px, if the file does not say it.
-            rectified: Of a pair: as after rectification, by P1 and P2.
-            unit_m: Of a pair: what a length of 1 in the file is, m.
+            model: opencv or fisheye; default: the file's, else opencv.
+            size: Size of the calibrated picture, px, if the file does not say it.
+            rectified: Whether to read a pair after rectification, by P1 and P2.
+            unit_m: Length of the file's unit, for a pair, m.
             camera: Gives all that a calibration does not say, and where the left one stands.
-            pixel_pitch: um; the size of blur depends on it.
+            pixel_pitch: Pixel pitch of the calibrated sensor, um; the size of blur depends on it.
 
         Raises:
             InputError: The calibration cannot be used; the message names the place.
@@ -257,9 +262,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A camera by its ROS ``camera_info``: the raw picture, in its place of a stereo rig.
+        """Reads a camera from ROS ``camera_info``: the raw picture, in its place of a stereo rig.
 
-        Args: as of :meth:`from_opencv`; ``camera`` stands where the rig's first, rectified, does.
+        Args: those of :meth:`from_opencv`; ``camera`` stands at the rig's first rectified one.
             ``rectified`` draws that picture, by P.
         """
         from daguerre.calibration import read_ros
@@ -276,9 +281,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A camera of Kalibr's chain, ``cam0`` or of another name.
+        """Reads a camera of Kalibr's chain, ``cam0`` or of another name.
 
-        Args: as of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
+        Args: those of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
             ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
         """
         from daguerre.calibration import read
@@ -296,9 +301,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """The camera of a picture of a COLMAP model as text, where it stood in COLMAP's world.
+        """Reads the camera of a picture of a COLMAP text model, with its pose in COLMAP's world.
 
-        Args: as of :meth:`from_opencv`; ``name`` is that of the picture.
+        Args: those of :meth:`from_opencv`; ``name`` is that of the picture.
         """
         from daguerre.calibration import read
 
@@ -314,9 +319,9 @@ class Camera:
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """A tracked camera: lens, f-stop, focus and pose of an OpenTrackIO sample, or of several.
+        """Reads a tracked camera: lens, f-stop, focus and pose of OpenTrackIO samples.
 
-        Args: as of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
+        Args: those of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
         """
         from daguerre.calibration import read_opentrackio, read_track
 
@@ -325,20 +330,21 @@ class Camera:
         return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
 
     def at(self, time: float) -> Camera:
-        """The camera as it is at a time in s; nothing in it moves."""
+        """Returns the camera frozen at a time, s; nothing in it moves."""
         return replace(self.moved_to(time), motion={}) if self.motion else self
 
     def moved_to(self, time: float) -> Camera:
-        """The same camera, whose parameters show their values of another time, s."""
+        """Returns the camera evaluated at another time, s; its motion stays."""
         if not self.motion:
             return self
         return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
 
     def with_(self, **changes: Any) -> Camera:
-        """A copy with some parameters changed.
+        """Returns a copy with some parameters changed.
 
-        What the change makes obsolete goes: the focal length of an ideal lens when a prescription
-        takes its place, the f-stop for an aperture diameter, one way to focus for another.
+        Values that the change makes obsolete go: the focal length of an ideal lens when a
+        prescription takes its place, the f-stop for an aperture diameter, one way to focus for
+        another.
 
         Raises:
             UsageError: An unknown name (the nearest is suggested), or values that exclude others.

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 
-#: Of a pinhole, whose own opening has no size: the stop of the photographer's sunny 16, two wider.
+#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
 PINHOLE_F_STOP = 8.0
 
 
-#: Of a camera's facts; h0 follows from the others, of a pinhole from its stop of exposure.
+#: Facts of a camera about exposure; h0 follows from the others, of a pinhole from its stop.
 _EXPOSURE_FACTS = (
     *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
     *("white_balance", "h0"),
@@ -38,8 +38,8 @@ def lens_h0(camera: Camera, facts: Mapping[str, Any], film_mm: float) -> float:
     """``h0`` of the camera's lens as it is at mid-shutter, lux per cd/m2.
 
     Args:
-        camera: For a pinhole's ``exposure_f_stop``.
-        facts: As resolved; a real lens brings its own h0.
+        camera: Camera, for a pinhole's ``exposure_f_stop``.
+        facts: Resolved facts; a real lens brings its own h0.
         film_mm: Film distance of an ideal lens.
     """
     if "h0" in facts:
@@ -50,14 +50,14 @@ def lens_h0(camera: Camera, facts: Mapping[str, Any], film_mm: float) -> float:
 
 
 def exposure_facts(camera: Camera) -> dict[str, Any]:
-    """What was given of exposure beside shutter and stop, for metadata and hashes."""
+    """Exposure parameters other than shutter and stop that were given, for metadata and hashes."""
     usual = {"exposure_time": None, "exposure_f_stop": None, "responsivity": 1.0}
     given = {name: getattr(camera, name) for name in usual}
     return {name: value for name, value in given.items() if value != usual[name]}
 
 
 def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """What of a camera's facts makes the light of a frame: the rest changes none of its bits."""
+    """Facts of a camera that make the light of a frame: the rest changes none of its bits."""
     return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
 
 
@@ -76,8 +76,8 @@ def exposure_metadata(camera: Camera, facts: Mapping[str, Any], shutter_s: float
     """``expTime``, ``aperture``, ``h0`` and ``luminance_exposure`` of a frame; None: unknown.
 
     Args:
-        camera: As given.
-        facts: As resolved, with ``h0``.
+        camera: Camera as given.
+        facts: Resolved facts, with ``h0``.
         shutter_s: How long a point of the film is exposed, s.
     """
     time = shutter_s if camera.exposure_time is None else camera.exposure_time

@@ -22,12 +22,12 @@ class LensScatter:
             sides, 0 to 1.
         barrel_gloss: Share that they send into a lobe about the mirror image, straight on; it grows
             toward grazing light.
-        blades: As ``barrel``, of the iris's blades.
-        blades_gloss: As ``barrel_gloss``.
-        gloss_lobe: Of that lobe: where it begins to fall (sine of the angle) and the power by which
-            it does.
+        blades: Like ``barrel``, for the iris's blades.
+        blades_gloss: Like ``barrel_gloss``, for the iris's blades.
+        gloss_lobe: Shape of that lobe: where it begins to fall (sine of the angle) and the power
+            by which it does.
         surface_rms_nm: RMS roughness of every polished surface, nm.
-        surface_lobe: Of what they scatter, as ``gloss_lobe``.
+        surface_lobe: Shape of the lobe of polished surfaces, like ``gloss_lobe``.
     """
 
     barrel: float = 0.03

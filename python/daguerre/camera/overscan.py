@@ -18,7 +18,7 @@ from daguerre.errors import UsageError, suggest
 
 FloatArray = NDArray[np.float64]
 
-#: As much as a straightened picture of the same size takes its light from.
+#: Overscan that lets a later undistortion leave no holes.
 UNDISTORT = "undistort"
 WANTED = "pixels such as 64px, a share such as 10%, left,top,right,bottom (px), or undistort"
 
@@ -55,15 +55,15 @@ NONE = Overscan()
 def check_overscan(
     value: Any, resolution: tuple[int, int], where: str = "overscan"
 ) -> Overscan | None:
-    """What is asked for: pixels for all sides, ``"10%"``, ``"64px"``, or one number for each side.
+    """Parses overscan: pixels for all sides, ``"10%"``, ``"64px"``, or one number for each side.
 
     Args:
         value: A number, a text, (left, top, right, bottom), an ``Overscan``, or None for none.
-        resolution: Of the picture, px.
+        resolution: Width and height of the picture, px.
         where: For messages.
 
     Returns:
-        None: ``"undistort"``, which the camera decides.
+        Overscan; None: ``"undistort"``, which the camera decides.
 
     Raises:
         UsageError: It is none of these; or the data window is too large.

@@ -48,16 +48,16 @@ NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
 
 @dataclass(frozen=True)
 class Projection:
-    """How directions become pixels.
+    """Projection of directions to pixels: a camera model with its numbers.
 
     Attributes:
         model: One of ``MODELS``.
         size: Width and height of the picture that the numbers are about, px. A picture may be
             rendered in any size of the same shape.
-        focal: Focal lengths, px, along x and y; of ``equirectangular`` pixels per radian, of
+        focal: Focal lengths, px, along x and y; for ``equirectangular`` pixels per radian, for
             ``cube`` per side of a face.
-        principal: Where the axis meets the picture, px; None: its middle.
-        parameters: Of the model; see ``MODELS``.
+        principal: Principal point, where the axis meets the picture, px; None: its middle.
+        parameters: Parameters of the model; see ``MODELS``.
     """
 
     model: str
@@ -101,13 +101,13 @@ class Projection:
     def of_field(
         cls, model: str, size: tuple[int, int], field: float, parameters: Sequence[float] = ()
     ) -> Projection:
-        """With the focal length that shows a field of view across the width, in the middle.
+        """Makes a projection with a field of view across the width, its axis in the middle.
 
         Args:
             model: One of ``MODELS``.
-            size: px.
-            field: Of view across the width, degrees; of ``cube`` all six faces fill it.
-            parameters: Of the model.
+            size: Width and height of the picture, px.
+            field: Field of view across the width, degrees; ``cube`` fills it with all six faces.
+            parameters: Parameters of the model.
 
         Raises:
             UsageError: The model does not see so far.
@@ -140,18 +140,18 @@ class Projection:
 
     @property
     def largest_angle(self) -> float:
-        """From the axis, up to which the model is valid, degrees."""
+        """Largest angle from the axis at which the model is valid, degrees."""
         return math.degrees(self.core.largest_angle)
 
     @property
     def is_wide(self) -> bool:
-        """Whether what lies beside the camera or behind it may be seen."""
+        """Whether it may see what lies beside the camera or behind it."""
         return bool(self.core.is_wide)
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """Of its picture: across, down and along the diagonal, degrees; NaN where nothing is seen.
+        """Field of view across, down and along the diagonal, degrees; NaN where nothing is seen.
 
-        The angles of the two edges from the axis, one after the other; of a panorama all around.
+        Each is the sum of the angles of two edges from the axis; for a panorama all around.
         """
         (width, height), (x, y) = self.size, self.center
         left, right, top, bottom = -0.5, width - 0.5, -0.5, height - 0.5
@@ -165,11 +165,11 @@ class Projection:
 
     @property
     def form(self) -> tuple[str, tuple[int, int]]:
-        """Model and size: what all keys of a projection over time have in common."""
+        """Model and size, which all keys of a projection over time share."""
         return self.model, self.size
 
     def blended(self, other: Projection, share: float) -> Projection:
-        """What lies between it and another of the same form, number by number."""
+        """Blends with another projection of the same form, number by number."""
 
         def mix(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
             both = zip_longest(a, b, fillvalue=0.0)  # parameters that are not given are 0
@@ -182,7 +182,7 @@ class Projection:
         )
 
     def project(self, points: ArrayLike) -> FloatArray:
-        """Pixels of points of the camera's own frame as OpenCV has it: x right, y down, z ahead.
+        """Projects points to pixels; the camera's frame is OpenCV's: x right, y down, z ahead.
 
         Args:
             points: Shape (N, 3), of any unit.
@@ -194,7 +194,7 @@ class Projection:
         return np.asarray(self.core.project(given) * self.focal + self.center)
 
     def unproject(self, pixels: ArrayLike) -> FloatArray:
-        """Unit directions (x right, y down, z ahead) that pixels see; NaN where they see none.
+        """Returns unit directions (x right, y down, z ahead) that pixels see; NaN: none.
 
         Args:
             pixels: Shape (N, 2), pixel centres at integers.
@@ -206,7 +206,7 @@ class Projection:
         return np.asarray(self.core.unproject(np.ascontiguousarray(given)))
 
     def film(self, width_mm: float) -> dict[str, Any]:
-        """Focal lengths and principal point on a film that is so wide, mm, upright.
+        """Focal lengths and principal point on a film of this width, mm, upright.
 
         Pixels of the numbers have their centres at integers, those of a picture at halves.
         """
@@ -221,7 +221,7 @@ class Projection:
         }
 
     def facts(self) -> dict[str, Any]:
-        """For metadata and hashes."""
+        """Facts for metadata and hashes."""
         return {
             "model": self.model,
             "size": list(self.size),

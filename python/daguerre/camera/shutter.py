@@ -28,7 +28,7 @@ DEFAULT_ANGLE = 180.0
 CURTAIN_S = 1 / 300
 #: Reading a full-frame sensor of a video camera.
 READOUT_S = 1 / 60
-#: What the gate takes of the turn of a rotating disc, degrees.
+#: Share of a rotating disc's turn that the gate takes, degrees.
 GATE_ANGLE = 60.0
 #: A leaf shutter is on its way for as long as it rests wide open (radius).
 LEAF_EFFICIENCY = 0.75
@@ -70,8 +70,8 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
     It stands around ``time``, unless ``shutter_offset`` says when it opens.
 
     Raises:
-        UsageError: As of ``core_shutter``; or the time is no number, or so large that doubles
-            cannot tell the opening from the closing.
+        UsageError: Bad shutter, see ``core_shutter``; or the time is no number, or so large that
+            doubles cannot tell the opening from the closing.
     """
     duration = core_shutter(camera, resolution).duration_s
     begin = number(time, "scene: time") - duration / 2

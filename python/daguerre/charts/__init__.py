@@ -50,11 +50,11 @@ KINDS: dict[str, Callable[..., Chart]] = {
 
 
 def make(name: str, **parameters: Any) -> Chart:
-    """A chart.
+    """Makes a chart.
 
     Args:
         name: One of ``KINDS``.
-        parameters: Of that kind; ``width`` (m) of all. See ``docs/charts.md``.
+        parameters: Parameters of that kind; all take ``width`` (m). See ``docs/charts.md``.
 
     Raises:
         UsageError: No such chart or parameter, or a value that makes none.

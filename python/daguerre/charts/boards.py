@@ -89,10 +89,10 @@ def apriltag(
         columns: Tags across, 1 to 100.
         rows: Tags down, 1 to 100.
         tag: Side of a tag with its black border, m.
-        gap: Between tags, share of a tag's side, 0.1 to 2.
+        gap: Gap between tags, share of a tag's side, 0.1 to 2.
         dictionary: OpenCV's name.
         first: Id of the first tag.
-        border: Of black around the bits, in bits, 1 to 4.
+        border: Width of black around the bits, in bits, 1 to 4.
     """
     number(gap, "chart: gap", 0.1, 2)
     number(tag, "chart: tag", 1e-4, 1e3)
@@ -131,7 +131,7 @@ def outline(chart: Chart) -> FloatArray:
 
 
 def _centers(columns: int, rows: int, side: float, least: int, most: int = 200) -> FloatArray:
-    """Of cells, shape (rows, columns, 2); the first is the upper left one."""
+    """Centres of cells, shape (rows, columns, 2), from the upper left one."""
     whole(columns, "chart: columns", least, most)
     whole(rows, "chart: rows", least, most)
     number(side, "chart: square", 1e-4, 1e3)

@@ -38,7 +38,7 @@ class Patch:
     """A polygon of one colour.
 
     Attributes:
-        name: As the truth has it; several may share one.
+        name: Name in the truth; several patches may share one.
         points: Corners, m, shape (N, 2), convex, counter-clockwise.
         rgb: Share of the chart's white, linear Rec.709.
         layer: Those of higher layers cover those of lower ones.
@@ -57,7 +57,7 @@ class Chart:
     Attributes:
         name: Which kind.
         size: Width and height, m.
-        patches: What it shows, over the ground.
+        patches: Patches shown over the ground.
         ground: Colour of the ground.
         truth: Facts for who measures pictures of it; JSON.
     """
@@ -92,10 +92,10 @@ class Chart:
         return self.size[0] * focal_length / sensor_width
 
     def scene(self, luminance: float = 100.0) -> Scene:
-        """The chart shining by itself in the dark, with a camera that it fills.
+        """Makes a scene of the chart, shining by itself in the dark, with a camera that it fills.
 
         Args:
-            luminance: Of its white, cd/m2.
+            luminance: Luminance of the chart's white, cd/m2.
         """
         from daguerre.scene.materials import Diffuse, Material
         from daguerre.scene.scene import Scene
@@ -131,12 +131,12 @@ class Chart:
         """Writes the chart as .glb with a camera that it fills, and its truth beside it as .json.
 
         Args:
-            path: Of the .glb.
-            luminance: Of its white, which shines by itself, cd/m2; None: matt paint for light of
-                your own.
-            focal_length: Of the camera, mm.
-            sensor_width: Of the camera, mm.
-            f_stop: Of the camera.
+            path: Path of the .glb.
+            luminance: Luminance of the chart's white, which shines by itself, cd/m2; None: matt
+                paint for light of your own.
+            focal_length: Focal length of the camera, mm.
+            sensor_width: Sensor width of the camera, mm.
+            f_stop: F-stop of the camera.
 
         Raises:
             UsageError: Another ending, or numbers that are no camera's.

@@ -23,10 +23,10 @@ _GAP = 0.12  # of a field
 
 
 def make(width: float = 0.9) -> Chart:
-    """The chart, 3 : 2.
+    """A color chart of 24 patches, 3 : 2.
 
     Args:
-        width: m.
+        width: Width of the chart, m.
     """
     field = width / (COLUMNS + 0.8)
     top_left = np.array([-(COLUMNS - 1) / 2, (ROWS - 1) / 2 * 1.0]) * field

@@ -25,15 +25,15 @@ def make(
     largest: float = 0.25,
     contrast: float = 0.5,
 ) -> Chart:
-    """Leaves whose radii fall off as r^-3, which looks alike at every scale.
+    """Dead leaves: discs whose radii fall off as r^-3, alike at every scale.
 
     Their light is even around 0.5.
 
     Args:
-        width: m.
-        seed: Of the places, sizes and greys.
+        width: Width of the chart, m.
+        seed: Seed of the places, sizes and greys.
         smallest: Smallest radius over the chart's height.
-        largest: Largest radius over it.
+        largest: Largest radius over the chart's height.
         contrast: Half the range of light over its mean.
     """
     whole(seed, "chart: seed", 0, 2**63)

@@ -1,4 +1,4 @@
-"""What pictures of charts tell, rendered or photographed: edges, stars, texture, patches."""
+"""Measures pictures of charts, rendered or photographed: edges, stars, texture, patches."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _FINER = 4  # bins of the edge's profile per pixel, as ISO 12233 has it
 
 @dataclass(frozen=True)
 class EdgeResponse:
-    """What an edge became.
+    """Response to an edge.
 
     Attributes:
         frequency: Cycles per pixel, shape (F,), from 0.
         response: Modulation at these frequencies, shape (F,), 1 at 0.
-        angle: Of the edge against the rows or columns that it is nearer to, degrees.
+        angle: Angle of the edge against the rows or columns that it is nearer to, degrees.
         low: Light on the dark side.
         high: Light on the light side.
     """
@@ -156,7 +156,7 @@ def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
 
     Args:
         points: m, in the chart's plane, shape (N, 2).
-        metadata: Of the frame: ``worldToNDC`` and ``resolution``.
+        metadata: Metadata of the frame: ``worldToNDC`` and ``resolution``.
     """
     try:
         matrix = np.asarray(metadata["worldToNDC"], np.float64)
@@ -176,8 +176,8 @@ def means(
 
     Args:
         picture: Shape (H, W, C) or (H, W).
-        chart: Of kind colour or step-wedge.
-        metadata: As for ``places``.
+        chart: A chart of kind colour or step-wedge.
+        metadata: Metadata of the frame, see ``places``.
         inner: Share of a patch's side that is looked at.
 
     Returns:
@@ -209,9 +209,9 @@ def star_modulation(
 
     Args:
         picture: Linear light, shape (H, W).
-        center: Of the star, px (x right, y down, pixel centres at half).
+        center: Centre of the star, px (x right, y down, pixel centres at half).
         radii: px, shape (R,); the frequency there is cycles / (2 pi r) per pixel.
-        cycles: Around the star.
+        cycles: Number of cycles around the star.
 
     Returns:
         Modulation, shape (R,).

@@ -30,7 +30,7 @@ def poses(
     farthest: float = 2.0,
     margin: float = 0.02,
 ) -> list[FloatArray]:
-    """Poses of a camera from which it sees all of a board.
+    """Finds poses of a camera from which it sees all of a board.
 
     Boards stand where a Halton sequence puts them in the picture, from as near as they fit to some
     times as far, turned about all axes. The tilt tells focal length and distance apart; boards that
@@ -38,12 +38,12 @@ def poses(
 
     Args:
         chart: The board, in the plane z = 0.
-        projection: Of the camera, or one like it.
-        count: How many.
-        seed: Of the choice.
-        tilt: Largest, of the board to the line of sight, degrees, 0 to 60.
-        farthest: Distances as they fit, 1 to 10.
-        margin: Left free at the picture's edges, share of its height.
+        projection: Projection of the camera, or one like it.
+        count: Number of poses.
+        seed: Seed of the choice.
+        tilt: Largest tilt of the board to the line of sight, degrees, 0 to 60.
+        farthest: Largest distance, as a multiple of the nearest that fits, 1 to 10.
+        margin: Margin left free at the picture's edges, share of its height.
 
     Returns:
         World-from-camera matrices, shape (4, 4), for ``Camera(transform=...)``.

@@ -33,8 +33,8 @@ class RowTime:
         readout_time: For all lines of the picture, s.
         scan_order: Side of the picture that came first: top, bottom, left or right; ``none`` if all
             came at once as far as can be told.
-        turn_rate: Of the camera, degrees per second, to the right or up.
-        error: Of ``line_time``, standard error of the fit, s.
+        turn_rate: Turn rate of the camera, degrees per second, to the right or up.
+        error: Standard error of ``line_time``, by the fit, s.
     """
 
     line_time: float
@@ -53,7 +53,7 @@ def row_time(
     corner: tuple[int, int] = (0, 0),
     still: ArrayLike | None = None,
 ) -> RowTime:
-    """The time from one line of pixels to the next, from pictures taken while the camera turns.
+    """Measures the time from one line of pixels to the next, in pictures of a turning camera.
 
     An upright edge, while the camera pans, tells of shutters that scan from the top or the bottom;
     a level one, while it tilts, of those from the left or the right. Each line of pixels sees the
@@ -65,7 +65,7 @@ def row_time(
             with one edge along its longer side, from end to end. Checkerboards will do: dark and
             light may change sides along the edge.
         projection: How directions become pixels of the whole picture, in its size.
-        turn_rate: Of the camera, degrees per second, positive to the right or up; or
+        turn_rate: Turn rate of the camera, degrees per second, positive to the right or up; or
         fps: Pictures per second, of two or more during which the rate, whatever it is, stays.
         corner: The region's first column and row in the picture.
         still: The same region of a picture without motion, for an edge that is not along the axis
@@ -106,7 +106,7 @@ def row_time(
 class _View:
     """A region of a picture, its lines of pixels across the edge.
 
-    Of an upright edge they are rows, and the camera turns to the right; of a level one they are
+    With an upright edge they are rows, and the camera turns right; with a level one they are
     columns, and it turns up.
     """
 
@@ -177,7 +177,7 @@ class _View:
 def _follow(light: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
     """Rows that see the edge, and where: the middle of its slope, near a curve through all.
 
-    What is looked at narrows to the edge's own width, so that noise of what it parts is left out.
+    The window narrows to the edge's own width, so that noise of what it parts is left out.
     """
     slope, rows = np.diff(light, axis=1), np.arange(len(light))
     at = np.arange(slope.shape[1]) + 0.5

@@ -19,11 +19,11 @@ _PARTS = {
 
 
 def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: float = 0.9) -> Chart:
-    """A star in the middle, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
+    """A Siemens star, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
 
     Args:
-        width: m.
-        cycles: Around, 4 to 360.
+        width: Width of the chart, m.
+        cycles: Cycles around the star, 4 to 360.
         profile: sine (its light is (white / 2) (1 + 0.95 cos)) or bar (white and 0.025 of it).
         white: Share of the chart's white.
     """
@@ -56,7 +56,7 @@ def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: flo
 
 
 def _light(parts: int) -> np.ndarray:
-    """Of the parts of a cycle: the mean of the sine over each, so that sums of parts are exact."""
+    """Light of the parts of a cycle: means of the sine over each, so that sums are exact."""
     if parts == 2:
         return np.array([1.0, 0.025])
     middle = 2 * np.pi * (np.arange(parts) + 0.5) / parts
@@ -64,7 +64,7 @@ def _light(parts: int) -> np.ndarray:
 
 
 def modulation(profile: str) -> float:
-    """Of the first harmonic of a cycle, over the mean.
+    """Modulation of the first harmonic of a cycle, over the mean.
 
     Light in steps of 1 / n cycle that are means of a sine of amplitude m has a first harmonic of
     m sinc(1 / n)^2; a bar has 4 / pi of its contrast.

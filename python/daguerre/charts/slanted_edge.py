@@ -14,13 +14,13 @@ COLUMNS, ROWS = 5, 3
 def make(
     width: float = 0.9, angle: float = 5.0, contrast: float = 4.0, white: float = 0.8
 ) -> Chart:
-    """Dark squares on a light ground, 5 x 3 of them.
+    """Slanted edges: 5 x 3 dark squares on a light ground.
 
     Args:
-        width: m.
-        angle: By which they are turned counter-clockwise, degrees; not 0 nor 45.
+        width: Width of the chart, m.
+        angle: Turn of the squares counter-clockwise, degrees; not 0 nor 45.
         contrast: Light of the ground over that of the squares; ISO 12233 has 4.
-        white: Of the ground, share of the chart's white.
+        white: Light of the ground, share of the chart's white.
     """
     number(angle, "chart: angle", 1, 44)
     number(white, "chart: white", 0, 1, above=0)

@@ -15,10 +15,10 @@ def make(width: float = 0.9, steps: int = 20, step: float = 0.1, first: float = 
     """Rows of patches, from light to dark: density first + i step, light 10^-density of white.
 
     Args:
-        width: m.
-        steps: Patches, 2 to 100.
-        step: In density.
-        first: Density of the lightest.
+        width: Width of the chart, m.
+        steps: Number of patches, 2 to 100.
+        step: Step of density.
+        first: Density of the lightest patch.
     """
     steps = whole(steps, "chart: steps", 2, 100)
     number(step, "chart: step", 0, 1, above=0)

@@ -27,14 +27,15 @@ WELL = 1.0  # px: what is worse is told
 
 @with_flags(map_flags=MapFlags)
 def calibrate(
-    name: Annotated[str, typer.Argument(metavar="LENS", help="Of the library, or a file.")],
+    name: Annotated[str, typer.Argument(metavar="LENS", help="Library name or lens file.")],
     map_flags: MapFlags,
     model: Annotated[
         str,
         option(
             "--model",
             metavar="NAME",
-            help="opencv, fisheye, double_sphere, ...; all: how well each fits [opencv].",
+            help="Projection model: opencv, fisheye, double_sphere, ...; all compares them "
+            "[opencv].",
         ),
     ] = "opencv",
     terms: Annotated[
@@ -42,49 +43,62 @@ def calibrate(
         option(
             "--terms",
             metavar="N",
-            help="Parameters of the model [5 of opencv, else all; for Kalibr 4].",
+            help="Number of parameters to fit [5 of opencv, else all; for Kalibr 4].",
         ),
     ] = None,
     focus: Annotated[
         str | None, option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].")
     ] = None,
     f_stop: Annotated[
-        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].")
+        str | None, option("--f-stop", metavar="N", help="F-stop as engraved [wide open].")
     ] = None,
     zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.")
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.")
     ] = None,
     focus_by: Annotated[
-        str, option("--focus-by", metavar="paraxial|best", help="As of render [paraxial].")
+        str,
+        option(
+            "--focus-by",
+            metavar="paraxial|best",
+            help="Focus where rays near the axis meet, or where the spot is smallest [paraxial].",
+        ),
     ] = "paraxial",
     sensor: Annotated[
-        str, option("--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="mm [36x24].")
+        str,
+        option(
+            "--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="Size of the sensor, mm [36x24]."
+        ),
     ] = "36x24",
     resolution: Annotated[
-        str, option("--res", metavar="WxH", help="Of the picture, px [1920x1280].")
+        str, option("--res", metavar="WxH", help="Size of the picture, px [1920x1280].")
     ] = "1920x1280",
     shift: Annotated[
-        str | None, option("--shift", metavar="X,Y", help="Film shift right and up, mm [0,0].")
+        str | None,
+        option("--shift", metavar="X,Y", help="Shift of the film, right and up, mm [0,0]."),
     ] = None,
     wavelength: Annotated[
-        float, option("--wavelength", metavar="NM", help="nm [587.56].")
+        float, option("--wavelength", metavar="NM", help="Wavelength, nm [587.56].")
     ] = 587.56,
     output: Annotated[
-        Path | None, option("-o", "--output", metavar="FILE", help="A calibration file.")
+        Path | None, option("-o", "--output", metavar="FILE", help="Calibration file to write.")
     ] = None,
     file_format: Annotated[
         str | None,
-        option("--format", metavar="opencv|ros|kalibr|opentrackio", help="Of that file [opencv]."),
+        option(
+            "--format",
+            metavar="opencv|ros|kalibr|opentrackio",
+            help="Format of the calibration file [opencv].",
+        ),
     ] = None,
     residuals: Annotated[
         Path | None,
         option(
             "--residuals",
             metavar="FILE.png|svg|pdf",
-            help="What the model leaves, over the picture. Extra `plot`.",
+            help="Plot the residuals of the fit over the picture. Extra `plot`.",
         ),
     ] = None,
-    json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
 ) -> int:
     """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
     from daguerre.analysis.calibrate import calibrate as fit
@@ -157,7 +171,7 @@ def _check_files(output: Path | None, file_format: str | None, residuals: Path |
             f"{suggest(file_format, FORMATS)}"
         )
     if file_format is not None and output is None:
-        raise UsageError("--format: wanted with -o FILE")
+        raise UsageError("--format: needs -o FILE")
     if output is not None:
         check_writable(output)
     check_drawing("--residuals", residuals, formats=PICTURES)
@@ -180,7 +194,7 @@ def _write(
 
 
 def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:
-    """Of the lens, not of its fit."""
+    """Writes maps of the lens, not of its fit."""
     from daguerre import Scene
     from daguerre.camera.overscan import NONE
 

@@ -17,28 +17,41 @@ from .flags.groups import option
 
 
 def chart(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="See --list.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Kind of chart; see --list.")
+    ] = None,
     output: Annotated[
         Path | None,
-        option("-o", "--output", metavar="FILE.glb", help="The truth goes beside it, as .json."),
+        option(
+            "-o",
+            "--output",
+            metavar="FILE.glb",
+            help="Scene to write; its truth goes beside it, as .json.",
+        ),
     ] = None,
     parameter: Annotated[
         list[str] | None,
-        option("--set", metavar="KEY=VALUE", help="Of the chart; repeatable; see --list."),
+        option("--set", metavar="KEY=VALUE", help="Chart parameter; repeatable; see --list."),
     ] = None,
     luminance: Annotated[
-        float, option("--luminance", metavar="X", help="Of its white, cd/m2 [100].")
+        float, option("--luminance", metavar="X", help="Luminance of white, cd/m2 [100].")
     ] = 100.0,
     paint: Annotated[
-        bool, option("--paint", help="Matt paint for light of your own, instead of shining.")
+        bool,
+        option(
+            "--paint",
+            help="Write matt paint for light of your own, instead of a chart that shines.",
+        ),
     ] = False,
     focal_length: Annotated[
-        str, option("--focal-length", metavar="MM", help="Of its camera, mm [50].")
+        str, option("--focal-length", metavar="MM", help="Focal length of the camera, mm [50].")
     ] = "50",
     sensor_width: Annotated[
-        str, option("--sensor-width", metavar="MM", help="Of its camera, mm [36].")
+        str, option("--sensor-width", metavar="MM", help="Sensor width of the camera, mm [36].")
     ] = "36",
-    list_charts: Annotated[bool, option("--list", help="Every chart with its parameters.")] = False,
+    list_charts: Annotated[
+        bool, option("--list", help="List every chart with its parameters.")
+    ] = False,
 ) -> int:
     """Writes a test chart as a scene, with a camera that it fills, and its truth."""
     from daguerre import charts
@@ -63,7 +76,7 @@ def chart(
 
 
 def _about(make: Callable[..., Any], parameter: str) -> str:
-    """What its docstring says, with the unit."""
+    """Meaning of a parameter with its unit, from the docstring."""
     for line in (inspect.getdoc(make) or "").splitlines():
         name, colon, text = line.strip().partition(": ")
         if colon and name == parameter:

@@ -1,4 +1,4 @@
-"""What the command line says: notes, warnings and errors on stderr, one line each."""
+"""Messages of the command line: notes, warnings and errors on stderr, one line each."""
 
 from __future__ import annotations
 

@@ -27,18 +27,20 @@ _SENSOR, _LOOK, _FILE = "The sensor (of IN.exr)", "The picture", "The file"
 
 def develop(
     source: Annotated[
-        Path, typer.Argument(metavar="IN.exr|IN.dng", help="A frame, or a camera's raw file.")
+        Path, typer.Argument(metavar="IN.exr|IN.dng", help="Frame, or a camera's raw file.")
     ],
     output: Annotated[
         list[Path],
-        option("-o", "--output", metavar="OUT.jpg|png|tif|exr|dng", help="Repeatable."),
+        option(
+            "-o", "--output", metavar="OUT.jpg|png|tif|exr|dng", help="File to write; repeatable."
+        ),
     ],
     sensor: Annotated[
         str | None,
         option(
             "--sensor",
             metavar="NAME|FILE",
-            help="That takes the picture, with its noise; else a perfect one.",
+            help="Sensor that takes the picture, with its noise [a perfect one].",
             panel=_SENSOR,
         ),
     ] = None,
@@ -47,23 +49,25 @@ def develop(
         option(
             "--stock",
             metavar="NAME|FILE",
-            help="Film that takes it instead, and is printed; see `daguerre stocks`.",
+            help="Film stock that takes the picture, then printed; see `daguerre stocks`.",
             panel=_SENSOR,
         ),
     ] = None,
     iso: Annotated[
         str | None,
-        option("--iso", metavar="N", help="Sensitivity; the frame's, else 100.", panel=_SENSOR),
+        option(
+            "--iso", metavar="N", help="ISO of the sensor [the frame's, else 100].", panel=_SENSOR
+        ),
     ] = None,
     seed: Annotated[
-        int, option("--seed", metavar="N", help="Of noise and grain [0].", panel=_SENSOR)
+        int, option("--seed", metavar="N", help="Seed of noise and grain [0].", panel=_SENSOR)
     ] = 0,
     ev: Annotated[
         str | None,
         option(
             "--ev",
             metavar="EV",
-            help="More light: on the sensor, if --sensor takes the picture; else in development.",
+            help="Exposure compensation, EV: on the sensor with --sensor, else in development.",
             panel=_LOOK,
         ),
     ] = None,
@@ -72,7 +76,7 @@ def develop(
         option(
             "--wb",
             metavar="as-shot|auto|K|X,Y",
-            help="The white that becomes neutral [as-shot].",
+            help="White that becomes neutral [as-shot].",
             panel=_LOOK,
         ),
     ] = "as-shot",
@@ -90,41 +94,53 @@ def develop(
         option(
             "--highlights",
             metavar="clip|blend|reconstruct",
-            help="Where channels are saturated [clip].",
+            help="Treatment of saturated channels [clip].",
             panel=_LOOK,
         ),
     ] = "clip",
     sharpen: Annotated[
-        float, option("--sharpen", metavar="X", help="Unsharp mask [0].", panel=_LOOK)
+        float,
+        option("--sharpen", metavar="X", help="Strength of an unsharp mask [0].", panel=_LOOK),
     ] = 0.0,
     grain: Annotated[
-        str, option("--grain", metavar="UM", help="Film's grains, diameter [0].", panel=_LOOK)
+        str,
+        option("--grain", metavar="UM", help="Diameter of the film's grains, um [0].", panel=_LOOK),
     ] = "0",
     demosaic: Annotated[
         str,
-        option("--demosaic", metavar="best|good|fast", help="Or LibRaw's [good].", panel=_LOOK),
+        option(
+            "--demosaic",
+            metavar="best|good|fast",
+            help="Demosaicing method, or one of LibRaw's by name [good].",
+            panel=_LOOK,
+        ),
     ] = "good",
     colour_noise: Annotated[
         int,
         option(
             "--colour-noise",
             metavar="N",
-            help="Passes of a median over colours' differences, of raw pictures [0].",
+            help="Passes of a median filter over color differences, for raw pictures [0].",
             panel=_LOOK,
         ),
     ] = 0,
     colorspace: Annotated[
         str,
-        option("--colorspace", metavar="srgb|p3|rec2020", help="Of the file [srgb].", panel=_FILE),
+        option(
+            "--colorspace",
+            metavar="srgb|p3|rec2020",
+            help="Color space of the file [srgb].",
+            panel=_FILE,
+        ),
     ] = "srgb",
     quality: Annotated[
-        int, option("--quality", metavar="N", help="Of JPEG, 1 to 100 [95].", panel=_FILE)
+        int, option("--quality", metavar="N", help="JPEG quality, 1 to 100 [95].", panel=_FILE)
     ] = 95,
     bits: Annotated[
         int | None,
-        option("--bits", metavar="8|16", help="Of PNG [8] and TIFF [16].", panel=_FILE),
+        option("--bits", metavar="8|16", help="Bits per channel: PNG [8], TIFF [16].", panel=_FILE),
     ] = None,
-    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+    quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
     """Makes photographs of a frame or of a raw file."""
     console.quiet = quiet
@@ -179,7 +195,7 @@ def _named(source: Path) -> Iterator[None]:
 
 
 def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
-    """What can be refused before anything is read."""
+    """Refuses wrong flags before anything is read."""
     from daguerre.files.atomic import check_writable
     from daguerre.io.picture_files import ENDINGS, check_ending
 
@@ -244,7 +260,7 @@ def _taken(
     seed: int,
     wb: str,
 ) -> Raw | Frame:
-    """What a sensor makes of the frame; the frame itself without one."""
+    """Exposes the sensor to the frame; without a sensor returns the frame itself."""
     from daguerre.development.white import numbers_of
     from daguerre.exposure.lux_seconds import luminance_exposure
 

@@ -28,19 +28,22 @@ if TYPE_CHECKING:
     scene_flags=SceneFlags,
 )
 def info(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene, a .glb or .gltf file.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     res: Annotated[
-        str | None, option("--res", metavar="WxH", help="Shape of the picture, px [960x540].")
+        str | None,
+        option("--res", metavar="WxH", help="Size of the picture, px: its shape counts [960x540]."),
     ] = None,
-    json: Annotated[bool, option("--json", help="As one JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="Print one JSON object.")] = False,
 ) -> int:
-    """Says what is in a scene; each camera with field of view and depth of field.
+    """Describes a scene, and each camera with field of view and depth of field.
 
-    Flags of the camera are applied to what is shown, so that a lens or a stop can be tried.
+    Camera flags change the cameras that are shown, so that a lens or a stop can be tried.
     """
     from daguerre.analysis import camera_facts as facts_of
     from daguerre.camera.camera import Camera

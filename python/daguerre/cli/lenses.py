@@ -7,7 +7,7 @@ from typing import Annotated
 from .flags.groups import option
 
 
-def lenses(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
+def lenses(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
     """Lists the lenses of the library: name, year, focal length, f-stop, format, source."""
     from dataclasses import asdict
     from json import dumps

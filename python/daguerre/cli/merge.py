@@ -17,18 +17,25 @@ from .flags.groups import option
 
 def merge(
     passes: Annotated[
-        list[Path], typer.Argument(metavar="PASS.exr...", help="Files of `render --samples`.")
+        list[Path], typer.Argument(metavar="PASS.exr...", help="Passes by `render --samples`.")
     ],
     output: Annotated[
-        list[Path], option("-o", "--output", metavar="FILE", help=".exr or .png; may be repeated.")
+        list[Path],
+        option("-o", "--output", metavar="FILE", help="File to write: .exr or .png; repeatable."),
     ],
-    strict: Annotated[bool, option("--strict", help="A missing range is an error.")] = False,
-    keep_sums: Annotated[
-        bool, option("--keep-sums", help="Write a pass again, to be merged further.")
+    strict: Annotated[
+        bool, option("--strict", help="Fail if a range of samples is missing.")
     ] = False,
-    denoise: Annotated[bool, option("--denoise", help="Needs the extra `denoise`.")] = False,
-    tone: Annotated[str, option("--tone", metavar="srgb|soft", help="Curve of a PNG.")] = "srgb",
-    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+    keep_sums: Annotated[
+        bool, option("--keep-sums", help="Write a pass, to be merged further.")
+    ] = False,
+    denoise: Annotated[
+        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.")
+    ] = False,
+    tone: Annotated[
+        str, option("--tone", metavar="srgb|soft", help="Tone curve of a PNG [srgb].")
+    ] = "srgb",
+    quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
     """Adds passes to one picture, with the bits of a render in one go."""
     from daguerre.files import atomic

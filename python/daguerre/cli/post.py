@@ -23,27 +23,38 @@ if TYPE_CHECKING:
 
 def post(
     picture: Annotated[
-        Path | None, typer.Argument(metavar="IN.exr", help="Scene-linear, of any renderer.")
+        Path | None, typer.Argument(metavar="IN.exr", help="Scene-linear picture of any renderer.")
     ] = None,
-    output: Annotated[Path | None, option("-o", "--output", metavar="OUT.exr", help="")] = None,
+    output: Annotated[
+        Path | None,
+        option("-o", "--output", metavar="OUT.exr", help="File to write, whole or not at all."),
+    ] = None,
     effect: Annotated[
         list[str] | None,
-        option("--effect", metavar="NAME:KEY=VALUE,...", help="Repeatable; applied in order."),
+        option(
+            "--effect",
+            metavar="NAME:KEY=VALUE,...",
+            help="Effect with its parameters; repeatable, applied in order.",
+        ),
     ] = None,
     recipe: Annotated[
         Path | None,
-        option("--recipe", metavar="FILE.json", help="Effects as a list of JSON objects."),
+        option("--recipe", metavar="FILE.json", help="Recipe: effects as a list of JSON objects."),
     ] = None,
     channel: Annotated[
         list[str] | None,
-        option("--channel", metavar="ROLE=NAME", help="depth, motion.u or motion.v; repeatable."),
+        option(
+            "--channel",
+            metavar="ROLE=NAME",
+            help="Channel for depth, motion.u or motion.v; repeatable.",
+        ),
     ] = None,
     list_effects: Annotated[
-        bool, option("--list", help="Every effect with its parameters, units and defaults.")
+        bool, option("--list", help="List every effect with its parameters, units and defaults.")
     ] = False,
-    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+    quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
     json_progress: Annotated[
-        bool, option("--json-progress", help="Progress as JSON lines on stdout.")
+        bool, option("--json-progress", help="Print progress as JSON lines on stdout.")
     ] = False,
 ) -> int:
     """Puts effects of a lens on a picture, or takes them away, in bands of little memory."""

@@ -100,9 +100,9 @@ def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:
     """JSON if asked for, nothing if quiet, else a bar on a terminal and lines elsewhere.
 
     Args:
-        quiet: As the flag.
-        as_json: As the flag.
-        which: Of several pictures: the ``frame`` and the ``camera`` of this one.
+        quiet: Whether ``--quiet`` was given.
+        as_json: Whether ``--json-progress`` was given.
+        which: ``frame`` and ``camera`` of this picture, where there are several.
     """
     one = which or {}
     if as_json:

@@ -15,19 +15,19 @@ if TYPE_CHECKING:
 
 
 def sensor(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
-    json: Annotated[bool, option("--json", help="All numbers as one JSON object.")] = False,
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or sensor file.")],
+    json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
     plot: Annotated[
         Path | None,
         option(
             "--plot",
             "-o",
             metavar="FILE.svg|png|pdf",
-            help="Efficiency, dynamic range and signal to noise, on one page. Extra `plot`.",
+            help="Plot efficiency, dynamic range and signal to noise on one page. Extra `plot`.",
         ),
     ] = None,
 ) -> int:
-    """Shows a sensor: size, quantum efficiency, full well, and what each ISO makes of it."""
+    """Shows a sensor: size, quantum efficiency, full well, and its figures at each ISO."""
     from daguerre.sensors import load
     from daguerre.sensors.facts import facts
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from .flags.groups import option
 
 
-def sensors(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
+def sensors(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
     """Lists the sensors of the library: name, size, resolution, pitch, pattern, base ISO, bits."""
     from json import dumps
 

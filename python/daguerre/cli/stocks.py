@@ -7,7 +7,7 @@ from typing import Annotated
 from .flags.groups import option
 
 
-def stocks(json: Annotated[bool, option("--json", help="As a JSON list.")] = False) -> int:
+def stocks(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
     """Lists the film stocks of the library: name, kind, ISO, balance, RMS granularity."""
     from json import dumps
 

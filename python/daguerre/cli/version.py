@@ -7,8 +7,8 @@ from typing import Annotated
 from .flags.groups import option
 
 
-def version(json: Annotated[bool, option("--json", help="As one JSON object.")] = False) -> int:
-    """Prints the version, and what it stands on."""
+def version(json: Annotated[bool, option("--json", help="Print one JSON object.")] = False) -> int:
+    """Prints the version, and the libraries that it uses."""
     import platform
     from importlib import metadata
     from json import dumps

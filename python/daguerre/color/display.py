@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-#: Of linear Rec.709 (ITU-R BT.709-6).
+#: Luminance of linear Rec.709 (ITU-R BT.709-6).
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 

@@ -20,9 +20,9 @@ PLANCK, LIGHT = 6.62607015e-34, 299792458.0
 BOLTZMANN = 1.380649e-23
 #: Luminous efficacy of 540 THz, lm/W (SI).
 EFFICACY = 683.0
-#: Of the tables of this program, which are those of the CIE in steps of 5 nm.
+#: Chromaticity of D65 by this program's tables, which are those of the CIE in steps of 5 nm.
 D65_XY = (0.31275676, 0.32907241)
-#: Correlated colour temperatures of what DNG calls illuminants 21 and 17, K.
+#: Correlated colour temperatures of DNG's illuminants 21 and 17, K.
 D65_KELVIN, A_KELVIN = 6504.0, 2856.0
 LOWEST_KELVIN, HIGHEST_KELVIN = 1000.0, 25000.0
 #: nm
@@ -52,7 +52,7 @@ def d65() -> FloatArray:
 
 
 def rgb_reflectances() -> FloatArray:
-    """What upsampled red, green and blue reflect at ``NM``, shape (L, 3)."""
+    """Reflectances of upsampled red, green and blue at ``NM``, shape (L, 3)."""
     return np.asarray(_colour_tables()[:, 4:])
 
 

@@ -17,15 +17,15 @@ D65 = (0.3127, 0.3290)
 
 @dataclass(frozen=True)
 class ColourSpace:
-    """Where the colours of a picture lie.
+    """A color space of pictures.
 
     Attributes:
-        name: As users type it.
-        title: As viewers show it.
-        primaries: Of red, green and blue, x and y.
+        name: Name that users type.
+        title: Name that viewers show.
+        primaries: Chromaticities of red, green and blue, x and y.
         curve: (g, a, b, c, d): linear = (a v + b)^g from d on, c v below.
         cicp: Colour primaries and transfer characteristics by ITU-T H.273.
-        interop: Of the primaries in the Color Interop Forum's names of linear spaces.
+        interop: Name of the primaries in the Color Interop Forum's names of linear spaces.
     """
 
     name: str
@@ -72,7 +72,7 @@ def xyz_of(xy: tuple[float, float]) -> FloatArray:
 
 
 def xyz_from_rgb(space: ColourSpace) -> FloatArray:
-    """Of linear light in the space, shape (3, 3); D65 white has luminance 1."""
+    """Matrix from linear light in the space to XYZ, shape (3, 3); D65 white has luminance 1."""
     columns = np.stack([xyz_of(primary) for primary in space.primaries], axis=1)
     return np.asarray(columns * np.linalg.solve(columns, xyz_of(D65)))
 

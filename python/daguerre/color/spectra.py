@@ -72,14 +72,14 @@ def band_colours(bands: int) -> FloatArray:
 
 
 def band_weights(bands: int, seen_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
-    """What an observer sees of unit mean radiance in each band of a film, shape (bands, K).
+    """Weights by which an observer sees unit mean radiance in each band of a film, (bands, K).
 
-    As of D65 within each band, then changed as little as makes the three spectra of RGB emitters
-    exact, white among them: bands that no kernel touches give the picture that sums of the
-    observer's own give, up to spectra that are no such mixture.
+    They hold for D65 within each band, then are changed as little as makes the three spectra of
+    RGB emitters exact, white among them: bands that no kernel touches give the picture that sums
+    of the observer's own give, up to spectra that are no such mixture.
 
     Args:
-        bands: Of equal width over all wavelengths.
+        bands: Number of bands of equal width over all wavelengths.
         seen_at: The observer's curves at wavelengths (L,), nm, shape (L, K), per unit radiance and
             nm.
     """

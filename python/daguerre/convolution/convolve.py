@@ -21,7 +21,7 @@ from .rows import Rows
 
 
 class Spread(Protocol):
-    """What spreads the light of a picture, some rows at a time.
+    """Spreads the light of a picture, some rows at a time.
 
     Attributes:
         reach: Rows above and below that it reads.
@@ -89,7 +89,7 @@ class EachSpreader:
         kernel: Shape (h, w, C), or (h, w, 1) for all channels.
         picture: Rows and columns.
         threads: 0: all cores.
-        banded: As of ``Spreader``.
+        banded: Whether light comes in bands of rows, see ``Spreader``.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class EachSpreader:
         self.reach, self.block = self._each[0].reach, self._each[0].block
 
     def rows(self, light: Real, first: int, wanted: Rows) -> Real:
-        """As of ``Spreader``."""
+        """Spreads rows, see ``Spreader``."""
         out = np.empty((wanted.end - wanted.begin, *light.shape[1:]), np.float32)
         for c in range(light.shape[2]):
             one = self._each[c % len(self._each)]
@@ -114,7 +114,7 @@ class EachSpreader:
 def spreader_of(
     kernel: ArrayLike, picture: tuple[int, ...], *, threads: int = 0, banded: bool = True
 ) -> Spread:
-    """What spreads pictures of shape (H, W, C) by a kernel, as ``convolve`` takes it."""
+    """Spreader of pictures of shape (H, W, C) by a kernel, in the form that ``convolve`` takes."""
     count = picture[2]
     k = np.asarray(kernel, np.float32)
     if k.ndim == 2:
@@ -155,7 +155,7 @@ def spread(planes: Real, kernels: Real, *, threads: int = 0, out: Real | None = 
 
     Args:
         planes: Shape (H, W, I).
-        kernels: Shape (Y, X, h, w, J, I), as of ``Spreader``.
+        kernels: Shape (Y, X, h, w, J, I), see ``Spreader``.
         threads: 0: all cores.
         out: Where to put the result; None: somewhere new.
 

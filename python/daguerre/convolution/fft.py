@@ -69,7 +69,7 @@ class Fft2:
 
     Args:
         shape: Rows and columns that the transform takes as periodic.
-        threads: To work on.
+        threads: Number of threads.
     """
 
     def __init__(self, shape: tuple[int, int], threads: int) -> None:
@@ -95,7 +95,7 @@ class Fft2:
         in_parallel(self.threads, self.spectrum_shape[1], along)
 
     def of_kernel(self, kernel: Real) -> Complex | Real:
-        """What spectra are multiplied by to be spread by a kernel about (h // 2, w // 2).
+        """Factor on spectra that spreads them by a kernel about (h // 2, w // 2).
 
         It is real if the kernel is symmetric: (-x, -y) has the light of (x, y).
         """

@@ -56,9 +56,9 @@ class Part:
     Args:
         kernels: Shape (Y, X, h, w, J, I).
         picture: Rows and columns.
-        threads: To work on.
+        threads: Number of threads.
         banded: One tile has all rows that are read for a block of rows.
-        without: What of the kernels does not count.
+        without: Part of the kernels that does not count.
     """
 
     def __init__(
@@ -137,7 +137,7 @@ class Part:
     def _spread(
         self, light: Real, place: Tile, wanted: Rows, space: _Space
     ) -> Iterator[tuple[int, Real]]:
-        """What a tile's light becomes, by channel: rows that it reaches, columns around."""
+        """Spreads a tile's light, by channel: rows that it reaches, columns around."""
         fft, rows = self._fft, self._reached(place, wanted)
         summed: set[int] = set()
         for y, x, i in sorted({(y, x, i) for y, x, _, i in self._transforms}):
@@ -156,7 +156,7 @@ class Part:
             yield j, fft.inverse(space.sums[j], here, space.result(j))
 
     def _share(self, light: Real, place: Tile, y: int, x: int) -> Real | None:
-        """What of a tile's light a zone spreads."""
+        """Part of a tile's light that a zone spreads."""
         rows, columns = self._weights[0][y, place.rows], self._weights[1][x, place.columns]
         if not (rows.any() and columns.any()):
             return None
@@ -204,7 +204,7 @@ class Plan(NamedTuple):
     """How a picture is cut.
 
     Attributes:
-        shape: Of the transforms.
+        shape: Shape of the transforms.
         tile: Rows and columns that one of them takes.
     """
 
@@ -220,8 +220,8 @@ def plan(
     Args:
         picture: Rows and columns.
         kernel: The same of a kernel.
-        zones: Of kernels, down and across.
-        channels: From how many, to how many.
+        zones: Zones of kernels, down and across.
+        channels: Number of channels from which, and to which, light goes.
         most_rows: About how many rows may be read for one band; None: as many as there are.
     """
     ins, outs = channels

@@ -47,7 +47,7 @@ def bayer_of(raw: Raw) -> Raw:
 
 
 def _binned_sensor(raw: Raw, shift: int) -> Sensor:
-    """What takes such a picture: twice the pitch, and the noise of four readings."""
+    """Sensor that takes such a picture: twice the pitch, and the noise of four readings."""
     sensor = raw.sensor
     columns, rows = sensor.resolution
     return sensor.with_(

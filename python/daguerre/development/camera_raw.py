@@ -143,7 +143,7 @@ def _white(neutral: FloatArray, matrix: Matrix) -> XY:
 
 
 def _matrix(value: Any) -> FloatArray | None:
-    """Of 9 rationals; None: it is none, or no matrix that can be turned around."""
+    """Matrix of 9 rationals; None: there is none, or it cannot be inverted."""
     if not isinstance(value, tuple | list) or len(value) != 18:
         return None
     with np.errstate(all="ignore"):
@@ -154,7 +154,7 @@ def _matrix(value: Any) -> FloatArray | None:
 
 
 def _tags(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """What the first directory and that of the exposure say; nothing of files that are no TIFF."""
+    """TIFF tags of the first directory and that of the exposure; none if the file is no TIFF."""
     import tifffile
 
     log = logging.getLogger("tifffile")  # what is wrong with a file, LibRaw says, and once

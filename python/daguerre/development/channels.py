@@ -1,4 +1,4 @@
-"""What development begins with: light of three channels in every pixel, from whatever there is.
+"""Converts a frame, raw mosaic or camera file to linear three-channel data.
 
 LibRaw demosaics, through rawpy, from a DNG in memory: adaptive homogeneity (Hirakawa and Parks
 2005) for Bayer mosaics, Markesteijn's method for X-Trans. Figures are in ``docs/developing.md``.
@@ -45,7 +45,7 @@ class Demosaic:
     """How LibRaw makes three channels of a mosaic.
 
     Attributes:
-        method: Of ``DEMOSAICS``.
+        method: One of ``DEMOSAICS``.
         colour_noise: Passes of a median over the differences of colours.
         clip: Whether the channels end where the first one is full, before anything is interpolated:
             else the edges of highlights get colours, and nothing is lost.
@@ -186,7 +186,7 @@ def _inverse_matrix(raw: Raw) -> Callable[[XY], FloatArray]:
 
 
 def _grey_matrix(white: XY) -> FloatArray:
-    """Of a mosaic without colours: the white's own."""
+    """Matrix of a mosaic without colours: the white's own."""
     return np.asarray(np.diag(illuminants.xyz_of_xy(white)))
 
 

@@ -87,30 +87,30 @@ def develop(
     colour_noise: int = 0,
     seed: int = 0,
 ) -> Picture:
-    """Makes the picture of a raw one, or of a frame: without noise then, as of a perfect sensor.
+    """Develops a raw picture, or a frame: without noise then, like one from a perfect sensor.
 
     Brightness is that of ISO 12232: a luminance exposure of 10 / ISO lux s is middle grey, 118 of
     255 in sRGB. Colours that the colour space lacks are brought in toward the grey of the same
     luminance.
 
     Args:
-        source: What was recorded.
+        source: Raw picture, frame, or channels.
         wb: The white that becomes neutral: "as-shot" (None), "auto", a temperature in K, or a
             chromaticity (x, y).
         look: ``neutral``: light in proportion, up to white; ``standard``, ``film``, ``filmic``:
             curves with shoulder and toe; ``ocio:VIEW``: a view of OpenColorIO's ACES configuration
             (extra ``color``).
-        exposure: EV brighter.
+        exposure: Exposure compensation, EV.
         colour_space: ``srgb``, ``p3`` or ``rec2020``.
-        sharpen: Strength of an unsharp mask, 0 none, 0.5 much as a camera.
+        sharpen: Strength of an unsharp mask: 0 none, 0.5 about that of a camera.
         grain: Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` in
             the metadata, or a raw picture.
-        highlights: ``clip``: saturated is white; ``blend``: what is bright keeps its differences
-            and loses colour; ``reconstruct``: a saturated channel is guessed from the others.
+        highlights: ``clip``: saturated is white; ``blend``: highlights keep their differences
+            and lose colour; ``reconstruct``: a saturated channel is guessed from the others.
         demosaic: ``best``, ``good`` or ``fast``, or a method of LibRaw by name.
         colour_noise: Passes of a median filter over the differences of colours, for the coloured
             specks of high ISO; 0 none, 2 to 5 are usual. For raw pictures with colours.
-        seed: Of the grain.
+        seed: Seed of the grain.
 
     Raises:
         UsageError: A wrong parameter.

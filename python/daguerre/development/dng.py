@@ -83,7 +83,7 @@ def put_dng(target: Path | IO[bytes], raw: Raw, *, preview: bool = True) -> None
 
 
 def shot_facts(raw: Raw) -> dict[str, Any]:
-    """What EXIF says of a raw picture: the frame's facts, the sensor as body, and the ISO."""
+    """EXIF facts of a raw picture: the frame's facts, the sensor as body, and the ISO."""
     sensor = raw.sensor
     body = {"cameraMake": sensor.make, "cameraModel": sensor.model}
     return (

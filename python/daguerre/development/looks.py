@@ -19,7 +19,7 @@ from daguerre.color import spaces
 from daguerre.errors import UsageError, suggest
 
 FloatArray = NDArray[np.float64]
-#: What ISO 12232 calls middle grey: the developed value of 10 / S lux s.
+#: Middle grey of ISO 12232: the developed value of 10 / S lux s.
 GREY = 0.18
 
 
@@ -31,7 +31,7 @@ class Look:
         contrast: c of the sigmoid; None: light as it is, up to white.
         white: Light that becomes white, where the sensor is not saturated before.
         colour: How far colours stand from grey, against the scene's.
-        black: What no light becomes.
+        black: Developed value of no light.
     """
 
     contrast: float | None = None
@@ -43,7 +43,7 @@ class Look:
         """Display light; ``most``: the light at which the sensor is full."""
         if self.contrast is None:
             return np.minimum(light, 1.0)
-        # Of a white closer to grey no such curve exists.
+        # For a white closer to grey no such curve exists.
         white = max(min(self.white, most), 1.0)
         c, top, grey = self.contrast, white**self.contrast, GREY**self.contrast
         height = GREY * (top - grey) / (GREY * top - grey)

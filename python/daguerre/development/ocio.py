@@ -16,11 +16,11 @@ DISPLAYS = {"srgb": "sRGB - Display", "p3": "Display P3 - Display"}
 
 
 def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArray[np.float32]:
-    """What a display of a colour space shows of light; ``light`` is changed in place.
+    """Applies a view of OpenColorIO for a display; ``light`` is changed in place.
 
     Args:
         light: Scene-linear Rec.709, shape (H, W, 3).
-        view: As the configuration names it, such as "ACES 2.0 - SDR 100 nits (Rec.709)".
+        view: Name in the configuration, such as "ACES 2.0 - SDR 100 nits (Rec.709)".
         space: ``srgb`` or ``p3``.
 
     Raises:

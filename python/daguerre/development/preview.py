@@ -18,7 +18,7 @@ LONGEST = 512
 def preview_of(raw: Raw) -> NDArray[np.uint8]:
     """A developed picture of at most 512 px, shape (h, w, 3); the mosaic is not quad's.
 
-    Of every so many photosites one cell of the pattern is looked at: quick, and rough.
+    It looks at one cell of the pattern in every so many photosites: quick, and rough.
     """
     from .develop import develop
 

@@ -21,7 +21,7 @@ def white_of(source: Channels, wanted: Any) -> XY:
     """Chromaticity of the white.
 
     Args:
-        source: Of the picture.
+        source: Channels of the picture.
         wanted: None or "as-shot"; "auto"; K; (x, y); also as text, "5600", "0.34,0.35".
 
     Raises:
@@ -51,7 +51,7 @@ def numbers_of(wanted: Any) -> Any:
 
 
 def _block_means(pixels: NDArray[Any]) -> FloatArray:
-    """Of blocks of the picture, or of its pixels if it is small, shape (N, 3)."""
+    """Mean colours of blocks, or of pixels if the picture is small, shape (N, 3)."""
     height, width = pixels.shape[:2]
     size = _BLOCK if min(height, width) >= _BLOCK else 1
     rows, columns = height // size, width // size

@@ -31,7 +31,7 @@ CHUNK = 1 << 14  # points at a time
 class LensMap(Distortion):
     """Where a lens puts the points of a flat picture at its focus distance, in two dimensions.
 
-    As ``LensDistortion``, but a polynomial of both coordinates, fitted to the chief rays of a grid
+    Unlike ``LensDistortion``, a polynomial of both coordinates, fitted to the chief rays of a grid
     of film points: to their direction cosines, which stay smooth where tangents run away. The ideal
     picture is a pinhole's whose pixels have the lens's own scales near the axis: of an anamorphic
     lens it is as squeezed as the lens's own.
@@ -206,7 +206,7 @@ def _values(coefficients: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def _solved(matrices: FloatArray, values: FloatArray) -> FloatArray:
-    """Of 2 x 2 systems, shape (N, 2)."""
+    """Solutions of 2 x 2 systems, shape (N, 2)."""
     (a, b), (c, d) = matrices.transpose(1, 2, 0)
     det = a * d - b * c
     det = np.where(np.abs(det) < 1e-30, np.inf, det)

@@ -1,7 +1,7 @@
-"""What all models of distortion can do: ideal points to those of a lens, and back.
+"""Interface of all distortion models: ideal points to those of a lens, and back.
 
 Points lie on the plane at distance 1 in front of the camera: (x, y) = (X / Z, Y / Z), x to the
-right and y down, as OpenCV has it. A model maps the points of an ideal (rectilinear) picture to
+right and y down, OpenCV's convention. A model maps the points of an ideal (rectilinear) picture to
 those of the picture of the lens: ``distort``, undistorted -> distorted, which is OpenCV's
 direction. Where a model is not defined, or turns back upon itself, the answer is NaN.
 """

@@ -28,7 +28,7 @@ MOST = 2.0
 
 
 def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
-    """What a straightened picture of the same size needs beside the picture that it is made of.
+    """Finds the overscan with which undistorting leaves no holes in a picture of the same size.
 
     Raises:
         UsageError: It would need what the camera does not show, or a picture many times as large.
@@ -37,13 +37,13 @@ def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
 
 
 def note(overscan: Overscan) -> str:
-    """What ``"undistort"`` was found to be, for people."""
+    """Note on the overscan found for ``"undistort"``."""
     told = f"{overscan} px" if overscan else "none is needed"
     return f"overscan (left, top, right, bottom) to straighten the picture: {told}"
 
 
 def to_redistort(sight: Sight) -> Overscan | None:
-    """What an ideal picture needs beside it to be bent into one without holes; None: no bounds."""
+    """Finds the overscan with which an ideal picture redistorts without holes; None: no bounds."""
 
     def place(points: FloatArray) -> FloatArray:
         found = sight.straight_from_bent(points)

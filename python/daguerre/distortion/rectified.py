@@ -31,8 +31,8 @@ class Sight:
 
     Args:
         camera: Its focus must be stated, or the scene given.
-        resolution: Of the picture, px.
-        scene: For autofocus and the time.
+        resolution: Width and height of the picture, px.
+        scene: Scene, for autofocus and the time.
         core_scene: The same, built.
         overscan: Pixels beside the picture that are asked for, too.
     """
@@ -68,7 +68,7 @@ class Sight:
 
     @cached_property
     def distance(self) -> float:
-        """Of the plane on which both cameras are compared, m."""
+        """Distance of the plane on which both cameras are compared, m."""
         return float(self.setup.facts.get("focus_distance_m", math.inf))
 
     def bent_from_straight(self, pixels: FloatArray) -> FloatArray:

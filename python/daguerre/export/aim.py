@@ -61,7 +61,7 @@ def fit_aim(plan: LensPlan) -> Aim | None:
 
 
 def _aim(plan: LensPlan, rays: FilmRays, degree: int) -> Aim:
-    """Of one degree; enlarged by its error on rays that it was not fitted to."""
+    """Fits an aim of one degree, enlarged by its error on rays that it was not fitted to."""
     film, slope, nm, iris = rays
     radius = MARGIN * (plan.blades.outer if plan.blades else 1.0) * plan.iris_radius_mm
     exponents = _exponents(plan.symmetric, degree)
@@ -159,7 +159,7 @@ def _least_squares(
 
 
 def _exponents(symmetric: bool, degree: int) -> Exponents:
-    """Of a complete basis whose last variable, the wavelength, costs two."""
+    """Exponents of a complete basis whose last variable, the wavelength, costs two."""
     choices = product(range(degree + 1), repeat=4 if symmetric else 5)
     return [e for e in choices if sum(e) + e[-1] <= degree]
 

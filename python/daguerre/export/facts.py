@@ -1,4 +1,4 @@
-"""What the head of an exported file says about the lens in it."""
+"""Facts about the lens for the head of an exported file."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def code(data: dict[str, Any], suffix: str) -> str:
         suffix: ``.c``, ``.glsl``, ``.osl``, ``.py`` or ``.json``.
 
     Raises:
-        InputError: What the language cannot express; the message says what.
+        InputError: The language cannot express it; the message says what.
     """
     if suffix == ".json":
         return json.dumps(data, indent=1) + "\n"
@@ -71,7 +71,7 @@ def save(data: dict[str, Any], path: str | Path) -> None:
 
     Raises:
         UsageError: An unknown suffix, or a fit too large for unrolled code.
-        InputError: What the language cannot express.
+        InputError: The language cannot express it.
         OutputError: The file cannot be written.
     """
     suffix = check_suffix(path)

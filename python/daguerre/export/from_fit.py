@@ -11,13 +11,13 @@ from .plan import Blades, LensPlan, Mount, Pair, Segment, Vector
 
 
 def plan_of(data: dict[str, Any]) -> LensPlan:
-    """What code is made from; an aim is still to be found.
+    """Makes the plan of the code from a fit; an aim is still to be found.
 
     Args:
         data: ``LensFit.to_dict()``.
 
     Raises:
-        InputError: What code cannot express: a tilted film, an iris that is a picture.
+        InputError: Code cannot express it: a tilted film, an iris that is a picture.
     """
     _check(data)
     symmetric = bool(data["symmetry"]["axial"])

@@ -17,7 +17,7 @@ def horner(function: Function, terms: Terms, variables: Sequence[Expression]) ->
     """The value of a polynomial, its first variable outermost; statements go into the function.
 
     Args:
-        function: What receives intermediate results.
+        function: Receives intermediate results.
         terms: Coefficients by exponents.
         variables: One expression for each exponent.
     """

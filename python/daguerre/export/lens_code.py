@@ -1,4 +1,4 @@
-"""What a lens is exported as: ``evaluate`` follows a film ray, ``sample`` draws one."""
+"""Functions that a lens is exported as: ``evaluate`` follows a film ray, ``sample`` draws one."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def coordinates(
     wave: Expression,
     u_range: Pair = (0.0, 1.0),
 ) -> Coordinates:
-    """Of a film point and another one, both at most 1."""
+    """Coordinates of a film point and another one, both at most 1."""
     if not symmetric:
         return Coordinates(first, second, (*second, *first, wave))
     (fx, fy), (qx, qy) = first, second

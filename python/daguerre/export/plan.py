@@ -41,7 +41,7 @@ class Segment:
         direction: theta (dx, dy) / sin(theta), rad, of the ray toward the scene.
         offset_mm: From the middle of the entrance pupil to the ray, across it.
         iris_mm: Where the ray crosses the iris.
-        transmittance: Of the glass; in the same variables (symmetric: as A).
+        transmittance: Transmittance of the glass in the same variables (symmetric: the form A).
         mounts: The rims that can cut.
     """
 
@@ -63,8 +63,8 @@ class Blades:
         edges: Unit vectors to their middles.
         apothem: Distance of straight edges.
         bend: 1: arcs bent outward; -1: inward; 0: straight.
-        center: Of the arcs, along the vectors.
-        arc_radius: Theirs.
+        center: Distance of the arcs' centres, along the vectors.
+        arc_radius: Radius of the arcs.
         outer: Radius of the circle about all.
     """
 
@@ -98,18 +98,18 @@ class LensPlan:
     Attributes:
         symmetric: Which of the two forms vectors have.
         film_center_mm: f = (film point - center) / half.
-        film_half_mm: Of the film that is covered; with axial symmetry twice its radius.
+        film_half_mm: Half of the film that is covered; with axial symmetry twice its radius.
         q_by_film: q = by_film f + by_slope m + shift, m the ray's slope dx/dz, dy/dz, each by x
             and y; the clear pupil fills |q| <= 1.
         wavelength: l = wavelength[0] + wavelength[1] / (wavelength in um)^2.
         front_z_mm: Vertex of the sphere on which rays start; a ray that misses it starts where it
             comes nearest to the middle of the entrance pupil.
-        front_curvature: Of that sphere, 1/mm.
-        f_stop: As wide as it opens.
-        iris_radius_mm: Of the circle of the iris's area at that f-stop.
+        front_curvature: Curvature of that sphere, 1/mm.
+        f_stop: F-stop wide open.
+        iris_radius_mm: Radius of the circle of the iris's area at that f-stop.
         blades: None: round.
-        exposure: What weights are divided by, so that a white world of luminance 1 is 1 on the
-            axis: coefficients of o^2, o^4, ..., with o the share of the iris radius that is open.
+        exposure: Divisor of weights, so that a white world of luminance 1 is 1 on the axis:
+            coefficients of o^2, o^4, ..., with o the share of the iris radius that is open.
     """
 
     name: str

@@ -26,7 +26,7 @@ FUNCTIONS = ("sqrt", "sin", "cos", "abs", "min", "max", "floor")
 
 
 class Printer:
-    """What the languages of C's family share."""
+    """Shared syntax of the languages of C's family."""
 
     number_type = "float"
     digits = 9  # of a number: enough for its type
@@ -138,7 +138,7 @@ class C(Printer):
     prefix = "static "
 
     def signature(self, f: Function) -> str:
-        """What users call is as visible as they say; the rest stays in the file."""
+        """Signature: users choose the visibility of what they call; the rest stays in the file."""
         line = super().signature(f)
         return line.replace(self.prefix, f"{VISIBLE} ", 1) if f.name.endswith(CALLED) else line
 
@@ -151,7 +151,7 @@ class C(Printer):
         return "&" + name
 
     def assigned(self, name: str) -> str:
-        """What it points to."""
+        """Dereferences a pointer."""
         return "*" + name
 
 

@@ -28,19 +28,19 @@ from daguerre.sensors.sensor import Sensor
 from .lux_seconds import frame_iso, luminance_exposure
 
 FloatArray = NDArray[np.float64]
-#: Of a sensor's noise the render's own is a part as long as it is this much less in variance.
+#: Share of pixels with more noise of the render than of photons, above which a note says so.
 NOISY_SHARE = 0.01
 _STRIPE = 256  # rows
 
 
 @dataclass(frozen=True)
 class Light:
-    """What falls on a sensor, plane by plane.
+    """Light on a sensor, plane by plane.
 
     Attributes:
         planes: Shape (H, W, P).
-        electrons: Of a plane's 1 in each channel, shape (C, P).
-        source: "channels", "bands" or "xyz": what the planes are.
+        electrons: Electrons that a plane's 1 makes in each channel, shape (C, P).
+        source: Kind of the planes: "channels", "bands" or "xyz".
         lux_s: Luminance exposure of a value of 1.
     """
 
@@ -218,8 +218,8 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
 def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
     """Share of the pixels whose variance over samples exceeds that of their photons.
 
-    Of luminance, in the strongest channel. Red, green and blue of a sample vary together (a path
-    is bright or dark), so their deviations add.
+    It compares luminance, in the strongest channel. Red, green and blue of a sample vary together
+    (a path is bright or dark), so their deviations add.
     """
     if frame.variance is None:
         return 0.0

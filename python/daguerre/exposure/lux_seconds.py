@@ -32,8 +32,9 @@ def luminance_exposure(metadata: Mapping[str, Any]) -> float:
     """Exposure of a value of 1 on the film, lux s.
 
     Args:
-        metadata: Of a frame. Without ``luminance_exposure`` it is ``expTime`` times ``h0``, and
-            without that of a lens with ``tStop`` or ``aperture``: those of other programs.
+        metadata: Metadata of a frame. Without ``luminance_exposure`` it is ``expTime`` times
+            ``h0``, and without that of a lens with ``tStop`` or ``aperture``: those of other
+            programs.
 
     Raises:
         InputError: A field is missing, negative, zero or no number; the message names it.

@@ -44,12 +44,12 @@ _STRIPE = 256  # rows
 
 @dataclass(frozen=True)
 class Metered:
-    """What a meter read.
+    """Reading of a light meter.
 
     Attributes:
         mode: centre, spot or matrix.
-        luminance: Of what was taken for middle grey, cd/m2.
-        iso: That makes it middle grey with the frame's time and stop.
+        luminance: Luminance taken for middle grey, cd/m2.
+        iso: ISO that makes it middle grey with the frame's time and stop.
     """
 
     mode: str
@@ -121,9 +121,9 @@ class _Place:
     """Where the frame's pixels are in the whole picture, px.
 
     Attributes:
-        width, height: Of the whole picture.
-        left, top: Of the frame within it.
-        columns: Of the frame.
+        width, height: Size of the whole picture.
+        left, top: Place of the frame within it.
+        columns: Width of the frame.
         focus: The place in focus.
     """
 
@@ -145,7 +145,7 @@ class _Place:
         return cls(width, height, left, top, frame.width, focus)
 
     def squared_distance(self, rows: slice, point: tuple[float, float]) -> FloatArray:
-        """Of pixel centres from a point, px^2, shape (rows, columns)."""
+        """Squared distance of pixel centres from a point, px^2, shape (rows, columns)."""
         x = self.left + np.arange(self.columns) + 0.5 - point[0]
         y = self.top + np.arange(rows.start, rows.stop) + 0.5 - point[1]
         return np.asarray(x[None, :] ** 2 + y[:, None] ** 2)

@@ -9,8 +9,8 @@ class Budget:
     """Counts down.
 
     Args:
-        limit: How many there may be in all.
-        what: Of what.
+        limit: Largest number in all.
+        what: Name of the things counted.
     """
 
     def __init__(self, limit: int, what: str) -> None:

@@ -1,4 +1,4 @@
-"""What a reader met and did not understand: one sentence each, with a count, never a flood."""
+"""Notes on what a reader did not understand: one sentence each, with a count, never a flood."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class _Element:
 
 
 class _Reader:
-    """What expat tells, as a tree."""
+    """Builds a tree from the events of expat."""
 
     def __init__(self, file: str) -> None:
         self.file = file

@@ -28,23 +28,23 @@ _STRIPE = 64  # rows
 
 @dataclass
 class Frame:
-    """A picture in the making or made.
+    """A rendered picture, or one in the making.
 
     Attributes:
         rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
-        xyz: CIE 1931 XYZ of the same, shape (H, W, 3).
-        alpha: Share of the samples that hit something, shape (H, W); by default 1.
+        xyz: CIE 1931 XYZ of the same light, shape (H, W, 3).
+        alpha: Share of the samples that hit something, shape (H, W); default: 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
-        flare: What ghosts brought to ``rgb``, shape (H, W, 3), if they were drawn.
+        flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
         metadata: Facts of camera and render; see ``daguerre.io.exr.write``.
-        channels: What the sensor named in the metadata sees, shape (H, W, C), where one was named:
+        channels: Channels of the sensor named in the metadata, shape (H, W, C), if one was named:
             D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
         bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
-            of luminance 1 is some 1 in each.
-        bad_samples: How many samples were NaN or Inf, and the first of them as (x, y, sample).
+            of luminance 1 is about 1 in each.
+        bad_samples: Number of samples that were NaN or Inf, and the first of them, (x, y, sample).
     """
 
     rgb: NDArray[np.float32]
@@ -77,7 +77,7 @@ class Frame:
 
     @property
     def motion(self) -> NDArray[np.float32] | None:
-        """Where what is seen goes until the next frame, px, +x right and +y down, (H, W, 2).
+        """Motion of each pixel's surface to the next frame, px, +x right, +y down, (H, W, 2).
 
         None without ground truth; see ``daguerre.rendering.truth``.
         """
@@ -85,7 +85,7 @@ class Frame:
 
     @property
     def motion_back(self) -> NDArray[np.float32] | None:
-        """Where what is seen was in the frame before, from where it is now; as ``motion``."""
+        """Motion of each pixel's surface back to the frame before, like ``motion``."""
         return self._flow("motion_back")
 
     def _flow(self, name: str) -> NDArray[np.float32] | None:
@@ -95,7 +95,7 @@ class Frame:
         return np.stack([self.aovs[n] for n in names], axis=2)
 
     def without_overscan(self) -> Frame:
-        """The pixels of the picture alone, without those beside it: what a sensor records.
+        """Crops the overscan: the pixels of the picture alone, which a sensor records.
 
         Raises:
             UsageError: The frame is a crop that has none of them.
@@ -119,7 +119,7 @@ class Frame:
         return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
 
     def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
-        """The picture for a screen, shape (H, W, 3): linear 1.0 is the white of the screen.
+        """Encodes the picture for a screen, shape (H, W, 3): linear 1.0 is the screen's white.
 
         Args:
             tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
@@ -134,7 +134,7 @@ class Frame:
         return shown
 
     def _encoded(self, tone: str) -> NDArray[np.float32]:
-        """As ``display``, 0 to 1."""
+        """Display values like ``display``, 0 to 1."""
         shown = np.empty(self.rgb.shape, np.float32)
         for rows, encoded in self._stripes(tone):
             shown[rows] = encoded
@@ -151,17 +151,17 @@ class Frame:
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
     def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
-        """Writes the frame, whole or not at all; the end of the name chooses the format.
+        """Writes the frame, whole or not at all; the suffix chooses the format.
 
         Args:
             path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
-                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. What an
-                exposure makes of it is ``expose``, and ``daguerre.development.develop``. They have
-                no overscan.
-            tone: For those; see :meth:`display`.
+                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. For a
+                photograph use ``expose`` and ``daguerre.development.develop``. They have no
+                overscan.
+            tone: Tone curve of pictures for the eye; see :meth:`display`.
 
         Raises:
-            UsageError: Another ending.
+            UsageError: Unknown suffix.
             OutputError: The file cannot be written.
         """
         suffix = check_format(path)
@@ -189,22 +189,22 @@ class Frame:
         white_balance: Any = None,
         temperature: float | None = None,
     ) -> Raw:
-        """What a sensor makes of this light: a raw picture, with the noise of photons and sensor.
+        """Exposes a sensor to this light: a raw picture, with the noise of photons and sensor.
 
         A pixel of the frame is one photosite, whatever the frame's resolution.
 
         Args:
-            sensor: Name of the library (``dg.sensors.names()``), file, or sensor. By default the
-                one whose channels the frame holds, else "ideal".
-            iso: By default the camera's, where the sensor has it, else the sensor's base ISO.
-            seed: Of the shot's noise. The sensor's fixed pattern is by its serial number.
-            ev: Exposure compensation: light times 2^ev; by default the camera's.
-            white_balance: K or (x, y) that the neutral of the raw file is set to; by default the
-                camera's, else D65.
-            temperature: Of the sensor, deg C; by default that at which it was measured.
+            sensor: Library name (``dg.sensors.names()``), file, or sensor; default: the one whose
+                channels the frame holds, else "ideal".
+            iso: ISO; default: the camera's, if the sensor has it, else the sensor's base ISO.
+            seed: Seed of the shot's noise. The serial number seeds the sensor's fixed pattern.
+            ev: Exposure compensation: light times 2^ev; default: the camera's.
+            white_balance: White of the raw file's neutral, K or (x, y); default: the camera's,
+                else D65.
+            temperature: Temperature of the sensor, deg C; default: that of its measurement.
 
         Raises:
-            DaguerreError: No such sensor, an ISO beyond it, or a frame whose facts do not tell its
+            DaguerreError: No such sensor, an ISO beyond it, or a frame without the facts of its
                 exposure; the message names the field.
         """
         from daguerre.exposure.expose import expose
@@ -225,7 +225,7 @@ class Frame:
         iso: float | None = None,
         ev: float | None = None,
     ) -> dict[str, NDArray[np.float32]]:
-        """What a photograph is measured against, without noise: channels to put into ``aovs``.
+        """True exposure and saturation, without noise, for ``aovs``: references for photographs.
 
         Returns:
             ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the

@@ -50,11 +50,11 @@ class Picture:
     def save(
         self, path: str | os.PathLike[str], *, quality: int = 95, bits: int | None = None
     ) -> None:
-        """Writes it, whole or not at all, with its colour profile and EXIF.
+        """Writes the picture, whole or not at all, with its colour profile and EXIF.
 
         Args:
             path: ``.jpg``, ``.png``, ``.tif`` or ``.exr`` (linear).
-            quality: Of JPEG, 1 to 100.
+            quality: JPEG quality, 1 to 100.
             bits: 8 or 16; by default 16 for TIFF, 8 for others.
 
         Raises:

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(eq=False)
 class Raw:
-    """A mosaic of digital numbers, as a camera's file has it.
+    """A raw picture: digital numbers behind a colour filter mosaic.
 
     Attributes:
         mosaic: Digital numbers of the photosites, uint16, shape (H, W).
-        sensor: That took them.
-        iso: As set.
+        sensor: Sensor that took them.
+        iso: ISO setting.
         black_level: DN of no light.
         white_level: DN from which on a photosite is saturated.
         gain: DN per electron.
-        neutral: What a white surface reads above black in the light that the white balance is set
+        neutral: Reading of a white surface above black, in the light that the white balance is set
             to, its strongest channel 1, shape (C,): the "as shot neutral" of DNG.
         white_balance: That white, chromaticity (x, y).
         metadata: Facts of the frame: ``expTime`` (s), ``aperture``, ``lensModel``, ...
@@ -36,7 +36,7 @@ class Raw:
             as the numbers say.
         luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None: not
             known.
-        notes: What a user should know of it.
+        notes: Remarks for the user.
     """
 
     mosaic: NDArray[np.uint16]
@@ -76,7 +76,7 @@ class Raw:
 
     @property
     def saturated(self) -> NDArray[np.bool_]:
-        """Where a photosite was full or its number the highest, shape (H, W)."""
+        """Mask of photosites that were full or at the highest number, shape (H, W)."""
         if self.clipped is not None:
             return self.clipped
         return np.asarray(self.mosaic >= self.white_level)
@@ -101,17 +101,17 @@ class Raw:
         return self.sensor.pattern.channel_map(self.height, self.width)
 
     def develop(self, **look: Any) -> Picture:
-        """The picture of it; see ``daguerre.development.develop``."""
+        """Develops it to a picture; see ``daguerre.development.develop``."""
         from daguerre.development import develop
 
         return develop(self, **look)
 
     def save(self, path: str | os.PathLike[str], **look: Any) -> None:
-        """Writes it, whole or not at all; the end of the name chooses the format.
+        """Writes it, whole or not at all; the suffix chooses the format.
 
         Args:
             path: ``.dng`` keeps the numbers; others are developed first.
-            look: For those; see ``daguerre.development.develop``.
+            look: Look of developed files; see ``daguerre.development.develop``.
         """
         from daguerre.development import save_raw
 

@@ -29,12 +29,12 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Seen:
-    """What a frame knows of what a sensor or a film stock sees.
+    """A frame as a sensor or a film stock sees it.
 
     Attributes:
-        planes: Of the frame, shape (H, W, P).
-        channels: Made of the planes, shape (C, P).
-        source: "channels", "bands" or "xyz": what the planes are.
+        planes: Planes of the frame, shape (H, W, P).
+        channels: Weights of the planes in each channel, shape (C, P).
+        source: Kind of the planes: "channels", "bands" or "xyz".
     """
 
     planes: NDArray[np.float32]

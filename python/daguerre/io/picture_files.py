@@ -62,8 +62,8 @@ def write_picture(
         pixels: Encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
         space: Name of ``icc.COLOUR_SPACES``.
         metadata: Facts for EXIF, by the names of OpenEXR.
-        quality: Of JPEG, 1 to 100.
-        bits: Per channel; absent: 8, of TIFF 16.
+        quality: JPEG quality, 1 to 100.
+        bits: Bits per channel; default: 8, for TIFF 16.
 
     Raises:
         UsageError: Another ending, a quality beyond 1 to 100, or bits that the format lacks.

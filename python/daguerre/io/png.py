@@ -42,14 +42,14 @@ class PngWriter:
         *,
         target: str | os.PathLike[str] | None = None,
     ) -> None:
-        """Begins a file.
+        """Opens a file.
 
         Args:
             path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
             width: px.
             height: px.
-            metadata: Of a frame; what EXIF has a name for is kept.
-            target: The name that messages say, if it is another.
+            metadata: Metadata of a frame; facts that EXIF has a name for are kept.
+            target: Name for messages, if it is another.
 
         Raises:
             OutputError: It cannot be written.

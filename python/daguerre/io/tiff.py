@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import exif
 from .exif import Tags
 
-#: Of mosaics, and of raw pictures without.
+#: Photometric interpretation of mosaics, and of raw pictures without.
 CFA, LINEAR_RAW = 32803, 34892
 _PHOTOMETRIC, _CHILDREN = 262, 330
 #: tifffile refuses to write the tag of the EXIF directory; this number, which nobody uses, keeps
@@ -29,7 +29,7 @@ class TiffImage:
 
     Attributes:
         pixels: Shape (H, W) or (H, W, 3), uint8 or uint16.
-        photometric: As tifffile names it, or its number.
+        photometric: Name that tifffile has for it, or its number.
         tags: More tags.
         reduced: Whether it is a small one beside the picture itself.
     """

@@ -1,1 +1,1 @@
-"""What a picture shows: things, their categories, masks, and boxes in the picture and in space."""
+"""Labels of a picture: things, their categories, masks, and boxes in the picture and in space."""

@@ -1,4 +1,4 @@
-"""What a camera sees of each thing: boxes, masks, and boxes in space; see docs/ground-truth.md.
+"""Annotations of the things that a camera sees: boxes, masks, boxes in space; docs/ground-truth.md.
 
 Boxes in the picture are (x, y, width, height), px from the upper left edge of the picture, as COCO
 has them: the box of its first pixel is (0, 0, 1, 1). Of a crop, the picture is the crop.
@@ -36,14 +36,14 @@ class Annotation:
 
     Attributes:
         name: Its node.
-        category: What it is.
+        category: Its category.
         instances: Indices of the scene's.
         area: Pixels in which it is seen.
         box: Around those; None: it is hidden.
         full_box: Around all of it, hidden parts too, as far as the picture goes.
         truncation: Share of its whole box that lies beside the picture; None: nobody knows, since
             some of it has no place there, such as what is behind the camera.
-        visibility: Pixels whose chief ray meets it first, of those whose chief ray meets it.
+        visibility: Share of the pixels whose chief ray meets it, in which the ray meets it first.
         box3: Around it in the world, m, at the picture's ``time``.
         camera_box3: The same in the camera's frame, x right, y down, z ahead.
         camera_from_node: From the node's own frame to the camera's, shape (4, 4), m: its pose, with
@@ -70,11 +70,11 @@ class Annotations:
     Attributes:
         things: Those that are in the picture, hidden or not, in the order of the scene.
         categories: All that there may be.
-        labels: Of each pixel the index among ``things`` + 1 of what it shows, shape (H, W).
-        time: Of the boxes in space, s: of a rolling shutter that of the line in the middle.
-        world_from_camera: The camera's frame as OpenCV has it, shape (4, 4), m.
-        intrinsics: Of a camera that has them: ``model``, ``camera_matrix`` (3, 3) and
-            ``parameters`` as OpenCV has them, with pixel centres at whole numbers.
+        labels: Index + 1 among ``things`` of what each pixel shows, shape (H, W).
+        time: Time of the boxes in space, s: with a rolling shutter that of the middle line.
+        world_from_camera: The camera's frame by OpenCV's convention, shape (4, 4), m.
+        intrinsics: ``model``, ``camera_matrix`` (3, 3) and ``parameters`` of OpenCV's form, if the
+            camera has them, with pixel centres at whole numbers.
     """
 
     things: list[Annotation]
@@ -96,13 +96,14 @@ def annotate(
     categories: Categories | str | Path | None = None,
     **options: Any,
 ) -> Annotations:
-    """What a camera sees of each thing of a scene, without drawing a picture.
+    """Annotates each thing of a scene that a camera sees, without drawing a picture.
 
     Args:
-        scene: What is seen.
-        camera: What sees it; None: the scene's own.
-        categories: What its things are, or the file that says it; None: the names of its nodes do.
-        **options: As of :class:`Session`: resolution, crop, gt_time, gt_lens, gt_rays, threads.
+        scene: The scene.
+        camera: Camera, or its name in the scene; default: the scene's own.
+        categories: Categories of its things, or the file that says them; default: by node names.
+        **options: Options of :class:`Session`: resolution, crop, threads, gt_time, gt_lens,
+            gt_rays.
     """
     if isinstance(categories, str | Path):
         categories = Categories.read(categories)
@@ -113,7 +114,7 @@ def annotate(
 
 
 def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
-    """What a session's camera sees of each thing; of ``gt_time``, or of mid without one."""
+    """Annotates what a session's camera sees, at ``gt_time``, or at mid without one."""
     chosen = categories or Categories()
     truth = session.ground_truth
     moment = truth.moment(0)
@@ -157,7 +158,7 @@ class _Seen:
         self.boxes = _boxes(self.labels, count)
 
     def annotation(self, i: int, thing: Thing, scene: Scene, world: Any) -> Annotation | None:
-        """Of one group; None: it is not in the picture."""
+        """Annotates one group; None: it is not in the picture."""
         visible, whole = (int(n) for n in self.pixels[i])
         area = int(self.areas[i])
         if not (whole or area):

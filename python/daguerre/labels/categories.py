@@ -1,4 +1,4 @@
-"""What the things of a scene are: which instances belong together, and the category of each.
+"""Things of a scene and their categories: which instances belong together, and how they are named.
 
 Without a file each node with a mesh is a thing, and copies are of one category: ``Chair``,
 ``Chair.001`` and ``Chair_2`` are chairs. A file says it otherwise::
@@ -23,14 +23,14 @@ from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
 from daguerre.scene.scene import Scene
 
-#: What programs append to the names of copies.
+#: Endings that programs append to the names of copies.
 _COPY = re.compile(r"(?:[ ._-]\d+|\s*\(\d+\))$")
 _MAX_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
 class Category:
-    """What a thing is; numbers as COCO has them, from 1."""
+    """Category of a thing; numbered from 1, like COCO's."""
 
     name: str
     id: int
@@ -56,7 +56,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Categories:
-    """How the things of a scene are found; without rules by the names of nodes.
+    """Rules that find the things of a scene; without rules, node names do.
 
     Attributes:
         rules: In their order; None: names are categories.
@@ -68,7 +68,7 @@ class Categories:
 
     @classmethod
     def read(cls, path: str | Path) -> Categories:
-        """A file of patterns.
+        """Reads a file of patterns.
 
         Raises:
             InputError: With file and JSON path of what cannot be used.
@@ -85,14 +85,14 @@ class Categories:
         return cls(_rules(parse(data, str(path))), str(path))
 
     def all(self, scene: Scene) -> list[Category]:
-        """All that there may be, by number, whether a picture shows some or not."""
+        """All categories by number, whether a picture shows some or not."""
         if self.rules is None:
             return list(_by_name(scene).values())
         found = {rule.category.name: rule.category for rule in self.rules if rule.category}
         return sorted(found.values(), key=lambda category: category.id)
 
     def things(self, scene: Scene) -> list[Thing]:
-        """The things of a scene.
+        """Finds the things of a scene.
 
         Raises:
             UsageError: A pattern that names no node.

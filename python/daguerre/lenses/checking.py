@@ -179,7 +179,7 @@ def frame_notes(
     frame_mm: tuple[float, float],
     shift_mm: tuple[float, float],
 ) -> list[str]:
-    """What of the frame lies outside the image circle, in one sentence; none if nothing does.
+    """Notes, in one sentence, how much of the frame lies outside the image circle, if any does.
 
     Raises:
         LensError: All of it does.

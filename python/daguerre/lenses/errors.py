@@ -1,4 +1,4 @@
-"""What can be wrong with a lens: an error with a code that programs can ask for."""
+"""Errors of lenses, with codes that programs can ask for."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ class LensError(InputError):
 
 
 def from_core(error: ValueError, source: str, code: str | None = None) -> InputError:
-    """The core's complaint about a lens, with the name of its file.
+    """Names the file in the core's complaint about a lens.
 
     Args:
-        error: What was raised; an ``InputError`` names its file already.
+        error: Error that was raised; an ``InputError`` names its file already.
         source: The lens's file.
-        code: Of what has none of its own; None: such errors stay as they are.
+        code: Code for errors that have none of their own; None: such errors stay as they are.
     """
     if isinstance(error, LensError) or (isinstance(error, InputError) and code is None):
         return error
@@ -66,7 +66,7 @@ def from_core(error: ValueError, source: str, code: str | None = None) -> InputE
 
 @contextmanager
 def reported(source: str, code: str | None = None) -> Iterator[None]:
-    """What is said of a lens inside is raised with the name of its file, and a code."""
+    """Raises complaints about a lens with the name of its file, and a code."""
     try:
         yield
     except ValueError as error:

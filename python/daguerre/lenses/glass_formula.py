@@ -1,4 +1,4 @@
-"""What a JSON glass says of its own numbers: dispersion formula, internal transmittance."""
+"""Numbers of a JSON glass: dispersion formula, internal transmittance."""
 
 from __future__ import annotations
 

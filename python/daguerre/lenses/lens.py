@@ -35,7 +35,7 @@ class _Fields:
 
 @dataclass(frozen=True)
 class Nominal(_Fields):
-    """What the source claims of the lens; None: it does not say."""
+    """Claims of the source about the lens; None: it does not say."""
 
     efl_mm: float | None = None
     f_number: float | None = None
@@ -83,25 +83,25 @@ class FirstOrder(_Fields):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Lens:
-    """A prescription that was read and checked.
+    """A lens prescription, read and checked.
 
     Lens frame: mm, +z from object to film, z = 0 at the first vertex, R > 0 when the centre lies
     toward +z.
 
     Attributes:
         name: The lens's own name.
-        source: File that it was read from.
-        patent: Patent or book that the numbers come from.
+        source: File from which it was read.
+        patent: Patent or book of the numbers.
         note: Remarks of the file.
-        nominal: What the source claims: focal length, f-number, field.
-        surfaces: From the object side to the film.
-        coating: Of surfaces between air and glass.
+        nominal: Claims of the source: focal length, f-number, field.
+        surfaces: Surfaces from the object side to the film.
+        coating: Coating of surfaces between air and glass.
         prescription: The core's version.
-        data: The file as parsed.
+        data: The parsed file.
         configurations: Zoom and focus positions of the file.
-        object_medium: Before the first surface.
+        object_medium: Medium before the first surface.
         zoom_mm: Focal length at which a zoom stands; None: not a zoom.
-        notes: What is not as the file says: what could not be honoured, what was found wrong.
+        notes: Deviations from the file: what could not be honoured, what was found wrong.
     """
 
     name: str
@@ -121,11 +121,11 @@ class Lens:
     def first_order(
         self, wavelength_nm: float = DESIGN_WAVELENGTH_NM, section: Literal["x", "y"] = "y"
     ) -> FirstOrder:
-        """Focal length, focal points, principal and nodal points, pupils.
+        """Returns focal length, focal points, principal and nodal points, and pupils.
 
         Args:
             wavelength_nm: Wavelength, nm.
-            section: The plane of a lens with cylinders: y-z or x-z.
+            section: Plane of a lens with cylinders: y-z or x-z.
 
         Raises:
             InputError: The lens is afocal.
@@ -167,7 +167,7 @@ class Lens:
         return self.first_order().back_focal_point
 
     def axial_transmittance(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
-        """Share of the light on the axis that coatings and glass let through.
+        """Returns the share of the light on the axis that coatings and glass let through.
 
         Args:
             wavelength_nm: Wavelengths, nm, any shape.
@@ -186,10 +186,10 @@ class Lens:
     def t_stop(
         self, f_stop: float | None = None, wavelength_nm: ArrayLike = DESIGN_WAVELENGTH_NM
     ) -> float:
-        """The f-number of a lens without losses that would be as bright on the axis.
+        """Returns the f-number of a lens without losses that would be as bright on the axis.
 
         Args:
-            f_stop: Of the iris; wide open if None.
+            f_stop: F-stop of the iris; default: wide open.
             wavelength_nm: Wavelengths over which the transmittance is averaged, nm.
 
         Returns:
@@ -199,7 +199,7 @@ class Lens:
         return float(stop / np.sqrt(self.axial_transmittance(wavelength_nm).mean()))
 
     def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
-        """The lens with another table, and other fields changed."""
+        """Returns the lens with another table, and other fields changed."""
         nominal = changes.get("nominal", self.nominal)
         core = core_prescription(
             self.name, surfaces, self.object_medium, self.coating, nominal.f_number
@@ -207,7 +207,7 @@ class Lens:
         return dataclasses.replace(self, surfaces=tuple(surfaces), prescription=core, **changes)
 
     def with_gaps(self, gaps: Mapping[int, float]) -> Lens:
-        """The lens with other thicknesses after some surfaces, by index, mm."""
+        """Returns the lens with other thicknesses after some surfaces, by index, mm."""
         surfaces = list(self.surfaces)
         for i, gap in gaps.items():
             surfaces[i] = surfaces[i].replaced(thickness=gap)
@@ -215,7 +215,7 @@ class Lens:
 
     @property
     def squeeze(self) -> float:
-        """How much more an anamorphic lens narrows its picture than it lowers it; else 1.
+        """Anamorphic squeeze of the picture's width over its height; else 1.
 
         The ratio of its focal lengths, y to x.
         """
@@ -230,7 +230,7 @@ class Lens:
         return zoom_range(self)
 
     def at_zoom(self, zoom_mm: float) -> Lens:
-        """The lens at one focal length, focused at infinity, film and focus as its file has them.
+        """Returns the lens at one focal length, focused at infinity; film and focus by its file.
 
         Raises:
             LensError: A focal length that the lens does not have; code ``lens-zoom``.
@@ -248,18 +248,18 @@ class Lens:
         by: By = "paraxial",
         measured_from: MeasuredFrom = "pupil",
     ) -> Focused:
-        """The lens and its film, focused on a plane across the axis.
+        """Focuses the lens on a plane across the axis; returns it with its film.
 
         Where the file has configurations for near objects, the gaps go along their way and the
         film stays; else the whole lens moves. An anamorphic lens is focused halfway between its
         two sections.
 
         Args:
-            distance_m: To the plane, infinity allowed.
-            zoom_mm: Focal length of a zoom; as it stands if None.
-            f_stop: Whose rays count, for the best focus; wide open if None.
-            by: The paraxial image, or the smallest root-mean-square spot on the axis.
-            measured_from: Centre of the entrance pupil, or film.
+            distance_m: Distance of the plane, m; infinity allowed.
+            zoom_mm: Focal length of a zoom, mm; default: as it stands.
+            f_stop: F-stop whose rays count for the best focus; default: wide open.
+            by: paraxial: the paraxial image; best: the smallest RMS spot on the axis.
+            measured_from: Where the distance starts: centre of the entrance pupil, or film.
 
         Raises:
             LensError: Nearer than it can (the nearest is named, ``lens-focus-near``), or a focal
@@ -283,12 +283,12 @@ class Lens:
         tilt: tuple[float, float] = (0.0, 0.0),
         pivot_mm: float = 0.0,
     ) -> Lens:
-        """The lens with a group of surfaces off its axis.
+        """Returns the lens with a group of surfaces moved off its axis.
 
         Args:
             surfaces: Indices of the first and the last one.
-            shift: Along x and y, mm.
-            tilt: About x, then y, degrees.
+            shift: Shift along x and y, mm.
+            tilt: Tilt about x, then y, degrees.
             pivot_mm: Where the axis of the tilt crosses that of the lens, from the first vertex of
                 the group, mm.
 
@@ -313,14 +313,14 @@ class Lens:
         clip: bool = False,
         image_z: float | None = None,
     ) -> NDArray[np.float64]:
-        """Traces rays exactly, in double, from the object side to the image plane.
+        """Traces rays, in double precision, from the object side to the image plane.
 
         Args:
             origins: Points of the rays before the first surface, shape (N, 3) or (3,), mm.
             directions: Directions toward the film, shape (N, 3) or (3,); need not be unit.
             wavelength_nm: One wavelength, or shape (N,), nm.
-            clip: Stop rays outside the clear apertures and the stop, too.
-            image_z: Plane to end on, mm; the image plane of the table if None.
+            clip: Whether to stop rays outside the clear apertures and the stop.
+            image_z: Plane to end on, mm; default: the image plane of the table.
 
         Returns:
             Points on the image plane, float64, shape (N, 3), mm; NaN where a ray misses a surface,

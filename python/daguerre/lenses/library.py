@@ -25,21 +25,21 @@ class Entry:
     """One lens of the library, as its index says. Lengths in mm; computed unless "stated".
 
     Attributes:
-        name: By which it is loaded.
+        name: Name by which it is loaded.
         title: Its own name.
         maker: Empty if unknown.
-        year: Of product or patent.
+        year: Year of product or patent.
         patent: Patent, with the example, or book.
         format: Film or sensor, mm x mm; empty if unknown.
         type: Family of designs.
-        efl_mm: Focal length; of a zoom the shortest.
+        efl_mm: Focal length; for a zoom the shortest.
         efl_long_mm: Longest focal length of a zoom; None: not a zoom.
-        f_number: Wide open; of a zoom at its shortest.
-        bfl_mm: Last vertex to paraxial focus; of a zoom at its shortest.
-        efl_stated: What the source claims; None: nothing.
-        efl_long_stated: What the source claims.
-        f_stated: What the source claims.
-        bfl_stated: What the source claims.
+        f_number: F-number wide open; for a zoom at its shortest.
+        bfl_mm: Last vertex to paraxial focus; for a zoom at its shortest.
+        efl_stated: Focal length that the source claims; None: nothing.
+        efl_long_stated: Longest focal length that the source claims.
+        f_stated: F-number that the source claims.
+        bfl_stated: Back focal length that the source claims.
         remark: Why a number of the source is not compared.
     """
 

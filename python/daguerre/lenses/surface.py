@@ -9,7 +9,7 @@ from typing import Any
 
 import daguerre._core as _core
 
-#: What ``kind`` may be.
+#: Values that ``kind`` may have.
 KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
 #: Kinds whose two sections have curvatures of their own.
 TWO_SECTIONS = ("biconic", "toroid")
@@ -24,18 +24,19 @@ class LensSurface:
     Attributes:
         kind: One of ``KINDS``. ``cyl-x``: a cylinder whose axis is along x.
         radius: Signed radius of curvature, positive when the centre lies toward the film; None: a
-            plane. Of a cylinder: of its curved section. Of a biconic or toroid: in the y-z plane.
+            plane. For a cylinder: of its curved section. For a biconic or toroid: in the y-z plane.
         thickness: To the next vertex; of the last surface to the film, None or 0 if unknown.
         semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
-        glass: What follows it, by name or nd/Vd; empty: air.
+        glass: Glass that follows it, by name or nd/Vd; empty: air.
         stop: The iris lies here.
-        core_glass: What follows it.
+        core_glass: Glass that follows it, as the core has it.
         conic: k: 0 is a sphere, -1 a paraboloid.
         asphere: Coefficients by power of r = hypot(x, y), added to the sag.
         radius_x: Radius in the x-z plane of a biconic or toroid.
         conic_x: k in the x-z plane of a biconic.
-        inner_semi_diameter: Of an obstruction in the middle; 0: none.
-        semi_diameter_after: Of the medium that follows, where elements differ; None: the same.
+        inner_semi_diameter: Semi-diameter of an obstruction in the middle; 0: none.
+        semi_diameter_after: Clear half-aperture of the medium that follows, where elements differ;
+            None: the same.
         decenter: Shift of the vertex. The axis goes on as before.
         tilt: Degrees about x, then the turned y, then the turned z, at the vertex.
         coating: By name; empty: the lens's.

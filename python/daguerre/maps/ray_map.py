@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
 
 FloatArray = NDArray[np.float64]
-#: What coordinates of rays are about.
+#: Frames of rays, and what their coordinates mean.
 FRAMES = {
     "camera": "x right, y down, z ahead (OpenCV); from the entrance pupil; m",
     "world": "the scene's: y up; m",
@@ -43,12 +43,12 @@ class RayMap:
     """The ray of each pixel; NaN where a pixel sees nothing.
 
     Attributes:
-        origin: Where the ray starts, m, shape (H, W, 3): of ideal lenses and projections the centre
-            of the camera, of a traced lens a point on the ray in front of the glass.
-        direction: Unit, shape (H, W, 3).
-        time: When the pixel sees it, s after the scene's time, shape (H, W).
+        origin: Start of the ray, m, shape (H, W, 3): the centre of the camera for ideal lenses and
+            projections, a point on the ray in front of the glass for a traced lens.
+        direction: Unit vectors, shape (H, W, 3).
+        time: Time at which the pixel sees it, s after the scene's time, shape (H, W).
         frame: One of ``FRAMES``: the camera's own as it stands at each ray's time, or the world's.
-        metadata: Facts of the camera, as of frames.
+        metadata: Facts of the camera, like those of frames.
     """
 
     origin: FloatArray
@@ -88,17 +88,17 @@ def raymap(
     frame: str = "camera",
     overscan: Any = None,
 ) -> RayMap:
-    """The ray of each pixel of any camera.
+    """Returns the ray of each pixel of any camera.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.
-        resolution: Of the picture, px.
-        scene: For its time, and for a camera that focuses by itself; without one it then focuses at
+        resolution: Width and height of the picture, px.
+        scene: Scene, for its time and for autofocus; without it the camera then focuses at
             infinity.
-        gt_time: open, mid or close: when in the exposure of each pixel.
+        gt_time: Moment in the exposure of each pixel: open, mid or close.
         frame: ``"camera"``: OpenCV's, x right, y down, z ahead, from the entrance pupil, as the
             camera stands at the ray's time; ``"world"``: the scene's.
-        overscan: As of ``Session``: pixels beside the picture.
+        overscan: Pixels beside the picture, see ``Session``.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -130,7 +130,7 @@ def rays_of(
     frame: str,
     overscan: Overscan = NONE,
 ) -> RayMap:
-    """As ``raymap``, of what is checked."""
+    """Returns the rays, like ``raymap``, for arguments that are checked."""
     now = instants(camera, size)
     opens, _ = shutter.interval(camera, scene.time, size)
     begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)

@@ -1,6 +1,6 @@
 """STMaps of a camera, both ways: to straighten its pictures, and to bend straight ones.
 
-What ``s`` and ``t`` are is told in ``daguerre.post.effects.stmap`` and in docs/darkroom.md.
+``daguerre.post.effects.stmap`` and docs/darkroom.md explain ``s`` and ``t``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class StMaps:
 
     Attributes:
         sight: The camera.
-        overscan: Pixels beside the picture that the maps have, too.
+        overscan: Pixels beside the picture, which the maps also cover.
     """
 
     sight: Sight
@@ -39,7 +39,7 @@ class StMaps:
 
     @cached_property
     def undistort(self) -> Image:
-        """For each pixel of the straight picture, where in the camera's own it is: s and t.
+        """Map from the undistorted picture to the camera's own: s and t of each pixel.
 
         Shape (H, W, 2), rows from the top of the data window; NaN: nowhere.
         """
@@ -47,7 +47,7 @@ class StMaps:
 
     @cached_property
     def redistort(self) -> Image:
-        """For each pixel of the camera's picture, where in the straight one it is; as above."""
+        """Map from the camera's picture to the undistorted one: s and t, like ``undistort``."""
         return self._values(self._redistort)
 
     def save(
@@ -71,8 +71,8 @@ class StMaps:
     def needed(self) -> dict[str, Overscan | None]:
         """Pixels beside a picture that each map reads, for all of the display window.
 
-        ``undistort``: of the camera's picture; ``redistort``: of the straight one. None: without
-        bounds, or what the camera does not show.
+        ``undistort`` reads the camera's picture, ``redistort`` the undistorted one. None: without
+        bounds, or parts that the camera does not show.
         """
         try:
             undistort: Overscan | None = to_undistort(self.sight)
@@ -114,16 +114,16 @@ def stmaps(
     scene: Scene | None = None,
     overscan: Any = None,
 ) -> StMaps:
-    """STMaps of any camera, as it is in the middle of its exposure.
+    """Returns STMaps of any camera, in the middle of its exposure.
 
     The straight picture is that of the pinhole with the same focal length near the axis and the
     same principal point; what lies on the plane in focus is in its place.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.
-        resolution: Of the picture, px.
-        scene: For a camera that focuses by itself; without one it then focuses at infinity.
-        overscan: As of ``Session``: the maps have these pixels, too.
+        resolution: Width and height of the picture, px.
+        scene: Scene, for autofocus; without it the camera then focuses at infinity.
+        overscan: Pixels beside the picture, which the maps also cover; see ``Session``.
 
     Raises:
         UsageError: A cube, which cannot be straightened; or a parameter of the camera.

@@ -21,7 +21,7 @@ class Flat:
     """A value taken apart.
 
     Attributes:
-        value: As it was.
+        value: The value itself.
         numbers: All its finite numbers.
         groups: Which of them are of one size, such as the three of a colour.
         rest: Names, flags, and what is infinite: these do not change bit by bit.

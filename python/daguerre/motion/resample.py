@@ -20,11 +20,11 @@ from .subdivision import MAX_BREAKS, MAX_KEYS, Check, Pieces, some_breaks
 from .values import Dynamic
 
 FloatArray = NDArray[np.float64]
-#: Of the change of a number, or of the radius of a mesh.
+#: Error bound relative to the change of a number, or to the radius of a mesh.
 BOUND = 1e-4
-#: Of the length of a path: 0.05 px of one across a picture of 2500 px.
+#: Error bound relative to the length of a path: 0.05 px of one across a picture of 2500 px.
 PATH_BOUND = 2e-5
-#: Of the size: what differs by less has not changed but for rounding.
+#: Bound relative to size, below which a value has only changed by rounding.
 _STILL = 1e-12
 
 
@@ -85,8 +85,8 @@ def resample_transform(
         dynamic: World from local, (4, 4).
         open_s: Begin of the interval, s.
         close_s: Its end.
-        corners: Of the box around what is transformed, shape (8, 3), m.
-        most_breaks: Of more breaks only so many are looked at.
+        corners: Corners of the box around what is transformed, shape (8, 3), m.
+        most_breaks: Largest number of breaks that are looked at.
         where: For complaints.
     """
     points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T

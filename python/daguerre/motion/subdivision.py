@@ -44,16 +44,16 @@ def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> l
 
 
 class Pieces(Generic[T]):
-    """Looks at a value at as few times as it takes.
+    """Samples a value until the interpolation error is within tolerance.
 
     A value with a method ``many`` (times (T,) to T values) is asked for many at once.
 
     Args:
         dynamic: The value.
-        taken: What is made of it, such as a row of numbers.
+        taken: Function of it to sample, such as a row of numbers.
         open_s: Begin of the interval, s.
         close_s: Its end.
-        most_breaks: Of more breaks only so many are looked at.
+        most_breaks: Largest number of breaks that are looked at.
     """
 
     def __init__(

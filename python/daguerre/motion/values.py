@@ -36,10 +36,10 @@ class Blending(Protocol):
 
     @property
     def form(self) -> tuple[Any, ...]:
-        """What all keys have in common."""
+        """Form that all keys have in common."""
 
     def blended(self, other: Any, share: float) -> Any:
-        """What lies between it and another of the same form, that share of the way."""
+        """Blends with another value of the same form, that share of the way."""
 
 
 class Dynamic(Protocol):
@@ -59,7 +59,7 @@ class Keys:
     Attributes:
         times: Rising, shape (K,), s.
         values: K numbers, tuples or arrays of one shape, names or flags, or projections.
-        interpolation: Of matrices (4, 4) one of ``OF_MATRICES``, of all else of ``OF_NUMBERS``.
+        interpolation: One of ``OF_MATRICES`` for matrices (4, 4), else one of ``OF_NUMBERS``.
         pivot: Point in local space about which decomposed matrices turn, m.
     """
 
@@ -75,12 +75,12 @@ class Keys:
 
     @cached_property
     def motion(self) -> _core.Motion:
-        """The same in the core; of matrices only."""
+        """The core's version; only for matrices."""
         matrices = np.array(self.values, np.float64)
         return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot or (0, 0, 0))
 
     def at(self, time_s: float) -> Any:
-        """The value at a time, s: held before the first key and behind the last."""
+        """Returns the value at a time, s: held before the first key and after the last."""
         if self.moves_matrices and len(self.times) > 1:
             return np.asarray(self.motion.at(time_s))
         i = int(np.searchsorted(self.times, time_s, side="right")) - 1
@@ -128,7 +128,7 @@ class Spin:
         return np.asarray(self.motion.at(time_s))
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """Those of its transform."""
+        """Breaks of its transform, s."""
         return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else []
 
 
@@ -152,14 +152,14 @@ def keys(
     interpolation: str | None = None,
     pivot: ArrayLike | None = None,
 ) -> Keys:
-    """A value at some times, for any parameter that may change.
+    """Makes a value over time from keys, for any parameter that may change.
 
     Args:
         pairs: (time in s, value), times rising strictly. Values are numbers, tuples or arrays of
             numbers of one shape, projections of one model and size, or names and flags, which
             step.
-        interpolation: Of matrices (4, 4): decomposed (default), linear, twist or slerp. Of other
-            numbers: linear (default) or step.
+        interpolation: Interpolation of matrices (4, 4): decomposed (default), linear, twist or
+            slerp; of other numbers: linear (default) or step.
         pivot: Point in local space, m, about which decomposed matrices turn; absent: the origin.
 
     Raises:
@@ -199,7 +199,7 @@ def spin(
     transform: ArrayLike | Keys | None = None,
     time: float = 0.0,
 ) -> Spin:
-    """A transform that turns evenly about an axis: a wheel, a propeller.
+    """Makes a transform that turns evenly about an axis: a wheel, a propeller.
 
     Args:
         axis: Direction in local space; it turns counter-clockwise as seen from its tip.
@@ -344,7 +344,7 @@ def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, floa
 
 
 def _in_core(made: Keys | Spin, where: str) -> None:
-    """What the core cannot interpolate is refused where it is written down."""
+    """Refuses motions that the core cannot interpolate where they are written down."""
     try:
         _ = made.motion
     except ValueError as error:

@@ -22,7 +22,7 @@ def check_available(suffix: str, *, needed: bool) -> None:
     """Refuses a format whose package is missing, before anything is computed.
 
     Args:
-        suffix: Of the file.
+        suffix: Suffix of the file.
         needed: Whether an SVG needs the package, too, as that of a data sheet does.
     """
     if (needed or suffix != ".svg") and find_spec("matplotlib") is None:

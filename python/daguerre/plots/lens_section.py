@@ -47,7 +47,7 @@ class Polygon:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What is drawn, from back to front, and the window: left to right, -top to top, mm."""
+    """Shapes of a drawing, from back to front, and its window: left to right, -top to top, mm."""
 
     title: str
     left: float

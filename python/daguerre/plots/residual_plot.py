@@ -1,4 +1,4 @@
-"""What a fitted projection leaves, over the picture (extra ``plot``)."""
+"""Residuals of a fitted projection over the picture (extra ``plot``)."""
 
 from __future__ import annotations
 

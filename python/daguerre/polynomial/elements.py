@@ -93,7 +93,7 @@ def place(
     degree: int = 5,
     about: ArrayLike = AXIS,
 ) -> System:
-    """Into a frame that is moved, then turned, or back out of it.
+    """Returns the change into a frame that is moved, then turned, or back out of it.
 
     The axis is no longer the base ray there: what follows is expanded ``about=`` the ``image`` of
     what comes before, so that no constants arise::
@@ -103,7 +103,7 @@ def place(
         bend = po.place((0, 1, 0), (2, 0, 0), back=True, about=bend.image) @ bend
 
     Args:
-        decenter: Of the frame along x, y and z, mm, shape (3,).
+        decenter: Shift of the frame along x, y and z, mm, shape (3,).
         tilt: About x, then about the y that turned with it, then that z, degrees, shape (3,).
         back: From the plane z = 0 of that frame to the plane z = 0 before, instead.
         degree: 1 to 15.

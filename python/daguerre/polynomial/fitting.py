@@ -37,8 +37,8 @@ def fit(
 
     Args:
         lens: A lens, or the name of one in the library or of a file.
-        degree: Of the polynomials in the ray's four coordinates: odd, 1 to 13.
-        f_stop: As wide as the lens opens if None.
+        degree: Degree of the polynomials in the ray's four coordinates: odd, 1 to 13.
+        f_stop: F-stop; default: wide open.
         focus: Distance from the entrance pupil, m.
         focus_by: The paraxial image, or the smallest spot on the axis: ``best``.
         film: Width and height, mm; the format of the lens's file if None, else 36 x 24 mm.

@@ -18,7 +18,7 @@ class Form:
     """The form of a surface about its vertex.
 
     Attributes:
-        name: What it is.
+        name: Name of the form.
         surface: The core's version.
     """
 

@@ -20,13 +20,13 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class SceneRays:
-    """What a fit says of N film rays; lens frame, mm.
+    """Scene rays of N film rays by a fit; lens frame, mm.
 
     Attributes:
         origins: On the sphere of the front surface, shape (N, 3).
         directions: Unit vectors toward the scene, shape (N, 3).
         iris: Where the rays cross the iris, shape (N, 2).
-        transmittance: Of the glass, shape (N,).
+        transmittance: Transmittance of the glass, shape (N,).
         within: Whether film, pupil and mounts let the ray pass; the iris is not asked. Shape (N,).
         angles: Directions as theta (dx, dy) / sin(theta), rad, shape (N, 2).
         offsets: From the middle of the entrance pupil across the ray, shape (N, 2).
@@ -55,7 +55,7 @@ class ErrorZone:
         film_um: On the film: the fitted scene ray traced exactly back, against where it began.
         iris_mm: On the iris.
         mount_mm: At the worst of the mounts.
-        transmittance: Of 1.
+        transmittance: Error of the transmittance, 1 being all light.
         lost: Share of the passing rays that the fit stops.
         leaked: Rays that the fit lets pass though the lens stops them, against those that pass.
     """
@@ -96,7 +96,7 @@ class LensFit:
 
     @property
     def degree(self) -> int:
-        """Of the polynomials in the ray's four coordinates."""
+        """Degree of the polynomials in the ray's four coordinates."""
         return int(self.core.degree)
 
     @property
@@ -185,7 +185,7 @@ class LensFit:
 
         Raises:
             UsageError: Another suffix, or a fit that is too large for code without loops.
-            InputError: What the language cannot express.
+            InputError: The language cannot express the fit.
             OutputError: The file cannot be written.
         """
         from daguerre.export import save

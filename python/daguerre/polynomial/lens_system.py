@@ -33,12 +33,12 @@ def from_lens(
     film_z: float | None = None,
     about: ArrayLike = AXIS,
 ) -> System:
-    """A lens as a polynomial, from a plane before it to the film.
+    """Expands a lens as a polynomial, from a plane before it to the film.
 
     Even degrees are allowed; a lens with axial symmetry has no terms in them.
 
     Args:
-        lens: Of ``dg.lenses.load``, or focused; or its name or file.
+        lens: Lens, alone or focused; or its name or file.
         degree: 1 to 15.
         ghost: Two surfaces at which light is reflected on its way, in either order: at the one
             farther along first.
@@ -86,7 +86,7 @@ def from_lens(
 
 
 def _pupil_ahead(lens: Lens, object_z: float) -> float | None:
-    """Of the entrance pupil ahead of a plane, mm; None: at infinity, or the lens is afocal."""
+    """Distance of the entrance pupil ahead of a plane, mm; None: at infinity, or afocal."""
     try:
         z = lens.first_order().entrance_pupil.z - float(object_z)
     except ValueError:

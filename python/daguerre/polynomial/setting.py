@@ -12,10 +12,10 @@ from daguerre.errors import InputError
 
 @dataclass(frozen=True)
 class FitSetting:
-    """What the polynomials themselves do not say.
+    """Setting of a lens that was fitted, which the polynomials do not say.
 
     Attributes:
-        f_stop: As engraved.
+        f_stop: F-stop as engraved.
         focus_m: From the entrance pupil; may be infinite.
         zoom_mm: Focal length of a zoom; None: no zoom.
         source: Patent or book of the prescription.

@@ -41,7 +41,7 @@ class System:
 
     @property
     def degree(self) -> int:
-        """Of the highest monomials."""
+        """Degree of the highest monomials."""
         return int(self.core.degree)
 
     @property
@@ -56,7 +56,7 @@ class System:
 
     @property
     def coefficients(self) -> FloatArray:
-        """Of the monomials of the ray less the base ray, shape (4, M); (W, 4, M) for W > 1."""
+        """Coefficients of monomials of the ray less the base ray, (4, M); (W, 4, M) for W > 1."""
         c = np.asarray(self.core.coefficients())
         return c[0] if len(c) == 1 else c
 
@@ -123,13 +123,13 @@ class System:
         pupil: float | None = None,
         object_distance: float = np.inf,
     ) -> SeidelTerms:
-        """The third-order aberrations by name, of the point on the last plane.
+        """Returns the third-order aberrations by name, of the point on the last plane.
 
         Args:
             wavelength: nm; as for a call.
-            pupil: Of the entrance pupil ahead of the first plane, mm; not given: as it is known,
-                else on that plane.
-            object_distance: Of the object from that pupil, mm.
+            pupil: Distance of the entrance pupil ahead of the first plane, mm; default: the known
+                one, else on that plane.
+            object_distance: Distance of the object from that pupil, mm.
 
         Raises:
             UsageError: Degree 3 is missing, or axial symmetry; a place that is none.
@@ -221,7 +221,7 @@ class System:
 
 
 def _said(call: Callable[..., Any], *arguments: object) -> Any:
-    """What the core returns; its complaint as a wrong parameter."""
+    """Calls the core; raises its complaint as a wrong parameter."""
     try:
         return call(*arguments)
     except DaguerreError:

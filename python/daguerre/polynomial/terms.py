@@ -38,7 +38,7 @@ class SeidelTerms:
 
     @property
     def petzval(self) -> float:
-        """What field curvature is left without astigmatism, mm per mm."""
+        """Field curvature that is left without astigmatism, mm per mm."""
         return 2 * self.field_curvature - self.astigmatism
 
     def sums(self, pupil_radius: float, field_slope: float) -> FloatArray:
@@ -78,8 +78,8 @@ def seidel_terms(
     Args:
         monomials: Exponents, shape (M, 4), degree 3 at least.
         coefficients: Shape (4, M).
-        pupil: Of the entrance pupil ahead of the first plane, mm.
-        object_distance: Of the object in front of that pupil, mm; infinity allowed.
+        pupil: Distance of the entrance pupil ahead of the first plane, mm.
+        object_distance: Distance of the object in front of that pupil, mm; infinity allowed.
     """
     if not _symmetric(monomials, coefficients):
         return None

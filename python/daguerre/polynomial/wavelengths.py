@@ -79,7 +79,7 @@ def index_at(n: Index, nm: list[float]) -> list[float]:
     """The index at each node, or one for all.
 
     Raises:
-        UsageError: As many numbers as there are wavelengths are wanted.
+        UsageError: The count of numbers is not that of the wavelengths.
     """
     if hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)):
         return [float(n.index(x)) for x in nm]

@@ -22,13 +22,13 @@ def on_array(
     values: Values,
     planes: Mapping[str, NDArray[Any]] | None = None,
 ) -> Image:
-    """An effect on a whole picture.
+    """Applies an effect to a whole picture.
 
     Args:
-        effect: Of the list.
+        effect: An effect of the list.
         image: Scene-linear, shape (H, W, C); it is not changed.
         values: Parameters by name; those that are None count as not given.
-        planes: What the effect needs besides colour, by usual channel names, shape (H, W).
+        planes: Planes that the effect needs besides colour, by usual channel names, shape (H, W).
 
     Raises:
         UsageError: A wrong shape, or a wrong parameter.

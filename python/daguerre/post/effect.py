@@ -40,7 +40,7 @@ class Step:
         raise NotImplementedError
 
     def remarks(self) -> list[str]:
-        """What a user should be told when the picture is done."""
+        """Remarks for the user when the picture is done."""
         return []
 
 
@@ -70,7 +70,7 @@ class Effect:
         Args:
             given: By name, as text or as values of JSON.
             where: For messages, such as ``--effect grain``.
-            error: What to raise.
+            error: Type of error to raise.
         """
         known = {p.name: p for p in self.parameters}
         for name in given:

@@ -78,7 +78,7 @@ def check_linear(path: str | os.PathLike[str]) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """What effects make is light: it goes into another file of light.
+    """Checks that a picture of light goes into a file of light.
 
     Raises:
         UsageError: Another format.

@@ -10,7 +10,7 @@ from .picture import Image
 
 
 def in_fours(image: Image, spread: Callable[[Image], Image]) -> Image:
-    """What ``spread`` makes of a picture (H, W, C), of shape (rows, W, C).
+    """Applies ``spread`` to a picture (H, W, C), four channels at a time: shape (rows, W, C).
 
     Args:
         image: Any number of channels.

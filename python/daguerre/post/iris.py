@@ -17,9 +17,11 @@ from .effect import Values
 from .parameter import Parameter
 
 BLADES = (
-    Parameter("blades", "straight or curved blades of the iris; 0: round", "", 0, "whole", low=0),
-    Parameter("blade_rotation", "0: a corner points to the right", "deg", 0.0),
-    Parameter("blade_curvature", "1: round, 0: straight, -1: bent inward", "", 0.0, low=-1, high=1),
+    Parameter("blades", "number of iris blades; 0: round", "", 0, "whole", low=0),
+    Parameter("blade_rotation", "rotation of the iris; 0: a corner points right", "deg", 0.0),
+    Parameter(
+        "blade_curvature", "blades: 1 round, 0 straight, -1 bent inward", "", 0.0, low=-1, high=1
+    ),
     Parameter("aperture_image", "grey picture of the opening, in place of blades", kind="text"),
 )
 _ROUND = 256  # corners that stand for a circle: 0.04 px off at a radius of 500 px

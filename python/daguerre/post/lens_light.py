@@ -1,4 +1,4 @@
-"""What a lens of the library leaves of the light over a picture, by colour."""
+"""Falloff of light over a picture by a lens of the library, by colour."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
 
 FloatArray = NDArray[np.float64]
-#: What is left of the light: of some rows, shape (rows, W), or (rows, W, C) by channel.
+#: Falloff of some rows, shape (rows, W), or (rows, W, C) by channel.
 Falloff = Callable[[Rows], NDArray[np.float32]]
 
 HEIGHTS = 33  # at which the light of a lens is measured that is the same on all sides
@@ -122,7 +122,7 @@ def _continued(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _cubic_weights(pixels: int, nodes: int) -> NDArray[np.float32]:
-    """Of nodes and one more on either side, for pixels between the outer, (pixels, nodes + 2)."""
+    """Weights of nodes and one more on either side, for pixels between, (pixels, nodes + 2)."""
     at = np.linspace(0, nodes - 1, pixels)
     d = np.abs(at[:, None] - np.arange(-1, nodes + 1))
     near, far = (1.5 * d - 2.5) * d * d + 1, ((-0.5 * d + 2.5) * d - 4) * d + 2

@@ -22,8 +22,8 @@ from .picture import Canvas
 from .warp import CELL, FloatArray, PointMap, Warp, displacements
 
 MOTION = (
-    Parameter("motion_scale", "px of a motion vector of 1; -1: from the last frame", "", 1.0),
-    Parameter("v_up", "motion counts upward, not down", kind="flag", default=False),
+    Parameter("motion_scale", "px per unit of motion; -1: motion from the last frame", "", 1.0),
+    Parameter("v_up", "whether motion counts upward, not down", kind="flag", default=False),
 )
 CHUNK = 1 << 20  # points at a time
 
@@ -68,7 +68,7 @@ class MotionMap:
         return out
 
     def remarks(self) -> list[str]:
-        """What could not be turned."""
+        """Remarks on motions that could not be turned."""
         said = []
         if self._lost:
             said.append(f"{self._lost} motions, whose ends the map does not show, were set to NaN")
@@ -82,7 +82,7 @@ class MotionMap:
     def _by_ends(
         self, motion: FloatArray, moved: NDArray[np.float32], goes: NDArray[np.bool_], rows: Rows
     ) -> FloatArray:
-        """As m + d(s + m) - d(s): errors of the displacement d that both have leave nothing."""
+        """Computes m + d(s + m) - d(s): errors of the displacement d that both have cancel."""
         y, x = np.nonzero(goes)
         start = np.column_stack([x, y + rows.begin]).astype(np.float64) + moved[goes]
         out = np.empty_like(motion)

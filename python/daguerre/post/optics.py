@@ -19,17 +19,17 @@ from .picture import Canvas
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
 
-FOCAL_LENGTH = Parameter("focal_length", "of the camera; the file's if it says one", "mm", low=1e-3)
-SENSOR = Parameter("sensor", "width x height; the file's if it says one", "mm", kind="size")
+FOCAL_LENGTH = Parameter("focal_length", "focal length; the file's if it says one", "mm", low=1e-3)
+SENSOR = Parameter("sensor", "sensor width x height; the file's if it says one", "mm", kind="size")
 LENS = (
     Parameter("lens", "a name of `daguerre lenses`, or a lens file", kind="text"),
     Parameter("focus", "distance in focus, from the entrance pupil", "m", math.inf, low=1e-3),
     Parameter("zoom", "focal length at which a zoom stands", "mm", low=1e-3),
     Parameter(
-        "focus_by", "where rays near the axis meet, or where the spot is smallest", kind="choice",
+        "focus_by", "focus where rays near the axis meet, or at the smallest spot", kind="choice",
         default="paraxial", choices=("paraxial", "best"),
     ),
-    Parameter("f_stop", "of the lens; wide open if absent", low=1e-2),
+    Parameter("f_stop", "f-stop of the lens; wide open if absent", low=1e-2),
 )  # fmt: skip
 
 
@@ -39,7 +39,7 @@ class Plane:
 
     Attributes:
         centre: Where the axis meets it, px.
-        pitch_mm: Of a pixel.
+        pitch_mm: Pixel pitch, mm.
     """
 
     centre: tuple[float, float]
@@ -89,7 +89,7 @@ def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
 
 
 def _pitch_mm(canvas: Canvas, values: Values) -> float | None:
-    """Of a pixel; None: nobody says it."""
+    """Pixel pitch, mm; None: nobody says it."""
     size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
     if size is None and _positive(pitch):
         return pitch[0] * 1e-3

@@ -21,13 +21,13 @@ class Parameter:
     """A parameter of an effect.
 
     Attributes:
-        name: As it is written.
-        meaning: One line.
+        name: Name that users type.
+        meaning: Help text of one line.
         unit: Such as mm, px, stops; empty: none.
         default: None: not given; REQUIRED: there is none.
         kind: number; whole; flag (0 or 1); choice; text (a name or a file); size (two lengths
             such as 36x24, in the unit).
-        choices: Of a choice.
+        choices: Values of a choice.
         low: The least that a number may be.
         high: The most.
     """
@@ -48,7 +48,7 @@ class Parameter:
 
     @property
     def wanted(self) -> str:
-        """What it may be, for messages."""
+        """Values that it may have, for messages."""
         if self.kind == "choice":
             return "one of " + ", ".join(self.choices)
         if self.kind == "flag":

@@ -1,4 +1,4 @@
-"""What effects work on: bands of rows of a picture, and what is known of the whole of it.
+"""Pictures that effects work on: bands of rows, and facts about the whole.
 
 Places are in px of the display window: x to the right, y down, (0, 0) its top left corner, so that
 the middle of its first pixel is (0.5, 0.5). Rows are counted from the first row that there is.
@@ -20,11 +20,11 @@ Image = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Canvas:
-    """What is known of a picture before its pixels are read.
+    """Facts about a picture before its pixels are read.
 
     Attributes:
-        width: Of its pixels (the data window), px.
-        height: Of its pixels, px.
+        width: Width of its pixels (the data window), px.
+        height: Height of its pixels, px.
         corner: Their first pixel in the display window, px.
         full_size: Width and height of the display window, px: what effects are centred on.
         colours: Names of the colour channels; the last one may be alpha.
@@ -56,7 +56,7 @@ class Canvas:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Of the display window, px."""
+        """Centre of the display window, px."""
         return 0.5 * self.full_size[0], 0.5 * self.full_size[1]
 
     @classmethod
@@ -101,7 +101,7 @@ class Source(Protocol):
 
     @property
     def canvas(self) -> Canvas:
-        """What is known of it."""
+        """Facts about the picture."""
 
     def rows(self, rows: Rows) -> Band:
         """These rows, all of which the picture has."""

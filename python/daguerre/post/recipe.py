@@ -25,7 +25,7 @@ class Planned:
 
 
 def from_words(words: Sequence[str]) -> list[Planned]:
-    """What ``--effect`` was given.
+    """Parses the words of ``--effect``.
 
     Args:
         words: Such as ``vignetting:model=natural,inverse=1``.

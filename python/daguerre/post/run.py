@@ -23,13 +23,13 @@ HISTORY = "daguerre:post"
 
 @dataclass(frozen=True)
 class Report:
-    """What there is to say about a file that was made.
+    """Report on a file that was made.
 
     Attributes:
         width: px.
         height: px.
-        bad_pixels: Of the input, with a value that is NaN or infinite.
-        remarks: Of the effects.
+        bad_pixels: Pixels of the input with a value that is NaN or infinite.
+        remarks: Remarks of the effects.
     """
 
     width: int

@@ -20,7 +20,7 @@ class Spreading(Step):
 
     Args:
         canvas: The picture.
-        spread: What spreads its colours.
+        spread: Spreader of its colours.
         stays: Share of the light that stays where it is, beside what is spread; one, or by colour.
     """
 
@@ -45,9 +45,9 @@ class Veil(Step):
 
     Args:
         canvas: The picture.
-        kernel: Of the smaller picture.
+        kernel: Kernel for the smaller picture.
         factor: How many times it is smaller.
-        share: Of the light.
+        share: Share of the light to spread.
     """
 
     def __init__(self, canvas: Canvas, kernel: Floats, factor: int, share: float) -> None:

@@ -18,7 +18,7 @@ STRETCH = 1 << 14  # pixels that are mixed at a time, to save memory
 def starburst(
     pupil: Pupil, pitch_mm: float, size: int, *, wavelengths: int = 24, threads: int = 0
 ) -> Floats:
-    """What diffraction makes of RGB light, shape (size, size, 3, 3): from last axis to axis 2.
+    """Star of RGB light by diffraction, shape (size, size, 3, 3): from last axis to axis 2.
 
     Each of R, G and B is taken as its emitter's spectrum, so a white lamp's star has the colours of
     white light; in the sum over the window each colour stays what it is.
@@ -32,7 +32,7 @@ def starburst(
         shares = np.zeros((AT_ONCE, 9), np.float32)
         for k, kernel in enumerate(islice(spreads, AT_ONCE)):
             group[k] = kernel.ravel()
-            # What falls outside of the window is given to all of it: nothing is lost.
+            # Light outside of the window is given to all of it: nothing is lost.
             light = light_of(kernel) if pupil.perfect else kernel.sum(dtype=np.float64)
             shares[k] = mixes[first + k].ravel() / light
         for pixels in range(0, size * columns, STRETCH):

@@ -41,7 +41,7 @@ def write_stmap(
         path: An .exr.
         warp: The map.
         canvas: Its windows.
-        attributes: Of the file.
+        attributes: Attributes of the file.
 
     Raises:
         OutputError: It cannot be written.

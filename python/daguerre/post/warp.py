@@ -38,7 +38,7 @@ class Warp:
         nodes: Displacements, px, shape (rows + 3, columns + 3, 2), from one cell before the first.
         exact: Which of ``cells`` a cell is, or -1, shape (rows, columns).
         cells: Displacements at each pixel, shape (N, 16, 16, 2).
-        height: Of the picture, px.
+        height: Height of the picture, px.
         top: Row at which the first cell begins, a multiple of 16.
     """
 
@@ -79,7 +79,7 @@ class Warp:
 
         Args:
             moved: Displacements, px, shape (rows, width, 2); NaN: nothing is there.
-            height: Of the whole picture, px.
+            height: Height of the whole picture, px.
             top: The first row, a multiple of 16.
         """
         rows, columns = (-(-n // CELL) for n in moved.shape[:2])
@@ -92,7 +92,7 @@ class Warp:
 
     @cached_property
     def core(self) -> Any:
-        """As the core has it."""
+        """Map in the core's form."""
         return SourceMap(self.nodes, self.exact, self.cells, self.top)
 
     def reads(self, rows: Rows) -> Rows:

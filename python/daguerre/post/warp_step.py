@@ -19,15 +19,19 @@ from .warp import PointMap, Warp
 
 FILTER = (
     Parameter(
-        "filter", "between pixels", kind="choice", default="cubic", choices=("cubic", "linear")
+        "filter",
+        "interpolation between pixels",
+        kind="choice",
+        default="cubic",
+        choices=("cubic", "linear"),
     ),
-    Parameter("antialias", "average where the map shrinks", kind="flag", default=True),
+    Parameter("antialias", "whether to average where the map shrinks", kind="flag", default=True),
     *MOTION,
 )
 
 
 def how(values: Values) -> dict[str, Any]:
-    """What ``FILTER`` says, for a step."""
+    """Options of a step from the values of ``FILTER``."""
     motion = {parameter.name: values[parameter.name] for parameter in MOTION}
     return {"filter": values["filter"], "antialias": values["antialias"], "motion": motion}
 
@@ -41,7 +45,7 @@ class WarpStep(Step):
         filter: cubic or linear.
         antialias: Whether to average where a map shrinks.
         forward: Where the light of a point of the source goes, if that is known: motion follows it.
-        motion: What motion channels count, as ``MOTION`` has it.
+        motion: Meaning of motion channels, in the form of ``MOTION``.
     """
 
     def __init__(

@@ -160,5 +160,5 @@ def first_scale(holds: Callable[[float], bool]) -> float:
 
 
 def around(variance: Plane) -> Plane:
-    """Of each pixel, what its neighbours say of its variance; see ``REACH``."""
+    """Estimates each pixel's variance from its neighbours; see ``REACH``."""
     return np.asarray(_core.mean_of_next_colour(variance, REACH))

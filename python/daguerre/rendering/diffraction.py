@@ -36,10 +36,10 @@ DARK = 2e-4  # of the brightest band's colour: others have no kernels of their o
 
 @dataclass(frozen=True)
 class Diffraction:
-    """What is asked for.
+    """Settings of diffraction.
 
     Attributes:
-        bands: Of wavelengths, 380 to 780 nm.
+        bands: Number of wavelength bands, 380 to 780 nm.
         zones: Points along each side of the frame that have kernels of their own.
     """
 
@@ -52,12 +52,12 @@ class Diffraction:
 
     @property
     def words(self) -> str:
-        """For metadata."""
+        """Text for metadata."""
         return f"{self.bands} bands, {self.zones} x {self.zones} zones"
 
 
 def check_diffraction(value: object) -> Diffraction | None:
-    """What ``diffraction`` of a session may be: False, True, or a ``Diffraction``."""
+    """Checks ``diffraction`` of a session: False, True, or a ``Diffraction``."""
     if value is None or value is False:
         return None
     if value is True:
@@ -226,7 +226,7 @@ def _size(pupils: list[list[Pupil]], pitch: float, frame: tuple[int, ...]) -> in
 def _kernels(
     pupils: list[list[Pupil]], nm: NDArray[np.float64], pitch: float, size: int, threads: int
 ) -> NDArray[np.float32]:
-    """Of bands with wavelengths nm (B, n); each keeps all light.
+    """Kernels of bands with wavelengths nm (B, n); each keeps all light.
 
     Returns:
         Their right halves, shape (B, Z, Z, size, size // 2 + 1): kernels of perfect waves are

@@ -1,4 +1,4 @@
-"""What draws a film: the picture, and with overscan the pixels around it.
+"""Parts of a film that are drawn: the picture, and with overscan the pixels around it.
 
 The picture is drawn as it is without overscan, so it keeps its bits: tables of a lens, aims of
 light paths and ghosts, and weights of wavelengths that glass sends to other pixels know nothing of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Box = tuple[int, int, int, int]
 Counts = tuple[int, ...]
 NOWHERE: Box = (0, 0, 0, 0)
-#: What is around the picture has random numbers of its own.
+#: Changes the seed around the picture, which has random numbers of its own.
 _SEED = 0x9E3779B97F4A7C15
 
 
@@ -30,10 +30,10 @@ class FilmPart:
     """Pixels of a film that are drawn together.
 
     Attributes:
-        camera: The core's.
-        settings: Of the frame that they are of: the picture, or the larger one around it.
+        camera: The core's camera.
+        settings: Settings of the frame that the part belongs to: the picture, or the larger one.
         before: Columns and rows of that frame before the picture.
-        pixels: How many.
+        pixels: Number of pixels.
     """
 
     camera: _core.Camera
@@ -50,15 +50,15 @@ class FilmPart:
         which: tuple[Any, ...],
         progress: Any,
     ) -> tuple[bool, Counts]:
-        """Draws samples; whether all of them were, and what was counted.
+        """Draws samples; returns whether all of them were drawn, and the counts.
 
         Args:
             draw: The core's ``render`` or ``render_round``.
-            scene: What is seen.
+            scene: The scene.
             film: All pixels.
             corner: The first of them in the picture, px.
             which: Samples, as ``draw`` takes them.
-            progress: As of ``Session.draw``.
+            progress: Progress callback, see ``Session.draw``.
         """
         film.place(corner[0] + self.before[0], corner[1] + self.before[1])
         try:
@@ -69,7 +69,7 @@ class FilmPart:
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:
-    """What of a region lies in the picture; ``NOWHERE`` if nothing does."""
+    """Part of a region that lies in the picture; ``NOWHERE`` if nothing does."""
     x0, y0, x1, y1 = region
     cut = (max(x0, 0), max(y0, 0), min(x1, resolution[0]), min(y1, resolution[1]))
     return cut if cut[0] < cut[2] and cut[1] < cut[3] else NOWHERE
@@ -87,13 +87,13 @@ def core_settings(
     overscan: Overscan,
     options: dict[str, Any],
 ) -> _core.RenderSettings:
-    """Of the picture, or with ``overscan`` of the larger frame around it.
+    """Settings of the core for the picture, or with ``overscan`` for the larger frame around it.
 
     Args:
         setup: The camera.
-        resolution: Of the picture, px.
-        core_shutter: Its.
-        overscan: Around it.
+        resolution: Size of the picture, px.
+        core_shutter: The camera's shutter.
+        overscan: Pixels around the picture.
         options: Other settings of the core, by name.
     """
     settings = _core.RenderSettings()

@@ -79,7 +79,7 @@ def _pair(value: Any) -> Sequence[Any]:
 
 
 def show_plan(plan: Plan) -> str | None:
-    """As ``--light-paths`` takes it; None if off."""
+    """Text of a plan in the form of ``--light-paths``; None if off."""
     return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)
 
 
@@ -105,19 +105,19 @@ def check_highlights(value: object, where: str = "flare_highlights") -> bool:
 
 
 def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
-    """What says how light is followed wants some that is.
+    """Refuses parameters of flare or scatter where neither is on.
 
     Args:
-        given: Parameters, and whether they are other than they are by themselves: of flare alone,
+        given: Parameters, and whether they differ from their defaults: of flare alone,
             then of flare or scatter.
-        flare: Ghosts are drawn.
-        scatter: So is what the lens scatters.
+        flare: Whether ghosts are drawn.
+        scatter: Whether scatter is drawn.
 
     Raises:
-        UsageError: A parameter that nothing would heed.
+        UsageError: A parameter would have no effect.
     """
     for (name, other), drawn in zip(given.items(), (flare, flare or scatter), strict=True):
         if other and not drawn:
             dashes = "--" if name.startswith("--") else ""
             also = f" or {dashes}scatter" if "highlights" in name else ""
-            raise UsageError(f"{name}: wanted with {dashes}flare{also}")
+            raise UsageError(f"{name}: needs {dashes}flare{also} to be on")

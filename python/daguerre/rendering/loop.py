@@ -65,8 +65,8 @@ class Loop:
     """Draws the work of a session.
 
     Args:
-        session: What draws.
-        work: What is drawn.
+        session: The session that draws.
+        work: Samples or rounds to draw.
         checkpoint: Where the sums are kept until the picture is complete.
         interval_s: Time between checkpoints; 0: only when interrupted.
         reporter: How progress is shown.

@@ -1,4 +1,4 @@
-"""What a pass file says of its picture, checked before anything is made of it.
+"""Facts of a pass file about its picture, checked before anything is made of it.
 
 Such a file may come from another machine, or be damaged: each fact has the type that those have
 which :mod:`daguerre.io.exr.write` writes as attributes, or the file is refused.

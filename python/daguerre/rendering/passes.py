@@ -55,7 +55,7 @@ WORDS = {
     "diffraction, sensor, bands",
     "build": "the build of daguerre",
 }
-#: Of the settings, what a header tells as it is.
+#: Settings that a header tells as they are.
 SETTINGS = ("resolution", "crop", "overscan", "seed", "filter", "light_paths")
 
 
@@ -66,10 +66,10 @@ class Pass:
     Attributes:
         state: The film's words by part, each (H, W, words) uint32.
         ranges: Samples drawn, [begin, end), merged and sorted.
-        key: What must agree with another pass, by name.
+        key: Facts that must agree with another pass, by name.
         metadata: Facts of the frame.
         path: Where it was read, for messages.
-        round: Of adaptive sampling, else None.
+        round: Round of adaptive sampling, else None.
         truth: Channels of ground truth (``rendering.truth``) by name, if the pass has them.
     """
 
@@ -83,7 +83,7 @@ class Pass:
 
 
 def pass_of(session: Session) -> Pass:
-    """What a session has drawn so far."""
+    """Pass of all that a session has drawn so far."""
     return Pass(
         session.state(),
         list(session.ranges),
@@ -178,7 +178,7 @@ def check_key(first: Pass, other: Pass) -> None:
 
 
 def _difference(name: str, first: Pass, other: Pass) -> str:
-    """What differs under a name of the key: the values where they are known, else the hashes."""
+    """Describes what differs under a name of the key: values where known, else hashes."""
     if name == "settings":
         values = [
             (fact.replace("_", " "), *(_value(p.metadata.get(fact)) for p in (other, first)))

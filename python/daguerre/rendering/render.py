@@ -28,14 +28,14 @@ def render(
     """Renders a picture.
 
     Args:
-        scene: What is seen.
-        camera: What sees it; None: the scene's own.
-        spp: Samples per pixel, by default 64; with ``noise`` the most that a pixel may get, by
-            default 16384.
+        scene: The scene.
+        camera: Camera, or its name in the scene; default: the scene's own.
+        spp: Samples per pixel; default: 64. With ``noise`` the most that a pixel may get;
+            default then: 16384.
         noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
             pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
             samples as each needs.
-        **options: As of :class:`Session`: resolution, seed, filter, aovs, gt_time, gt_lens,
+        **options: Options of :class:`Session`: resolution, seed, filter, aovs, gt_time, gt_lens,
             motion, crop, threads, max_depth.
 
     Returns:
@@ -46,7 +46,7 @@ def render(
 
 
 def finish(session: Session, spp: int | None = None, noise: float | None = None) -> Frame:
-    """The picture of a session; arguments as of :func:`render`."""
+    """Draws and returns the picture of a session; arguments are those of :func:`render`."""
     spp = _most_samples(spp, noise)
     if noise is None:
         session.draw(0, spp)
@@ -66,7 +66,7 @@ def iter_render(
 ) -> Iterator[Frame]:
     """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
 
-    With ``noise``, after each round of adaptive sampling. Arguments as of :func:`render`.
+    With ``noise``, after each round of adaptive sampling. Arguments are those of :func:`render`.
     """
     spp = _most_samples(spp, noise)
     session = Session(scene, camera, **options)

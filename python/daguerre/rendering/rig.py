@@ -30,18 +30,19 @@ def render_rig(
     resolution: tuple[int, int] | None = None,
     **options: Any,
 ) -> dict[str, Frame]:
-    """Renders a picture by each camera; the scene is built once.
+    """Renders one picture for each camera; the scene is built once.
 
     All cameras draw the same random numbers, so each frame has the bits of ``render`` with that
     camera alone, and the noise of two cameras that see nearly the same is nearly the same.
 
     Args:
-        scene: What is seen.
-        cameras: By name; or names of the scene's cameras.
-        spp: As of :func:`render`.
-        noise: As of :func:`render`.
-        resolution: Of all pictures, px; None: each calibrated camera's own, else 960 x 540.
-        **options: As of :class:`Session`.
+        scene: The scene.
+        cameras: Cameras by name, or names of the scene's cameras.
+        spp: Samples per pixel, see :func:`render`.
+        noise: Relative error to reach, see :func:`render`.
+        resolution: Width and height of all pictures, px; default: each calibrated camera's own,
+            else 960 x 540.
+        **options: Options of :class:`Session`.
 
     Returns:
         The frames, by name.
@@ -61,13 +62,13 @@ def render_rig(
 
 
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
-    """Two cameras side by side, in whose middle the given one stands; they look in parallel.
+    """Makes a stereo pair of parallel cameras, with the given one in the middle between them.
 
-    Where it moves, they move with it.
+    They move with it.
 
     Args:
-        camera: It gives all else.
-        baseline: Between them, m.
+        camera: Camera that gives all other parameters.
+        baseline: Distance between them, m.
     """
     number(baseline, "stereo_pair: baseline", above=0)
     return {
@@ -91,14 +92,14 @@ def check_straight(metadata: dict[str, Any]) -> None:
 
 
 def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
-    """How far what a pixel shows lies apart in the two pictures of a stereo pair, px.
+    """Returns the disparity of a stereo pair: how far apart both pictures show the same point, px.
 
-    Of both pictures x_left - x_right, so focal length x baseline / depth; 0 where nothing is.
+    It is x_left - x_right for both pictures: focal length x baseline / depth; 0 where nothing is.
 
     Args:
         frame: Left or right, with ground truth (``gt_time``) through its chief rays, by a pinhole,
             a thin lens or a rectilinear projection: their straight lines stay straight.
-        baseline: Of the pair, m.
+        baseline: Distance of the pair's cameras, m.
 
     Returns:
         Shape (H, W).

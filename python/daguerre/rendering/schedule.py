@@ -1,4 +1,4 @@
-"""What a render draws, pass by pass: a range of samples, or rounds until a noise is reached.
+"""Work of a render, pass by pass: a range of samples, or rounds until a noise is reached.
 
 Sizes are mean samples per pixel, so that both are timed and shown alike.
 """
@@ -39,7 +39,7 @@ class Work(Protocol):
         """Samples that there will be in the end, as far as is known."""
 
     def facts(self) -> dict[str, Any]:
-        """What else a status says."""
+        """Facts for a status, beside the progress."""
 
 
 class Range:
@@ -129,7 +129,7 @@ class Rounds:
         return self._round.samples()
 
     def total(self) -> float:
-        """As estimated before the round."""
+        """Total of the work, as estimated before the round."""
         if self.session.round is None:
             return max(1.0, self.done())
         end = float(self._round.begin.mean() + self._round.count.mean())

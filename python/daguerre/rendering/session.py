@@ -62,52 +62,52 @@ FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
 
 
 class Session:
-    """One picture in the making: scene, camera and a film of exact sums.
+    """A render in progress: scene, camera and a film of exact sums.
 
     Any split of the samples into ranges, in any order and on any number of threads, gives the same
     bits.
 
     Args:
-        scene: What is seen.
-        camera: What sees it, or its name in the scene; None: the scene's own.
-        resolution: Width and height, px.
-        seed: Of all random numbers.
+        scene: The scene.
+        camera: Camera, or its name in the scene; default: the scene's own.
+        resolution: Width and height of the picture, px.
+        seed: Seed of all random numbers.
         filter: box, gaussian, blackman_harris or mitchell; ``"name:radius"`` sets the radius in px.
-        aovs: Keep depth, normal, position, albedo and object id.
-        crop: Pixel region (x0, y0, x1, y1) to draw, end exclusive; None: all.
-        overscan: Pixels beside the picture that are drawn, too (``docs/plates.md``): a number for
-            all sides, ``"10%"``, (left, top, right, bottom), or ``"undistort"``: what a later
-            straightening needs. The picture keeps its bits.
-        threads: 0: all cores.
+        aovs: Whether to keep depth, normal, position, albedo and object id.
+        crop: Pixel region (x0, y0, x1, y1) to draw, end exclusive; default: all.
+        overscan: Pixels to draw beside the picture (``docs/plates.md``): a number for all sides,
+            ``"10%"``, (left, top, right, bottom), or ``"undistort"``: as many as a later
+            undistortion needs. The picture keeps its bits.
+        threads: Number of threads; 0: all cores.
         max_depth: Largest number of surfaces at which a path scatters.
         strategy: mis, or light or bsdf alone (to check one against the other).
         gt_time: open, mid or close: depth, distance, P, N, object_id and material_id are exact
-            values at that moment of each pixel's exposure (``docs/ground-truth.md``), and not
+            values at that moment of each pixel's exposure (``docs/ground-truth.md``), instead of
             means over the samples.
-        gt_lens: Through which rays: chief, that of the pixel's centre, or mean: means over those
+        gt_lens: Rays for ground truth: chief, the one of the pixel's centre; mean: means over those
             that expose the pixel then, with their share that meets a surface as ``coverage.Y``.
-        gt_rays: How many of each pixel are drawn for that, by default 64: the same ones each time.
-        motion: Also ``motion`` and ``motion_back``, where things go and come from, in px; of mid
-            unless ``gt_time`` is given.
-        dispersion: What an exact lens does with a path's other wavelengths: reproject, or
+        gt_rays: Rays per pixel for ``gt_lens="mean"``; default: 64, the same ones each time.
+        motion: Whether to add ``motion`` and ``motion_back``, where things go and come from, px;
+            at mid unless ``gt_time`` is given.
+        dispersion: Treatment of a path's other wavelengths by an exact lens: reproject, or
             end_secondary (the plain reference; noisier).
-        light_paths: Light that is followed from the emitters to the film, beside the paths from the
+        light_paths: Light followed from the emitters to the film, beside the paths from the
             lens (``docs/light-paths.md``): auto, off, or paths per sample index, straight to the
             lens and with bounces, as (M1, M2).
         flare: Ghosts of an exact lens (``docs/flare.md``): off, auto, or paths per sample index.
-        flare_order: Their reflections: 2, or 4 for those of four as well.
-        flare_highlights: Light that mirrors, glass and walls send to the lens has ghosts, too: on
-            or off.
+        flare_order: Number of reflections of ghosts: 2, or 4 for both 2 and 4.
+        flare_highlights: Whether light that mirrors, glass and walls send to the lens has ghosts,
+            too: on or off.
         scatter: Light that barrel, blades and surfaces of an exact lens scatter
             (``docs/scatter.md``): off, auto, or paths per sample index.
-        diffraction: Light is a wave at the iris (``docs/diffraction.md``): True, or a
+        diffraction: Whether light is a wave at the iris (``docs/diffraction.md``): True, or a
             ``Diffraction`` with the number of bands and zones.
-        bands: Bands of wavelengths that the frame keeps (``frame.bands``), of which any sensor's
-            channels can be made later; 0: none.
-        technique: Who draws what both could find: both, or camera or light alone (to check one
-            against the other).
-        built: Of another session of this scene (``Session.built``), unchanged since: where both
-            look at the same time, it serves this one, too.
+        bands: Number of wavelength bands that the frame keeps (``frame.bands``), from which any
+            sensor's channels can be made later; 0: none.
+        technique: Technique for light that both could find: both, or camera or light alone (to
+            check one against the other).
+        built: ``Session.built`` of another session of this scene, unchanged since: it is reused
+            where both look at the same time.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -205,14 +205,14 @@ class Session:
             raise UsageError(str(error)) from None
         self._window = inside(self.crop, size)
         plan = self._plan() if wanted is None else wanted
-        # What pays is judged by the frame; a crop gets the share that it has of its pixels.
+        # The frame decides which plan pays; a crop gets the share that it has of its pixels.
         shared = self._share(area(self._window)) if wanted is None else 1.0
         self.light_paths = (plan[0] * shared, plan[1] * shared)
         self._settings.light_paths = self.light_paths
         self._settings.prepare_light(self._core_scene, self._setup.core)
         dark = "no light of this scene makes a ghost in this lens"
         self.flare = self._prepare("flare", flare_paths, FLARE_PER_PIXEL, dark)
-        dark = "nothing shines in this scene, or the lens scatters nothing"
+        dark = "the scene has no lights, or the lens scatters nothing"
         self.scatter = self._prepare("scatter", scatter_paths, SCATTER_PER_PIXEL, dark)
         self._parts = self._parts_of(plan, wanted is None, core_shutter, options)
         self._film = self._new_film()
@@ -254,11 +254,11 @@ class Session:
 
     @property
     def focused_camera(self) -> Camera:
-        """The camera with the focus that was found."""
+        """Camera with the focus that autofocus found."""
         return focused(self.camera, self._setup.facts)
 
     def _plan(self) -> Plan:
-        """What pays in this scene."""
+        """Chooses the light paths that pay in this scene."""
         m1, m2 = _core.pilot(self._core_scene, self._setup.core, self._settings)
         return m1, m2
 
@@ -298,7 +298,7 @@ class Session:
         return parts
 
     def _prepare(self, name: str, paths: float | None, per_pixel: float, dark: str) -> float:
-        """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
+        """Paths per sample index of flare or scatter, of a crop those of its frame; 0: none."""
         if paths == 0:
             return 0.0
         check_surfaces(self._setup.facts["lens_model"], name)
@@ -315,7 +315,7 @@ class Session:
         return float(wanted)
 
     def _scatters(self) -> dict[str, Any]:
-        """What the parts of the lens are like."""
+        """Scatter of the parts of the lens."""
         return scatter_facts(self.camera)
 
     def _plan_waves(self) -> dict[str, Any] | None:
@@ -356,7 +356,7 @@ class Session:
         Args:
             begin: First sample index.
             end: One past the last.
-            progress: Told the fraction done, now and then, from any thread; False stops.
+            progress: Called with the fraction done, from any thread; returning False stops.
 
         Returns:
             False if stopped. Part of the pass is in the sums then, so the session refuses to go
@@ -382,7 +382,7 @@ class Session:
         """Draws the parts of ``round`` up to ``until``; see ``daguerre.rendering.adaptive``.
 
         Returns:
-            False if stopped; as of ``draw``.
+            False if stopped, see ``draw``.
         """
         if self.round is None:
             raise UsageError("draw_round: wanted a planned round, got none")
@@ -421,17 +421,17 @@ class Session:
         return True
 
     def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
-        """The picture of the samples drawn so far, with all that was asked for.
+        """Returns the picture of the samples drawn so far, with all channels asked for.
 
         Args:
-            truth: With ground truth, or without.
-            waves: With diffraction, or without (which is quicker).
+            truth: Whether to add ground truth.
+            waves: Whether to add diffraction, which takes time.
         """
         frame = frame_of(self._whole_film(), self.metadata, aovs=self.aovs, waves=waves)
         return self.with_truth(frame) if truth else frame
 
     def with_truth(self, frame: Frame) -> Frame:
-        """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""
+        """Adds the channels of ``gt_time`` to a frame: by scene and camera, not by the sums."""
         if self.gt_time is None:
             return frame
         frame = replace(frame, aovs=frame.aovs | self._truth)
@@ -442,7 +442,7 @@ class Session:
 
     @cached_property
     def ground_truth(self) -> GroundTruth:
-        """What is known of scene and camera without samples: of ``gt_time``, or of mid."""
+        """Ground truth of scene and camera, without samples: at ``gt_time``, or at mid."""
         return self._truth_of(self.crop, self.overscan)
 
     def _truth_of(self, region: Box, overscan: Overscan) -> GroundTruth:
@@ -471,7 +471,7 @@ class Session:
         return planes
 
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
-        """Of ground truth: index + 1 of the instance that a pixel sees, (H, W); 0: none.
+        """Index + 1 of the instance that each pixel sees, by ground truth, (H, W); 0: none.
 
         ``moment`` is that of ``ground_truth``, so that it need not be built again.
         """
@@ -505,7 +505,7 @@ class Session:
         ranges: list[tuple[int, int]],
         round: Round | None = None,
     ) -> None:
-        """Continues from sums that ``state`` gave, drawn from these sample ranges, or in rounds.
+        """Restores sums that ``state`` returned, drawn in these sample ranges, or in rounds.
 
         Raises:
             MismatchError: A part is missing, unknown or of another size.
@@ -517,7 +517,7 @@ class Session:
 
     @cached_property
     def key(self) -> dict[str, str]:
-        """What passes must share to be added: hashes of scene, camera, settings, and the build."""
+        """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
         return {
             "scene": self.built.hash,
             "camera": _hash_json(without_exposure(self._setup.facts)),
@@ -586,7 +586,7 @@ def check_resolution(resolution: tuple[int, int]) -> tuple[int, int]:
 
 
 def _share_of(progress: Progress | None, done: float, share: float) -> Progress | None:
-    """Of a part of what is drawn."""
+    """Scales a progress callback to one film part."""
     return None if progress is None else lambda fraction: progress(done + share * fraction)
 
 

@@ -72,11 +72,11 @@ def check_gt_lens(
 
 @dataclass(frozen=True)
 class Moment:
-    """What is looked at, and by what.
+    """Scene and camera at a moment of ground truth.
 
     Attributes:
-        shot: As the core takes it.
-        scene: As it is then; of a rolling shutter, when the line in the middle opens.
+        shot: The core's shot.
+        scene: The scene then; with a rolling shutter, when the line in the middle opens.
         setup: The camera, likewise.
     """
 
@@ -87,16 +87,16 @@ class Moment:
 
 @dataclass(frozen=True)
 class GroundTruth:
-    """What is asked of a frame.
+    """Ground truth of a frame.
 
     Attributes:
-        scene: What is seen; its time is that of the frame.
-        camera: What sees it, its focus chosen.
+        scene: The scene; its time is that of the frame.
+        camera: The camera, its focus chosen.
         resolution: Width and height, px.
         crop: Pixels (x0, y0, x1, y1), end exclusive.
-        gt_time: open, mid or close: when in the exposure of each pixel.
+        gt_time: Moment in the exposure of each pixel: open, mid or close.
         gt_lens: chief or mean: through which rays.
-        gt_rays: Of each pixel, for means.
+        gt_rays: Rays per pixel for means.
         threads: 0: all cores.
         core_scene: The scene if it does not move, so that it need not be built again.
         overscan: Pixels around the picture that the crop may have, too.
@@ -114,7 +114,7 @@ class GroundTruth:
     overscan: Overscan = NONE
 
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
-        """Channels (H, W) by name: those of ground truth, and with ``motion`` also ``motion.U`` (px).
+        """Channels (H, W) by name; with ``motion`` also ``motion.U`` and so on, px.
 
         ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
         later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN

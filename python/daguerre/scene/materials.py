@@ -1,4 +1,4 @@
-"""What surfaces are made of. Colours are linear Rec.709 triples; emission is in cd/m2."""
+"""Materials of surfaces. Colours are linear Rec.709 triples; emission is in cd/m2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What moves in a scene, beside the plain lists that show one moment of it."""
+"""Motion of a scene, beside the plain lists that show one moment of it."""
 
 from __future__ import annotations
 

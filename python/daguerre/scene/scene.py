@@ -31,7 +31,7 @@ from .point_cache import PointCache, steps_of
 
 @dataclass
 class Scene:
-    """What the camera looks at.
+    """A scene: meshes, materials, lights, cameras and environment.
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
 
@@ -66,7 +66,7 @@ class Scene:
     warnings: list[str] = field(default_factory=list)
 
     def at(self, time: float) -> Scene:
-        """The same scene at another time, s; what does not change is shared."""
+        """Returns the scene at another time, s; what does not change is shared."""
         return scene_at(self, check_number(time, "scene: time"))
 
     def add_texture(
@@ -129,15 +129,15 @@ class Scene:
         """Adds triangles; returns the index of the mesh.
 
         Args:
-            positions: Vertices, shape (N, 3), m; they may be over time.
+            positions: Vertices, shape (N, 3), m; they may change over time.
             indices: Triangles, shape (M, 3) or (3 M,).
-            normals: Unit normals, shape (N, 3); absent: flat shading. Those that are not over time
+            normals: Unit normals, shape (N, 3); default: flat shading. Normals that do not change
                 belong to ``positions`` at the scene's time, and turn with the surface.
             uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
-            uv1: The same, set 1.
-            tangents: Shape (N, 4), w is the handedness.
-            colors: Linear RGB or RGBA, shape (N, 3) or (N, 4).
-            steps: Vertices over time, as (times (S,) in s, positions (S, N, 3)) or over time;
+            uv1: Texture coordinates, set 1.
+            tangents: Tangents, shape (N, 4), w is the handedness.
+            colors: Vertex colors, linear RGB or RGBA, shape (N, 3) or (N, 4).
+            steps: Vertices over time: (times (S,) in s, positions (S, N, 3)) or a value over time;
                 ``positions`` then are those to which the normals belong.
             name: For messages.
 
@@ -201,10 +201,10 @@ class Scene:
 
         Args:
             mesh: Index from ``add_mesh``.
-            material: Index from ``add_material`` or a material; absent: grey diffuse.
-            transform: World from local, shape (4, 4), which may be over time; absent: identity.
-            name: For messages, ids and ``focus_on``.
-            shown: Whether it is there, which may be over time.
+            material: Index from ``add_material`` or a material; default: grey diffuse.
+            transform: World from local, shape (4, 4), may change over time; default: identity.
+            name: Name for messages, ids and ``focus_on``.
+            shown: Whether it is there, which may change over time.
 
         Raises:
             InputError: There is no such mesh or material, or the transform is no finite matrix.
@@ -265,13 +265,13 @@ class Scene:
     ) -> None:
         """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
 
-        All but the picture may be over time.
+        All parameters but the picture may change over time.
 
         Args:
             image: Equirectangular, row 0 at the zenith (+y), centre column along -z; or its file.
             color: One linear colour for the whole sky.
-            scale: cd/m2 of a value of 1.
-            rotation: Degrees about +y.
+            scale: Luminance of a value of 1, cd/m2.
+            rotation: Turn about +y, degrees.
             lux: Illuminance on the ground, a horizontal plane that faces +y, instead of ``scale``.
         """
         if lux is not None and not (isinstance(scale, int | float) and scale == 1):
@@ -308,7 +308,7 @@ class Scene:
         return index
 
     def camera(self, name: str | None = None) -> Camera:
-        """The camera of that name, or the default one.
+        """Returns the camera of that name, or the default one.
 
         Raises:
             InputError: There is none; the message suggests the nearest names.

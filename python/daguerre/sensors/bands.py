@@ -39,7 +39,7 @@ def check_bands(value: Any, where: str = "bands") -> int:
 
 
 def responses(sensor: Seeing) -> FloatArray:
-    """What the film weighs light with: at 380, 381 .. 780 nm, per nm, shape (C, 401).
+    """Weights of light on the film: at 380, 381 .. 780 nm, per nm, shape (C, 401).
 
     Raises:
         InputError: There are more channels than a film holds, or one that sees nothing.
@@ -68,11 +68,11 @@ def weights_of_bands(sensor: Seeing, bands: int) -> FloatArray:
 
 
 def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[np.float32]:
-    """What a sensor sees of a frame's bands, as if it had been named before the render.
+    """Converts a frame's bands to a sensor's channels, as if it had been named before the render.
 
     Args:
-        bands: Of a frame, shape (H, W, N).
-        sensor: Whose channels are wanted.
+        bands: Bands of a frame, shape (H, W, N).
+        sensor: Sensor whose channels are wanted.
 
     Returns:
         Channels, shape (H, W, C): D65 of luminance 1 is 1 in each.

@@ -1,4 +1,4 @@
-"""What a sensor is and computes to, as plain values: for JSON, and for the page on the terminal."""
+"""Facts of a sensor as plain values: for JSON, and for the page on the terminal."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def isos(sensor: Sensor) -> list[float]:
 
 
 def snr_db(sensor: Sensor, iso: float, lux_s: float) -> float:
-    """Of the strongest channel in even D65 light, with PRNU: 20 log10 of signal over noise.
+    """SNR of the strongest channel in even D65 light, with PRNU: 20 log10 of signal over noise.
 
     EMVA 1288 4.0 Linear, equation 18; NaN where it saturates.
     """
@@ -36,7 +36,7 @@ def snr_db(sensor: Sensor, iso: float, lux_s: float) -> float:
 
 
 def row(sensor: Sensor, iso: float) -> dict[str, float]:
-    """What an ISO makes of a sensor."""
+    """Facts of a sensor at an ISO."""
     gain = sensor.gain(iso)
     return {
         "iso": iso,

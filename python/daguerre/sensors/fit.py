@@ -69,10 +69,10 @@ class Seeing(Protocol):
 
     @property
     def hash(self) -> str:
-        """Of what a frame's channels depend on."""
+        """Hash of all that a frame's channels depend on."""
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """As of ``Sensor``: D65 of Y = 1 is 1 in each channel, shape (C, L)."""
+        """Sensitivity like that of ``Sensor``: D65 of Y = 1 is 1 in each channel, shape (C, L)."""
 
 
 def channels_from_xyz(sensor: Seeing) -> FloatArray:

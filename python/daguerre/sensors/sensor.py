@@ -52,7 +52,7 @@ class HotPixels:
     """Photosites with much dark current.
 
     Attributes:
-        share: Of all photosites.
+        share: Share of all photosites.
         rate: Mean of theirs, e-/s at the temperature of the dark current; exponentially
             distributed.
     """
@@ -66,8 +66,8 @@ class DualGain:
     """The second, higher conversion gain of a photosite.
 
     Attributes:
-        iso: From which on it is used; the table of read noise may step there.
-        full_well: What the photosite holds then, e-.
+        iso: Lowest ISO at which it is used; the table of read noise may step there.
+        full_well: Full well with this gain, e-.
     """
 
     iso: float
@@ -76,42 +76,42 @@ class DualGain:
 
 @dataclass(frozen=True, eq=False)
 class Sensor:
-    """A sensor, as its maker or a laboratory measured it.
+    """An image sensor, with the numbers of its maker or of a laboratory.
 
     Attributes:
-        name: By which it is loaded.
-        make: Of the camera or sensor.
-        model: Of the camera or sensor.
-        source: Where the numbers come from.
-        licence: Under which they may be passed on.
-        pixel_pitch: um.
+        name: Name by which it is loaded.
+        make: Make of the camera or sensor.
+        model: Model of the camera or sensor.
+        source: Source of the numbers.
+        licence: Licence of the numbers.
+        pixel_pitch: Pixel pitch, um.
         resolution: Photosites, columns and rows.
         pattern: The colour filter array.
         channels: Names, ``("R", "G", "B")`` or ``("Y",)``.
-        wavelengths: Of the quantum efficiency, nm, shape (L,); beyond its ends it is 0.
+        wavelengths: Wavelengths of the quantum efficiency, nm, shape (L,); 0 beyond its ends.
         quantum_efficiency: Electrons per photon that falls on the photosite's area (its fill
             factor times that area, if one is stated), shape (C, L).
-        full_well: What a photosite holds, e-.
-        bit_depth: Of the digital numbers.
-        base_iso: The lowest that the maker recommends.
-        iso_range: Lowest and highest that can be set.
-        size: Of the light-sensitive area, mm; by default resolution times pitch.
+        full_well: Electrons that a photosite holds, e-.
+        bit_depth: Bits of the digital numbers.
+        base_iso: Lowest ISO that the maker recommends.
+        iso_range: Lowest and highest ISO that can be set.
+        size: Width and height of the light-sensitive area, mm; default: resolution times pitch.
         fill_factor: Share of a photosite's area that the quantum efficiency is about.
         infrared_cut: Transmittance of the filter before the sensor; None: none, or in the quantum
             efficiency already.
-        cover_glass: Likewise.
+        cover_glass: Transmittance of the cover glass, likewise.
         read_noise: (ISO, e-) in rising order, linear in log ISO in between.
         dual_gain: The second conversion gain, if there is one.
-        dark_current: By heat.
+        dark_current: Dark current by temperature.
         prnu: Standard deviation of the photosites' response, relative.
         dsnu: Standard deviation of the photosites' offsets, e-.
         hot_pixels: Photosites with much dark current.
         black_level: DN of no light.
-        crosstalk: Share of the electrons that the four neighbours get.
+        crosstalk: Share of the electrons that go to the four neighbours.
         low_pass: Distance of the two images that the optical low-pass filter makes of each point
             along either axis, um; 0: there is none.
-        serial: Number of the copy; PRNU, DSNU and hot pixels are fixed by it.
-        assumed: Names of the values that no source has.
+        serial: Serial number; it seeds PRNU, DSNU and hot pixels.
+        assumed: Names of the values without a source.
         note: A remark.
     """
 
@@ -159,7 +159,7 @@ class Sensor:
         return f"<Sensor {self.name}: {columns}x{rows}, {self.pattern.name}>"
 
     def with_(self, **changes: Any) -> Sensor:
-        """A copy with other values, such as ``read_noise``, ``serial`` or ``infrared_cut=None``.
+        """Returns a copy with other values, such as ``serial`` or ``infrared_cut=None``.
 
         ``pattern`` may be a name; ``read_noise`` one number for every ISO.
 
@@ -187,7 +187,7 @@ class Sensor:
 
     @property
     def photosite_area(self) -> float:
-        """um2, without fill factor."""
+        """Area of a photosite, without fill factor, um2."""
         return self.pixel_pitch**2
 
     # Light to electrons ---------------------------------------------------------------------
@@ -227,16 +227,16 @@ class Sensor:
 
     @property
     def mixing(self) -> FloatArray:
-        """What crosstalk makes of even light: channels from channels, shape (C, C)."""
+        """Crosstalk of even light: channels from channels, shape (C, C)."""
         unmixed = np.eye(len(self.channels))
         return (1 - self.crosstalk) * unmixed + self.crosstalk * self.pattern.neighbours()
 
     def white_electrons(self, white: FloatArray | None = None) -> FloatArray:
-        """As :meth:`electrons_per_lux_s`, with crosstalk from the neighbours."""
+        """Electrons per lux s with crosstalk; see :meth:`electrons_per_lux_s`."""
         return self.mixing @ self.electrons_per_lux_s(white)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """What a frame's channels are sums of: efficiency times wavelength, shape (C, L).
+        """Weights by which a frame's channels sum light: efficiency times wavelength, shape (C, L).
 
         Scaled so that the integral (nm) with D65 of Y = 1, ``illuminants.d65()``, is 1.
         """
@@ -254,7 +254,7 @@ class Sensor:
 
     @property
     def hash(self) -> str:
-        """Of what a frame's channels depend on: two sensors of one hash see the same."""
+        """Hash of all that a frame's channels depend on: sensors with one hash see the same."""
         digest = hashlib.sha256(" ".join(self.channels).encode())
         curves = self.sensitivity(illuminants.NM)
         digest.update(np.round(curves, 9).tobytes())
@@ -264,7 +264,7 @@ class Sensor:
 
     @property
     def highest_dn(self) -> int:
-        """Of the analogue-digital converter."""
+        """Highest number of the analogue-digital converter, DN."""
         return int(2**self.bit_depth - 1)
 
     @property
@@ -279,13 +279,13 @@ class Sensor:
         return (self.highest_dn - self.black_level) / electrons
 
     def full_well_at(self, iso: float) -> float:
-        """What a photosite holds, e-."""
+        """Full well of a photosite at an ISO, e-."""
         if self.dual_gain is not None and iso >= self.dual_gain.iso:
             return self.dual_gain.full_well
         return self.full_well
 
     def white_level(self, iso: float) -> int:
-        """The number of a full photosite, DN: of the converter or of the full well."""
+        """Number of a full photosite, DN: the limit of the converter or of the full well."""
         full = self.black_level + self.gain(iso) * self.full_well_at(iso)
         return int(min(self.highest_dn, math.floor(full + 0.5)))
 
@@ -299,14 +299,14 @@ class Sensor:
         return float(np.interp(math.log2(iso), np.log2(isos), noises))
 
     def dynamic_range(self, iso: float) -> float:
-        """Stops between what saturates and what is as strong as the noise in the dark."""
+        """Stops between saturation and a signal as strong as the noise in the dark."""
         gain = self.gain(iso)
         most = (self.white_level(iso) - self.black_level) / gain
         dark = math.hypot(self.read_noise_at(iso), math.sqrt(1 / 12) / gain)
         return math.log2(most / dark)
 
     def check_iso(self, iso: float) -> None:
-        """Raises ``UsageError`` for what cannot be set."""
+        """Raises ``UsageError`` for an ISO that cannot be set."""
         low, high = self.iso_range
         try:
             fits = not isinstance(iso, str | bool) and low <= float(iso) <= high
@@ -318,11 +318,11 @@ class Sensor:
     # Colour -----------------------------------------------------------------------------------
 
     def channels_from_xyz(self) -> FloatArray:
-        """A frame's channels from its XYZ, (C, 3), fitted; D65 white is exact. See ``fit``."""
+        """Matrix from XYZ to a frame's channels, (C, 3), fitted; D65 is exact. See ``fit``."""
         return fit.channels_from_xyz(self)
 
     def colour_matrix(self, white: Any = None) -> FloatArray:
-        """What DNG calls a ColorMatrix: raw values from XYZ under a white, shape (C, 3).
+        """ColorMatrix of DNG: raw values from XYZ under a white, shape (C, 3).
 
         Scaled so that the strongest channel of D65 white is 1; crosstalk is in it.
 
@@ -339,5 +339,5 @@ class Sensor:
         return np.asarray(raw / raw.max())
 
     def rgb_from_channels(self, white: Any = None) -> FloatArray:
-        """Linear Rec.709 from a frame's channels, (3, C), balanced: that white is (1, 1, 1)."""
+        """Matrix from channels to linear Rec.709, (3, C), balanced: white is (1, 1, 1)."""
         return fit.rgb_from_channels(self, illuminants.white_xy(white))

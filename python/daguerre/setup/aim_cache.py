@@ -1,6 +1,6 @@
 """Exact lenses that are ready at once when the same lens was set up before.
 
-What the set-up of an exact lens finds out is kept in a folder, one file per lens and setting,
+Results of the set-up of an exact lens are kept in a folder, one file per lens and setting,
 named by a hash of everything that it depends on, the build of this package included:
 ``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache`` where that is not set). ``DAGUERRE_CACHE`` names
 another folder, or is ``off``. Files are written whole or not at all; beyond 256 MB those that were
@@ -40,7 +40,7 @@ def folder() -> Path | None:
 
 
 def identity(path: Path) -> str:
-    """What tells one build of the core from any other: each may aim a lens differently."""
+    """Text that differs between builds of the core: each may aim a lens differently."""
     with contextlib.suppress(OSError):
         facts = path.stat()
         return f"{path} {facts.st_size} {facts.st_mtime_ns}"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:
-    """What the body adds to the surfaces of the lens.
+    """Surfaces that the body adds to those of the lens.
 
     Raises:
         UsageError: Glass or a sensor that cannot be.
@@ -46,7 +46,7 @@ def stack_of(camera: Camera) -> _core.SensorStack:
 
 
 def stack_facts(camera: Camera) -> dict[str, Any]:
-    """Of the body, for metadata and hashes; nothing if it declares nothing."""
+    """Facts of the body, for metadata and hashes; empty if it declares nothing."""
     facts: dict[str, Any] = {}
     if camera.cover_glass is not None:
         facts["cover_glass"] = list(camera.cover_glass)
@@ -65,5 +65,5 @@ def parts_of(camera: Camera) -> _core.LensScatter:
 
 
 def scatter_facts(camera: Camera) -> dict[str, Any]:
-    """What scatters, for metadata and hashes, where scatter is drawn."""
+    """Scatter of the lens for metadata and hashes, where scatter is drawn."""
     return asdict(camera.scatter or LensScatter())

@@ -14,12 +14,12 @@ class BuiltScene:
     """The core's scene, and what is known about it.
 
     Args:
-        scene: What is seen; it must not change while this is used.
+        scene: The scene; it must not change while this is used.
         interval: When it is seen, s.
 
     Attributes:
         core: The core's scene.
-        warnings: What moves in a way that cannot be shown to its end.
+        warnings: A sentence for each motion that cannot be shown to its end.
     """
 
     def __init__(self, scene: Scene, interval: tuple[float, float]) -> None:
@@ -33,5 +33,5 @@ class BuiltScene:
 
     @cached_property
     def hash(self) -> str:
-        """Of all that a picture can depend on."""
+        """Hash of all that a picture can depend on."""
         return content_hash(self.scene, self.interval)

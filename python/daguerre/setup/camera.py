@@ -43,9 +43,9 @@ class CameraSetup:
 
     Attributes:
         core: The core's camera.
-        frame_size: What the picture covers of the film (mm).
+        frame_size: Size of the picture on the film, mm.
         pinhole_focal_length: Film distance of the pinhole with the same framing, mm.
-        notes: What was decided on the user's behalf, one sentence each.
+        notes: Decisions made on the user's behalf, one sentence each.
         facts: Camera parameters as resolved; for metadata and hashes, JSON-able.
     """
 
@@ -99,7 +99,7 @@ def set_up(
     traced = []  # models of the states of a lens that changes
 
     def lens_of(now: Camera) -> _core.Camera:
-        """Of another moment; its focus distance is known."""
+        """Makes the lens of another moment, whose focus distance is known."""
         like = setup.facts.get("lens_model", model)  # what stands in for it at mid-shutter
         now = now if like == model else now.with_(lens_model=like)
         check(now, like, prescription=lens is not None)

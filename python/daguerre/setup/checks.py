@@ -21,7 +21,7 @@ TRACED = ("exact", "polynomial")
 
 
 def check_surfaces(model: str, where: str) -> None:
-    """What only a lens with surfaces has.
+    """Refuses lens models without surfaces.
 
     Raises:
         UsageError: The lens has none.

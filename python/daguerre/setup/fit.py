@@ -15,13 +15,13 @@ DEFAULT_TOLERANCE = 0.5  # px
 def judged(
     lens: _core.ExactLens, camera: Camera, name: str, pitch_mm: float, notes: list[str]
 ) -> tuple[_core.ExactLens, dict[str, Any]]:
-    """The lens as it shall draw: from its fit, or by its surfaces where that is not good enough.
+    """Returns the lens to draw with: its fit, or its surfaces where the fit is not good enough.
 
     Args:
         lens: With a fit.
         camera: For the tolerance.
-        name: Of the lens, for notes.
-        pitch_mm: Of the pixels.
+        name: Name of the lens, for notes.
+        pitch_mm: Pixel pitch, mm.
         notes: Gets a sentence about the fit.
 
     Returns:

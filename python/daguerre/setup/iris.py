@@ -1,4 +1,4 @@
-"""What every kind of lens shares: the frame on the film, the place of the camera, the iris."""
+"""Iris of any kind of lens: blades, curvature, rotation, or an image."""
 
 from __future__ import annotations
 

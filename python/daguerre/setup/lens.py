@@ -58,7 +58,7 @@ class _InFocus:
 
     Attributes:
         lens: With the gaps of its zoom and focus.
-        order: Of that lens.
+        order: First-order data of that lens.
         film_z: Film on the lens's axis, in its frame.
         distance: From the entrance pupil along the lens's axis, m.
         f_stop: Focal length / entrance pupil diameter.
@@ -136,7 +136,7 @@ def set_up(
 def _notes(
     camera: Camera, lens: lenses.Lens, model: str, squeeze: float, f_stop: float, share: float
 ) -> list[str]:
-    """What a picture does not show by itself: zoom, light lost in the glass, squeeze."""
+    """Notes on facts that a picture does not show: zoom, light lost in the glass, squeeze."""
     notes = []
     if lens.zoom_range_mm and camera.zoom is None:
         short_end, long_end = lens.zoom_range_mm
@@ -275,7 +275,7 @@ def _traced_lens(
 def _core_camera(
     camera: Camera, model: str, sharp: _InFocus, pose: _core.Motion, film: float
 ) -> tuple[_core.Camera, float]:
-    """Of a model without surfaces: the camera and its H0."""
+    """Makes the camera of a model without surfaces; returns it with its H0."""
     try:
         thick = _core.ThickLens(
             sharp.lens.prescription,

@@ -44,13 +44,13 @@ _ACROSS = 9  # points across the picture at which it is seen how far a model mov
 
 @dataclass
 class LensMotion:
-    """What changes, and how a lens is made for a moment.
+    """Changes of a lens within an exposure, and how it is made for a moment.
 
     Attributes:
-        camera: With its motion.
+        camera: Camera with its motion.
         changing: Names of the parameters that change within the interval.
-        begin: Of the interval, s.
-        end: Of the interval, s.
+        begin: Begin of the interval, s.
+        end: End of the interval, s.
         focus_distance: m, unless it changes; None: a pinhole.
         f_stop: Unless it changes; None: a pinhole.
         film_offset: From the entrance pupil to the film at mid-exposure, m.
@@ -69,13 +69,13 @@ class LensMotion:
     def apply(
         self, core: _core.Camera, efl: float | None, frame: tuple[float, float], pitch: float
     ) -> str | None:
-        """Hands over what changes to the core's camera of mid-exposure.
+        """Hands the changes over to the core's camera of mid-exposure.
 
         Args:
             core: The camera.
             efl: Focal length of a lens that is set up in states, mm; None: an ideal lens.
-            frame: What the picture covers of the film, mm.
-            pitch: Of the pixels, mm.
+            frame: Size of the picture on the film, mm.
+            pitch: Pixel pitch, mm.
 
         Returns:
             A note, if a bound is missed.
@@ -143,7 +143,7 @@ class LensMotion:
         return _too_many("projection: its parameters", needed, MAX_MODELS)
 
     def _model_times(self) -> tuple[list[float], int]:
-        """Of a projection whose parameters change: times of models, and how many are asked for."""
+        """Times of models of a projection whose parameters change, and how many are asked for."""
         if "projection" not in self.changing:
             return [], 0
         models = [self.camera.motion["projection"].at(t) for t in self._looks()]
@@ -241,7 +241,7 @@ def _too_many(what: str, needed: int, most: int) -> str:
 
 @dataclass(frozen=True)
 class _Watched:
-    """What follows from parameters that change."""
+    """Values that follow from parameters that change."""
 
     value: Callable[[float], Any]
     camera: Camera

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def camera_metadata(camera: Camera, setup: CameraSetup, columns: int) -> dict[str, Any]:
-    """What a picture says of its camera.
+    """Facts of the camera for a picture's metadata.
 
     Args:
         camera: In a photographer's terms.
         setup: The same, set up.
-        columns: Of the picture, px.
+        columns: Width of the picture, px.
     """
     facts = setup.facts
     matrix = np.asarray(facts["world_from_camera"])

@@ -21,7 +21,7 @@ from daguerre.motion.values import Dynamic, Keys, Spin
 
 #: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
 _STAY_RIGID = ("decomposed", "twist", "slerp")
-#: What a moving camera may be off by is told by points around it, m.
+#: Points around a moving camera, m, by which the error of its motion is measured.
 _AROUND = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
 
 #: Moments at which a motion is looked at for its hash.
@@ -60,7 +60,7 @@ def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
 
     Args:
         camera: It gives all else.
-        place: Of the new one in this one's frame, rigid, m; shape (4, 4).
+        place: Pose of the new camera in this one's frame, rigid, m; shape (4, 4).
     """
     given: Any = camera
     if not isinstance(given, Camera):
@@ -72,7 +72,7 @@ def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
 
 
 def moved_right(camera: Camera, shift: float) -> Camera:
-    """As :func:`mounted`, to its own right, m."""
+    """Moves a camera to its own right, m; see :func:`mounted`."""
     place = np.eye(4)
     place[0, 3] = shift
     return mounted(camera, place)
@@ -134,7 +134,7 @@ def _near(keys: Keys, begin: float, end: float) -> Keys:
     return replace(keys, times=keys.times[first:last], values=values)
 
 
-#: Of a camera from the origin, m: rays from further away overflow in the ray tracer.
+#: Largest distance of a camera from the origin, m: longer rays overflow in the ray tracer.
 MAX_DISTANCE = 1e18
 
 

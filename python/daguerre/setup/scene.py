@@ -26,9 +26,9 @@ def build(
     """Hands the scene to the core, which checks it and builds the ray tracer.
 
     Args:
-        scene: What is seen.
+        scene: The scene.
         interval: When it is seen, s; None: at its ``time``.
-        notes: Is told what moves in a way that cannot be shown to its end.
+        notes: Gets a sentence for each motion that cannot be shown to its end.
 
     Raises:
         InputError: Some part cannot be rendered; the message names it.
@@ -76,7 +76,7 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
     """SHA-256 of everything that the picture can depend on.
 
     Args:
-        scene: What is seen.
+        scene: The scene.
         interval: When it is seen, s; what moves is looked at its ends, its keys and in between.
     """
     digest = hashlib.sha256()

@@ -1,4 +1,4 @@
-"""What moves, in the form that the core takes it: over the interval of one picture."""
+"""Moving parts of a scene in the form that the core takes: over the interval of one picture."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Moving:
         self._scene, self.interval, self._notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
         self._crowded: list[tuple[str, int, int]] = []
-        # What hangs at the end of a long chain costs as much as the whole of it.
+        # A part at the end of a long chain costs as much as the whole of it.
         work = sum(getattr(d, "weight", 1) for d in scene.motion.instances.values())
         shared = MAX_ALL_BREAKS // max(1, work)
         self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared)) if shared else 0
@@ -136,7 +136,7 @@ def _stacked(steps: list[Vertices], name: str) -> Any:
 
 
 def corners(mesh: Mesh) -> FloatArray:
-    """Of the box around a mesh, shape (8, 3), m."""
+    """Corners of the box around a mesh, shape (8, 3), m."""
     if not len(mesh.positions):
         return np.zeros((8, 3))
     ends = mesh.positions.min(axis=0), mesh.positions.max(axis=0)

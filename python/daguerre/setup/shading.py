@@ -98,7 +98,7 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
 
 
 def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
-    """What its light is multiplied by, and its turn about +y, rad."""
+    """Factor on the environment's light, and its turn about +y, rad."""
     if environment.image is not image:
         raise InputError("environment: image: wanted one that stays, got another later")
     color = (1.0, 1.0, 1.0)

@@ -24,7 +24,7 @@ def turn(tilt_deg: tuple[float, float]) -> FloatArray:
 
 
 def cosine(tilt_deg: tuple[float, float]) -> float:
-    """Of the angle between the axes of lens and camera."""
+    """Cosine of the angle between the axes of lens and camera."""
     return float(turn(tilt_deg)[2, 2])
 
 
@@ -44,7 +44,7 @@ def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
 
 @dataclass(frozen=True)
 class Imaging:
-    """What of a lens decides where images lie: z in the lens's frame, mm, as in ``FirstOrder``.
+    """Cardinal points of a lens, which decide where images lie: z in its frame, see ``FirstOrder``.
 
     Attributes:
         front_focal_z: Front focal point.
@@ -62,7 +62,7 @@ class Imaging:
 
     @classmethod
     def thin(cls, focal_length: float) -> Imaging:
-        """Of a thin lens."""
+        """Makes that of a thin lens."""
         return cls(-focal_length, focal_length, focal_length**2, focal_length, 0)
 
 

@@ -34,11 +34,11 @@ _STRIPE = 128  # rows
 
 @dataclass(eq=False)
 class Negative:
-    """Film after its bath; of reversal stock it is a slide.
+    """Film after its bath; reversal stock gives a slide.
 
     Attributes:
-        density: Of each layer, shape (H, W, C).
-        stock: What it is.
+        density: Density of each layer, shape (H, W, C).
+        stock: The film stock.
         metadata: Facts of the frame.
     """
 
@@ -76,7 +76,7 @@ class Negative:
     def scan(self) -> Frame:
         """A frame of the light that made the densities, scene-linear, for any look.
 
-        What lies on the toe or shoulder comes back as it went, noisier; grain stays.
+        Light on the toe or shoulder comes back as it went, noisier; grain stays.
         """
         from daguerre.frame.frame import Frame
 
@@ -104,7 +104,7 @@ class Negative:
 
 
 def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
-    """As of ``Stock.expose``."""
+    """Exposes a stock, see ``Stock.expose``."""
     seed = whole(seed, "stock: seed", 0, 2**53)
     number(ev, "stock: ev", -64, 64)
     facts = {**frame.metadata, "isoSpeed": stock.iso, "stock": stock.name}
@@ -126,9 +126,9 @@ def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
 
 
 def layers_of(stock: Stock, frame: Frame) -> NDArray[np.float32]:
-    """What each layer sees: the light of the stock's balance is 1; shape (H, W, C), none below 0.
+    """Light on each layer: that of the stock's balance is 1; shape (H, W, C), none below 0.
 
-    Of the best that the frame has: channels of this stock, else bands, else XYZ by a fitted matrix.
+    It takes the best that the frame has: channels of this stock, bands, or XYZ by a fitted matrix.
     """
     seen = seen_of(frame, stock)
     matrix = (seen.channels / stock.white()[:, None]).astype(np.float32)

@@ -17,7 +17,7 @@ from daguerre.post.kernels import delta, radial
 from .stock import Halation, Stock
 
 Floats = NDArray[np.float32]
-#: Of the ring's radius: how far the halo is followed; 98 % of what comes back is within.
+#: Radius to which the halo is followed, in the ring's; 98 % of what comes back is within.
 _REACH = 8.0
 
 
@@ -26,7 +26,7 @@ def halo(halation: Halation, pitch_um: float) -> tuple[Floats, float]:
 
     Args:
         halation: Base and index.
-        pitch_um: Of the picture's pixels on the film.
+        pitch_um: Pitch of the picture's pixels on the film, um.
     """
     twice = 2 * halation.base * 1e3 / pitch_um  # px
     ring = twice / np.sqrt(halation.index**2 - 1)
@@ -52,7 +52,7 @@ def reflectance(cosine: NDArray[np.float64], index: float) -> NDArray[np.float64
 
 
 def kernels(stock: Stock, pitch_um: float) -> Floats | None:
-    """What light becomes in each layer, (h, w, C); sums above 1 by the back. None: as it is."""
+    """Kernels of light in each layer, (h, w, C); sums above 1 by the back. None: no spread."""
     spread = _emulsion(stock.spread / pitch_um)
     if stock.halation is None:
         if len(spread) == 1:

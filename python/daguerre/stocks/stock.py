@@ -35,9 +35,9 @@ class Halation:
 
     Attributes:
         base: Thickness of the film's base, mm.
-        index: Of the base.
-        share: Of the light on each layer that the emulsion lets through, scattered, and the backing
-            does not swallow; one number for each layer.
+        index: Refractive index of the base.
+        share: Share of the light on each layer that the emulsion lets through, scattered, and the
+            backing does not swallow; one number for each layer.
     """
 
     base: float
@@ -65,18 +65,18 @@ class Stock:
     """A film stock.
 
     Attributes:
-        name: By which it is loaded.
+        name: Name by which it is loaded.
         kind: ``negative`` or ``reversal``.
-        source: Where the numbers come from.
-        iso: Speed.
-        wavelengths: Of the sensitivities, nm, shape (L,).
-        layers: Three (R, G, B) or one (Y).
+        source: Source of the numbers.
+        iso: Film speed, ISO.
+        wavelengths: Wavelengths of the sensitivities, nm, shape (L,).
+        layers: Three layers (R, G, B) or one (Y).
         balance: Colour temperature of the light that it draws neutral, K.
         granularity: RMS granularity x 1000: standard deviation of density behind a hole of 48 um,
             1 above base.
         spread: Standard deviation of light's way in the emulsion, um.
-        halation: None: a backing that swallows all.
-        paper: Of negatives: the curve of what they are printed on, x in log10 of its own exposure.
+        halation: Halation by the back; None: the backing absorbs all light.
+        paper: Curve of the paper that negatives are printed on, x in log10 of its own exposure.
     """
 
     name: str
@@ -98,7 +98,7 @@ class Stock:
         return f"<Stock {self.name}: {self.kind}, ISO {self.iso:g}>"
 
     def with_(self, **changes: Any) -> Stock:
-        """A copy with other values, such as ``granularity``, ``balance`` or ``halation=None``."""
+        """Returns a copy with other values, such as ``balance`` or ``halation=None``."""
         return replace(self, **changes)
 
     @property
@@ -107,7 +107,7 @@ class Stock:
         return tuple(layer.name for layer in self.layers)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """What the layers see, as of ``Sensor.sensitivity``: D65 of Y = 1 is 1 in each, (C, L)."""
+        """Sensitivity of the layers: D65 of Y = 1 is 1 in each, (C, L); see ``Sensor``."""
         fine = illuminants.NM
         rows, at = [], np.asarray(nm, np.float64)
         for layer in self.layers:
@@ -118,13 +118,13 @@ class Stock:
 
     @property
     def hash(self) -> str:
-        """Of what a frame's channels depend on."""
+        """Hash of all that a frame's channels depend on."""
         digest = hashlib.sha256(" ".join(self.channels).encode())
         digest.update(np.round(self.sensitivity(illuminants.NM), 9).tobytes())
         return digest.hexdigest()[:16]
 
     def white(self) -> FloatArray:
-        """What the light of its balance is in channels that D65 has 1 in, shape (C,)."""
+        """Light of its balance in channels that D65 has 1 in, shape (C,)."""
         if self.balance == illuminants.D65_KELVIN:
             return np.ones(len(self.layers))
         light = illuminants.planck(self.balance)
@@ -132,7 +132,7 @@ class Stock:
         return np.array([illuminants.integral(row) for row in rows])
 
     def grain_area(self) -> float:
-        """Of a grain or cloud of dye, um2: what makes its granularity, if grains lie by chance.
+        """Area of a grain or cloud of dye that makes the granularity, um2, if grains lie by chance.
 
         Nutting's law has the mean density of N grains of area a on an area A as log10(e) N a / A;
         their number's variance is its mean, so that of density is log10(e) a D / A (Siedentopf).
@@ -141,12 +141,12 @@ class Stock:
         return (self.granularity / 1000) ** 2 * hole / (math.log10(math.e) * GRAIN_DENSITY)
 
     def expose(self, frame: Frame, *, ev: float = 0.0, seed: int = 0) -> Negative:
-        """The film after its bath.
+        """Exposes the film to a frame and develops it.
 
         Args:
-            frame: With exposure metadata.
-            ev: Light times 2^ev.
-            seed: Of the grain.
+            frame: Frame with exposure metadata.
+            ev: Exposure compensation: light times 2^ev.
+            seed: Seed of the grain.
 
         Raises:
             InputError: The frame does not say how it was exposed.

@@ -74,7 +74,7 @@ def displacement(truth: Floats, other: Floats, across: int = 6, down: int = 4) -
 def _shift(
     one: Floats, two: Floats, y: NDArray[np.int64], x: NDArray[np.int64]
 ) -> tuple[float, float] | None:
-    """Of one block, px to the right and down."""
+    """Shift of one block, px to the right and down."""
     block = np.ix_(y, x)
     slope_y, slope_x = (slope[block].ravel() for slope in np.gradient(one))
     slopes = np.stack([slope_x, slope_y], 1)

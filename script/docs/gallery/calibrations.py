@@ -1,4 +1,4 @@
-"""What the page of calibrated cameras shows: one desk through files of four cameras."""
+"""Pictures of the page of calibrated cameras: one desk through files of four cameras."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page of photographs shows: sheets of exposed pictures, each with its commands."""
+"""Pictures of the page of photographs: sheets of exposed pictures, each with its commands."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class Sheet:
     """Pictures side by side.
 
     Attributes:
-        name: Of the file.
+        name: Name of the file.
         title: Below it on the page.
-        text: What there is to see.
+        text: Caption.
         first: Commands before all others.
         columns: In each row.
         photographs: Row by row.

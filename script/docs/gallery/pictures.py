@@ -1,4 +1,4 @@
-"""What the gallery shows: each picture with the commands that made it."""
+"""Pictures of the gallery: each picture with the commands that made it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Picture:
     squeeze: float = 1.0
 
     def commands(self, folder: str) -> list[tuple[str, str]]:
-        """What is typed for each panel, and the file that comes of it; #### counts frames."""
+        """Commands of each panel, and the file that comes of it; #### counts frames."""
         if self.scene.endswith(".py"):
             output = f"{folder}/{self.name}.png"
             return [(f"python {self.scene} {output} {self.flags}".strip(), output)]

@@ -144,7 +144,7 @@ def through_iris(
 
 
 def stop_index(lens: Lens) -> int:
-    """Of the surface that is the stop."""
+    """Index of the surface that is the stop."""
     return next(
         k for k, surface in enumerate(lens.surfaces) if surface.stop or surface.kind == "stop"
     )

@@ -14,8 +14,8 @@ class Panel:
     Attributes:
         caption: Drawn above it.
         file: Name of the .exr that the last command writes, without folder and ending.
-        commands: What is typed, in order; empty if another panel's commands write the file.
-        layer: Of the file, that is shown in place of R, G and B.
+        commands: Commands, in order; empty if another panel's commands write the file.
+        layer: Layer of the file that is shown in place of R, G and B.
         none: Why there is no such picture; the place stays empty.
     """
 
@@ -31,12 +31,12 @@ class Word:
     """One word of the list.
 
     Attributes:
-        name: Of the picture's file.
-        heading: Of its section.
-        text: What is seen and why, Markdown.
+        name: Name of the picture's file.
+        heading: Heading of its section.
+        text: Caption: the effect and its cause, Markdown.
         rows: Panels from left to right; the first of a row is what the others are held against.
         exposure: By which all panels are multiplied to be shown.
-        quality: Of the JPEG.
+        quality: Quality of the JPEG.
         fringes: Whether the table says how far red and blue lie from green.
     """
 
@@ -70,8 +70,8 @@ class Ways:
         lens: Flags of the lens and its focus.
         stop: Flags of its stop, which a pinhole has none of.
         view: Flags of size and samples that all have in common.
-        effects: Of the darkroom, on the picture of a pinhole.
-        degree: Of the polynomials.
+        effects: Effects of the darkroom, on the picture of a pinhole.
+        degree: Degree of the polynomials.
         wide: Flags of size of the pinhole's picture where it has to reach farther.
         more: Flags of the first two.
         needs: Flags of the pinhole's alone.

@@ -2,7 +2,7 @@
 
     script/docs/make-lens-catalogue [--out DIR] [--only NAME ...] [--page] [--no-sheets]
 
-What is there already and still true is left alone, so the command may be interrupted and typed
+Pictures that are there and still true are left alone, so the command may be interrupted and typed
 again. Data sheets of all lenses go to DIR (out/lenses) as PDF.
 """
 

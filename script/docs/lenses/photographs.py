@@ -52,12 +52,12 @@ def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
 
 
 def scene_key(path: Path) -> str:
-    """What a scene file is known by."""
+    """Hash of a scene file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _key(at: Place, scene: str) -> str:
-    """Of all that the picture depends on, but for the program."""
+    """Hash of all that the picture depends on, but for the program."""
     facts = [at.f_stop, at.film_mm, at.distance_m, at.resolution, at.size, at.focal_length_mm]
     facts += [at.lens.data, scene, SPP, DEPTH, EDITION, dataclasses.asdict(at.lens.nominal)]
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:32]

@@ -46,7 +46,7 @@ class Place:
 
 
 def place(entry: Entry, lens: Lens) -> Place:
-    """As far away as shows the subject large, but not nearer than the lens can focus."""
+    """Distance that shows the subject large, but not nearer than the lens can focus."""
     if entry.efl_long_mm is not None:
         lens = lens.at_zoom(math.sqrt(entry.efl_mm * entry.efl_long_mm))
     order = lens.first_order()

@@ -34,8 +34,8 @@ class CalibrationFlags:
         option(
             "--calibration",
             metavar="FILE[:NAME,...|all]",
-            help="Instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO, COLMAP; several cameras of "
-            "a file by their names, or all; may be repeated.",
+            help="Calibration instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO or COLMAP; "
+            "cameras of a file by name, or all; repeatable.",
             panel=_CAMERA,
         ),
     ] = None
@@ -44,7 +44,7 @@ class CalibrationFlags:
         option(
             "--pixel-pitch",
             metavar="UM",
-            help="Of the calibrated sensor, um: blur by --f-stop depends on it [by --sensor].",
+            help="Pixel pitch of the calibrated sensor, um; blur depends on it [by --sensor].",
             panel=_CAMERA,
         ),
     ] = None
@@ -54,7 +54,7 @@ class CalibrationFlags:
         option(
             "--calibration-size",
             metavar="WxH",
-            help="Of the calibrated picture, px, where the file does not say it.",
+            help="Size of the calibrated picture, px, where the file does not say it.",
             panel=_CAMERA,
         ),
     ] = None
@@ -63,8 +63,7 @@ class CalibrationFlags:
         option(
             "--calibration-unit",
             metavar="M",
-            help="What a length of 1 in a stereo pair by OpenCV, or in COLMAP's model, is, such as "
-            "mm or 25mm [1 m].",
+            help="Length unit of OpenCV's stereo pairs and COLMAP's models, such as 25mm [1 m].",
             panel=_CAMERA,
         ),
     ] = None
@@ -73,7 +72,7 @@ class CalibrationFlags:
         option(
             "--calibration-model",
             metavar="opencv|fisheye",
-            help="Of OpenCV's files that do not say it [opencv].",
+            help="Model of OpenCV's calibration files that do not say it [opencv].",
             panel=_CAMERA,
         ),
     ] = None
@@ -81,7 +80,7 @@ class CalibrationFlags:
         bool,
         option(
             "--rectified",
-            help="Pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
+            help="Read pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
             panel=_CAMERA,
         ),
     ] = False
@@ -89,7 +88,7 @@ class CalibrationFlags:
         bool,
         option(
             "--timeshift",
-            help="Shutters of a chain open later by their timeshift_cam_imu, less that of cam0.",
+            help="Delay shutters of a Kalibr chain by timeshift_cam_imu, less that of cam0.",
             panel=_CAMERA,
         ),
     ] = False
@@ -118,7 +117,7 @@ class CalibrationFlags:
 
     @property
     def _options(self) -> dict[str, Any]:
-        """Of the reader."""
+        """Options of the reader."""
         size, unit = self.calibration_size, self.calibration_unit
         options: dict[str, Any] = {"model": self.calibration_model, "rectified": self.rectified}
         if size is not None:
@@ -130,7 +129,7 @@ class CalibrationFlags:
     def resolution(
         self, calibration: Any, res: str | None, default: tuple[int, int]
     ) -> tuple[int, int]:
-        """Of the picture, px: the calibrated one's, unless ``--res`` says another."""
+        """Size of the picture, px: that of the calibration, unless ``--res`` says another."""
         size = default if calibration is None else calibration.projection.size
         if not res:
             return size
@@ -176,7 +175,7 @@ class CalibrationFlags:
         return delayed(camera, calibration.delay_s)
 
     def notes(self, camera: Any, calibration: Any) -> list[str]:
-        """What was decided, a sentence each."""
+        """Decisions made on the user's behalf, a sentence each."""
         if calibration is None:
             return []
         from daguerre.calibration.calibration import field_notes

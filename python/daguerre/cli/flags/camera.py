@@ -22,7 +22,10 @@ class CameraFlags:
     """The camera in a photographer's units; what is not given stays as the file says."""
 
     camera: Annotated[
-        Text, option("-c", "--camera", metavar="NAME", help="Camera of the scene.", panel=_CAMERA)
+        Text,
+        option(
+            "-c", "--camera", metavar="NAME", help="Camera of the scene, by name.", panel=_CAMERA
+        ),
     ] = None
     lens: Annotated[
         Text,
@@ -44,19 +47,30 @@ class CameraFlags:
     ] = None
     degree: Annotated[
         int | None,
-        option("--degree", metavar="N", help="Of a polynomial lens, odd [7].", panel=_CAMERA),
+        option(
+            "--degree",
+            metavar="N",
+            help="Degree of a polynomial lens, odd, 1 to 13 [7].",
+            panel=_CAMERA,
+        ),
     ] = None
     fit_tolerance: Annotated[
         float | None,
         option(
             "--fit-tolerance",
             metavar="PX",
-            help="RMS error above which the exact lens takes a polynomial one's place [0.5].",
+            help="RMS error, px, above which the exact lens replaces a polynomial one [0.5].",
             panel=_CAMERA,
         ),
     ] = None
     focal_length: Annotated[
-        Text, option("--focal-length", metavar="MM", help="Focal length, mm.", panel=_CAMERA)
+        Text,
+        option(
+            "--focal-length",
+            metavar="MM",
+            help="Focal length of an ideal lens, mm [50].",
+            panel=_CAMERA,
+        ),
     ] = None
     zoom: Annotated[
         Text,
@@ -83,29 +97,45 @@ class CameraFlags:
         option(
             "--t-stop",
             metavar="N",
-            help="Instead of --f-stop, of the light that the glass lets pass.",
+            help="F-number corrected for light lost in the glass, instead of --f-stop.",
             panel=_CAMERA,
         ),
     ] = None
     aperture_diameter: Annotated[
         Text,
-        option("--aperture-diameter", metavar="MM", help="Instead of --f-stop, mm.", panel=_CAMERA),
+        option(
+            "--aperture-diameter",
+            metavar="MM",
+            help="Entrance pupil diameter, mm, instead of --f-stop.",
+            panel=_CAMERA,
+        ),
     ] = None
     focus: Annotated[
         Text,
         option(
             "--focus",
             metavar="M",
-            help="Distance of the sharp plane, m, or inf [the file's, else autofocus].",
+            help="Focus distance, m, or inf [the file's, else autofocus].",
             panel=_CAMERA,
         ),
     ] = None
     focus_at: Annotated[
         Text,
-        option("--focus-at", metavar="X,Y", help="Focus on what this pixel shows.", panel=_CAMERA),
+        option(
+            "--focus-at",
+            metavar="X,Y",
+            help="Focus on the surface that this pixel shows.",
+            panel=_CAMERA,
+        ),
     ] = None
     focus_on: Annotated[
-        Text, option("--focus-on", metavar="NODE", help="Focus on this node.", panel=_CAMERA)
+        Text,
+        option(
+            "--focus-on",
+            metavar="NODE",
+            help="Focus on the nearest surface point of this node.",
+            panel=_CAMERA,
+        ),
     ] = None
     focus_from: Annotated[
         Text,
@@ -121,7 +151,7 @@ class CameraFlags:
         option(
             "--focus-by",
             metavar="paraxial|best",
-            help="Focus of rays near the axis, or the smallest spot [paraxial].",
+            help="Focus of rays near the axis, or smallest spot on the axis [paraxial].",
             panel=_CAMERA,
         ),
     ] = None
@@ -129,23 +159,40 @@ class CameraFlags:
         bool | None,
         option(
             "--focus-breathing/--no-focus-breathing",
-            help="Thin lens: the field narrows as it focuses closer.",
+            help="Thin lens: narrow the field in close focus.",
             panel=_CAMERA,
         ),
     ] = None
     blades: Annotated[
-        int | None, option("--blades", metavar="N", help="Iris blades, 0 is round.", panel=_CAMERA)
+        int | None,
+        option("--blades", metavar="N", help="Number of iris blades; 0 is round.", panel=_CAMERA),
     ] = None
     blade_rotation: Annotated[
-        Text, option("--blade-rotation", metavar="DEG", help="Degrees.", panel=_CAMERA)
+        Text,
+        option(
+            "--blade-rotation",
+            metavar="DEG",
+            help="Rotation of the iris blades, degrees.",
+            panel=_CAMERA,
+        ),
     ] = None
     blade_curvature: Annotated[
         float | None,
-        option("--blade-curvature", metavar="C", help="-1 to 1; 1 is round.", panel=_CAMERA),
+        option(
+            "--blade-curvature",
+            metavar="C",
+            help="Curvature of the iris blades, -1 to 1; 1 is round.",
+            panel=_CAMERA,
+        ),
     ] = None
     aperture_image: Annotated[
         Path | None,
-        option("--aperture-image", metavar="FILE", help="Grey picture of the iris.", panel=_CAMERA),
+        option(
+            "--aperture-image",
+            metavar="FILE",
+            help="Grey picture that shapes the iris.",
+            panel=_CAMERA,
+        ),
     ] = None
     front_mask: Annotated[
         Path | None,
@@ -158,14 +205,19 @@ class CameraFlags:
     ] = None
     iris_mask: Annotated[
         Path | None,
-        option("--iris-mask", metavar="FILE", help="The same at the iris.", panel=_CAMERA),
+        option(
+            "--iris-mask",
+            metavar="FILE",
+            help="Grey picture of dust and scratches at the iris of an exact lens.",
+            panel=_CAMERA,
+        ),
     ] = None
     ripple: Annotated[
         Text,
         option(
             "--ripple",
             metavar="NM,UM",
-            help="Grooves in the aspheric surfaces: height (RMS), period.",
+            help="Grooves in the aspheric surfaces: RMS height, nm, and period, um.",
             panel=_CAMERA,
         ),
     ] = None
@@ -174,7 +226,7 @@ class CameraFlags:
         option(
             "--cover-glass",
             metavar="MM,GAP[,INDEX]",
-            help="Glass before the sensor and the air behind it, mm: it has ghosts.",
+            help="Cover glass before the sensor, and the gap behind it, mm; it makes ghosts.",
             panel=_CAMERA,
         ),
     ] = None
@@ -183,7 +235,7 @@ class CameraFlags:
         option(
             "--sensor-reflectance",
             metavar="R",
-            help="What the sensor sends back into the lens, 0 to 1 [0].",
+            help="Share of light that the sensor sends back into the lens, 0 to 1 [0].",
             panel=_CAMERA,
         ),
     ] = None
@@ -192,7 +244,7 @@ class CameraFlags:
         option(
             "--scatter-barrel",
             metavar="SHARE",
-            help="For --scatter: what barrel and edges of the glass send to all sides [0.03].",
+            help="Share of light that barrel and glass edges scatter, for --scatter [0.03].",
             panel=_CAMERA,
         ),
     ] = None
@@ -201,7 +253,7 @@ class CameraFlags:
         option(
             "--scatter-blades",
             metavar="SHARE",
-            help="For --scatter: the same of the blades of the iris [0.03].",
+            help="Share of light that the iris blades scatter, for --scatter [0.03].",
             panel=_CAMERA,
         ),
     ] = None
@@ -210,7 +262,7 @@ class CameraFlags:
         option(
             "--scatter-surface-nm",
             metavar="NM",
-            help="For --scatter: RMS roughness of the polished surfaces, nm [1].",
+            help="RMS roughness of the polished surfaces, nm, for --scatter [1].",
             panel=_CAMERA,
         ),
     ] = None
@@ -219,8 +271,8 @@ class CameraFlags:
         option(
             "--sensor",
             metavar="NAME|FILE|WxH|" + "|".join(q.SENSORS),
-            help="A sensor of the library (`daguerre sensors`) or a file: the picture has its "
-            "channels, too. Or a size, mm [36x24].",
+            help="Sensor of the library (`daguerre sensors`) or a file, whose channels the "
+            "picture then has too; or a size, mm [36x24].",
             panel=_CAMERA,
         ),
     ] = None
@@ -229,19 +281,22 @@ class CameraFlags:
         option(
             "--fit",
             metavar="horizontal|vertical|auto|fill",
-            help="Which side of the sensor the picture spans [horizontal].",
+            help="Side of the sensor that the picture spans [horizontal].",
             panel=_CAMERA,
         ),
     ] = None
     shift: Annotated[
-        Text, option("--shift", metavar="X,Y", help="Film shift right and up, mm.", panel=_CAMERA)
+        Text,
+        option(
+            "--shift", metavar="X,Y", help="Shift of the film, right and up, mm.", panel=_CAMERA
+        ),
     ] = None
     tilt: Annotated[
         Text,
         option(
             "--tilt",
             metavar="X,Y",
-            help="Turn the lens about x (up) and y (left), degrees.",
+            help="Turn of the lens about x (up) and y (left), degrees.",
             panel=_CAMERA,
         ),
     ] = None
@@ -250,7 +305,7 @@ class CameraFlags:
         option(
             "--decenter",
             metavar="FIRST-LAST:X,Y[,AX,AY]",
-            help="Moves (mm) and turns (degrees) these surfaces of the lens; repeatable.",
+            help="Shift (mm) and tilt (degrees) of these surfaces of the lens; repeatable.",
             panel=_CAMERA,
         ),
     ] = None
@@ -262,14 +317,19 @@ class CameraFlags:
     ] = None
     ev: Annotated[
         float | None,
-        option("--ev", metavar="EV", help="Brighter by so much [0].", panel=_CAMERA),
+        option(
+            "--ev",
+            metavar="EV",
+            help="Exposure compensation of developed pictures, EV [0].",
+            panel=_CAMERA,
+        ),
     ] = None
     exposure_time: Annotated[
         Text,
         option(
             "--exposure-time",
             metavar="S",
-            help="Of the light, where motion blur is to be of another [--shutter].",
+            help="Exposure time that sets brightness, s; motion blur keeps --shutter [--shutter].",
             panel=_CAMERA,
         ),
     ] = None
@@ -278,7 +338,7 @@ class CameraFlags:
         option(
             "--exposure-f-stop",
             metavar="N",
-            help="Of the light, where blur is to be of another [--f-stop; of a pinhole 8].",
+            help="F-stop that sets brightness; blur keeps --f-stop [--f-stop; of a pinhole 8].",
             panel=_CAMERA,
         ),
     ] = None
@@ -291,7 +351,7 @@ class CameraFlags:
         option(
             "--wb",
             metavar="K|X,Y",
-            help="White balance for development: 5600, or a chromaticity.",
+            help="White balance for development: kelvins such as 5600, or a chromaticity.",
             panel=_CAMERA,
         ),
     ] = None
@@ -299,7 +359,7 @@ class CameraFlags:
         bool | None,
         option(
             "--natural-vignetting/--no-natural-vignetting",
-            help="Thin lens, pinhole: darken by cos^4.",
+            help="Thin lens and pinhole: darken by cos^4 of the field angle.",
             panel=_CAMERA,
         ),
     ] = None
@@ -394,7 +454,7 @@ def _refuse_rivals(changes: dict[str, Any]) -> dict[str, Any]:
 
 
 def sensor(flag: str, text: str) -> dict[str, Any]:
-    """Parameters of a camera: a size as of ``sensor_mm``, or a sensor of the library or a file."""
+    """Parameters of a camera: a size (``sensor_mm``), or a sensor of the library or a file."""
     name = text.strip().lower()
     if name in SENSORS or (name[:1].isdigit() and "x" in name):
         return {"sensor_size": sensor_mm(flag, text)}

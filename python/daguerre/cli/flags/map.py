@@ -24,7 +24,7 @@ class MapFlags:
         option(
             "--export-raymap",
             metavar="FILE.exr",
-            help="Of each pixel: where its ray starts, its direction, and when.",
+            help="Ray of each pixel: origin, direction and time.",
             panel=_MAPS,
         ),
     ] = None
@@ -33,7 +33,8 @@ class MapFlags:
         option(
             "--raymap-frame",
             metavar="camera|world",
-            help="In the camera's frame (x right, y down, z ahead), or the scene's [camera].",
+            help="Frame of --export-raymap: the camera's (x right, y down, z ahead) or the "
+            "world's [camera].",
             panel=_MAPS,
         ),
     ] = "camera"
@@ -98,9 +99,9 @@ class MapFlags:
         """Writes the maps that are asked for.
 
         Args:
-            scene: For its time.
+            scene: Scene, for its time.
             camera: Its focus stated.
-            size: Of the picture, px.
+            size: Width and height of the picture, px.
             overscan: An ``Overscan``.
             gt_time: When in the exposure rays are seen.
         """

@@ -16,13 +16,17 @@ _LIGHT = "Scene and light"
 
 @dataclass(frozen=True)
 class SceneFlags:
-    """What the camera looks at."""
+    """Flags of the scene and its light."""
 
     time: Annotated[
-        Text, option("--time", metavar="S", help="Scene time, s [0].", panel=_LIGHT)
+        Text,
+        option("--time", metavar="S", help="Time in the scene's animation, s [0].", panel=_LIGHT),
     ] = None
     variant: Annotated[
-        Text, option("--variant", metavar="NAME", help="Variant of the materials.", panel=_LIGHT)
+        Text,
+        option(
+            "--variant", metavar="NAME", help="Variant of the materials, by name.", panel=_LIGHT
+        ),
     ] = None
     env: Annotated[
         Path | None,
@@ -33,7 +37,10 @@ class SceneFlags:
     env_scale: Annotated[
         float | None,
         option(
-            "--env-scale", metavar="X", help="cd/m2 of a value of 1 in --env [1].", panel=_LIGHT
+            "--env-scale",
+            metavar="X",
+            help="Luminance of a value of 1 in --env, cd/m2 [1].",
+            panel=_LIGHT,
         ),
     ] = None
     env_lux: Annotated[
@@ -41,20 +48,31 @@ class SceneFlags:
         option(
             "--env-lux",
             metavar="LUX",
-            help="Instead: illuminance by --env or --sky on the ground, a plane that faces up.",
+            help="Illuminance by --env or --sky on the ground, lux, instead of --env-scale.",
             panel=_LIGHT,
         ),
     ] = None
     env_rotation: Annotated[
         Text,
-        option("--env-rotation", metavar="DEG", help="About the vertical, degrees.", panel=_LIGHT),
+        option(
+            "--env-rotation",
+            metavar="DEG",
+            help="Turn of --env about the vertical, degrees.",
+            panel=_LIGHT,
+        ),
     ] = None
     sky: Annotated[
-        Text, option("--sky", metavar="R,G,B", help="Even sky, cd/m2.", panel=_LIGHT)
+        Text,
+        option("--sky", metavar="R,G,B", help="Even sky of this luminance, cd/m2.", panel=_LIGHT),
     ] = None
     allow_dir: Annotated[
         list[Path] | None,
-        option("--allow-dir", metavar="DIR", help="Folder that the scene may read.", panel=_LIGHT),
+        option(
+            "--allow-dir",
+            metavar="DIR",
+            help="Folder outside the scene's own that the scene may read.",
+            panel=_LIGHT,
+        ),
     ] = None
 
     def load(self, path: Path) -> Any:

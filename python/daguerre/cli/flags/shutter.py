@@ -20,24 +20,34 @@ class ShutterFlags:
 
     shutter: Annotated[
         Text,
-        option("--shutter", metavar="S", help="Exposure, s: 1/48, 20ms, 4s, 0.", panel=_SHUTTER),
+        option(
+            "--shutter",
+            metavar="S",
+            help="Exposure time, s: 1/48, 20ms, 4s; 0 freezes.",
+            panel=_SHUTTER,
+        ),
     ] = None
     shutter_angle: Annotated[
         Text,
         option(
-            "--shutter-angle", metavar="DEG", help="The same in degrees of a frame.", panel=_SHUTTER
+            "--shutter-angle",
+            metavar="DEG",
+            help="Exposure time in degrees of a frame.",
+            panel=_SHUTTER,
         ),
     ] = None
     fps: Annotated[
         Text,
-        option("--fps", metavar="N", help="Frames per second [24]; 24000/1001.", panel=_SHUTTER),
+        option(
+            "--fps", metavar="N", help="Frames per second, such as 24000/1001 [24].", panel=_SHUTTER
+        ),
     ] = None
     shutter_offset: Annotated[
         Text,
         option(
             "--shutter-offset",
             metavar="FRAMES",
-            help="When it opens, from --time [the exposure is centred there].",
+            help="Time of opening, in frames from --time [exposure centred on --time].",
             panel=_SHUTTER,
         ),
     ] = None
@@ -46,7 +56,7 @@ class ShutterFlags:
         option(
             "--shutter-type",
             metavar="box|leaf|focal_plane|rotary|electronic",
-            help="How it opens [box].",
+            help="Kind of shutter [box; electronic with --rolling].",
             panel=_SHUTTER,
         ),
     ] = None
@@ -55,7 +65,7 @@ class ShutterFlags:
         option(
             "--shutter-curve",
             metavar="box|trapezoid:E|FILE",
-            help="Opening over time: efficiency E, or a table of time, opening.",
+            help="Opening over time: box, efficiency E, or a table of time and opening.",
             panel=_SHUTTER,
         ),
     ] = None

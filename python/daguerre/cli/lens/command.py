@@ -25,12 +25,14 @@ if TYPE_CHECKING:
 #: the wavelength of the helium d line, at which lenses are specified, nm
 DESIGN_NM = 587.56
 FOCUS_BY = ("best", "paraxial")
-BENCH, FILES = "On the bench", "What is written"
+BENCH, FILES = "On the bench", "Files written"
 
 
 def lens(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Of the library, or a file.")],
-    json: Annotated[bool, option("--json", help="All numbers as one JSON object, mm.")] = False,
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
+    json: Annotated[
+        bool, option("--json", help="Print all numbers as one JSON object, mm.")
+    ] = False,
     plot: Annotated[
         Path | None,
         option(
@@ -46,7 +48,7 @@ def lens(
         option(
             "--drawing",
             metavar="FILE.svg|png|pdf",
-            help="The section with rays of three fields; .png, .pdf: extra `plot`.",
+            help="Section with rays of three fields; .png, .pdf: extra `plot`.",
             panel=FILES,
         ),
     ] = None,
@@ -61,40 +63,61 @@ def lens(
     ] = None,
     degree: Annotated[
         int | None,
-        option("--degree", metavar="N", help="Of those: odd, 1 to 13 [7].", panel=FILES),
+        option(
+            "--degree",
+            metavar="N",
+            help="Degree of the exported polynomials, odd, 1 to 13 [7].",
+            panel=FILES,
+        ),
     ] = None,
     sensor: Annotated[
         str | None,
         option(
             "--sensor",
             metavar="WxH|" + "|".join(SENSORS),
-            help="Film that they cover, mm [the lens's format].",
+            help="Size of the film for --export and --flare, mm [the lens's format].",
             panel=FILES,
         ),
     ] = None,
     blades: Annotated[
         int | None,
-        option("--blades", metavar="N", help="Of their iris, 0 is round [0].", panel=FILES),
+        option(
+            "--blades",
+            metavar="N",
+            help="Blades of the exported lens's iris; 0 is round [0].",
+            panel=FILES,
+        ),
     ] = None,
     blade_rotation: Annotated[
-        str | None, option("--blade-rotation", metavar="DEG", help="Degrees [0].", panel=FILES)
+        str | None,
+        option(
+            "--blade-rotation",
+            metavar="DEG",
+            help="Rotation of the exported lens's iris blades, degrees [0].",
+            panel=FILES,
+        ),
     ] = None,
     blade_curvature: Annotated[
         float | None,
-        option("--blade-curvature", metavar="C", help="-1 to 1; 1 is round [0].", panel=FILES),
+        option(
+            "--blade-curvature",
+            metavar="C",
+            help="Curvature of its iris blades, -1 to 1; 1 is round [0].",
+            panel=FILES,
+        ),
     ] = None,
     psf: Annotated[
         str | None,
         option(
             "--psf",
             metavar="FIELD,DISTANCE",
-            help="Point spread: image height (mm) or angle (deg), distance (m) or inf.",
+            help="Point spread function: image height (mm) or angle (deg), distance (m) or inf.",
             panel=BENCH,
         ),
     ] = None,
     through_focus: Annotated[
         bool,
-        option("--through-focus", help="The PSF on nine films around the focus.", panel=BENCH),
+        option("--through-focus", help="Show the PSF on nine films around the focus.", panel=BENCH),
     ] = False,
     flare: Annotated[
         str | None,
@@ -111,7 +134,7 @@ def lens(
         option(
             "--ghost",
             metavar="I,J",
-            help="Surfaces of the one that is drawn [the brightest].",
+            help="Surfaces of the ghost that --drawing shows [the brightest].",
             panel=BENCH,
         ),
     ] = None,
@@ -120,43 +143,52 @@ def lens(
         option(
             "--cover-glass",
             metavar="MM,GAP[,INDEX]",
-            help="Glass before the sensor, for --flare.",
+            help="Cover glass before the sensor, for --flare: thickness, gap (mm), index.",
             panel=BENCH,
         ),
     ] = None,
     sensor_reflectance: Annotated[
         float | None,
-        option("--sensor-reflectance", metavar="R", help="0 to 1, for --flare [0].", panel=BENCH),
+        option(
+            "--sensor-reflectance",
+            metavar="R",
+            help="Reflectance of the sensor, 0 to 1, for --flare [0].",
+            panel=BENCH,
+        ),
     ] = None,
     veiling_glare: Annotated[
         bool,
         option(
             "--veiling-glare",
-            help="How much of a white world a black patch shows, by ghosts and by scatter.",
+            help="Print the veiling glare of a black patch in a white world: ghosts and scatter.",
             panel=BENCH,
         ),
     ] = False,
     zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom.", panel=BENCH)
+        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.", panel=BENCH)
     ] = None,
     focus: Annotated[
         str | None,
         option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].", panel=BENCH),
     ] = None,
     f_stop: Annotated[
-        str | None, option("--f-stop", metavar="N", help="As engraved [wide open].", panel=BENCH)
+        str | None,
+        option("--f-stop", metavar="N", help="F-stop as engraved [wide open].", panel=BENCH),
     ] = None,
     focus_by: Annotated[
         str,
         option(
             "--focus-by",
             metavar="best|paraxial",
-            help="Smallest spot on the axis, or rays close to it [best].",
+            help="Focus at the smallest spot on the axis, or of rays close to it [best].",
             panel=BENCH,
         ),
     ] = "best",
     wavelength: Annotated[
-        float, option("--wavelength", metavar="NM", help="Of the first-order data, nm [587.56].")
+        float,
+        option(
+            "--wavelength", metavar="NM", help="Wavelength of the first-order data, nm [587.56]."
+        ),
     ] = DESIGN_NM,
 ) -> int:
     """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""
@@ -171,7 +203,7 @@ def lens(
     if focus_by not in FOCUS_BY:
         raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
     if through_focus and psf is None:
-        raise UsageError("--through-focus: wanted with --psf FIELD,DISTANCE")
+        raise UsageError("--through-focus: needs --psf FIELD,DISTANCE")
     point = None if psf is None else _point(psf)
     item = library.load(name)
     for text in item.notes:

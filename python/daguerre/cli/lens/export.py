@@ -38,7 +38,7 @@ class Export:
         if path is None:
             for name, given in vars(self).items():
                 if given is not None:
-                    raise UsageError(f"--{name.replace('_', '-')}: wanted with --export FILE")
+                    raise UsageError(f"--{name.replace('_', '-')}: needs --export FILE")
             return
         from daguerre.export import check_suffix
         from daguerre.files.atomic import check_writable

@@ -39,7 +39,7 @@ class Flare:
         }
         for flag, value in others.items():
             if value is not None and angle is None:
-                raise UsageError(f"{flag}: wanted with --flare ANGLE")
+                raise UsageError(f"{flag}: needs --flare ANGLE")
         if angle is None:
             return
         self.angle = angle_deg("--flare", angle)
@@ -88,9 +88,9 @@ def show_flare(
 
     Args:
         bench: The lens.
-        angle_deg: Of the source, from the axis.
-        film: Width and height of the film, mm; None: of the lens's image circle.
-        stack: What of the body reflects.
+        angle_deg: Angle of the source from the axis.
+        film: Width and height of the film, mm; None: those of the lens's image circle.
+        stack: Reflecting parts of the body.
         which: The ghost that is drawn; None: the brightest.
         plot: File of all ghosts on the film, or None.
         drawing: File of the section with rays of one ghost, or None.

@@ -30,7 +30,7 @@ def show_psf(
         bench: The lens.
         field: Image height, mm, or angle, degrees.
         is_angle: Which of them it is.
-        distance_m: Of the point, m, or inf.
+        distance_m: Distance of the point, m, or inf.
         plot: File of the pictures, or None.
         json: One JSON object rather than lines.
         through_focus: On a series of films.

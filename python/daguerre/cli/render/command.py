@@ -43,7 +43,9 @@ _SAMPLING = "Sampling"
     map_flags=MapFlags,
 )
 def render(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="A .glb or .gltf file.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene, a .glb or .gltf file.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
@@ -55,17 +57,20 @@ def render(
             "-o",
             "--output",
             metavar="FILE",
-            help=".exr, .png, .jpg, .tif or .dng; may be repeated. Without it maps alone are made.",
+            help="File to write: .exr, .png, .jpg, .tif or .dng; repeatable. Without it only maps "
+            "are written.",
             panel=_OUTPUT,
         ),
     ] = None,
     res: Annotated[
         str | None,
-        option("--res", metavar="WxH|50%", help="Size in pixels [960x540].", panel=_OUTPUT),
+        option(
+            "--res", metavar="WxH|50%", help="Size of the picture, px [960x540].", panel=_OUTPUT
+        ),
     ] = None,
     crop: Annotated[
         str | None,
-        option("--crop", metavar="X0,X1,Y0,Y1", help="Only these pixels.", panel=_OUTPUT),
+        option("--crop", metavar="X0,X1,Y0,Y1", help="Draw only these pixels.", panel=_OUTPUT),
     ] = None,
     overscan: Annotated[
         str | None,
@@ -73,7 +78,7 @@ def render(
             "--overscan",
             metavar="PX|10%|L,T,R,B|undistort",
             help="Pixels beside the picture, in the data window of the .exr: for all sides, for "
-            "left, top, right and bottom, or what a later straightening needs.",
+            "left, top, right and bottom, or as many as undistorting needs.",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -93,8 +98,8 @@ def render(
         option(
             "--gt-time",
             metavar="open|mid|close",
-            help="Depth, P, N and ids exactly, at that moment of the exposure, not as means "
-            "[mid with --aov motion].",
+            help="Exact depth, P, N and ids at that moment of the exposure, instead of means [mid "
+            "with --aov motion].",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -110,14 +115,19 @@ def render(
     ] = "chief",
     gt_rays: Annotated[
         int | None,
-        option("--gt-rays", metavar="N", help="Of a pixel, for such means [64].", panel=_OUTPUT),
+        option(
+            "--gt-rays",
+            metavar="N",
+            help="Rays per pixel for --gt-lens mean [64].",
+            panel=_OUTPUT,
+        ),
     ] = None,
     coco: Annotated[
         Path | None,
         option(
             "--coco",
             metavar="FILE.json",
-            help="Boxes, masks and categories of all things in the pictures, one file for all.",
+            help="Write boxes, masks and categories of all things to one COCO file.",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -126,17 +136,19 @@ def render(
         option(
             "--categories",
             metavar="FILE.json",
-            help="For --coco: what nodes are, by patterns of their names [their names].",
+            help="Categories of nodes for --coco, by patterns of their names [by names].",
             panel=_OUTPUT,
         ),
     ] = None,
-    aovs: Annotated[bool, option("--aovs", help="All of them.", panel=_OUTPUT)] = False,
+    aovs: Annotated[
+        bool, option("--aovs", help="Keep the channels of --aov all.", panel=_OUTPUT)
+    ] = False,
     tone: Annotated[
         str,
         option(
             "--tone",
             metavar="srgb|soft",
-            help="Curve of a picture that is not developed: 1 is white [srgb].",
+            help="Tone curve of a picture that is not developed: 1 is white [srgb].",
             panel=_OUTPUT,
         ),
     ] = "srgb",
@@ -145,7 +157,7 @@ def render(
         option(
             "--exposure",
             metavar="auto[:centre|spot|matrix]",
-            help="The ISO is metered as a camera does [centre].",
+            help="Meter the ISO as a camera does [centre].",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -154,7 +166,7 @@ def render(
         option(
             "--bracket",
             metavar="EV,EV,...",
-            help="A picture at each of these exposures, such as -2,0,2.",
+            help="Write a picture at each of these exposures, EV, such as -2,0,2.",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -163,12 +175,12 @@ def render(
         option(
             "--look",
             metavar="NAME",
-            help="Of developed pictures: neutral, standard, film, filmic, ocio:VIEW [neutral].",
+            help="Tone curve of a photo: neutral, standard, film, filmic, ocio:VIEW [neutral].",
             panel=_OUTPUT,
         ),
     ] = None,
     denoise: Annotated[
-        bool, option("--denoise", help="Needs the extra `denoise`.", panel=_OUTPUT)
+        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.", panel=_OUTPUT)
     ] = False,
     spp: Annotated[
         int | None, option("--spp", metavar="N", help="Samples per pixel [64].", panel=_SAMPLING)
@@ -178,29 +190,50 @@ def render(
         option(
             "--noise",
             metavar="X",
-            help="Draw until the relative error is X, say 0.02; more samples where they are "
-            "needed, --spp of a pixel at most [16384].",
+            help="Draw until the relative error is X, such as 0.02, with at most --spp samples "
+            "per pixel [16384].",
             panel=_SAMPLING,
         ),
     ] = None,
     samples: Annotated[
         str | None,
-        option("--samples", metavar="A:B", help="A pass of samples, for `merge`.", panel=_SAMPLING),
+        option(
+            "--samples",
+            metavar="A:B",
+            help="Draw samples A to B only, a pass for `merge`.",
+            panel=_SAMPLING,
+        ),
     ] = None,
-    seed: Annotated[int, option("--seed", metavar="N", help="[0]", panel=_SAMPLING)] = 0,
-    threads: Annotated[int, option("--threads", metavar="N", help="[0: all]", panel=_SAMPLING)] = 0,
+    seed: Annotated[
+        int, option("--seed", metavar="N", help="Seed of the random numbers [0].", panel=_SAMPLING)
+    ] = 0,
+    threads: Annotated[
+        int,
+        option(
+            "--threads",
+            metavar="N",
+            help="Number of threads; 0 uses all cores [0].",
+            panel=_SAMPLING,
+        ),
+    ] = 0,
     filter: Annotated[
         str,
         option(
             "--filter",
             metavar="NAME",
-            help="box, gaussian, mitchell or blackman_harris; NAME:PX sets its radius "
-            "[blackman_harris].",
+            help="Pixel filter: box, gaussian, mitchell or blackman_harris; NAME:PX sets its "
+            "radius [blackman_harris].",
             panel=_SAMPLING,
         ),
     ] = "blackman_harris",
     max_depth: Annotated[
-        int, option("--max-depth", metavar="N", help="Surfaces along a path [16].", panel=_SAMPLING)
+        int,
+        option(
+            "--max-depth",
+            metavar="N",
+            help="Largest number of surfaces along a path [16].",
+            panel=_SAMPLING,
+        ),
     ] = 16,
     light_paths: Annotated[
         str,
@@ -217,7 +250,7 @@ def render(
         option(
             "--flare",
             metavar="auto|off|N",
-            help="Ghosts of an exact lens; N paths per sample index [off].",
+            help="Draw ghosts of an exact lens; N paths per sample index [off].",
             panel=_SAMPLING,
         ),
     ] = "off",
@@ -226,7 +259,7 @@ def render(
         option(
             "--flare-order",
             metavar="2|4",
-            help="Reflections of ghosts: 4 draws those of four, too [2].",
+            help="Number of reflections of ghosts; 4 draws those of 2 and of 4 [2].",
             panel=_SAMPLING,
         ),
     ] = 2,
@@ -235,7 +268,7 @@ def render(
         option(
             "--flare-highlights",
             metavar="on|off",
-            help="Light that mirrors, glass and walls send to the lens has ghosts, too [on].",
+            help="Draw ghosts of light that mirrors, glass and walls send to the lens, too [on].",
             panel=_SAMPLING,
         ),
     ] = "on",
@@ -244,7 +277,7 @@ def render(
         option(
             "--scatter",
             metavar="auto|off|N",
-            help="Light that barrel, iris and surfaces of an exact lens scatter; N paths per "
+            help="Draw light that barrel, iris and surfaces of an exact lens scatter; N paths per "
             "sample index [off].",
             panel=_SAMPLING,
         ),
@@ -253,21 +286,26 @@ def render(
         bool,
         option(
             "--diffraction",
-            help="Light is a wave at the iris: stars, discs, softness at narrow stops.",
+            help="Treat light as a wave at the iris: stars, discs, softness at narrow stops.",
             panel=_SAMPLING,
         ),
     ] = False,
     diffraction_bands: Annotated[
         int,
-        option("--diffraction-bands", metavar="N", help="Of wavelengths [16].", panel=_SAMPLING),
+        option(
+            "--diffraction-bands",
+            metavar="N",
+            help="Number of wavelength bands for --diffraction [16].",
+            panel=_SAMPLING,
+        ),
     ] = 16,
     bands: Annotated[
         int,
         option(
             "--bands",
             metavar="N",
-            help="Keep N bands of wavelengths (3 to 64), of which any sensor's channels can be "
-            "made later [0].",
+            help="Number of wavelength bands to keep, 3 to 64, from which any sensor's channels "
+            "can be made later [0].",
             panel=_OUTPUT,
         ),
     ] = 0,
@@ -276,12 +314,12 @@ def render(
         option(
             "--diffraction-zones",
             metavar="N",
-            help="N x N points of the frame see the iris through their own pupil [1].",
+            help="Points along each side of the frame with diffraction of their own [1].",
             panel=_SAMPLING,
         ),
     ] = 1,
     resume: Annotated[
-        bool, option("--resume", help="Go on from OUT.checkpoint.exr.", panel=_SAMPLING)
+        bool, option("--resume", help="Resume from OUT.checkpoint.exr.", panel=_SAMPLING)
     ] = False,
     checkpoint: Annotated[
         str,
@@ -294,8 +332,8 @@ def render(
         option(
             "--frames",
             metavar="A-BxS",
-            help="A sequence: frame f is drawn at --time + f / fps, into -o NAME.####.exr; with "
-            "--resume those that are complete are left.",
+            help="Frames of a sequence: frame f is drawn at --time + f / fps, into -o "
+            "NAME.####.exr; --resume skips complete ones.",
             panel=_OUTPUT,
         ),
     ] = None,
@@ -304,20 +342,20 @@ def render(
         option(
             "--stereo",
             metavar="M",
-            help="A pair, left and right, so far apart, m; the camera stands in its middle.",
+            help="Distance of the cameras of a stereo pair, m; the camera stands in its middle.",
             panel="Camera",
         ),
     ] = None,
-    quiet: Annotated[bool, option("--quiet", "-q", help="Errors only.")] = False,
+    quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
     json_progress: Annotated[
-        bool, option("--json-progress", help="Progress as JSON lines on stdout.")
+        bool, option("--json-progress", help="Print progress as JSON lines on stdout.")
     ] = False,
-    stats: Annotated[bool, option("--stats", help="Counts and times at the end.")] = False,
+    stats: Annotated[bool, option("--stats", help="Print counts and times at the end.")] = False,
     dry_run: Annotated[bool, option("--dry-run", help="Check everything, draw nothing.")] = False,
 ) -> int:
     """Renders a scene to a picture, or a sequence of them, by one camera or by several.
 
-    Stop with Ctrl-C: what was drawn is kept, and the command that goes on is printed.
+    Ctrl-C stops: samples that were drawn are kept, and the command that resumes is printed.
     """
     console.quiet = quiet
     sampling = (spp, samples, noise)

@@ -175,7 +175,7 @@ class Job:
         return f"{share:.1%} of the camera's rays, by lens, iris or edge of the field"
 
     def _light_stats(self) -> dict[str, str]:
-        """Of light paths, and how many passed the lens and missed the frame."""
+        """Counts of light paths, and of those that passed the lens and missed the frame."""
         from daguerre.rendering.light_paths import show_plan
 
         session = self.session
@@ -188,7 +188,7 @@ class Job:
         }
 
     def _flare_stats(self) -> dict[str, str]:
-        """Of ghosts: what they were drawn from, and which of their rays came to the frame."""
+        """Counts of ghosts: their sources, and the share of their rays on the frame."""
         session = self.session
         if not session.flare_rays:
             return {}
@@ -199,7 +199,7 @@ class Job:
         }
 
     def _scatter_stats(self) -> dict[str, str]:
-        """Of light that the lens's parts scatter, as of ghosts."""
+        """Counts of light that the lens's parts scatter."""
         count = self.session.scatter_path_count
         if not count:
             return {}

@@ -29,17 +29,17 @@ MOST_EV, MOST_SHOTS = 20.0, 15
 
 @dataclass(frozen=True)
 class Photograph:
-    """What is asked for.
+    """How pictures are photographed, developed and bracketed.
 
     Attributes:
         develops: Whether pictures are developed; else 1 is white.
-        sensor: That takes the picture; None: a perfect one.
-        iso: As set; None: by the meter, or 100.
-        meters: Way to meter; None: as set.
+        sensor: Sensor that takes the picture; None: a perfect one.
+        iso: ISO as set; None: by the meter, or 100.
+        meters: Way to meter; None: the ISO is set.
         ev: Compensation; what is not metered has it from the frame's facts.
         bracket: Exposures, EV, each with a picture; empty: one.
         look: Tone curve; None: neutral.
-        seed: Of the noise.
+        seed: Seed of the noise.
         focus_at: Pixel that is in focus, if one was named: where the spot is metered.
     """
 
@@ -163,7 +163,7 @@ class Photograph:
         offsets = self.bracket or (0.0,)
         for offset in offsets if exposed else ():
             files = [file for path in exposed for file, ev in self.files(path) if ev == offset]
-            # Of a bracket, what is to be said of one of them.
+            # Messages about a bracket speak of one of its pictures.
             self._shoot(frame, offset, files, tell=offset == min(offsets, key=abs))
 
     def _shoot(self, frame: Frame, offset: float, files: list[Path], *, tell: bool) -> None:

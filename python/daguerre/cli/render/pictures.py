@@ -31,7 +31,7 @@ class Picture:
     """One picture of a call.
 
     Attributes:
-        frame: Of a sequence; None: the only one.
+        frame: Frame number in a sequence; None: the only one.
         view: The camera.
         plan: Its files, size and samples.
         words: Which one it is, for people; empty: the only one.
@@ -48,13 +48,13 @@ class Picture:
 def pictures(
     plan: Plan, views: list[View], sizes: list[tuple[int, int]], frames: list[int] | None
 ) -> list[Picture]:
-    """All that a call asks for, frame after frame, of each all cameras.
+    """Lists all pictures of a call, frame after frame, each by all cameras.
 
     Args:
-        plan: What they share; its outputs have places for frames and cameras.
+        plan: Plan that they share; its outputs have places for frames and cameras.
         views: The cameras.
-        sizes: Of their pictures, px.
-        frames: Their numbers; None: no sequence.
+        sizes: Sizes of their pictures, px.
+        frames: Frame numbers; None: no sequence.
     """
     several, made = len(views) > 1, []
     for number in [None] if frames is None else frames:
@@ -85,18 +85,18 @@ def check_distinct(wanted: list[Picture]) -> None:
 
 @dataclass
 class Shoot:
-    """What all pictures share.
+    """Draws the pictures of a call, which share all of this.
 
     Attributes:
-        scene: At the time of frame 0.
+        scene: The scene at the time of frame 0.
         scene_path: Its file.
-        calibrations: What stands in the place of lenses.
-        changes: What the command line changes of the cameras.
-        settings: Of the session.
+        calibrations: Calibrations that replace lenses.
+        changes: Changes that the command line makes to the cameras.
+        settings: Settings of the session.
         tone: Curve of a PNG.
         stats: Print counts and times.
-        coco: What the pictures show is written there.
-        categories: What it is.
+        coco: File of annotations of what the pictures show; None: none.
+        categories: File of categories for ``coco``; None: by the names of nodes.
     """
 
     scene: Scene
@@ -202,7 +202,7 @@ class Shoot:
             plan.maps.write(scene, camera, size, overscan, plan.gt_time)
 
     def describe(self, wanted: list[Picture]) -> int:
-        """What would be drawn, on stdout: of a sequence its first frame, of a rig each camera."""
+        """Prints the facts of pictures: for a sequence its first frame, for a rig each camera."""
         from daguerre.io.exr.write import jsonable, without_infinity
 
         first = [picture for picture in wanted if picture.frame == wanted[0].frame]
@@ -278,7 +278,8 @@ class Shoot:
             luminance_exposure(session.metadata)  # or an error that names what is missing
         if first and not lit(scene):
             console.warn(
-                f"{self.scene_path}: nothing shines, so the picture will be black; --env lights it"
+                f"{self.scene_path}: the scene has no lights, so the picture will be black; "
+                "add one or use --env"
             )
         for text in session.warnings:
             console.warn(f"{self.scene_path}: {text}")

@@ -1,4 +1,4 @@
-"""What a command line asks for, checked before anything heavy is loaded."""
+"""Plan of a render command, checked before anything heavy is loaded."""
 
 from __future__ import annotations
 

@@ -33,10 +33,10 @@ class View:
     """One camera of a call.
 
     Attributes:
-        name: What files and progress call it; empty: the only one, of no name.
-        camera: Of the scene; None: its own.
-        calibration: What stands in the place of its lens.
-        shift: To the right of where that camera stands, m.
+        name: Name in files and progress; empty: the only one.
+        camera: Name of the scene's camera; None: the scene's own.
+        calibration: Calibration that replaces its lens.
+        shift: Shift to the right of where that camera stands, m.
     """
 
     name: str = ""

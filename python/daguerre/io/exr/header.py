@@ -34,8 +34,8 @@ class ExrHeader:
 
     Attributes:
         attributes: Type and bytes by name, in the file's order.
-        flags: Of the version field.
-        parts: How many the file has.
+        flags: Flags of the version field.
+        parts: Number of parts of the file.
     """
 
     attributes: dict[str, tuple[str, bytes]]
@@ -106,10 +106,10 @@ def header_bytes(header: ExrHeader) -> bytes:
 def new_header(
     names: tuple[str, ...], corner: tuple[int, int], size: tuple[int, int], full: tuple[int, int]
 ) -> ExrHeader:
-    """Of a new file of float channels.
+    """Makes the header of a new file of float channels.
 
     Args:
-        names: Of the channels, sorted.
+        names: Names of the channels, sorted.
         corner: First pixel of the data window, px.
         size: Width and height of the data window, px.
         full: Those of the display window, which begins at (0, 0), px.

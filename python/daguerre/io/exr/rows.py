@@ -110,7 +110,7 @@ class ExrWriter:
     """Writes a scanline file row by row, with the attributes of the file that it was made from."""
 
     def __init__(self, path: Path, source: ExrHeader, attributes: Mapping[str, str] = {}) -> None:
-        """Begins a file.
+        """Opens a file.
 
         Args:
             path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.

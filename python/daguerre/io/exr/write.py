@@ -189,7 +189,7 @@ def without_infinity(value: Any) -> Any:
 
 
 def jsonable(value: Any) -> Any:
-    """What ``json`` does not know by itself: arrays, numpy numbers, paths."""
+    """Converts values that ``json`` does not know: arrays, numpy numbers, paths."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, np.generic):

@@ -92,7 +92,7 @@ class Accessors:
         Args:
             use: The JSON value that names the accessor.
             types: Types that are allowed here, such as ``("VEC3",)``.
-            what: What an element is called in a complaint.
+            what: Name of an element in a complaint.
 
         Returns:
             float32, shape (count, components).
@@ -105,7 +105,7 @@ class Accessors:
     def changes(
         self, use: Item, types: tuple[str, ...], what: str
     ) -> tuple[NDArray[np.int64] | slice, NDArray[np.float32]]:
-        """As ``floats``, but only those elements that may differ from 0, and which they are.
+        """Reads like ``floats``, but only those elements that may differ from 0, and their indices.
 
         Returns:
             Indices of the elements, and their numbers (indices, components).

@@ -31,7 +31,7 @@ class Channel:
     Attributes:
         tokens: The way to it.
         target: Where it is written.
-        track: What it is.
+        track: Its values over time.
     """
 
     tokens: list[str]
@@ -55,7 +55,7 @@ class Animations:
         root: The JSON object of the file; changed in place to the moment ``time``.
         accessors: Its accessors.
         time: s.
-        notes: What was not understood.
+        notes: Gets what was not understood.
 
     Attributes:
         duration: Time of the last key, s; None: there is no animation.
@@ -86,7 +86,7 @@ class Animations:
                 self._parts.setdefault(_part(channel.tokens), []).append(channel)
 
     def of(self, *part: str) -> list[Channel]:
-        """What changes in a part of the file, such as ``of("nodes", "3")``."""
+        """Channels that change a part of the file, such as ``of("nodes", "3")``."""
         return self._parts.get(part, [])
 
     def parts(self, kind: str) -> list[int]:
@@ -117,7 +117,7 @@ def _part(tokens: list[str]) -> Part:
 
 
 def _target(item: Item, pointers: Pointers, notes: Notes) -> tuple[list[str], Target | None]:
-    """What a channel animates; None, with a note where that is odd, if it is nothing."""
+    """Target of a channel; None, with a note where that is odd, if it is nothing."""
     path, node = item.need("path").text(), item.get("node")
     if path in _PATHS:
         if node is None:  # left to extensions that are not in the file (3.11)

@@ -30,7 +30,7 @@ class MeshOverTime:
     Attributes:
         arrays: Attributes by their names in glTF, as they are in the file.
         triangles: Shape (M, 3), wound as the vertices lay when the file was read.
-        displacements: What morphs it.
+        displacements: Displacements that morph it.
         skins: Those of the file.
         skin: Index of its skin, and who moves its vertices; None: it has none.
         accessors: Those of the file.

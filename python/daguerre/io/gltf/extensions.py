@@ -61,7 +61,7 @@ def check_extensions(root: Item, notes: Notes) -> None:
     counts = _count_uses(root.value)
     for name in dict.fromkeys([*listed, *counts]):
         if name not in KNOWN:
-            # What is listed but appears nowhere still says what the file was made for.
+            # Extensions listed but used nowhere still tell what the file was made for.
             notes.add(f"extension {short(clean(name))} is not understood", counts.get(name, 0))
 
 

@@ -23,7 +23,7 @@ from daguerre.files.uris import Folder, data_bytes, is_data
 from .meshopt import placeholders
 
 _JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
-#: Of a .gltf, and of all buffers of a file together.
+#: Largest size of a .gltf, and of all buffers of a file together.
 MAX_TEXT_BYTES = 1 << 30
 MAX_BUFFER_BYTES = 1 << 34
 

@@ -61,7 +61,7 @@ def _metallic_roughness(item: Item, textures: Textures, values: dict[str, Any]) 
 
 
 def _extensions(item: Item, textures: Textures, notes: Notes, values: dict[str, Any]) -> None:
-    """What adds to metallic-roughness, and to nothing else."""
+    """Reads extensions of metallic-roughness alone."""
     _specular(item, textures, values)
     _transmission(item, textures, notes, values)
     read_diffuse_transmission(item, textures, values)

@@ -56,7 +56,7 @@ class Part:
 
 @dataclass(frozen=True)
 class _Source:
-    """What the vertices and triangles of a primitive are made of."""
+    """Sources of the vertices and triangles of a primitive."""
 
     primitive: Item
     mode: int
@@ -86,12 +86,12 @@ class Meshes:
     Args:
         root: The JSON object of the file.
         accessors: Its accessors.
-        animations: What changes in it.
+        animations: Animations of the file.
         skins: Its skins.
-        variants: Which materials are chosen.
+        variants: Chosen variants of the materials.
         scene: Gets the meshes.
-        copies: For vertices that cannot be shared.
-        notes: What was not understood.
+        copies: Budget of vertices that cannot be shared.
+        notes: Gets what was not understood.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class Meshes:
         self._shared: dict[Hashable, int | None] = {}
 
     def parts(self, node: Item) -> list[Part]:
-        """What a node with a mesh shows."""
+        """Parts that a node with a mesh shows."""
         index = node.need("mesh").index(len(self.items), "meshes")
         item, skin_use = self.items[index], node.get("skin")
         chosen = None if skin_use is None else self._skins.index(skin_use)
@@ -173,7 +173,7 @@ class Meshes:
             self._notes.add("a mesh without JOINTS_0 is not moved by its skin")
             chosen = None
         if chosen is not None and self._is_nothing(chosen):
-            # As with nodes (3.5.3): scale 0 is how files hide things.
+            # Like nodes (3.5.3): scale 0 is how files hide things.
             self._notes.add("a mesh that its skin scales to nothing is left out")
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):

@@ -45,7 +45,7 @@ def weights_of(node: Item, mesh: Item) -> Item | None:
 def displacements(
     primitive: Item, weights: Item | None, accessors: Accessors, notes: Notes
 ) -> tuple[Displacement, ...]:
-    """What changes a primitive; targets without weight are not looked at.
+    """Displacements of a primitive; targets without weight are not looked at.
 
     Raises:
         InputError: There are not as many weights as targets.

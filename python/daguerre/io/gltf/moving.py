@@ -66,7 +66,7 @@ class Moving:
     def instances(
         self, node: int, copies: Matrices | None, worlds: Matrices, *, rigid: bool
     ) -> list[Motion] | None:
-        """What the instances of a mesh at a node do; None: nothing.
+        """Motions of the instances of a mesh at a node; None: they stand still.
 
         Args:
             node: Index of the node.

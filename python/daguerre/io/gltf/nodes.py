@@ -14,7 +14,7 @@ from daguerre.scene.transforms import Matrix, affine, compose
 
 #: Lengths beyond this (m) overflow when a renderer squares them in float.
 MAX_SIZE = 1e18
-#: What a node's place consists of.
+#: Parts of a node's place, with their defaults.
 _DEFAULTS = {
     "translation": (0.0, 0.0, 0.0),
     "rotation": (0.0, 0.0, 0.0, 1.0),

@@ -1,4 +1,4 @@
-"""What a glTF file animates, as values over time of the scene.
+"""Animated parts of a glTF file, as values over time of the scene.
 
 Each asks the file anew for its part at a time: whatever a reader understands can move.
 """
@@ -27,18 +27,18 @@ _NONE = np.zeros(0)
 
 @dataclass(frozen=True, eq=False)
 class PartOverTime:
-    """What a reader makes of a part of the file: a material, the parameter of a camera.
+    """Result of a reader for a part of the file over time: a material, a camera's parameter.
 
     Attributes:
-        channels: What changes there.
-        read: Reads it, as it is in the JSON now.
+        channels: Channels that change it.
+        read: Reads the part, as it is in the JSON now.
     """
 
     channels: Sequence[Channel]
     read: Callable[[], Any]
 
     def at(self, time_s: float) -> Any:
-        """What is read at a time, s."""
+        """Reads the part at a time, s."""
         play(self.channels, time_s)
         with np.errstate(all="ignore"):
             return self.read()
@@ -175,7 +175,7 @@ class LightOverTime:
 
     Attributes:
         node: Where it stands.
-        part: What it is.
+        part: The light itself.
     """
 
     node: NodeOverTime

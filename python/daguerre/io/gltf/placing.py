@@ -28,12 +28,12 @@ Matrices = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """What an instance does over time; None: nothing.
+    """Motion of an instance over time; None: it stands still.
 
     Attributes:
         transform: World from mesh.
         shown: Whether it is there.
-        flat: Instead of ``transform``, where this may have no inverse.
+        flat: Transform that may have no inverse, instead of ``transform``.
     """
 
     transform: NodeOverTime | None = None
@@ -46,8 +46,8 @@ class Placing:
 
     Args:
         scene: Has the meshes and the materials.
-        copies: For vertices that cannot be shared.
-        notes: What was not understood.
+        copies: Budget of vertices that cannot be shared.
+        notes: Gets what was not understood.
     """
 
     def __init__(self, scene: Scene, copies: Budget, notes: Notes) -> None:
@@ -69,12 +69,12 @@ class Placing:
         """Places a mesh.
 
         Args:
-            node: For complaints.
+            node: Node of the file, for complaints.
             mesh: Index of the scene's mesh.
             material: Index of its material; None: glTF's default.
             worlds: World from mesh, shape (instances, 4, 4).
-            name: Of the instances.
-            moves: What each of them does over time; None: nothing.
+            name: Name of the instances.
+            moves: Motion of each of them over time; None: they stand still.
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)

@@ -32,8 +32,8 @@ class Target:
     Attributes:
         holder: The object or list that has it.
         key: Its name or index there.
-        name: What it is called in a remark.
-        width: Numbers in it; None: as many as an accessor's type has, or a list of any length.
+        name: Its name in a remark.
+        width: Numbers in it; None: the number of the accessor's type, or a list of any length.
         types: Accessor types that fit.
         is_flag: It is true or false.
     """
@@ -74,7 +74,7 @@ class Pointers:
         self._copied = Budget(_MAX_COPIED, "weights of single nodes")
 
     def target(self, tokens: list[str], use: Item) -> Target | None:
-        """What the tokens lead to, or None if nothing there can be animated.
+        """Finds what the tokens lead to; None if nothing there can be animated.
 
         Raises:
             InputError: An index is none, or out of range; ``use`` is named.

@@ -29,7 +29,7 @@ class Poses:
 
     Args:
         tree: The nodes, as they are at the time of reading.
-        animations: What changes them.
+        animations: Animations that change them.
     """
 
     def __init__(self, tree: Tree, animations: Animations) -> None:

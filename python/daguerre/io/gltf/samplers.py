@@ -25,7 +25,7 @@ _SLACK = 0.01
 
 
 class Track:
-    """What a sampler makes of a value over time.
+    """Samples of a value over time.
 
     Args:
         use: The sampler's output, for complaints.
@@ -33,7 +33,7 @@ class Track:
         values: Shape (K, rows, width), rows being in-tangent, value and out-tangent of a spline,
             else the value alone; of flags shape (K,).
         mode: LINEAR, STEP or CUBICSPLINE.
-        target: What is animated.
+        target: The animated value of the file.
     """
 
     def __init__(

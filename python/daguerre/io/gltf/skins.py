@@ -48,7 +48,7 @@ class Skins:
         accessors: Its accessors.
         tree: Its nodes.
         poses: Its nodes over time.
-        notes: What was not understood.
+        notes: Gets what was not understood.
     """
 
     def __init__(
@@ -215,7 +215,7 @@ def skin(
 
 
 def _cofactors(m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Of matrices (N, 3, 3): each row is the cross product of the two others."""
+    """Cofactors of matrices (N, 3, 3): each row is the cross product of the two others."""
     a, b, c = m[:, 0], m[:, 1], m[:, 2]
     return np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
 

@@ -65,8 +65,8 @@ class Textures:
 
     Args:
         document: The file.
-        accessors: For images inside of bufferViews.
-        notes: What was not understood.
+        accessors: Accessors, for images inside of bufferViews.
+        notes: Gets what was not understood.
     """
 
     def __init__(self, document: Document, accessors: Accessors, notes: Notes) -> None:

@@ -14,7 +14,7 @@ from .text import decoded
 
 Parse = Callable[[str, str], tuple[dict[str, Any], list[str]]]
 
-#: What files of a suffix are, if their text does not say otherwise.
+#: Formats by suffix, if the text does not say otherwise.
 SUFFIXES: dict[str, Parse | None] = {
     ".zmx": zmx.parse,
     ".seq": seq.parse,

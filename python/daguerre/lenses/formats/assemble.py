@@ -23,8 +23,8 @@ class Configuration:
     """A zoom or focus position of a foreign file.
 
     Attributes:
-        thicknesses: Those that differ, by the file's number of the surface, mm.
-        stop_semi_diameter: Of the stop, if it changes its size.
+        thicknesses: Thicknesses that differ, by the file's number of the surface, mm.
+        stop_semi_diameter: Semi-diameter of the stop, if it changes its size, mm.
     """
 
     name: str
@@ -43,15 +43,15 @@ def lens_file(
     nominal: dict[str, Any] | None = None,
     **more: Any,
 ) -> dict[str, Any]:
-    """A lens file of the schema, with all configurations; the first is that of the drafts' file.
+    """Makes a lens file of the schema, with all configurations; the drafts' file has the first.
 
     Args:
         file: Name of the foreign file, for messages.
-        name: Of the lens.
+        name: Name of the lens.
         drafts: The object, the surfaces, the image.
         configurations: At least one.
-        unread: What is not honoured goes here.
-        nominal: What the file claims.
+        unread: Gets what is not honoured.
+        nominal: Claims of the file.
         more: Further members.
     """
     tables = [lay_out(with_thicknesses(drafts, c.thicknesses), file) for c in configurations]

@@ -9,10 +9,10 @@ from daguerre.lenses import glasses
 
 
 def find(name: str, makers: tuple[str, ...] = ()) -> tuple[dict[str, Any], str] | None:
-    """The lens file's glass for a name, and what was taken instead of it; None: no such glass.
+    """Finds the glass for a name, and what was taken instead of it; None: no such glass.
 
     Args:
-        name: As a file spells it; hyphens and spaces do not matter.
+        name: Name in a file's spelling; hyphens and spaces do not matter.
         makers: Names of catalogues, such as ``SCHOTT`` or ``OHARA_2021-04``; they come first.
     """
     known = {maker.upper(): maker for maker in glasses.MAKERS}

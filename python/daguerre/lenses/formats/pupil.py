@@ -17,7 +17,7 @@ class Pupil:
         kind: ``diameter`` of the entrance pupil (mm), ``f-number`` (focal length / diameter),
             ``working`` f-number at the file's object distance, or ``aperture``: sin of the angle
             at the object.
-        value: Of that kind.
+        value: Value of that kind.
     """
 
     kind: str

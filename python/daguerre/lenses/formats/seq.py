@@ -189,7 +189,7 @@ class _Reader:
             self.unread.add(f"positions that differ in {clean(what)[:20]}: the first one's is kept")
 
     def lens(self) -> tuple[dict[str, Any], list[str]]:
-        """What the commands come to."""
+        """Lens and notes that the commands make."""
         if len(self.surfaces) < 3 or not self.surfaces[-1].is_image:
             Line(self.file, 1, ()).fail(
                 f"wanted SO, surfaces S and the image SI, got {len(self.surfaces)} surfaces"

@@ -26,7 +26,7 @@ class Line:
     Attributes:
         file: The file's name.
         number: From 1.
-        words: What stands in it.
+        words: Words in it.
     """
 
     file: str
@@ -153,7 +153,7 @@ def words(text: str) -> frozenset[str]:
 
 
 class Unread:
-    """What a file says and the lens cannot: gathered, so that each thing is one note."""
+    """Collects what a file says and the lens cannot express, so that each thing is one note."""
 
     def __init__(self) -> None:
         self._places: dict[str, list[str]] = {}

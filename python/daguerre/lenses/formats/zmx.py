@@ -129,7 +129,7 @@ class _Reader:
             self.unread.add(f"pressure {line.words[2]}: indices are those in air")
 
     def lens(self) -> tuple[dict[str, Any], list[str]]:
-        """What the records come to."""
+        """Lens and notes that the records make."""
         if len(self.blocks) < 3:
             Line(self.file, 1, ()).fail(
                 f"SURF: wanted an object, surfaces and an image, got {len(self.blocks)} surfaces"

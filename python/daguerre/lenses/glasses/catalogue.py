@@ -22,7 +22,7 @@ from daguerre.lenses.glass_formula import absorption_of, formula_of
 FOLDER = Path(__file__).parent
 #: In the order in which an ambiguous name is looked up.
 MAKERS = ("Schott", "Ohara", "Hoya", "Hikari", "CDGM", "Sumita", "Corning", "LZOS", "materials")
-#: What makers put before the names of their newer melts; the first that exists is taken.
+#: Prefixes that makers put before the names of newer melts; the first that exists is taken.
 PREFIXES = ("N", "S", "J", "H", "E", "K", "L", "P", "M", "Q", "D")
 _OTHER_NAMES = {"FLUORITE": "CaF2", "CALCIUMFLUORIDE": "CaF2", "FUSEDSILICA": "SiO2"} | {
     "SILICA": "SiO2",
@@ -43,12 +43,12 @@ class GlassData:
     """One glass of a catalogue.
 
     Attributes:
-        name: As its maker writes it.
+        name: Name in its maker's spelling.
         maker: One of ``MAKERS``, or ``core`` for air, water and vacuum.
         core: The core's version: index and absorption.
         stated_nd: Index at 587.56 nm in the maker's own words; None: not stated.
         stated_vd: Abbe number likewise.
-        note: What was taken instead of the name that was asked for; empty: that very glass.
+        note: Substitution for the name that was asked for; empty: that very glass.
     """
 
     name: str
@@ -76,7 +76,7 @@ class GlassData:
     def internal_transmittance(
         self, wavelength_nm: ArrayLike, thickness_mm: float = 10.0
     ) -> NDArray[np.float64]:
-        """What a plate lets through between its faces, 0 to 1, the shape of the wavelengths."""
+        """Transmittance of a plate between its faces, 0 to 1, the shape of the wavelengths."""
         per_mm = np.vectorize(self.core.absorption_per_mm)(wavelength_nm)
         return np.asarray(np.exp(-thickness_mm * per_mm), np.float64)
 
@@ -113,7 +113,7 @@ def find(name: str, maker: str | None = None) -> GlassData:
 
 
 def lookup(name: str, maker: str | None = None) -> GlassData | None:
-    """As :func:`find`, but None where no glass has this name: nothing is spent on suggestions."""
+    """Finds like :func:`find`, but returns None for no such glass, and spends no time on hints."""
     return _found(name, _maker(name, maker))
 
 

@@ -27,7 +27,7 @@ SCAN = 256  # rows
 
 @dataclass(frozen=True)
 class ThinLens:
-    """What the size of a blur depends on.
+    """A thin lens: all that the size of a blur depends on.
 
     Attributes:
         aperture_mm: Diameter of the entrance pupil.
@@ -42,7 +42,7 @@ class ThinLens:
     def radius_mm(self, depth_m: Floats) -> Floats:
         """Radius of the circle of confusion on the film; negative behind the focus.
 
-        Of a point at the distance s along the axis: A F (1/s - 1/s_f) / 2, by similar triangles;
+        A point at the distance s along the axis has A F (1/s - 1/s_f) / 2, by similar triangles;
         where F is the image distance f s_f / (s_f - f), its diameter is
         |s - s_f| / s  f^2 / (N (s_f - f)). Counted from its entrance pupil, a thick lens obeys the
         same law.
@@ -149,25 +149,25 @@ DEPTH_OF_FIELD = Effect(
     "depth-of-field",
     "blurs what is out of focus, by the depth of each pixel; a pinhole's picture is wanted",
     (
-        Parameter("f_stop", "the file's if it says one", low=1e-2, high=1e9),
+        Parameter("f_stop", "f-stop; the file's if it says one", low=1e-2, high=1e9),
         Parameter("focus", "distance in focus along the axis; the file's if absent", "m", low=1e-6),
         FOCAL_LENGTH,
         SENSOR,
         *BLADES,
         Parameter(
             "depth_along",
-            "how depth is measured: along the axis (as depth.Z), or along the ray (as distance.Z)",
+            "direction of depth: along the axis (like depth.Z), or along the ray (distance.Z)",
             kind="choice",
             default="axis",
             choices=("axis", "ray"),
         ),
         Parameter(
             "focus_breathing",
-            "the field narrowed as the lens came closer, as a camera's does",
+            "whether focusing narrowed the field, as in cameras",
             kind="flag",
             default=False,
         ),
-        Parameter("largest", "radius of a blur; a tenth of the width if absent", "px", low=0),
+        Parameter("largest", "largest blur radius; a tenth of the width if absent", "px", low=0),
     ),
     _DepthOfField,
     needs=("depth",),

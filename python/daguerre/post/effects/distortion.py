@@ -61,11 +61,11 @@ def distort(
 
     Args:
         image: Scene-linear, shape (H, W, C).
-        model: One, or one each for red, green and blue.
+        model: One model, or one each for red, green and blue.
         focal_px: Focal length, px, or those across and down.
-        centre: Of the distortion, px from the top left corner of the picture; its middle if None.
-            OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
-        scale: Of the ideal picture: above 1 it shows less of the scene, larger.
+        centre: Centre of the distortion, px from the top left corner of the picture; default: its
+            middle. OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
+        scale: Scale of the ideal picture: above 1 it shows less of the scene, larger.
         filter: cubic or linear.
         antialias: Whether to average where the map shrinks.
         inverse: Straightens instead.
@@ -197,22 +197,23 @@ DISTORTION = Effect(
     "bends a picture as a lens does, or straightens it",
     (
         Parameter(
-            "model", "what bends", kind="choice", default="brown-conrady", choices=(*MODELS, "lens")
+            "model", "model of the distortion", kind="choice", default="brown-conrady",
+            choices=(*MODELS, "lens"),
         ),
-        *(Parameter(name, "as in OpenCV" if "tau" not in name else "tilt of the sensor",
+        *(Parameter(name, "tilt of the sensor" if "tau" in name else "coefficient of OpenCV",
                     "rad" if "tau" in name else "") for name in COEFFICIENTS),
         FOCAL_LENGTH,
         SENSOR,
-        Parameter("fx", "focal length instead of mm", "px", low=1e-3),
-        Parameter("fy", "down, where pixels are not square", "px", low=1e-3),
-        Parameter("cx", "centre, as OpenCV counts: 0 is the middle of the first pixel", "px"),
-        Parameter("cy", "centre", "px"),
+        Parameter("fx", "focal length across, instead of mm", "px", low=1e-3),
+        Parameter("fy", "focal length down, where pixels are not square", "px", low=1e-3),
+        Parameter("cx", "centre across; 0 is the middle of the first pixel, as in OpenCV", "px"),
+        Parameter("cy", "centre down, likewise", "px"),
         *LENS,
-        Parameter("lateral_colour", "of a lens: its own", kind="flag", default=True),
-        Parameter("scale", "of the ideal picture; below 1 shows more of it", default=1.0, low=1e-3),
+        Parameter("lateral_colour", "use the lateral colour of a lens", kind="flag", default=True),
+        Parameter("scale", "scale of the ideal picture; below 1 shows more", default=1.0, low=1e-3),
         *FILTER,
         Parameter("stmap", "an .exr to write the map to as well (of green)", kind="text"),
-        Parameter("inverse", "straighten instead", kind="flag", default=False),
+        Parameter("inverse", "straighten instead of bending", kind="flag", default=False),
     ),
     _make,
 )  # fmt: skip

@@ -34,9 +34,9 @@ class Ghost:
     """A spot that each highlight makes.
 
     Attributes:
-        place: Of the spot, as a multiple of the highlight's own from the middle of the picture.
+        place: Place of the spot, as a multiple of the highlight's own from the picture's middle.
         radius: In halves of the picture's diagonal.
-        tint: Of R, G, B; their mean is 1.
+        tint: Factors on R, G, B; their mean is 1.
     """
 
     place: float
@@ -149,14 +149,21 @@ FAKE_FLARE = Effect(
     "made-up ghosts and a ring from the highlights of a picture",
     (
         Parameter("threshold", "light from which on a pixel is a highlight", "", 4.0, low=0),
-        Parameter("reflectance", "of a surface; a ghost has two", "", 0.01, low=0, high=1),
-        Parameter("ghosts", "how many", "", 8, "whole", low=0, high=200),
+        Parameter(
+            "reflectance", "reflectance of a surface; a ghost has two", "", 0.01, low=0, high=1
+        ),
+        Parameter("ghosts", "number of ghosts", "", 8, "whole", low=0, high=200),
         Parameter("halo", "share of the light in a ring around it", "", 0.0, low=0, high=1),
         Parameter(
-            "halo_radius", "of the ring, in halves of the diagonal", "", 0.4, low=0.01, high=2
+            "halo_radius",
+            "radius of the ring, in halves of the diagonal",
+            "",
+            0.4,
+            low=0.01,
+            high=2,
         ),
         *BLADES,
-        Parameter("seed", "another number, other ghosts", "", 0, "whole", low=0, high=2**53),
+        Parameter("seed", "random seed of the ghosts", "", 0, "whole", low=0, high=2**53),
     ),
     _FakeFlare,
 )

@@ -26,11 +26,13 @@ LARGEST = 2049  # px across, of kernels that could be larger
 COARSE = 768  # px, of the smaller side of a picture on which veils are spread
 
 IRIS = (
-    Parameter("f_number", "as the film sees it: focal length / opening", default=REQUIRED, low=0.3),
-    Parameter("blades", "of the iris; 0: round", default=0, kind="whole", low=0, high=64),
-    Parameter("rotation", "of the blades", "deg", 0.0),
-    Parameter("curvature", "of the blades; 1: round, 0: straight", default=0.0, low=-1, high=1),
-    Parameter("dust", "picture of what lies on the iris: white lets light through", kind="text"),
+    Parameter("f_number", "working f-number, seen from the film", default=REQUIRED, low=0.3),
+    Parameter("blades", "number of iris blades; 0: round", default=0, kind="whole", low=0, high=64),
+    Parameter("rotation", "rotation of the blades", "deg", 0.0),
+    Parameter(
+        "curvature", "curvature of the blades; 1: round, 0: straight", default=0.0, low=-1, high=1
+    ),
+    Parameter("dust", "picture of dust on the iris: white lets light through", kind="text"),
 )
 
 
@@ -41,7 +43,7 @@ def _shared(canvas: Canvas, share: float | Floats, kernel: Floats) -> Step:
 
 
 def _shape(canvas: Canvas) -> tuple[int, int, int]:
-    """Of its colours without alpha."""
+    """Shape of the picture's colours, without alpha."""
     return canvas.height, canvas.width, len(canvas.colours) - canvas.alpha
 
 
@@ -142,13 +144,15 @@ def _psf(canvas: Canvas, values: Values) -> Step:
     return Spreading(canvas, spreader_of(kernel, _shape(canvas)))
 
 
-SHARE = Parameter("share", "of the light that is spread", default=0.05, low=0, high=1)
+SHARE = Parameter("share", "share of the light that is spread", default=0.05, low=0, high=1)
 
 BLOOM = Effect(
     "bloom",
     "a soft glow about bright things",
     (
-        Parameter("radius", "half of the spread light falls within it", "px", 12.0, low=0.1),
+        Parameter(
+            "radius", "radius within which half of the spread light falls", "px", 12.0, low=0.1
+        ),
         SHARE,
     ),
     _bloom,
@@ -157,12 +161,12 @@ HALO = Effect(
     "halo",
     "halation of film: a ring about lamps, by reflection at the back of the base",
     (
-        Parameter("thickness", "of the base", "mm", 0.13, low=1e-3),
-        Parameter("index", "of refraction of the base", default=1.48, low=1.01, high=3),
+        Parameter("thickness", "thickness of the base", "mm", 0.13, low=1e-3),
+        Parameter("index", "refractive index of the base", default=1.48, low=1.01, high=3),
         SHARE,
-        Parameter("red", "what red takes part", default=1.0, low=0),
-        Parameter("green", "what green takes part", default=0.3, low=0),
-        Parameter("blue", "what blue takes part", default=0.05, low=0),
+        Parameter("red", "share of red that takes part", default=1.0, low=0),
+        Parameter("green", "share of green that takes part", default=0.3, low=0),
+        Parameter("blue", "share of blue that takes part", default=0.05, low=0),
         SENSOR,
     ),
     _halo,
@@ -172,27 +176,34 @@ GLARE = Effect(
     "veiling glare: light that glass, barrel and dust scatter over the whole picture",
     (
         Parameter("share", "veiling glare index, of the light", default=0.02, low=0, high=1),
-        Parameter("shoulder", "where the power law begins", "mm", 0.5, low=1e-3),
-        Parameter("slope", "of the power law", default=2.0, low=0, high=6),
+        Parameter("shoulder", "radius at which the power law begins", "mm", 0.5, low=1e-3),
+        Parameter("slope", "exponent of the power law", default=2.0, low=0, high=6),
         SENSOR,
     ),
     _glare,
 )
 DIFFRACTION = Effect(
     "diffraction",
-    "what an iris does to light as a wave: softness, rings and stars",
+    "diffraction of light by an iris: softness, rings and stars",
     (
         *IRIS,
         SENSOR,
-        Parameter("size", "of the kernel", "px", kind="whole", low=1, high=8191),
-        Parameter("wavelengths", "from 400 to 700 nm", default=24, kind="whole", low=3, high=400),
+        Parameter("size", "width of the kernel", "px", kind="whole", low=1, high=8191),
+        Parameter(
+            "wavelengths",
+            "number of wavelengths, 400 to 700 nm",
+            default=24,
+            kind="whole",
+            low=3,
+            high=400,
+        ),
     ),
     _diffraction,
 )
 STAR = Effect(
     "star",
     "the star of an iris alone, as strong as wanted: sharpness stays",
-    (Parameter("share", "of the light in the star", default=0.02, low=0, high=1),
+    (Parameter("share", "share of the light in the star", default=0.02, low=0, high=1),
      *DIFFRACTION.parameters),
     _star,
 )  # fmt: skip
@@ -201,7 +212,9 @@ PSF = Effect(
     "a point spread of one's own, the same everywhere",
     (
         Parameter("file", "a picture, linear if it is .exr or .hdr", kind="text", default=REQUIRED),
-        Parameter("normalise", "to keep the light of each colour", kind="flag", default=True),
+        Parameter(
+            "normalise", "whether to keep the light of each colour", kind="flag", default=True
+        ),
     ),
     _psf,
 )

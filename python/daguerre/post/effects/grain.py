@@ -55,7 +55,7 @@ class _Grain(Step):
         return band.with_image(image)
 
     def _factor(self, light: Image, pattern: Image) -> Image:
-        """What grain multiplies light by: lognormal, of mean 1."""
+        """Factor of grain on light: lognormal, of mean 1."""
         with np.errstate(invalid="ignore"):
             variance = relative_variance(np.maximum(light, 0) / self._white)
         variance *= math.pi * self._radius**2 * sharpness(self._radius)
@@ -64,7 +64,7 @@ class _Grain(Step):
 
 
 def relative_variance(grains: NDArray[Any]) -> Floats:
-    """Of light read from film, times the pixel's area over a grain's: G(q) / q^2.
+    """Relative variance of light read from film, times the pixel's area over a grain's: G(q) / q^2.
 
     Args:
         grains: Mean number of grains over a point, q. Where film would saturate the least variance
@@ -86,7 +86,7 @@ def _table() -> tuple[Floats, Floats]:
 
 @functools.cache
 def sharpness(radius: float) -> float:
-    """What is left of the variance as grains reach over pixels' edges.
+    """Share of the variance that is left where grains reach over pixels' edges.
 
     The squares of the parts of a grain of this radius (px) that lie on pixels, summed.
     """
@@ -105,8 +105,8 @@ GRAIN = Effect(
         Parameter("size", "diameter of a grain on the film", "um", 2.0, low=0.01, high=1000),
         Parameter("white", "light that covers 63 % of the film with grains", "", 1.0, low=1e-6),
         SENSOR,
-        Parameter("colour", "a pattern for each colour, not one for all", "", True, "flag"),
-        Parameter("seed", "another number, another pattern", "", 0, "whole", low=0, high=2**53),
+        Parameter("colour", "whether each colour has a pattern of its own", "", True, "flag"),
+        Parameter("seed", "random seed of the pattern", "", 0, "whole", low=0, high=2**53),
     ),
     _Grain,
     last=True,

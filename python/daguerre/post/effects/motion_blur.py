@@ -84,7 +84,7 @@ class _MotionBlur(Step):
         return np.asarray(flow * self._scale, np.float32)
 
     def _nearness(self, band: Band, ahead: Floats, back: Floats) -> tuple[Floats, float]:
-        """What hides what, from which difference on: by depth, else the faster the slower."""
+        """Nearness, and the difference that hides: by depth, else the faster hides the slower."""
         if self._depth is None:
             way = sum(abs(t) * np.hypot(*flow.T).T for flow, t in self._ends(ahead, back))
             return np.asarray(np.arcsinh(way), np.float32), SPEED_STEP
@@ -143,22 +143,24 @@ MOTION_BLUR = Effect(
     "motion-blur",
     "blurs what moves, by the motion of each pixel; a picture of one instant is wanted",
     (
-        Parameter("shutter_angle", "exposure; 360 is a frame", "deg", 180.0, low=0, high=36000),
+        Parameter(
+            "shutter_angle", "exposure time; 360 is a frame", "deg", 180.0, low=0, high=36000
+        ),
         Parameter(
             "shutter_offset",
-            "from the picture's moment to the opening; the exposure is around it if absent",
+            "time from the picture's moment to the opening; exposure around it if absent",
             "frames",
         ),
         Parameter(
             "shutter_curve",
-            "how it opens",
+            "opening of the shutter over time",
             kind="choice",
             default="box",
             choices=("box", "trapezoid"),
         ),
         Parameter("efficiency", "mean opening of a trapezoid", "", 0.8, low=0.5, high=1),
-        Parameter("scale", "px per frame of a motion of 1; -1: from the last frame", "", 1.0),
-        Parameter("v_up", "motion counts upward, not down", kind="flag", default=False),
+        Parameter("scale", "px per frame and unit of motion; -1: from the last frame", "", 1.0),
+        Parameter("v_up", "whether motion counts upward, not down", kind="flag", default=False),
     ),
     _MotionBlur,
     needs=("motion",),

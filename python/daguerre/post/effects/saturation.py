@@ -51,9 +51,9 @@ SATURATION = Effect(
     "colours paler toward the edge, or that taken away",
     (
         Parameter("k1", "saturation is 1 + k1 r^2 + ..., r = 1 in the corners", default=-0.5),
-        Parameter("k2", "of r^4", default=0.0),
-        Parameter("k3", "of r^6", default=0.0),
-        Parameter("inverse", "take it away", kind="flag", default=False),
+        Parameter("k2", "factor of r^4", default=0.0),
+        Parameter("k3", "factor of r^6", default=0.0),
+        Parameter("inverse", "take the effect away", kind="flag", default=False),
     ),
     _make,
 )

@@ -84,7 +84,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 STMAP = Effect(
     "stmap",
     "moves pixels by an STMap: R and G are s and t, from 0 at the left and at the bottom",
-    (Parameter("file", "an .exr", kind="text", default=REQUIRED), *FILTER),
+    (Parameter("file", "STMap, an .exr", kind="text", default=REQUIRED), *FILTER),
     _make,
 )
 
@@ -98,14 +98,14 @@ def stmap(
     scale: float = 1.0,
     inverse: bool = False,
 ) -> Image:
-    """The map of a distortion; see :func:`daguerre.post.distort`.
+    """Returns the STMap of a distortion; see :func:`daguerre.post.distort`.
 
     Args:
-        model: What bends.
+        model: The distortion.
         size: Width and height of the picture, px.
         focal_px: Focal length, px, or those across and down.
-        centre: Of the distortion, px; the middle if None.
-        scale: Of the ideal picture.
+        centre: Centre of the distortion, px; default: the middle.
+        scale: Scale of the ideal picture.
         inverse: The map that straightens.
 
     Returns:

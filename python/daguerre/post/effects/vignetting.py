@@ -107,19 +107,21 @@ VIGNETTING = Effect(
     (
         Parameter(
             "model",
-            "cos^4 of the angle, 1 + k1 r^2 + ..., or a lens of the library",
+            "falloff: cos^4 of the angle, 1 + k1 r^2 + ..., or a lens of the library",
             kind="choice",
             default="natural",
             choices=("natural", "polynomial", "lens"),
         ),
-        Parameter("k1", "of r^2; r is 1 in the corners", default=0.0),
-        Parameter("k2", "of r^4", default=0.0),
-        Parameter("k3", "of r^6", default=0.0),
+        Parameter("k1", "factor of r^2; r is 1 in the corners", default=0.0),
+        Parameter("k2", "factor of r^4", default=0.0),
+        Parameter("k3", "factor of r^6", default=0.0),
         FOCAL_LENGTH,
         SENSOR,
         *LENS,
-        Parameter("colour", "of a lens: red, green and blue each", kind="flag", default=True),
-        Parameter("inverse", "take it away", kind="flag", default=False),
+        Parameter(
+            "colour", "whether a lens darkens red, green and blue each", kind="flag", default=True
+        ),
+        Parameter("inverse", "take the effect away", kind="flag", default=False),
     ),
     _make,
 )
