@@ -125,7 +125,7 @@ def main() -> None:
         "build_s": round(ready - started, 3),
         "render_s": round(wall, 3),
         "cpu_s": round(cpu, 2),
-        "rays": session.rays,
+        "rays": session.counters.rays,
         "spp": session.metadata["samples"],
         "peak_rss_mb": round(peak_mb()),
         "scene_rss_mb": round(peak_mb() - imported, 1),

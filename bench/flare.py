@@ -66,10 +66,10 @@ def drawn(arguments: argparse.Namespace, paths: float, seed: int) -> tuple[Sessi
 def naive_share(arguments: argparse.Namespace, paths: float) -> float:
     """Share of rays on the film, if nothing is learned."""
     made = session(arguments, paths, 5)
-    made._settings.flare_learned = False
-    made._settings.prepare_flare(made._core_scene, made._setup.core)
+    made.light_plan.core.flare_learned = False
+    made.light_plan.core.prepare_flare(made.prepared.core_scene, made.prepared.setup.core)
     made.draw(0, 1)
-    return made.flare_hits / made.flare_rays
+    return made.counters.flare_hits / made.counters.flare_rays
 
 
 def rel_mse(a: NDArray[Any], b: NDArray[Any], r: NDArray[Any]) -> NDArray[Any]:
@@ -129,12 +129,12 @@ def main() -> None:
     facts: dict[str, Any] = {
         "lens": lens.name,
         "surfaces": len(lens.surfaces) - 1,
-        "share_on_film": made.flare_hits / made.flare_rays,
+        "share_on_film": made.counters.flare_hits / made.counters.flare_rays,
         "paths": paths,
         "setup_cpu_s": ready,
         "cpu_s": cpu,
         "wall_s": wall,
-        "ns_per_ray": 1e9 * (cpu - ready) / made.flare_rays,
+        "ns_per_ray": 1e9 * (cpu - ready) / made.counters.flare_rays,
         **error,
         # The error falls with 1 / paths.
         "cpu_s_to_error": ready + (cpu - ready) * error["rel_mse"] / arguments.error,

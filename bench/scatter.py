@@ -68,7 +68,7 @@ def noise(arguments: argparse.Namespace) -> dict[str, Any]:
         "lens": arguments.lens,
         "degrees": arguments.degrees,
         "paths_per_pixel": arguments.paths / (arguments.w * arguments.h),
-        "share_on_film": session.scatter_hits / session.scatter_path_count,
+        "share_on_film": session.counters.scatter_hits / session.counters.scatter_paths,
         "cpu_s": draw,
         "us_per_path": 1e6 * draw / arguments.paths,
         "rel_mse": error,

@@ -18,6 +18,7 @@ import pytest
 
 import daguerre
 from daguerre.cli import console, main
+from daguerre.rendering.counters import RenderCounters
 from daguerre.rendering.schedule import pass_size
 
 from . import fake_session
@@ -463,10 +464,12 @@ def test_stats_count_light_beside_the_frame(
     class Lit(fake_session.FakeSession):
         def __init__(self, *args: Any, **options: Any) -> None:
             super().__init__(*args, **options)
-            self.light_paths, self.light_path_count, self.splats_off_film = (50.0, 0.0), 200, 30
-            self.flare_path_count, self.flare_rays, self.flare_hits = 100, 400, 300
+            self.light_paths = (50.0, 0.0)
+            self.counters = RenderCounters(
+                light_paths=200, splats_off_film=30, flare_paths=100, flare_rays=400,
+                flare_hits=300, camera_rays=400, stopped_rays=100,
+            )  # fmt: skip
             self.flare_spots, self.survey_rays = 3, 1000
-            self.camera_rays, self.stopped_rays = 400, 100
 
     monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0

@@ -61,8 +61,8 @@ def test_the_flare_is_in_the_picture_and_by_itself() -> None:
     assert frame.flare.max() > 0
     # Nothing else shines: a light without size is never seen.
     np.testing.assert_allclose(frame.rgb, frame.flare, atol=1e-6)
-    assert drawn.flare_path_count == 2 * PATHS
-    assert drawn.flare_hits > 0.8 * drawn.flare_rays
+    assert drawn.counters.flare_paths == 2 * PATHS
+    assert drawn.counters.flare_hits > 0.8 * drawn.counters.flare_rays
 
 
 def test_without_flare_nothing_changes() -> None:

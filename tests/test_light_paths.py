@@ -92,7 +92,7 @@ def test_a_split_of_samples_and_threads_change_no_bit() -> None:
     parts.draw(0, 3)
     assert "splats" in whole.state()
     assert same_bits(whole, parts)
-    assert whole.light_path_count == parts.light_path_count
+    assert whole.counters.light_paths == parts.counters.light_paths
 
 
 def test_passes_add_up_and_refuse_another_plan(tmp_path: Path) -> None:
@@ -132,11 +132,11 @@ def test_a_saved_state_goes_on(tmp_path: Path) -> None:
 def test_light_that_lands_beside_the_frame_is_counted() -> None:
     one = session(resolution=SIZE)
     one.draw(0, 4)
-    assert one.light_path_count == 4 * PLAN[0]
-    assert 0 < one.splats_off_film < one.light_path_count
+    assert one.counters.light_paths == 4 * PLAN[0]
+    assert 0 < one.counters.splats_off_film < one.counters.light_paths
     off = session(light_paths="off")
     off.draw(0, 1)
-    assert off.light_path_count == 0
+    assert off.counters.light_paths == 0
     assert list(off.state()) == ["sums"]
     assert "light_paths" not in off.metadata
 
@@ -150,5 +150,5 @@ def test_bad_plans_are_one_error(value: Any) -> None:
 
 
 def test_an_unknown_technique_is_one_error() -> None:
-    with pytest.raises(UsageError, match="technique: wanted both, camera, light; got 'lamp'"):
+    with pytest.raises(UsageError, match="technique: wanted both, camera, light, got 'lamp'"):
         session(technique="lamp")

@@ -175,8 +175,10 @@ def test_rays_beyond_the_field_are_refused_and_counted() -> None:
     session = dg.Session(dg.Scene(), dg.Camera(projection=model), resolution=(100, 100))
     session.draw(0, 16)
     inside = np.pi * 40**2 / 100**2
-    assert session.camera_rays == 16 * 100 * 100
-    assert session.stopped_rays / session.camera_rays == pytest.approx(1 - inside, abs=2e-3)
+    assert session.counters.camera_rays == 16 * 100 * 100
+    assert session.counters.stopped_rays / session.counters.camera_rays == pytest.approx(
+        1 - inside, abs=2e-3
+    )
 
 
 def test_truth_is_that_of_the_model() -> None:

@@ -60,8 +60,8 @@ def test_scattered_light_is_in_the_picture_and_in_the_layer_of_flare() -> None:
     assert flare.max() > 0
     # Nothing else shines: the sun is beside the frame.
     np.testing.assert_allclose(drawn.frame().rgb, flare, atol=1e-6)
-    assert drawn.scatter_path_count == 2 * PATHS
-    assert drawn.scatter_hits > 0.02 * drawn.scatter_path_count
+    assert drawn.counters.scatter_paths == 2 * PATHS
+    assert drawn.counters.scatter_hits > 0.02 * drawn.counters.scatter_paths
 
 
 def test_the_barrel_is_lit_on_the_side_away_from_the_sun() -> None:

@@ -12,7 +12,7 @@ from enum import Enum
 
 
 class Source(Enum):
-    """What produces a channel."""
+    """Producers of channels."""
 
     FILM = "means over the samples"
     TRUTH = "ground truth"
@@ -23,7 +23,7 @@ class Source(Enum):
     ALWAYS = "every picture"
 
 
-#: Of these, ground truth makes its channels from scene and camera, whatever the samples.
+#: Producers that read scene and camera alone, whatever the samples.
 EXACT = (Source.TRUTH, Source.MEANS, Source.MOTION)
 
 
@@ -32,7 +32,7 @@ class Aov:
     """Channels that are asked for together.
 
     Attributes:
-        name: As ``--aov`` and channels in files call it.
+        name: Name for ``--aov``, and of the channels in files.
         parts: Letters of the channels behind its name; empty: the name is the channel.
         unit: Such as m or px; empty: none.
         sources: Where it comes from; ground truth replaces the film's, where both have it.

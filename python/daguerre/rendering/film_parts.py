@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any
 import daguerre._core as _core
 from daguerre.camera.overscan import Overscan
 
+from .counters import RenderCounters
+from .pixels import Box
+
 if TYPE_CHECKING:
     from daguerre.setup.camera import CameraSetup
 
-Box = tuple[int, int, int, int]
-Counts = tuple[int, ...]
 NOWHERE: Box = (0, 0, 0, 0)
 #: Changes the seed around the picture, which has random numbers of its own.
 _SEED = 0x9E3779B97F4A7C15
@@ -49,7 +50,7 @@ class FilmPart:
         corner: tuple[int, int],
         which: tuple[Any, ...],
         progress: Any,
-    ) -> tuple[bool, Counts]:
+    ) -> tuple[bool, RenderCounters]:
         """Draws samples; returns whether all of them were drawn, and the counts.
 
         Args:
@@ -65,7 +66,7 @@ class FilmPart:
             complete, *counts = draw(scene, self.camera, film, self.settings, *which, progress)
         finally:
             film.place(*corner)
-        return bool(complete), tuple(counts)
+        return bool(complete), RenderCounters.of(counts)
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:

@@ -185,7 +185,7 @@ class Loop:
         total = min((done + size * fraction) / wanted, 1.0)
         rate = (here + size * fraction) / elapsed
         left = wanted * (1 - total) / rate if rate > 0 else None
-        rays = float(self.session.rays) / elapsed
+        rays = float(self.session.counters.rays) / elapsed
         self.reporter.update(
             Status(total, done, wanted, rate * pixels, rays, elapsed, left, **self.work.facts())
         )

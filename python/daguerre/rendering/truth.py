@@ -17,8 +17,6 @@ import daguerre._core as _core
 from daguerre.camera import rolling_shutter, shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
-from daguerre.checks import short, whole
-from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import CameraSetup, set_up
@@ -32,42 +30,6 @@ GT_LENSES = ("chief", "mean")
 #: How many of those are drawn.
 GT_RAYS = 64
 MAX_RAYS = 65536
-
-
-def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") -> str | None:
-    """The moment of ground truth, or None; what is ``wanted`` without one is that of the middle.
-
-    Raises:
-        UsageError: There is no such moment.
-    """
-    if gt_time is None:
-        return "mid" if wanted else None
-    if str(gt_time) not in GT_TIMES:
-        known = ", ".join(GT_TIMES)
-        raise UsageError(
-            f"{where}: wanted {known}, got {short(gt_time)}{suggest(str(gt_time), GT_TIMES)}"
-        )
-    return gt_time
-
-
-def check_gt_lens(
-    gt_lens: str, gt_rays: int | None, *, where: tuple[str, str] = ("gt_lens", "gt_rays")
-) -> int:
-    """How many rays of each pixel ground truth takes.
-
-    Raises:
-        UsageError: There is no such kind, or the number goes with means alone.
-    """
-    if str(gt_lens) not in GT_LENSES:
-        known = " or ".join(GT_LENSES)
-        raise UsageError(
-            f"{where[0]}: wanted {known}, got {short(gt_lens)}{suggest(str(gt_lens), GT_LENSES)}"
-        )
-    if gt_lens == "chief":
-        if gt_rays is not None:
-            raise UsageError(f"{where[1]}: the chief ray is one; wanted {where[0]} mean too")
-        return 1
-    return whole(GT_RAYS if gt_rays is None else gt_rays, where[1], 1, MAX_RAYS)
 
 
 @dataclass(frozen=True)

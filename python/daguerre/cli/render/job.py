@@ -171,39 +171,40 @@ class Job:
 
     def _stopped(self) -> str:
         """The share of the camera's rays that no light comes along."""
-        share = self.session.stopped_rays / max(1, self.session.camera_rays)
+        counters = self.session.counters
+        share = counters.stopped_rays / max(1, counters.camera_rays)
         return f"{share:.1%} of the camera's rays, by lens, iris or edge of the field"
 
     def _light_stats(self) -> dict[str, str]:
         """Counts of light paths, and of those that passed the lens and missed the frame."""
         from daguerre.rendering.light_paths import show_plan
 
-        session = self.session
-        plan = show_plan(session.light_paths)
+        counters, plan = self.session.counters, show_plan(self.session.light_paths)
         if plan is None:
             return {"light paths": "off"}
         return {
-            "light paths": f"{session.light_path_count} ({plan} per sample), "
-            f"{session.splats_off_film} beside the frame"
+            "light paths": f"{counters.light_paths} ({plan} per sample), "
+            f"{counters.splats_off_film} beside the frame"
         }
 
     def _flare_stats(self) -> dict[str, str]:
         """Counts of ghosts: their sources, and the share of their rays on the frame."""
-        session = self.session
-        if not session.flare_rays:
+        session, counters = self.session, self.session.counters
+        if not counters.flare_rays:
             return {}
-        share = session.flare_hits / session.flare_rays
+        share = counters.flare_hits / counters.flare_rays
         return {
-            "flare": f"{session.flare_path_count} paths, {share:.0%} of their rays on the frame",
+            "flare": f"{counters.flare_paths} paths, {share:.0%} of their rays on the frame",
             "highlights": f"{session.flare_spots} bright spots, by {session.survey_rays} rays",
         }
 
     def _scatter_stats(self) -> dict[str, str]:
         """Counts of light that the lens's parts scatter."""
-        count = self.session.scatter_path_count
+        counters = self.session.counters
+        count = counters.scatter_paths
         if not count:
             return {}
-        share = self.session.scatter_hits / count
+        share = counters.scatter_hits / count
         return {"scatter": f"{count} paths, {share:.1%} of them to the frame"}
 
     def _print_stats(self, elapsed: float) -> None:
@@ -214,7 +215,7 @@ class Job:
 
         usage = resource.getrusage(resource.RUSAGE_SELF)
         drawn = round(self.loop.drawn_here * frame_pixels(self.session))
-        rays = int(self.session.rays)
+        rays = int(self.session.counters.rays)
         rows = {
             "set-up": f"{self.setup_s:.2f} s",
             "drawing": f"{elapsed:.2f} s",

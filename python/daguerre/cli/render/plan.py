@@ -76,10 +76,12 @@ class Plan:
         wanted = means or any(name in self.aovs for name in (*EXACT_ONLY, DISPARITY))
         if gt_time is None and gt_rays is None and not wanted:
             return self
-        from daguerre.rendering.truth import check_gt_lens, check_gt_time
+        from daguerre.rendering.parameters import TABLE
+        from daguerre.rendering.settings import RenderSettings
 
-        check_gt_lens(gt_lens, gt_rays, where=("--gt-lens", "--gt-rays"))
-        moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
+        given = {"gt_time": gt_time, "gt_lens": gt_lens, "gt_rays": gt_rays}
+        RenderSettings.read(given, lambda name: TABLE[name].flag)
+        moment = gt_time or ("mid" if wanted else None)
         if not self.aovs and (means or self.maps.export_raymap is None):
             flag = "--gt-lens" if gt_time is None else "--gt-time"
             raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
