@@ -66,8 +66,8 @@ def drawn(arguments: argparse.Namespace, paths: float, seed: int) -> tuple[Sessi
 def naive_share(arguments: argparse.Namespace, paths: float) -> float:
     """Share of rays on the film, if nothing is learned."""
     made = session(arguments, paths, 5)
-    made._settings.flare_learned = False
-    made._settings.prepare_flare(made._core_scene, made._setup.core)
+    made.light_plan.core.flare_learned = False
+    made.light_plan.core.prepare_flare(made.prepared.core_scene, made.prepared.setup.core)
     made.draw(0, 1)
     return made.counters.flare_hits / made.counters.flare_rays
 

@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
+from daguerre.rendering.light_plan import pilot
 from daguerre.rendering.session import Session
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -85,7 +86,7 @@ def draw(
     )
     started = cpu_seconds()
     if side == "both" and options.light_paths == "auto":
-        session._plan()  # once more, to be timed
+        pilot(session.prepared, session.light_plan.core)  # once more, to be timed
     flown = cpu_seconds()
     session.draw(0, options.spp)
     seconds = cpu_seconds() - flown

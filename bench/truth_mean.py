@@ -17,7 +17,6 @@ import numpy as np
 from one_core import command, machine, report
 
 import daguerre as dg
-from daguerre.frame.aovs import COVERAGE
 from daguerre.rendering.truth import GroundTruth
 
 SIZE = (120, 80)
@@ -50,7 +49,7 @@ def measure() -> dict[str, Any]:
 
         def coverage(rays: int, shot: Any = now.shot) -> np.ndarray:
             seen = dg._core.see_mean(*shot, (0, 0, *SIZE), rays)
-            return np.asarray(seen.plane(COVERAGE), np.float64)
+            return np.asarray(seen.plane("coverage.Y"), np.float64)
 
         wanted = coverage(REFERENCE)
         partial = (wanted > 0.02) & (wanted < 0.98)

@@ -20,7 +20,9 @@ from daguerre import _core
 from daguerre.camera.camera import Camera
 from daguerre.errors import InputError
 from daguerre.frame.frame import Frame
+from daguerre.rendering.keywords import settings_of
 from daguerre.rendering.ranges import join_ranges
+from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
 
@@ -38,35 +40,27 @@ class FakeSession:
         scene: Scene,
         camera: Camera,
         *,
-        resolution: tuple[int, int] = (960, 540),
-        seed: int = 0,
-        filter: str = "blackman_harris",
-        aovs: bool = False,
-        gt_time: str | None = None,
-        gt_lens: str = "chief",
-        gt_rays: int | None = None,
-        motion: bool = False,
-        crop: tuple[int, int, int, int] | None = None,
-        threads: int = 0,
-        max_depth: int = 16,
+        settings: RenderSettings | None = None,
         built: object = None,
+        **keywords: Any,
     ) -> None:
         self.built = built or self
+        self.settings = settings_of(settings, keywords)
+        film, sampling = self.settings.film, self.settings.sampling
         if camera.f_stop is not None and camera.f_stop <= 0:
             raise InputError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
-        self.width, self.height = resolution
-        self.crop = crop or (0, 0, *resolution)
-        self.aovs = aovs
+        self.width, self.height = film.resolution
+        self.crop = film.crop or (0, 0, *film.resolution)
         self.notes = ["autofocus: centre ray hit at 1.532 m"]
         self.warnings: list[str] = []
         self.key = {
             "scene": "a" * 64,
             "camera": f"{camera.f_stop}",
-            "settings": f"{resolution} {seed} {filter} {crop} {max_depth}",
+            "settings": f"{film} {sampling.seed} {sampling.filter} {self.settings.light}",
             "build": "fake 1",
         }
         self.metadata: dict[str, Any] = {
-            "seed": seed,
+            "seed": sampling.seed,
             "aperture": camera.f_stop,
             "version": "0.1.0",
         }
@@ -107,7 +101,7 @@ class FakeSession:
         count = max(1, sum(b - a for a, b in self.ranges))
         grey = (self.sums / count / 65521).astype(np.float32)
         aovs = {}
-        if self.aovs:
+        if self.settings.film.aovs:
             names = ["depth.Z", *(f"{g}.{c}" for g in "PN" for c in "XYZ")]
             aovs = dict.fromkeys([*names, "albedo.R", "albedo.G", "albedo.B"], grey)
             aovs["object_id"] = np.full(self.shape, 4_000_000_000, np.uint32)

@@ -150,5 +150,5 @@ def test_bad_plans_are_one_error(value: Any) -> None:
 
 
 def test_an_unknown_technique_is_one_error() -> None:
-    with pytest.raises(UsageError, match="technique: wanted both, camera, light; got 'lamp'"):
+    with pytest.raises(UsageError, match="technique: wanted both, camera, light, got 'lamp'"):
         session(technique="lamp")

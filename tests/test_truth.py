@@ -189,7 +189,7 @@ def test_through_an_exact_lens_motion_is_that_of_its_chief_rays() -> None:
     scene.set_environment(color=(1, 1, 1))
     session = dg.Session(scene, camera, resolution=SIZE, motion=True)
     session.draw(0, 1)
-    chief = session._setup.core.chief_rays()
+    chief = session.prepared.setup.core.chief_rays()
     x, y = seen()
     film = np.stack([x, y], -1).reshape(-1, 2) * 50
     _, directions = chief.rays(film)

@@ -1,50 +1,98 @@
-"""Auxiliary channels of a frame: names, units, and which render produces them."""
+"""Auxiliary channels of a frame: one row each, with names, unit, and what produces it.
+
+A row here and the core's plane of that name are all that a new channel of film or ground truth
+needs: the flag, the film, ground truth and pass files read this table.
+"""
 
 from __future__ import annotations
 
-import daguerre._core as _core
-
-ALPHA = "alpha"
-#: Auxiliary channels of a film, in the names of the files; alpha is a member of the frame.
-AOV_NAMES: tuple[str, ...] = tuple(name for name in _core.FILM_AOVS if name != ALPHA)
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
 
 
-#: Channels of ground truth, in the names of the files.
-PLANES: tuple[str, ...] = _core.TRUTH_PLANES
+class Source(Enum):
+    """Producers of channels."""
+
+    FILM = "means over the samples"
+    TRUTH = "ground truth"
+    MEANS = "ground truth of means alone"
+    MOTION = "ground truth of two moments"
+    STEREO = "depth of a stereo pair"
+    EXPOSURE = "exposure of a photograph"
+    ALWAYS = "every picture"
 
 
-#: Channel of means alone: the share of the light whose rays meet a surface.
-COVERAGE: str = _core.COVERAGE_PLANE
+#: Producers that read scene and camera alone, whatever the samples.
+EXACT = (Source.TRUTH, Source.MEANS, Source.MOTION)
 
 
-#: Where it is in the next frame and where it was in the last one: how many frames later.
-MOTION = {"motion": 1, "motion_back": -1}
+@dataclass(frozen=True)
+class Aov:
+    """Channels that are asked for together.
+
+    Attributes:
+        name: Name for ``--aov``, and of the channels in files.
+        parts: Letters of the channels behind its name; empty: the name is the channel.
+        unit: Such as m or px; empty: none.
+        sources: Where it comes from; ground truth replaces the film's, where both have it.
+        aliases: Other names for ``--aov``.
+        frames: For motion: how many frames later it looks.
+    """
+
+    name: str
+    parts: str
+    unit: str
+    sources: tuple[Source, ...]
+    aliases: tuple[str, ...] = ()
+    frames: int = 0
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names in files."""
+        return tuple(f"{self.name}.{part}" for part in self.parts) or (self.name,)
 
 
-#: what may be asked for with --aov -> group of channels
-AOVS = {
-    "depth": "depth",
-    "P": "P",
-    "position": "P",
-    "N": "N",
-    "normal": "N",
-    "albedo": "albedo",
-    "object_id": "object_id",
-    "id": "object_id",
-}
+#: In the order of messages.
+TABLE = (
+    Aov("depth", "Z", "m", (Source.FILM, Source.TRUTH)),
+    Aov("P", "XYZ", "m", (Source.FILM, Source.TRUTH), ("position",)),
+    Aov("N", "XYZ", "", (Source.FILM, Source.TRUTH), ("normal",)),
+    Aov("albedo", "RGB", "", (Source.FILM,)),
+    Aov("object_id", "", "", (Source.FILM, Source.TRUTH), ("id",)),
+    Aov("distance", "Z", "m", (Source.TRUTH,)),
+    Aov("material_id", "", "", (Source.TRUTH,)),
+    Aov("motion", "UV", "px", (Source.MOTION,), frames=1),
+    Aov("motion_back", "UV", "px", (Source.MOTION,), frames=-1),
+    Aov("coverage", "Y", "", (Source.MEANS,)),
+    Aov("exposure", "Y", "lx s", (Source.EXPOSURE,)),
+    Aov("saturated", "", "", (Source.EXPOSURE,)),  # .R and so on, as the sensor's channels are
+    Aov("disparity", "X", "px", (Source.STEREO,)),
+    Aov("variance", "RGB", "", (Source.ALWAYS,)),
+    Aov("samples", "Y", "", (Source.ALWAYS,)),
+)
 
 
-#: the same that only ground truth has; they are not among "all"
-TRUTH = {name: name for name in ("distance", "material_id", "motion", "motion_back", "coverage")}
+def made_by(*sources: Source) -> Iterator[Aov]:
+    """The rows that any of these produces."""
+    return (row for row in TABLE if any(source in row.sources for source in sources))
 
 
-#: what photographs are measured against: light of the exposure, in lux s, and where it saturates
-EXPOSED = ("exposure", "saturated")
+def channels_of(*sources: Source) -> tuple[str, ...]:
+    """Names in files of what any of these produces."""
+    return tuple(channel for row in made_by(*sources) for channel in row.channels)
 
 
-#: of a stereo pair, by its depth
-DISPARITY = "disparity"
+def names_of(*sources: Source) -> tuple[str, ...]:
+    """Groups that any of these produces."""
+    return tuple(row.name for row in made_by(*sources))
 
 
-#: groups that every EXR has, so asking for them changes nothing
-ALWAYS = ("variance", "samples")
+#: Every row, by each name that it may be asked for.
+BY_NAME = {name: row for row in TABLE for name in (row.name, *row.aliases)}
+#: Names in files: a film's channels, those of ground truth at one moment, and those of means.
+FILM_CHANNELS = channels_of(Source.FILM)
+TRUTH_CHANNELS = channels_of(Source.TRUTH)
+MEANS_CHANNELS = channels_of(Source.TRUTH, Source.MEANS)
+#: Groups that only ground truth has, so asking for one asks for it.
+EXACT_ONLY = tuple(row.name for row in made_by(*EXACT) if Source.FILM not in row.sources)

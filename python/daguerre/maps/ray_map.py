@@ -20,7 +20,8 @@ from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
 from daguerre.errors import InputError, UsageError, core_errors, suggest
-from daguerre.rendering.truth import GT_TIMES, check_gt_time, instants
+from daguerre.rendering.parameters import TABLE
+from daguerre.rendering.truth import GT_TIMES, instants
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
 from daguerre.setup.metadata import camera_metadata
@@ -103,14 +104,14 @@ def raymap(
     Raises:
         UsageError: A parameter is out of its range.
     """
-    from daguerre.rendering.session import check_resolution
+    from daguerre.rendering.pixels import check_resolution
 
     size = check_resolution(resolution)
     check_frame(frame)
-    check_gt_time(gt_time, wanted=True)
+    moment = TABLE["gt_time"].check(gt_time, "gt_time") or "mid"
     core_scene = built(scene, camera, size)
     wanted = overscan_of(overscan, camera, size, scene, core_scene)
-    return rays_of(camera, size, scene or Scene(), core_scene, gt_time, frame, wanted)
+    return rays_of(camera, size, scene or Scene(), core_scene, moment, frame, wanted)
 
 
 def check_frame(frame: str, where: str = "frame") -> None:

@@ -129,7 +129,7 @@ def stmaps(
     Raises:
         UsageError: A cube, which cannot be straightened; or a parameter of the camera.
     """
-    from daguerre.rendering.session import check_resolution
+    from daguerre.rendering.pixels import check_resolution
 
     size = check_resolution(resolution)
     core_scene = built(scene, camera, size)

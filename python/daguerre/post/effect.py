@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from daguerre.convolution.rows import Rows
-from daguerre.errors import InputError, UsageError, suggest
+from daguerre.errors import InputError, UsageError
+from daguerre.parameters.table import Table
 
 from .parameter import Parameter
 from .picture import Band, Canvas, Source
@@ -72,19 +73,4 @@ class Effect:
             where: For messages, such as ``--effect grain``.
             error: Type of error to raise.
         """
-        known = {p.name: p for p in self.parameters}
-        for name in given:
-            if name not in known:
-                listed = ", ".join(known) or "nothing"
-                raise error(
-                    f"{where}: parameter {name!r}: wanted one of {listed}{suggest(name, known)}"
-                )
-        values = {}
-        for name, parameter in known.items():
-            if name in given:
-                values[name] = parameter.read(given[name], f"{where}: {name}", error)
-            elif parameter.required:
-                raise error(f"{where}: {name}: wanted {parameter.wanted}, got nothing")
-            else:
-                values[name] = parameter.default
-        return values
+        return Table(*self.parameters).values(given, where, error)

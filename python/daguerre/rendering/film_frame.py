@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.frame.aovs import ALPHA, AOV_NAMES
+from daguerre.frame.aovs import FILM_CHANNELS
 from daguerre.frame.frame import Frame
 
 
@@ -46,9 +46,8 @@ def frame_of(
     planes: dict[str, NDArray[Any]] = {}
     alpha = np.ones(film.shape, np.float32)
     if aovs:
-        planes = {name: film.aov(name) for name in AOV_NAMES}
-        planes["object_id"] = film.object_ids()
-        alpha = film.aov(ALPHA)
+        planes = {name: _plane(film, name) for name in FILM_CHANNELS}
+        alpha = film.aov("alpha")
     parts, keep = film.state_parts(), bool(metadata.get("bands"))
     if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .diffraction import developed, rgb_of
@@ -76,3 +75,8 @@ def frame_of(
         channels=channels,
         bands=bands,
     )
+
+
+def _plane(film: Any, name: str) -> NDArray[Any]:
+    """A channel of a film; ids are whole numbers, so no means."""
+    return np.asarray(film.object_ids() if name == "object_id" else film.aov(name))

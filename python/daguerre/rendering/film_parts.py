@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 import daguerre._core as _core
 from daguerre.camera.overscan import Overscan
 
+from .pixels import Box
+
 if TYPE_CHECKING:
     from daguerre.setup.camera import CameraSetup
 
-Box = tuple[int, int, int, int]
 NOWHERE: Box = (0, 0, 0, 0)
 #: Changes the seed around the picture, which has random numbers of its own.
 _SEED = 0x9E3779B97F4A7C15

@@ -17,6 +17,8 @@ Plan = tuple[float, float]
 OFF: Plan = (0.0, 0.0)
 TECHNIQUES = ("both", "camera", "light")
 MOST = 1e9
+#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+PER_PIXEL = {"flare": 0.5, "scatter": 2.0}
 WANTED = f"auto, off, or one or two numbers of paths per sample index, 0 .. {MOST:g}"
 
 
@@ -83,14 +85,6 @@ def show_plan(plan: Plan) -> str | None:
     return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)
 
 
-#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
-PER_PIXEL = 2.0
-
-
-#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
-PER_PIXEL = 0.5
-
-
 def check_highlights(value: object, where: str = "flare_highlights") -> bool:
     """Whether light that other things send to the lens has ghosts, too.
 
@@ -102,22 +96,3 @@ def check_highlights(value: object, where: str = "flare_highlights") -> bool:
     if isinstance(value, bool):
         return value
     raise UsageError(f"{where}: wanted on or off, got {short(value)}")
-
-
-def check_used(given: dict[str, bool], *, flare: bool, scatter: bool) -> None:
-    """Refuses parameters of flare or scatter where neither is on.
-
-    Args:
-        given: Parameters, and whether they differ from their defaults: of flare alone,
-            then of flare or scatter.
-        flare: Whether ghosts are drawn.
-        scatter: Whether scatter is drawn.
-
-    Raises:
-        UsageError: A parameter would have no effect.
-    """
-    for (name, other), drawn in zip(given.items(), (flare, flare or scatter), strict=True):
-        if other and not drawn:
-            dashes = "--" if name.startswith("--") else ""
-            also = f" or {dashes}scatter" if "highlights" in name else ""
-            raise UsageError(f"{name}: needs {dashes}flare{also} to be on")

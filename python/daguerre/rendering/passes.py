@@ -211,12 +211,12 @@ def _read_truth(path: Path, source: Any) -> dict[str, NDArray[Any]]:
     """The channels of ground truth of the picture in a pass."""
     import OpenImageIO as oiio
 
-    from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
+    from daguerre.frame.aovs import EXACT, channels_of
 
     source.seek_subimage(0, 0)
     spec = source.spec()
     _check_size(path, spec)
-    known = {*PLANES, COVERAGE, *(f"{name}.{axis}" for name in MOTION for axis in "UV")}
+    known = channels_of(*EXACT)
     planes: dict[str, NDArray[Any]] = {}
     for i, name in enumerate(spec.channelnames):
         if name in known:

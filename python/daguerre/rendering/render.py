@@ -3,85 +3,71 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Unpack
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import MAX_SAMPLES, whole
 from daguerre.frame.frame import Frame
 from daguerre.scene.scene import Scene
 
-from .adaptive import check_noise
+from .keywords import RenderKeywords, settings_of, takes
 from .rounds import rounds
 from .session import Session
+from .settings import RenderSettings
 
-DEFAULT_SPP = 64
 
-
+@takes(RenderKeywords)
 def render(
     scene: Scene,
     camera: Camera | str | None = None,
     *,
-    spp: int | None = None,
-    noise: float | None = None,
-    **options: Any,
+    settings: RenderSettings | None = None,
+    **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Renders a picture.
 
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
-        spp: Samples per pixel; default: 64. With ``noise`` the most that a pixel may get;
-            default then: 16384.
-        noise: Relative error to reach (0.05 is grainy, 0.01 clean): the root mean square over
-            pixels and channels of standard error / sqrt(value^2 + 0.01). Pixels then get as many
-            samples as each needs.
-        **options: Options of :class:`Session`: resolution, seed, filter, aovs, gt_time, gt_lens,
-            motion, crop, threads, max_depth.
+        settings: How it is rendered; the keywords change it.
+        {keywords}
 
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
     """
-    _most_samples(spp, noise)  # before anything is built
-    return finish(Session(scene, camera, **options), spp, noise)
+    return finish(Session(scene, camera, settings=settings_of(settings, keywords)))
 
 
-def finish(session: Session, spp: int | None = None, noise: float | None = None) -> Frame:
-    """Draws and returns the picture of a session; arguments are those of :func:`render`."""
-    spp = _most_samples(spp, noise)
-    if noise is None:
-        session.draw(0, spp)
+def finish(session: Session) -> Frame:
+    """The picture of a session, of as many samples as its settings ask for."""
+    sampling = session.settings.sampling
+    if sampling.noise is None:
+        session.draw(0, sampling.most)
     else:
-        for _ in rounds(session, noise, spp):
+        for _ in rounds(session, sampling.noise, sampling.most):
             pass
     return session.frame()
 
 
+@takes(RenderKeywords)
 def iter_render(
     scene: Scene,
     camera: Camera | str | None = None,
     *,
-    spp: int | None = None,
-    noise: float | None = None,
-    **options: Any,
+    settings: RenderSettings | None = None,
+    **keywords: Unpack[RenderKeywords],
 ) -> Iterator[Frame]:
     """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
 
     With ``noise``, after each round of adaptive sampling. Arguments are those of :func:`render`.
     """
-    spp = _most_samples(spp, noise)
-    session = Session(scene, camera, **options)
-    if noise is not None:
-        for _ in rounds(session, noise, spp):
+    session = Session(scene, camera, settings=settings_of(settings, keywords))
+    sampling = session.settings.sampling
+    if sampling.noise is not None:
+        for _ in rounds(session, sampling.noise, sampling.most):
             yield session.frame()
         return
     begin, end = 0, 1
-    while begin < spp:
-        session.draw(begin, min(end, spp))
+    while begin < sampling.most:
+        session.draw(begin, min(end, sampling.most))
         yield session.frame()
         begin, end = end, 2 * end
-
-
-def _most_samples(spp: int | None, noise: float | None) -> int:
-    if noise is not None:
-        return check_noise(noise, spp)[1]
-    return whole(DEFAULT_SPP if spp is None else spp, "spp", 1, MAX_SAMPLES, "1 .. 2^31")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +17,20 @@ from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
 
+from .keywords import RigKeywords, settings_of, takes
 from .render import finish
 from .session import Session
+from .settings import RenderSettings
 
 
+@takes(RigKeywords)
 def render_rig(
     scene: Scene,
     cameras: Mapping[str, Camera | str],
     *,
-    spp: int | None = None,
-    noise: float | None = None,
     resolution: tuple[int, int] | None = None,
-    **options: Any,
+    settings: RenderSettings | None = None,
+    **keywords: Unpack[RigKeywords],
 ) -> dict[str, Frame]:
     """Renders one picture for each camera; the scene is built once.
 
@@ -38,11 +40,10 @@ def render_rig(
     Args:
         scene: The scene.
         cameras: Cameras by name, or names of the scene's cameras.
-        spp: Samples per pixel, see :func:`render`.
-        noise: Relative error to reach, see :func:`render`.
         resolution: Width and height of all pictures, px; default: each calibrated camera's own,
-            else 960 x 540.
-        **options: Options of :class:`Session`.
+            else that of the settings.
+        settings: How they are rendered; the keywords change it.
+        {keywords}
 
     Returns:
         The frames, by name.
@@ -50,13 +51,15 @@ def render_rig(
     named: Any = cameras
     if not isinstance(named, Mapping) or not named:
         raise UsageError(f"cameras: wanted cameras by name, got {short(named)}")
+    common = settings_of(settings, keywords)
     frames: dict[str, Frame] = {}
     built: BuiltScene | None = None
     for name, given in cameras.items():
         camera = given if isinstance(given, Camera) else scene.camera(given)
-        size = resolution or (camera.projection.size if camera.projection else (960, 540))
-        session = Session(scene, camera, resolution=size, built=built, **options)
-        frames[name] = finish(session, spp, noise)
+        own = camera.projection.size if camera.projection else common.film.resolution
+        one = common.with_(resolution=resolution or own)
+        session = Session(scene, camera, settings=one, built=built)
+        frames[name] = finish(session)
         built = session.built
     return frames
 

@@ -17,9 +17,8 @@ import daguerre._core as _core
 from daguerre.camera import rolling_shutter, shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
-from daguerre.checks import short, whole
-from daguerre.errors import InputError, UsageError, core_errors, suggest
-from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
+from daguerre.errors import InputError, core_errors
+from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import CameraSetup, set_up
 from daguerre.setup.scene import build
@@ -32,42 +31,6 @@ GT_LENSES = ("chief", "mean")
 #: How many of those are drawn.
 GT_RAYS = 64
 MAX_RAYS = 65536
-
-
-def check_gt_time(gt_time: str | None, *, wanted: bool, where: str = "gt_time") -> str | None:
-    """The moment of ground truth, or None; what is ``wanted`` without one is that of the middle.
-
-    Raises:
-        UsageError: There is no such moment.
-    """
-    if gt_time is None:
-        return "mid" if wanted else None
-    if str(gt_time) not in GT_TIMES:
-        known = ", ".join(GT_TIMES)
-        raise UsageError(
-            f"{where}: wanted {known}, got {short(gt_time)}{suggest(str(gt_time), GT_TIMES)}"
-        )
-    return gt_time
-
-
-def check_gt_lens(
-    gt_lens: str, gt_rays: int | None, *, where: tuple[str, str] = ("gt_lens", "gt_rays")
-) -> int:
-    """How many rays of each pixel ground truth takes.
-
-    Raises:
-        UsageError: There is no such kind, or the number goes with means alone.
-    """
-    if str(gt_lens) not in GT_LENSES:
-        known = " or ".join(GT_LENSES)
-        raise UsageError(
-            f"{where[0]}: wanted {known}, got {short(gt_lens)}{suggest(str(gt_lens), GT_LENSES)}"
-        )
-    if gt_lens == "chief":
-        if gt_rays is not None:
-            raise UsageError(f"{where[1]}: the chief ray is one; wanted {where[0]} mean too")
-        return 1
-    return whole(GT_RAYS if gt_rays is None else gt_rays, where[1], 1, MAX_RAYS)
 
 
 @dataclass(frozen=True)
@@ -115,34 +78,31 @@ class GroundTruth:
 
     @core_errors(InputError, "render")
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
-        """Channels (H, W) by name: ``PLANES``, and with ``motion`` also ``motion.U``, ... in px.
+        """Channels (H, W) by name; with ``motion`` also ``motion.U`` and so on, px.
 
         ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
         later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN
-        where it does not appear there, hidden or behind the camera. Means also have ``COVERAGE``.
+        where it does not appear there, hidden or behind the camera. Means also have coverage.
         """
         now = self._shot(0)
         if self.gt_lens == "mean":
             return self._means(now, motion=motion)
         seen = _core.see(*now, self.crop)
-        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in PLANES}
+        planes = {name: np.asarray(seen.plane(name)) for name in TRUTH_CHANNELS}
         if not motion:
             return planes
         here = seen.places(*now)
-        for name, frames in MOTION.items():
-            moved = seen.places(*self._shot(frames)) - here
-            for axis, channel in enumerate("UV"):
-                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        for row in made_by(Source.MOTION):
+            moved = seen.places(*self._shot(row.frames)) - here
+            planes |= _by_channel(row, moved)
         return planes
 
     def _means(self, now: Shot, *, motion: bool) -> dict[str, NDArray[Any]]:
         seen = _core.see_mean(*now, self.crop, self.gt_rays)
-        names = (*PLANES, COVERAGE)
-        planes: dict[str, NDArray[Any]] = {name: np.asarray(seen.plane(name)) for name in names}
-        for name, frames in MOTION.items() if motion else ():
-            moved = _core.mean_motion(*now, *self._shot(frames), self.crop, self.gt_rays)
-            for axis, channel in enumerate("UV"):
-                planes[f"{name}.{channel}"] = moved[:, :, axis].astype(np.float32)
+        planes = {name: np.asarray(seen.plane(name)) for name in MEANS_CHANNELS}
+        for row in made_by(Source.MOTION) if motion else ():
+            moved = _core.mean_motion(*now, *self._shot(row.frames), self.crop, self.gt_rays)
+            planes |= _by_channel(row, moved)
         return planes
 
     @core_errors(InputError, "render")
@@ -175,6 +135,11 @@ class GroundTruth:
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
         return Moment((core_scene, setup.core, settings), scene, setup)
+
+
+def _by_channel(row: Aov, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Planes (H, W) of values (H, W, channels)."""
+    return {name: values[:, :, i].astype(np.float32) for i, name in enumerate(row.channels)}
 
 
 def focused(camera: Camera, facts: dict[str, Any]) -> Camera:

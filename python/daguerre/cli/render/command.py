@@ -21,7 +21,6 @@ from daguerre.rendering.light_paths import (
     check_highlights,
     check_light_paths,
     check_paths,
-    check_used,
 )
 
 from .coco import coco_of
@@ -380,11 +379,6 @@ def render(
         raise UsageError(f"--flare-order: wanted 2 or 4, got {flare_order}")
     highlights = check_highlights(flare_highlights, "--flare-highlights")
     wanted_scatter = check_paths(scatter, "--scatter")
-    check_used(
-        {"--flare-order": flare_order != 2, "--flare-highlights": not highlights},
-        flare=wanted_flare != 0,
-        scatter=wanted_scatter != 0,
-    )
     changes = camera_flags.changes() | shutter_flags.changes()
     calibration_flags.check(changes)
     if wanted_scatter == 0 and "scatter" in changes:

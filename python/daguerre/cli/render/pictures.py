@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from daguerre.cli import console
 from daguerre.errors import UsageError
-from daguerre.frame.aovs import DISPARITY
 
 from .job import INTERRUPTED, Job
 
@@ -266,7 +265,7 @@ class Shoot:
         )
         self._built = session.built
         plan.photograph.check(session.metadata, plan.outputs)
-        if DISPARITY in plan.aovs:
+        if "disparity" in plan.aovs:
             from daguerre.rendering.rig import check_straight
 
             check_straight(session.metadata)

@@ -9,7 +9,7 @@ from pathlib import Path
 from daguerre import units as q
 from daguerre.cli.flags.map import MapFlags
 from daguerre.errors import UsageError, suggest
-from daguerre.frame.aovs import ALWAYS, AOVS, DISPARITY, EXPOSED, TRUTH
+from daguerre.frame.aovs import BY_NAME, EXACT_ONLY, Source, made_by, names_of
 
 from .frames import numbered
 from .photograph import Photograph
@@ -17,6 +17,8 @@ from .views import View, named
 
 DEFAULT_RESOLUTION = (960, 540)
 DEFAULT_SPP = 64
+DISPARITY = "disparity"
+EXPOSED = names_of(Source.EXPOSURE)
 
 
 @dataclass(frozen=True)
@@ -71,13 +73,15 @@ class Plan:
     def with_truth(self, gt_time: str | None, gt_lens: str, gt_rays: int | None) -> Plan:
         """With ground truth of that moment; some channels ask for it by themselves."""
         means = gt_lens != "chief"
-        wanted = means or any(name in self.aovs for name in (*TRUTH, DISPARITY))
+        wanted = means or any(name in self.aovs for name in (*EXACT_ONLY, DISPARITY))
         if gt_time is None and gt_rays is None and not wanted:
             return self
-        from daguerre.rendering.truth import check_gt_lens, check_gt_time
+        from daguerre.rendering.parameters import TABLE
+        from daguerre.rendering.settings import RenderSettings
 
-        check_gt_lens(gt_lens, gt_rays, where=("--gt-lens", "--gt-rays"))
-        moment = check_gt_time(gt_time, wanted=wanted, where="--gt-time")
+        given = {"gt_time": gt_time, "gt_lens": gt_lens, "gt_rays": gt_rays}
+        RenderSettings.read(given, lambda name: TABLE[name].flag)
+        moment = gt_time or ("mid" if wanted else None)
         if not self.aovs and (means or self.maps.export_raymap is None):
             flag = "--gt-lens" if gt_time is None else "--gt-time"
             raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
@@ -92,7 +96,7 @@ class Plan:
     @property
     def motion(self) -> bool:
         """Whether motion in pixels is asked for."""
-        return "motion" in self.aovs or "motion_back" in self.aovs
+        return any(name in self.aovs for name in names_of(Source.MOTION))
 
     @property
     def exposed(self) -> bool:
@@ -215,18 +219,19 @@ def check_crop(
 
 
 def _aov_groups(names: list[str], everything: bool) -> list[str]:
-    groups = set(AOVS.values()) if everything else set()
+    film = names_of(Source.FILM)
+    groups = set(film) if everything else set()
     for name in (part.strip() for text in names for part in text.split(",")):
         if name == "all":
-            groups |= set(AOVS.values())
-        elif name in AOVS or name in TRUTH or name in EXPOSED or name == DISPARITY:
-            groups.add(AOVS.get(name, name))
-        elif name not in ALWAYS:
-            known = [*AOVS, *TRUTH, *EXPOSED, DISPARITY, *ALWAYS, "all"]
+            groups |= set(film)
+        elif name in BY_NAME:
+            groups.add(BY_NAME[name].name)
+        else:
+            known = [*BY_NAME, "all"]
             raise UsageError(
                 f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
             )
-    return sorted(groups)
+    return sorted(groups - {row.name for row in made_by(Source.ALWAYS)})
 
 
 def check_outputs(plan: Plan) -> None:

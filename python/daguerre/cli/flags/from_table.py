@@ -1,0 +1,64 @@
+"""Flags made from tables of parameters: a row is a flag of every command that takes its table."""
+
+from collections.abc import Callable
+from dataclasses import fields, make_dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, TypeVar
+
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+
+from .groups import option
+
+_TYPES: dict[str, Any] = {"number": float, "whole": int, "flag": bool, "file": Path}
+_TYPES |= {"picture": Path}
+
+
+class TableFlags:
+    """Flags of a table; what is not given is None."""
+
+    table: ClassVar[Table]
+
+    def given(self) -> dict[str, Any]:
+        """Values by the names of their parameters, read from the texts that were given."""
+        values = {row: getattr(self, row.field) for row in self.table.flagged}
+        return {row.name: _read(row, value) for row, value in values.items() if _is_given(value)}
+
+
+Flags = TypeVar("Flags", bound=TableFlags)
+
+
+def made_of(table: Table) -> Callable[[type[Flags]], type[Flags]]:
+    """Makes a data class of flags: the decorated class with a field for each row with a flag."""
+
+    def make(base: type[Flags]) -> type[Flags]:
+        made = make_dataclass(
+            base.__name__,
+            [(row.field, field_type(row, table), None) for row in table.flagged],
+            bases=(base,),
+            namespace={"table": table, "__doc__": base.__doc__, "__module__": base.__module__},
+            frozen=True,
+        )
+        assert len(fields(made)) == len(table.flagged)
+        return made
+
+    return make
+
+
+def field_type(row: Parameter, table: Table) -> Any:
+    """Type of a flag for Typer, with its names and its help."""
+    kind = list[str] if row.repeated else str if row.parser else _TYPES.get(row.kind, str)
+    shown = option(*row.flags, metavar=row.metavar, help=table.help(row.name), panel=row.panel)
+    return Annotated[kind | None, shown]
+
+
+def _is_given(value: Any) -> bool:
+    return value is not None and value != []
+
+
+def _read(row: Parameter, value: Any) -> Any:
+    if row.parser is None:
+        return value
+    if row.repeated:
+        return tuple(row.parser(row.flag, text) for text in value)
+    return row.parser(row.flag, value)

@@ -1,0 +1,127 @@
+"""Tables of parameters: look-up, values with defaults, rivals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import Any
+
+from daguerre.errors import InputError, UsageError, suggest
+
+from .parameter import Parameter, fill
+
+
+class Table:
+    """Parameters in the order in which helps and pages show them."""
+
+    def __init__(self, *rows: Parameter | Iterable[Parameter]) -> None:
+        self.rows: tuple[Parameter, ...] = tuple(
+            row for part in rows for row in ([part] if isinstance(part, Parameter) else part)
+        )
+        self._rows = {row.name: row for row in self.rows}
+        if len(self._rows) != len(self.rows):
+            raise ValueError("a table has two parameters of one name")
+
+    def __iter__(self) -> Iterator[Parameter]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._rows
+
+    def __getitem__(self, name: str) -> Parameter:
+        """The parameter of this name, which is in the table."""
+        return self._rows[name]
+
+    def find(self, name: str, where: str, error: type[InputError | UsageError]) -> Parameter:
+        """The parameter of a name that a user typed.
+
+        Raises:
+            InputError or UsageError: There is none; the nearest is suggested.
+        """
+        if name not in self._rows:
+            listed = ", ".join(self._rows) or "nothing"
+            near = suggest(name, self._rows)
+            raise error(f"{where}: parameter {name!r}: wanted one of {listed}{near}")
+        return self._rows[name]
+
+    @property
+    def flagged(self) -> tuple[Parameter, ...]:
+        """Those with a flag."""
+        return tuple(row for row in self.rows if row.flags)
+
+    def values(
+        self, given: Mapping[str, Any], where: str, error: type[InputError | UsageError]
+    ) -> dict[str, Any]:
+        """All parameters by name: those given, read and checked, and defaults for the others.
+
+        Args:
+            given: By name, as text or as values of JSON.
+            where: For messages, such as ``--effect grain``.
+            error: Type of error to raise.
+        """
+        for name in given:
+            self.find(name, where, error)
+        values = {}
+        for name, row in self._rows.items():
+            if name in given:
+                values[name] = row.read(given[name], f"{where}: {name}", error)
+            elif row.required:
+                raise error(f"{where}: {name}: wanted {row.wanted}, got nothing")
+            else:
+                values[name] = row.default
+        return values
+
+    def defaults(self) -> dict[str, Any]:
+        """Default by name; None: not given."""
+        return {row.name: row.default for row in self.rows}
+
+    def rivals(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of names of which at most one may be given."""
+        groups: dict[str, list[str]] = {}
+        for row in self.rows:
+            if row.rivals:
+                groups.setdefault(row.rivals, []).append(row.name)
+        return tuple(tuple(names) for names in groups.values())
+
+    def refuse_rivals(self, given: Collection[str], where: str = "") -> None:
+        """Refuses parameters that exclude each other.
+
+        Args:
+            given: Names of the parameters that were given.
+            where: Owner of the parameters, such as ``camera``; empty: name their flags.
+
+        Raises:
+            UsageError: The message names them.
+        """
+        for names in self.rivals():
+            both = [name for name in names if name in given]
+            if len(both) > 1 and where:
+                raise UsageError(f"{where}: wanted either {both[0]} or {both[1]}, got both")
+            if len(both) > 1:
+                flags = " and ".join(self[name].flag for name in both)
+                got = "both" if len(both) == 2 else len(both)
+                raise UsageError(f"{flags}: wanted one of them, got {got}")
+
+    def check(self, values: Any, where: str) -> None:
+        """Refuses values that none of the parameters takes.
+
+        Args:
+            values: Object with an attribute for each parameter.
+            where: Owner of the parameters, for messages.
+        """
+        for row in self.rows:
+            row.check(getattr(values, row.name), f"{where}: {row.name}")
+
+    def help(self, name: str) -> str:
+        """The phrase of a command's help, with flags for the parameters that it names."""
+        return self[name].help(self.flag)
+
+    def flag(self, name: str) -> str:
+        """Flag of a parameter; a name of another table stands as it is."""
+        return self[name].flag if name in self else "--" + name.replace("_", "-")
+
+    def text(self, text: str, shown: Callable[[Parameter], str]) -> str:
+        """A text with the parameters that it names in braces shown."""
+        return fill(text, lambda name: shown(self[name]))

@@ -1,0 +1,142 @@
+"""Identity of a picture: hashes that its passes share, and the facts in its files."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.exposure import without_exposure
+from daguerre.frame.seen_by import sensor_metadata
+from daguerre.setup.body import scatter_facts
+from daguerre.setup.metadata import camera_metadata
+
+from .adaptive import Round
+from .light_paths import show_plan
+from .light_plan import LightPlan
+from .pixels import parse_filter
+from .prepare import Prepared
+from .settings import RenderSettings
+
+
+class Drawn(Protocol):
+    """A picture that is drawn, as a session knows it."""
+
+    prepared: Prepared
+    light_plan: LightPlan
+    settings: RenderSettings
+    ranges: list[tuple[int, int]]
+    round: Round | None
+
+    @property
+    def key(self) -> dict[str, str]:
+        """Facts that passes must share."""
+
+    @property
+    def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
+        """Number of dropped samples, and the first of them."""
+
+    def sample_counts(self) -> NDArray[np.uint32]:
+        """Samples drawn of each pixel, shape (H, W)."""
+
+
+def key(session: Drawn) -> dict[str, str]:
+    """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
+    one = session.prepared
+    return {
+        "scene": one.built.hash,
+        "camera": _hash_json(without_exposure(one.setup.facts)),
+        "settings": _hash_json(_settings_facts(session)),
+        "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
+        f"{one.core_scene.intersector}",
+    }
+
+
+def metadata(session: Drawn) -> dict[str, Any]:
+    """Camera and picture facts, in the names and units of the EXR attributes."""
+    one, plan, (bad, places) = session.prepared, session.light_plan, session.bad_samples
+    settings, truth = session.settings, session.settings.truth
+    out: dict[str, Any] = {
+        "time": one.scene.time,
+        **camera_metadata(one.camera, one.setup, one.size[0]),
+        "seed": settings.sampling.seed,
+        **_sample_facts(session),
+        "resolution": one.size,
+        "crop": one.crop,
+        "overscan": str(one.overscan) if one.overscan else None,
+        "filter": parse_filter(settings.sampling.filter)[0],
+        "light_paths": show_plan(plan.light_paths),
+        "flare": f"{plan.flare:.17g}" if plan.flare else None,
+        "scatter": f"{plan.scatter:.17g}" if plan.scatter else None,
+        "lens_scatter": scatter_facts(one.camera) if plan.scatter else None,
+        "diffraction": settings.diffraction.words if settings.diffraction else None,
+        "pupils": one.pupils,
+        "bands": settings.film.bands or None,
+        **sensor_metadata(one.sensor),
+        "scene_hash": session.key["scene"],
+        "bad_samples": bad,
+        "bad_sample_places": [list(place) for place in places],
+        "gt_time": truth.moment,
+        "gt_lens": truth.gt_lens if truth.moment else None,
+        "gt_rays": truth.rays if truth.moment and truth.gt_lens == "mean" else None,
+        "version": _core.__version__,
+        "intersector": one.core_scene.intersector,
+    }
+    return {name: value for name, value in out.items() if value is not None}
+
+
+def _settings_facts(session: Drawn) -> dict[str, Any]:
+    """Settings that pictures must share; what is off is left out, so that hashes stay."""
+    one, plan, settings = session.prepared, session.light_plan, session.settings
+    light, reference = settings.light, settings.reference
+    kind, radius = parse_filter(settings.sampling.filter)
+    out: dict[str, Any] = {
+        "resolution": list(one.size),
+        "crop": list(one.crop),
+        "seed": settings.sampling.seed,
+        "filter": kind,
+        "filter_radius": radius,
+        "max_depth": light.max_depth,
+        "aovs": settings.film.aovs,
+        "strategy": reference.strategy,
+        "dispersion": reference.dispersion,
+        "light_paths": list(plan.light_paths),
+        "technique": reference.technique,
+    }
+    if plan.flare:
+        out |= {"flare": plan.flare, "flare_order": light.flare_order}
+    if plan.scatter:
+        out |= {"scatter": plan.scatter, "scatters": scatter_facts(one.camera)}
+    if plan.flare or plan.scatter:
+        out |= {"flare_highlights": light.flare_highlights}
+    if one.pupils is not None:
+        out["pupils"] = _hash_json(one.pupils)
+    if one.sensor is not None:
+        out["sensor"] = one.sensor.hash
+    if settings.film.bands:
+        out["bands"] = settings.film.bands
+    if one.overscan:
+        out["overscan"] = str(one.overscan)
+    return out
+
+
+def _sample_facts(session: Drawn) -> dict[str, Any]:
+    """Samples per pixel; of adaptive sampling mean and bounds, and the noise reached."""
+    if session.round is None:
+        return {"samples": sum(b - a for a, b in session.ranges)}
+    counts = session.sample_counts()
+    return {
+        "samples": float(counts.mean()),
+        "samples_min": int(counts.min()),
+        "samples_max": int(counts.max()),
+        "noise": session.round.noise if session.round.complete else None,
+    }
+
+
+def _hash_json(value: Any) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

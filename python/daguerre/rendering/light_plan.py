@@ -1,0 +1,155 @@
+"""How much light is followed from emitters, ghosts and scatter, in picture and overscan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import daguerre._core as _core
+from daguerre.camera import shutter
+from daguerre.camera.overscan import NONE, Overscan
+from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.sensors.bands import responses
+from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.checks import check_surfaces
+
+from .film_parts import FilmPart, area, core_settings
+from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
+from .pixels import parse_filter
+from .prepare import Prepared
+from .settings import RenderSettings
+
+#: Why paths that are asked for are not followed.
+DARK = {
+    "flare": "no light of this scene makes a ghost in this lens",
+    "scatter": "the scene has no lights, or the lens scatters nothing",
+}
+
+
+@dataclass(frozen=True)
+class LightPlan:
+    """Paths that are followed for each sample index, and the parts of the film that draw them.
+
+    Attributes:
+        parts: The picture, and what lies around it, where the crop has any of them.
+        light_paths: Paths from the emitters: straight to the lens, and with bounces.
+        flare: Paths of ghosts.
+        scatter: Paths that the lens scatters.
+        notes: Why some are not followed.
+        core: The core's settings of the picture.
+    """
+
+    parts: list[FilmPart]
+    light_paths: Plan
+    flare: float
+    scatter: float
+    notes: tuple[str, ...]
+    core: _core.RenderSettings
+
+    @property
+    def followed(self) -> bool:
+        """Whether any part follows light from the emitters."""
+        return any(part.settings.light_paths != OFF for part in self.parts)
+
+
+def plan_light(one: Prepared) -> LightPlan:
+    """Decides it for a picture, by the pilot where that is left to it."""
+    with core_errors(UsageError):
+        core = _settings(one, one.setup, NONE)
+    wanted = check_light_paths(one.settings.light.light_paths)
+    plan = pilot(one, core) if wanted is None else wanted
+    # The pilot judges by the frame; a crop gets the share that it has of its pixels.
+    shared = one.share(area(one.window)) if wanted is None else 1.0
+    core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
+    core.prepare_light(one.core_scene, one.setup.core)
+    notes: list[str] = []
+    paths = {name: _prepare(one, core, name, notes) for name in DARK}
+    parts = []
+    if inner := area(one.window):
+        if one.overscan:
+            core.window = one.window
+        parts.append(FilmPart(one.setup.core, core, (0, 0), inner))
+    if outer := area(one.crop) - inner:
+        grown = one.share(area(one.overscan.region(one.size)))
+        times = one.share(outer) if wanted is None else grown
+        parts.append(_around(one, (plan[0] * times, plan[1] * times), paths, outer))
+    return LightPlan(parts, light_paths, **paths, notes=tuple(notes), core=core)
+
+
+def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
+    """The film, with the layers that the picture needs."""
+    x0, y0, x1, y1 = one.crop
+    film, waves = one.settings.film, one.settings.diffraction
+    curves = None if one.sensor is None else responses(one.sensor)
+    layout = _core.FilmLayout(
+        width=x1 - x0,
+        height=y1 - y0,
+        offset_x=x0,
+        offset_y=y0,
+        aovs=film.aovs,
+        splats=plan.followed,
+        flare=plan.flare > 0 or plan.scatter > 0,
+        bands=film.bands if waves is None else waves.bands,
+        channels=0 if curves is None else len(curves),
+    )
+    made = _core.Film(layout)
+    if curves is not None:
+        made.set_responses(curves)
+    return made
+
+
+def pilot(one: Prepared, core: _core.RenderSettings) -> Plan:
+    """Light paths that pay in this scene, by a few samples."""
+    m1, m2 = _core.pilot(one.core_scene, one.setup.core, core)
+    return m1, m2
+
+
+def _around(one: Prepared, plan: Plan, paths: dict[str, float], pixels: int) -> FilmPart:
+    """The overscan, drawn by the same camera with a larger sensor."""
+    overscan = one.overscan
+    setup = set_up(one.scene, one.focused_camera, one.size, one.core_scene, overscan)
+    core = _settings(one, setup, overscan)
+    core.light_paths = plan
+    core.prepare_light(one.core_scene, setup.core)
+    grown = one.share(area(overscan.region(one.size)))
+    for name, count in paths.items():
+        if count and getattr(core, f"prepare_{name}")(one.core_scene, setup.core):
+            setattr(core, name, count * grown)
+    return FilmPart(setup.core, core, (overscan.left, overscan.top), pixels)
+
+
+def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[str]) -> float:
+    """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
+    paths = check_paths(getattr(one.settings.light, name), name)
+    if paths == 0:
+        return 0.0
+    check_surfaces(one.setup.facts["lens_model"], name)
+    with core_errors(InputError, name):
+        shines = getattr(core, f"prepare_{name}")(one.core_scene, one.setup.core)
+    if not shines:
+        notes.append(f"{name}: {DARK[name]}")
+        return 0.0
+    count = PER_PIXEL[name] * area((0, 0, *one.size)) if paths is None else paths
+    setattr(core, name, count)
+    return float(count)
+
+
+def _settings(one: Prepared, setup: CameraSetup, overscan: Overscan) -> _core.RenderSettings:
+    core_shutter = shutter.core_shutter(one.camera, one.size)
+    return core_settings(setup, one.size, core_shutter, overscan, _options(one.settings))
+
+
+def _options(settings: RenderSettings) -> dict[str, Any]:
+    """Settings of the core, by name."""
+    light, reference = settings.light, settings.reference
+    return {
+        "seed": settings.sampling.seed,
+        "threads": settings.threads,
+        "filter": _core.Filter(*parse_filter(settings.sampling.filter)),
+        "max_depth": light.max_depth,
+        "strategy": reference.strategy,
+        "dispersion": reference.dispersion,
+        "technique": reference.technique,
+        "flare_order": light.flare_order,
+        "flare_highlights": light.flare_highlights,
+    }

@@ -1,0 +1,44 @@
+"""Ground truth of a picture: its channels have the bits that they have without overscan."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.overscan import NONE, Overscan
+
+from .film_parts import area
+from .pixels import Box
+from .prepare import Prepared
+from .truth import GroundTruth
+
+
+def ground_truth(one: Prepared, region: Box, overscan: Overscan) -> GroundTruth:
+    """Ground truth at the moment of the settings; default: in the middle of the exposure."""
+    truth = one.settings.truth
+    return GroundTruth(
+        one.scene,
+        one.focused_camera,
+        one.size,
+        region,
+        truth.moment or "mid",
+        truth.gt_lens,
+        truth.rays,
+        one.settings.threads,
+        None if one.scene.motion else one.core_scene,
+        overscan,
+    )
+
+
+def truth_planes(one: Prepared, whole: GroundTruth) -> dict[str, NDArray[Any]]:
+    """Its channels (H, W) by name; those of the picture are made as if there were no overscan."""
+    motion = one.settings.truth.motion
+    planes = whole.planes(motion=motion)
+    if one.overscan and area(one.window):
+        (left, top), (x0, y0, x1, y1) = one.crop[:2], one.window
+        part = np.s_[y0 - top : y1 - top, x0 - left : x1 - left]
+        for name, plane in ground_truth(one, one.window, NONE).planes(motion=motion).items():
+            planes[name][part] = plane
+    return planes

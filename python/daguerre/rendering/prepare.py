@@ -1,0 +1,128 @@
+"""Everything that stands before the first sample: scene built, camera set up, region chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import daguerre._core as _core
+from daguerre import sensors
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.overscan import Overscan, check_overscan
+from daguerre.checks import short
+from daguerre.distortion.overscan import note as overscan_note
+from daguerre.distortion.overscan import to_undistort
+from daguerre.distortion.rectified import Sight
+from daguerre.errors import UsageError
+from daguerre.scene.scene import Scene
+from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.camera import CameraSetup, set_up
+
+from . import diffraction
+from .film_parts import area, frame_around, inside
+from .pixels import Box, crop_within
+from .settings import RenderSettings
+from .truth import focused
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """Scene, camera and settings of one picture, ready to be drawn.
+
+    Attributes:
+        scene: The scene.
+        camera: The camera, as it was given.
+        settings: How it is rendered.
+        built: The scene as the core takes it.
+        setup: The camera, likewise.
+        interval: When the film is exposed, s.
+        overscan: Pixels beside the picture.
+        crop: Pixels that are drawn, (x0, y0, x1, y1).
+        sensor: Sensor whose channels the film has, if the camera names one.
+        pupils: Kernels of diffraction, as JSON.
+        notes: Remarks for users.
+    """
+
+    scene: Scene
+    camera: Camera
+    settings: RenderSettings
+    built: BuiltScene
+    setup: CameraSetup
+    interval: tuple[float, float]
+    overscan: Overscan
+    crop: Box
+    sensor: sensors.Sensor | None
+    pupils: dict[str, Any] | None
+    notes: tuple[str, ...]
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture, px."""
+        return self.settings.film.resolution
+
+    @property
+    def core_scene(self) -> _core.Scene:
+        """The core's scene."""
+        return self.built.core
+
+    @property
+    def focused_camera(self) -> Camera:
+        """The camera with the focus that was found."""
+        return focused(self.camera, self.setup.facts)
+
+    @property
+    def window(self) -> Box:
+        """Pixels of the crop that lie in the picture."""
+        return inside(self.crop, self.size)
+
+    def share(self, pixels: int) -> float:
+        """Pixels as a share of the picture's."""
+        return pixels / area((0, 0, *self.size))
+
+
+def prepare(
+    scene: Scene,
+    camera: Camera | str | None,
+    settings: RenderSettings,
+    built: BuiltScene | None = None,
+) -> Prepared:
+    """Builds the scene and sets up the camera.
+
+    Args:
+        scene: The scene.
+        camera: Camera, or its name in the scene; None: the scene's own.
+        settings: How it is rendered.
+        built: Scene built for another picture, reused where both look at the same time.
+    """
+    if not isinstance(scene, Scene):
+        raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
+    camera = camera if isinstance(camera, Camera) else scene.camera(camera)
+    size = settings.film.resolution
+    interval = shutter.interval(camera, scene.time, size)
+    if built is None or not built.shows(scene, interval):
+        built = BuiltScene(scene, interval)
+    setup = set_up(scene, camera, size, built.core)
+    notes = list(setup.notes)
+    overscan = check_overscan(settings.film.overscan, size)
+    if overscan is None:
+        overscan = to_undistort(Sight(focused(camera, setup.facts), size, scene=scene))
+        notes.append(overscan_note(overscan))
+    crop = crop_within(settings.film.crop, overscan.region(size))
+    sensor = None if camera.sensor is None else sensors.load(camera.sensor)
+    made = Prepared(
+        scene, camera, settings, built, setup, interval, overscan, crop, sensor, None,
+        tuple(notes),
+    )  # fmt: skip
+    return replace(made, pupils=_pupils(made))
+
+
+def _pupils(one: Prepared) -> dict[str, Any] | None:
+    """The pupils of mid-shutter, for the film with its overscan, if light is diffracted."""
+    if one.settings.diffraction is None:
+        return None
+    camera = one.camera.at(0.5 * (one.interval[0] + one.interval[1]))
+    frame, middle = frame_around(one.setup, one.size, one.overscan)
+    setup = replace(one.setup, frame_size=frame, facts=one.setup.facts | {"shift_mm": middle})
+    grown = one.overscan.grown(one.size)
+    return diffraction.plan(one.settings.diffraction, camera, setup, grown, one.sensor)

@@ -1,0 +1,41 @@
+"""Rules between parameters of a render: values that do not go together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from daguerre.camera.overscan import check_overscan
+from daguerre.errors import UsageError
+
+from .light_paths import check_highlights, check_paths
+from .parameters import DEFAULT
+
+#: How messages call a parameter: by its name, or as a flag.
+Named = Callable[[str], str]
+
+
+def check_together(values: Mapping[str, Any], named: Named = str) -> None:
+    """Refuses values that do not go together.
+
+    Args:
+        values: All parameters by name.
+        named: How messages call a parameter.
+
+    Raises:
+        UsageError: The message names what is wrong.
+    """
+    flare, scatter = (check_paths(values[name], name) != 0 for name in ("flare", "scatter"))
+    if values["flare_order"] != DEFAULT["flare_order"] and not flare:
+        raise UsageError(f"{named('flare_order')}: needs {named('flare')} to be on")
+    if not (check_highlights(values["flare_highlights"]) or flare or scatter):
+        raise UsageError(
+            f"{named('flare_highlights')}: needs {named('flare')} or {named('scatter')} to be on"
+        )
+    if values["gt_lens"] == "chief" and values["gt_rays"] is not None:
+        raise UsageError(
+            f"{named('gt_rays')}: the chief ray is one; wanted {named('gt_lens')} mean too"
+        )
+    if values["noise"] is not None and values["spp"] == 1:
+        raise UsageError(f"{named('spp')}: wanted 2 .. 2^31 with {named('noise')}, got 1")
+    check_overscan(values["overscan"], values["resolution"], named("overscan"))
