@@ -17,6 +17,11 @@ from numpy.typing import NDArray
 from daguerre.errors import UsageError, suggest
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
+from .parameters import CAMERA, FULL_FRAME
+from .parameters import LIMITS as LIMITS
+from .parameters import MOVABLE as MOVABLE
+from .parameters.needs import OPENING
+
 if TYPE_CHECKING:
     from daguerre.files.source import Source
     from daguerre.lenses import Lens
@@ -29,40 +34,11 @@ if TYPE_CHECKING:
 
 #: lenses without a prescription
 IDEAL = ("thin", "pinhole")
-
-
-#: smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
-#: precision would overflow on the way
-LIMITS = {
-    "focal_length": (1e-3, 1e6),  # mm
-    "zoom": (1e-3, 1e6),  # mm
-    "f_stop": (1e-2, 1e9),
-    "t_stop": (1e-2, 1e9),
-    "aperture_diameter": (1e-9, 1e6),  # mm
-    "sensor_size": (1e-3, 1e5),  # mm
-    "focus_distance": (1e-6, 1e12),  # m, or infinite
-    "shift": (-1e5, 1e5),  # mm
-    "tilt": (-45, 45),  # degrees
-}
-#: what may change while the shutter is open
-MOVABLE = (
-    *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
-    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt", "zoom", "projection"),
-)
+_default = CAMERA.default
 
 
 #: (first, last), (x, y), (about x, about y): surfaces of a lens, moved by mm and turned by degrees
 Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
-
-
-#: mm; of a camera for which no other is said
-FULL_FRAME = (36.0, 24.0)
-#: ways to say the same, of which one may be given
-RIVALS = (
-    ("f_stop", "aperture_diameter", "t_stop"),
-    ("focus_distance", "focus_at", "focus_on"),
-    ("shutter_time", "shutter_angle"),
-)
 
 
 @dataclass(frozen=True)
@@ -154,44 +130,44 @@ class Camera:
     fit_tolerance: float | None = None
     focal_length: float | None = None
     zoom: float | None = None
-    decenter: tuple[Decenter, ...] = ()
+    decenter: tuple[Decenter, ...] = _default("decenter")
     sensor: str | Path | Sensor | None = None
-    sensor_size: tuple[float, float] = FULL_FRAME
-    sensor_fit: str = "horizontal"
+    sensor_size: tuple[float, float] = _default("sensor_size")
+    sensor_fit: str = _default("sensor_fit")
     f_stop: float | None = None
     aperture_diameter: float | None = None
     t_stop: float | None = None
     focus_distance: float | None = None
     focus_at: tuple[float, float] | None = None
     focus_on: str | None = None
-    focus_from: str = "pupil"
-    focus_by: str = "paraxial"
-    focus_breathing: bool = False
-    blades: int = 0
-    blade_rotation: float = 0.0
-    blade_curvature: float = 0.0
+    focus_from: str = _default("focus_from")
+    focus_by: str = _default("focus_by")
+    focus_breathing: bool = _default("focus_breathing")
+    blades: int = _default("blades")
+    blade_rotation: float = _default("blade_rotation")
+    blade_curvature: float = _default("blade_curvature")
     aperture_image: NDArray[np.float32] | None = None
     front_mask: NDArray[np.float32] | None = None
     iris_mask: NDArray[np.float32] | None = None
     ripple: tuple[float, ...] | None = None
     cover_glass: tuple[float, ...] | None = None
-    sensor_reflectance: float = 0.0
+    sensor_reflectance: float = _default("sensor_reflectance")
     scatter: LensScatter | None = None
-    natural_vignetting: bool = False
-    shift: tuple[float, float] = (0.0, 0.0)
-    tilt: tuple[float, float] = (0.0, 0.0)
+    natural_vignetting: bool = _default("natural_vignetting")
+    shift: tuple[float, float] = _default("shift")
+    tilt: tuple[float, float] = _default("tilt")
     shutter_time: float | None = None
     shutter_angle: float | None = None
-    fps: float = 24.0
+    fps: float = _default("fps")
     shutter_offset: float | None = None
     shutter_type: str | None = None
     shutter_curve: ShutterCurve | None = None
     rolling_shutter: RollingShutter | None = None
-    iso: float = 100.0
-    exposure_compensation: float = 0.0
+    iso: float = _default("iso")
+    exposure_compensation: float = _default("exposure_compensation")
     exposure_time: float | None = None
     exposure_f_stop: float | None = None
-    responsivity: float = 1.0
+    responsivity: float = _default("responsivity")
     white_balance: float | tuple[float, float] | None = None
     motion: dict[str, Dynamic] = field(default_factory=dict)
 
@@ -356,21 +332,19 @@ class Camera:
                 )
         given = {name for name, value in changes.items() if value is not None}
         if "pinhole" in (changes.get("lens"), changes.get("lens_model")):
-            odd = sorted(given & {"f_stop", "t_stop", "aperture_diameter", "aperture_image"})
+            odd = sorted(name for name in given if OPENING in CAMERA[name].needs)
             if odd:
                 raise UsageError(f"camera: a pinhole has no {odd[0]}")
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
-            replaced |= {"zoom": None, "decenter": (), "ripple": None}
+            replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}
         if changes.get("lens_model") not in (None, "polynomial"):
             replaced |= {"degree": None, "fit_tolerance": None}
         if changes.get("sensor") is not None:
             replaced["sensor_size"] = FULL_FRAME  # until the new one says
-        for rivals in RIVALS:
-            both = sorted(given & set(rivals))
-            if len(both) > 1:
-                raise UsageError(f"camera: wanted either {both[0]} or {both[1]}, got both")
-            replaced |= dict.fromkeys(rivals) if both else {}
+        CAMERA.refuse_rivals(given, "camera")
+        for rivals in CAMERA.rivals():
+            replaced |= dict.fromkeys(rivals) if given & set(rivals) else {}
         if changes.get("lens") not in (None, *IDEAL):
             replaced |= {"focal_length": None, "aperture_diameter": None}
         values: dict[str, Any] = replaced | changes

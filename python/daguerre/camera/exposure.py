@@ -6,8 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from daguerre.checks import number
 from daguerre.color.illuminants import white_xy
+
+from .parameters import LIGHT
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -103,11 +104,6 @@ def check_exposure(camera: Camera) -> None:
     Raises:
         UsageError: The message names the parameter.
     """
-    for name in ("exposure_time", "exposure_f_stop"):
-        value = getattr(camera, name)
-        if value is not None:
-            number(value, f"camera: {name}", above=0)
-    number(camera.responsivity, "camera: responsivity", above=0)
-    number(camera.exposure_compensation, "camera: exposure_compensation", -64, 64)
+    LIGHT.check(camera, "camera")
     if camera.white_balance is not None:
         white_xy(camera.white_balance, "camera: white_balance")
