@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 
-#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
-PINHOLE_F_STOP = 8.0
+PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
 #: Facts of a camera about exposure; h0 follows from the others, of a pinhole from its stop.

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 SCAN_ORDERS = ("top", "bottom", "left", "right")
-DEFAULT_ANGLE = 180.0
 #: Travel of the curtains: the flash synchronisation time of a fast camera is little more.
 CURTAIN_S = 1 / 300
 #: Reading a full-frame sensor of a video camera.
@@ -39,7 +38,7 @@ def shutter_time(camera: Camera) -> float:
     """How long a point of the film is exposed, s."""
     if camera.shutter_time is not None:
         return float(camera.shutter_time)
-    angle = DEFAULT_ANGLE if camera.shutter_angle is None else camera.shutter_angle
+    angle = CAMERA["shutter_angle"].usual if camera.shutter_angle is None else camera.shutter_angle
     return float(angle / 360 / camera.fps)
 
 

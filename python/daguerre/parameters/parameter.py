@@ -58,7 +58,8 @@ class Parameter:
         repeated: Whether the flag may be repeated, each with a part of the value.
         panel: Part of a help that shows it.
         default_words: The default in words, such as ``the file's, else 5.6``.
-        tells_default: Whether texts show the default itself.
+        usual: Value that is used where none is given, if that is always the same.
+        tells_default: Whether texts show the default, or the usual value, itself.
         more: Sentences that follow the meaning in docstrings and pages.
         in_python: Text of a docstring, where a value of Python differs from that of the flag.
         explained: Pages of the docs that tell more, such as ``flare.md#the-body``.
@@ -88,6 +89,7 @@ class Parameter:
     repeated: bool = False
     panel: str | None = None
     default_words: str = ""
+    usual: Any = None
     tells_default: bool = False
     more: str = ""
     in_python: str = ""
@@ -162,7 +164,9 @@ class Parameter:
         """The default for readers; empty: no text tells it."""
         if not self.tells_default:
             return self.default_words
-        return f"{self.default:g}" if isinstance(self.default, float) else str(self.default)
+        value = self.default if self.usual is None else self.usual
+        parts = value if isinstance(value, tuple) else (value,)
+        return " x ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in parts)
 
     def read(self, value: Any, where: str, error: type[InputError | UsageError]) -> Any:
         """The value that a text, or a value of JSON, stands for.

@@ -9,6 +9,8 @@ from daguerre.parameters.parameter import Parameter
 
 from . import needs
 
+#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
+_PINHOLE = 8.0
 _Row = partial(Parameter, panel="Camera")
 
 EXPOSURE = (
@@ -20,8 +22,7 @@ EXPOSURE = (
         flags=("--iso",),
         metavar="N",
         tells_default=True,
-        in_python="Sensitivity of developed pictures; default: 100. This and the next five never "
-        "change ``frame.rgb``.",
+        more="Neither it nor any other parameter of exposure changes the linear picture",
     ),
     _Row(
         "exposure_compensation",
@@ -51,7 +52,8 @@ EXPOSURE = (
         flags=("--exposure-f-stop",),
         metavar="N",
         parse=units.f_number,
-        default_words="{f_stop}; of a pinhole 8",
+        usual=_PINHOLE,
+        default_words=f"{{f_stop}}; of a pinhole {_PINHOLE:g}",
         explained=("exposure.md",),
     ),
     _Row(

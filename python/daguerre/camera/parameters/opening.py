@@ -10,6 +10,7 @@ from daguerre.parameters.parameter import Parameter
 from . import needs, typed
 
 _Row = partial(Parameter, panel="Camera")
+_F_STOP = 5.6
 _NO_PINHOLE = "; a pinhole is its own kind: lens='pinhole'"
 
 STOP = (
@@ -23,7 +24,8 @@ STOP = (
         flags=("--f-stop", "--fstop", "--aperture"),
         metavar="N",
         parse=units.f_number,
-        more="Without it the file's, else 5.6, or the lens's widest if that is slower",
+        usual=_F_STOP,
+        more=f"Without it the file's, else {_F_STOP:g}, or the lens's widest if that is slower",
         needs=(needs.OPENING,),
         rivals="stop",
         movable=True,

@@ -8,6 +8,7 @@ from daguerre.parameters.parameter import Parameter
 
 from . import typed
 
+_ANGLE = 180.0
 _Row = partial(Parameter, panel="Shutter")
 
 SHUTTER_ROWS = (
@@ -33,7 +34,9 @@ SHUTTER_ROWS = (
         high=360e6,
         flags=("--shutter-angle",),
         metavar="DEG",
-        more="It is 360 {fps} {shutter_time}. Without either the file's, else 180 degrees",
+        more="It is 360 {fps} {shutter_time}. Without either the file's, else "
+        f"{_ANGLE:g} degrees",
+        usual=_ANGLE,
         rivals="shutter",
     ),
     _Row(
@@ -47,7 +50,7 @@ SHUTTER_ROWS = (
         metavar="N",
         parse=typed.number("a number such as 24 or 24000/1001"),
         tells_default=True,
-        in_python="Frames per second, for angles, offsets and sequences; default: 24.",
+        more="Angles, offsets and sequences count by it",
     ),
     _Row(
         "shutter_offset",

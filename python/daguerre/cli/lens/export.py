@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.camera.parameters import CAMERA
 from daguerre.errors import UsageError
 from daguerre.units import angle_deg, sensor_mm
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from daguerre.lenses import Lens
     from daguerre.polynomial import LensFit
 
-DEFAULT_DEGREE = 7
 #: RMS error on the film that is worth a sentence, um: half a pixel of 960 over 36 mm.
 WORTH_TELLING = 20.0
 #: Parts of the film by radius: as few as keep the error below that.
@@ -67,7 +67,7 @@ class Export:
 
         return fit(
             item,
-            DEFAULT_DEGREE if self.degree is None else self.degree,
+            CAMERA["degree"].usual if self.degree is None else self.degree,
             film=None if self.sensor is None else sensor_mm("--sensor", self.sensor),
             f_stop=setting.get("f_stop"),
             focus=setting.get("focus_m", math.inf),
