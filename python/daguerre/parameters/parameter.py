@@ -130,6 +130,14 @@ class Parameter:
             return _PARSERS.get(self.unit)
         return units.sensor_mm if self.parse is None and self.kind == "size" else self.parse
 
+    def from_text(self, text: str) -> Any:
+        """The value that the text of its flag stands for.
+
+        Raises:
+            UsageError: The message names the flag.
+        """
+        return self.parser(self.flag, text) if self.parser else text
+
     @property
     def wanted(self) -> str:
         """Values that it may have, for messages."""

@@ -28,18 +28,21 @@ class TableFlags:
 Flags = TypeVar("Flags", bound=TableFlags)
 
 
-def made_of(table: Table, names: Table | None = None) -> Callable[[type[Flags]], type[Flags]]:
+def made_of(
+    table: Table, names: Table | None = None, panel: str | None = None
+) -> Callable[[type[Flags]], type[Flags]]:
     """Makes a data class of flags: the decorated class with a field for each row with a flag.
 
     Args:
         table: Rows of the flags, in the order of a help.
         names: Table of the parameters that helps name; None: the same.
+        panel: Part of a help that shows them; None: that of each row.
     """
 
     def make(base: type[Flags]) -> type[Flags]:
         made = make_dataclass(
             base.__name__,
-            [(row.field, field_type(row, names or table), None) for row in table.flagged],
+            [(row.field, field_type(row, names or table, panel), None) for row in table.flagged],
             bases=(base,),
             namespace={"table": table, "__doc__": base.__doc__, "__module__": base.__module__},
             frozen=True,
@@ -49,10 +52,12 @@ def made_of(table: Table, names: Table | None = None) -> Callable[[type[Flags]],
     return make
 
 
-def field_type(row: Parameter, names: Table) -> Any:
+def field_type(row: Parameter, names: Table, panel: str | None) -> Any:
     """Type of a flag for Typer, with its names and its help."""
     kind = list[str] if row.repeated else str if row.parser else _TYPES.get(row.kind, str)
-    shown = option(*row.flags, metavar=row.placeholder, help=row.help(names.flag), panel=row.panel)
+    shown = option(
+        *row.flags, metavar=row.placeholder, help=row.help(names.flag), panel=panel or row.panel
+    )
     return Annotated[kind | None, shown]
 
 
@@ -65,8 +70,4 @@ def _read(row: Parameter, value: Any) -> Any:
         from daguerre.io.iris import read_grey
 
         return read_grey(value)
-    if row.parser is None:
-        return value
-    if row.repeated:
-        return tuple(row.parser(row.flag, text) for text in value)
-    return row.parser(row.flag, value)
+    return tuple(map(row.from_text, value)) if row.repeated else row.from_text(value)
