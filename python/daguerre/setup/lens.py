@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.camera import Camera, Decenter
+from daguerre.camera.parameters import CAMERA
+from daguerre.camera.parameters.needs import TRACED
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.checking import frame_notes
@@ -27,11 +29,10 @@ from . import fit as camera_fit
 from . import tilt
 from .aim_cache import exact_lens
 from .body import parts_of, stack_facts, stack_of
-from .checks import TRACED
 from .focus import Focus, ideal_direction
 from .iris import dirt_facts, iris_facts, iris_of, mask_of
 
-DEFAULT_F_STOP = 5.6
+DEFAULT_F_STOP: float = CAMERA["f_stop"].usual
 
 
 Directions = Callable[[float, float], NDArray[np.float64]]
