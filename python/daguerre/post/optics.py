@@ -121,13 +121,13 @@ def bench(values: Values) -> Bench:
         InputError: No such lens, or it cannot be set so.
     """
     from daguerre import lenses
-    from daguerre.analysis.bench import set_up
+    from daguerre.analysis.bench import on_bench
+    from daguerre.lenses.setting import LensSetting
 
-    item = lenses.load(values["lens"])
-    return set_up(
-        item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom"),
-        by=values["focus_by"],
-    )  # fmt: skip
+    setting = LensSetting(
+        values.get("f_stop"), values["focus"], values.get("zoom"), values["focus_by"]
+    )
+    return on_bench(lenses.load(values["lens"]), setting)
 
 
 def _finite(pair: Any) -> TypeGuard[tuple[float, float]]:
