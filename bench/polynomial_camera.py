@@ -38,6 +38,7 @@ TAYLOR = 5
 
 Picture = NDArray[np.float64]
 Maker = Callable[..., _core.ExactLens]
+POSITIONAL = ("f_stop", "iris", "focus_distance_m", "focus_from_sensor", "half_diagonal_mm")
 
 
 def scene() -> dg.Scene:
@@ -144,9 +145,11 @@ class Drawing:
         )
         self.setup_seconds = self.ray_error = 0.0
 
-        def timed(*args: Any, **more: Any) -> _core.ExactLens:
+        def timed(prescription: _core.Prescription, wanted: aim_cache.AimSettings) -> Any:
             started = time.process_time()
-            lens = make(*args[:4], False, args[4], **more)
+            more = wanted.arguments
+            args = [more.pop(name) for name in POSITIONAL]
+            lens = make(prescription, *args, **more)
             self.setup_seconds = time.process_time() - started
             self.ray_error = ray_error(lens)
             return lens

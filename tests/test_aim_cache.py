@@ -22,7 +22,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def lens(f_stop: float = 4.0, **settings: object) -> _core.ExactLens:
     prescription = dg.lenses.load("double-gauss-50mm-f2").prescription
-    return aim_cache.exact_lens(prescription, f_stop, _core.Iris(), 3.0, 20.0, **settings)  # type: ignore[arg-type]
+    wanted = aim_cache.AimSettings(f_stop, _core.Iris(), 3.0, 20.0, **settings)  # type: ignore[arg-type]
+    return aim_cache.exact_lens(prescription, wanted)
 
 
 def rays(exact: _core.ExactLens) -> list[np.ndarray]:

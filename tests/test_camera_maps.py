@@ -235,7 +235,8 @@ def test_the_map_of_a_lens_is_that_of_the_darkroom():
     made = dg.stmaps(dg.Camera(lens="canon-ef-11-24mm-f4", f_stop=16.0, focus_distance=1.0), size)
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"), f_stop=16.0, focus_m=1.0)
     model = LensDistortion(bench, 22.0)
-    assert model.focal_length_mm == pytest.approx(made.sight.setup.pinhole_focal_length, rel=2e-4)
+    ours = made.sight.setup.lens.pinhole_focal_length_mm
+    assert model.focal_length_mm == pytest.approx(ours, rel=2e-4)
     focal = model.focal_length_mm / (36 / 192)
     other = dg.post.stmap(model, size, focal_px=focal, inverse=True)
     assert np.nanmax(np.abs(made.undistort - other)) * 192 < 0.05

@@ -35,7 +35,7 @@ from daguerre.setup.body import scatter_facts
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.camera import set_up
 from daguerre.setup.checks import check_surfaces
-from daguerre.setup.metadata import camera_metadata
+from daguerre.setup.metadata import camera_metadata, facts_of
 
 from .adaptive import Round
 from .diffraction import Diffraction, check_diffraction, with_bands
@@ -255,7 +255,7 @@ class Session:
     @property
     def focused_camera(self) -> Camera:
         """Camera with the focus that autofocus found."""
-        return focused(self.camera, self._setup.facts)
+        return focused(self.camera, self._setup.lens.focus_distance_m)
 
     def _plan(self) -> Plan:
         """Chooses the light paths that pay in this scene."""
@@ -301,7 +301,7 @@ class Session:
         """Paths per sample index of flare or scatter, of a crop those of its frame; 0: none."""
         if paths == 0:
             return 0.0
-        check_surfaces(self._setup.facts["lens_model"], name)
+        check_surfaces(self._setup.lens.model, name)
         prepare = getattr(self._settings, f"prepare_{name}")
         try:
             shines = prepare(self._core_scene, self._setup.core)
@@ -325,8 +325,7 @@ class Session:
         camera = self.camera.at(0.5 * (self.interval[0] + self.interval[1]))
         resolution = (self.width, self.height)
         frame, middle = frame_around(self._setup, resolution, self.overscan)
-        facts = self._setup.facts | {"shift_mm": middle}
-        setup = replace(self._setup, frame_size=frame, facts=facts)
+        setup = replace(self._setup, frame_size_mm=frame, shift_mm=middle)
         grown = self.overscan.grown(resolution)
         return plan_waves(self.diffraction, camera, setup, grown, self.sensor)
 
@@ -520,7 +519,7 @@ class Session:
         """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
         return {
             "scene": self.built.hash,
-            "camera": _hash_json(without_exposure(self._setup.facts)),
+            "camera": _hash_json(without_exposure(facts_of(self._setup))),
             "settings": _hash_json(self._identity),
             "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
             f"{self._core_scene.intersector}",

@@ -21,7 +21,8 @@ from daguerre.checks import short, whole
 from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import COVERAGE, MOTION, PLANES
 from daguerre.scene.scene import Scene
-from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.camera import set_up
+from daguerre.setup.resolved import ResolvedCamera
 from daguerre.setup.scene import build
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
@@ -82,7 +83,7 @@ class Moment:
 
     shot: Shot
     scene: Scene
-    setup: CameraSetup
+    setup: ResolvedCamera
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,7 @@ class GroundTruth:
         setup = set_up(scene, camera, self.resolution, core_scene, self.overscan)
         settings = _core.RenderSettings()
         settings.resolution = self.resolution
-        settings.sensor_size_mm = setup.frame_size
+        settings.sensor_size_mm = setup.frame_size_mm
         right, up = camera.at(scene.time).shift
         settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
@@ -175,9 +176,8 @@ class GroundTruth:
         return Moment((core_scene, setup.core, settings), scene, setup)
 
 
-def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
+def focused(camera: Camera, distance: float | None) -> Camera:
     """The camera with the focus that was found for the picture: it does not hunt between frames."""
-    distance = facts.get("focus_distance_m")
     if distance is None or "focus_distance" in camera.motion:
         return camera
     return replace(

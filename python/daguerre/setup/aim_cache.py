@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 import os
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -108,24 +110,11 @@ def _drop_oldest(place: Path) -> None:
                 Path(path).unlink()
 
 
-def exact_lens(
-    prescription: _core.Prescription,
-    f_stop: float,
-    iris: _core.Iris,
-    focus_distance_m: float,
-    half_diagonal_mm: float,
-    *,
-    focus_from_sensor: bool = False,
-    film_z_mm: float = float("nan"),
-    tilt_deg: tuple[float, float] = (0.0, 0.0),
-    film_center_mm: tuple[float, float] = (0.0, 0.0),
-    film_half_mm: tuple[float, float] = (0.0, 0.0),
-    fit_degree: int | None = None,
-) -> _core.ExactLens:
-    """A lens at one focus and f-stop, ready to draw rays; the same bits whether kept or not.
+@dataclass(frozen=True)
+class AimSettings:
+    """Everything but its prescription that an exact lens is set up for.
 
-    Args:
-        prescription: The lens, its gaps set for zoom and focus.
+    Attributes:
         f_stop: 0 for as wide as it opens.
         iris: Shape of the iris.
         focus_distance_m: Not used if ``film_z_mm`` is given.
@@ -136,29 +125,39 @@ def exact_lens(
         film_center_mm: Middle of the part of the film that is used, upright.
         film_half_mm: Half its size; (0, 0): all within ``half_diagonal_mm``.
         fit_degree: Draw from polynomials of that degree; None: from the surfaces.
+    """
 
-    Returns:
-        The lens.
+    f_stop: float
+    iris: _core.Iris
+    focus_distance_m: float
+    half_diagonal_mm: float
+    focus_from_sensor: bool = False
+    film_z_mm: float = math.nan
+    tilt_deg: tuple[float, float] = (0.0, 0.0)
+    film_center_mm: tuple[float, float] = (0.0, 0.0)
+    film_half_mm: tuple[float, float] = (0.0, 0.0)
+    fit_degree: int | None = None
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of the core's ``ExactLens``, by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def exact_lens(prescription: _core.Prescription, settings: AimSettings) -> _core.ExactLens:
+    """Makes a lens at one focus and f-stop, ready to draw; the same bits whether kept or not.
+
+    Args:
+        prescription: The lens, its gaps set for zoom and focus.
+        settings: The rest.
 
     Raises:
         ValueError: If the lens cannot open or focus like that.
     """
-    args = (prescription, f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm)
-
-    more: dict[str, Any] = {
-        "film_z_mm": film_z_mm,
-        "tilt_deg": tilt_deg,
-        "film_center_mm": film_center_mm,
-        "film_half_mm": film_half_mm,
-        "fit_degree": fit_degree,
-    }
-
-    def lens(cache: bytes | None) -> _core.ExactLens:
-        return _core.ExactLens(*args, **more, cache=cache)
-
-    key = _core.ExactLens.aim_key(*args, **more)
+    arguments = settings.arguments
+    key = _core.ExactLens.aim_key(prescription, **arguments)
     known = load(key)
-    exact = lens(known)
+    exact = _core.ExactLens(prescription, **arguments, cache=known)
     state = exact.aim_state
     if state != known:
         store(key, state)

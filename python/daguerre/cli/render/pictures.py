@@ -195,7 +195,7 @@ class Shoot:
         with core_errors("render"):
             # Nothing is drawn, but what is in focus may have to be found.
             setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
-            camera = focused(camera, setup.facts)
+            camera = focused(camera, setup.lens.focus_distance_m)
             overscan = check_overscan(plan.overscan, size, "--overscan")
             if overscan is None:
                 overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
