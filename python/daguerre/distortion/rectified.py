@@ -22,8 +22,8 @@ from daguerre.setup.camera import set_up
 FloatArray = NDArray[np.float64]
 
 
-class Sight:
-    """A camera as it is in the middle of its exposure, and the ideal camera in its place.
+class RectifiedView:
+    """Maps pixels between a camera in the middle of its exposure and its rectified (ideal) twin.
 
     The ideal camera is the pinhole with the same focal length near the axis, principal point and
     squeeze: a rectilinear picture, in which straight things are straight. What both see lies on the

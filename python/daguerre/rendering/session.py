@@ -25,7 +25,7 @@ from daguerre.camera.overscan import NONE, Overscan, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES, short, whole
 from daguerre.distortion.overscan import note as overscan_note
 from daguerre.distortion.overscan import to_undistort
-from daguerre.distortion.rectified import Sight
+from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import InputError, MismatchError, UsageError, suggest
 from daguerre.frame.frame import Frame
 from daguerre.frame.seen_by import sensor_metadata
@@ -267,7 +267,7 @@ class Session:
 
     def _to_undistort(self) -> Overscan:
         size = (self.width, self.height)
-        found = to_undistort(Sight(self.focused_camera, size, scene=self.scene))
+        found = to_undistort(RectifiedView(self.focused_camera, size, scene=self.scene))
         self.notes.append(overscan_note(found))
         return found
 

@@ -16,7 +16,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import exposure_notes
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.projection import check_resolution
-from daguerre.checks import frozen, short
+from daguerre.checks import as_readonly, short
 from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
 
@@ -87,7 +87,7 @@ def set_up(
         lens=lens,
         resolution=resolution,
         interval_s=(begin, end),
-        world_from_camera=frozen(np.asarray(world, np.float64)),
+        world_from_camera=as_readonly(np.asarray(world, np.float64)),
         frame_size_mm=size,
         shift_mm=now.shift,
         changes=changing,

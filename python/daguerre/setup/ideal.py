@@ -133,7 +133,7 @@ def _film_distance(camera: Camera, f: float, distance: float) -> float:
 
 def _sharp_when_tilted(camera: Camera, f: float) -> SharpAt:
     if camera.focus_breathing:
-        return lambda point: tilt.focus_on(tilt.Imaging.thin(f), camera.tilt, point)
+        return lambda point: tilt.focus_on(tilt.CardinalPoints.thin(f), camera.tilt, point)
     return lambda point: tilt.focus_still(f, camera.tilt, point)
 
 

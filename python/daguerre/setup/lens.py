@@ -108,8 +108,8 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     chosen = _chosen(camera, lens, model)
     lens = chosen.lens
     if any(camera.tilt):
-        imaging = _imaging(chosen.order)
-        focus = replace(focus, sharp_at=lambda p: tilt.focus_on(imaging, camera.tilt, p))
+        cardinal = _cardinal_points(chosen.order)
+        focus = replace(focus, sharp_at=lambda p: tilt.focus_on(cardinal, camera.tilt, p))
     found = focus.settled(lambda s: _directions(framing, chosen, s))
     sharp = _focused(camera, chosen, found.distance_m)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
@@ -285,9 +285,9 @@ def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Direction
     return direction
 
 
-def _imaging(order: lenses.FirstOrder) -> tilt.Imaging:
+def _cardinal_points(order: lenses.FirstOrder) -> tilt.CardinalPoints:
     front = order.front_principal_point - order.front_focal_point
-    return tilt.Imaging(
+    return tilt.CardinalPoints(
         order.front_focal_point,
         order.back_focal_point,
         order.efl * front,

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from daguerre._core import IrisShape, defocus, rounded_blur
 from daguerre.convolution.rows import Rows
 from daguerre.post.array import on_array
+from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
-from daguerre.post.fours import in_fours
 from daguerre.post.iris import BLADES, iris_shape, outline
 from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image, Source, bands
@@ -127,7 +127,7 @@ def _spread(light: Image, place: float, radius: float, iris: IrisShape) -> Image
             amount = light[y[inside], x[inside]] * share[inside, None]
             np.add.at(canvas, (row[inside], column[inside]), amount.astype(np.float32))
     blur = np.full(canvas.shape[:2], -radius, np.float32)
-    spread = in_fours(
+    spread = by_four_channels(
         canvas, lambda four: np.asarray(defocus(four, blur, iris, (rim, rim + height)))
     )
     return spread[:, rim : rim + width]
