@@ -114,7 +114,7 @@ def camera_facts(
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
     full = field_of_view_deg(lens.pinhole_focal_length_mm, camera.sensor_size, squeeze)
     shown = field_of_view_deg(lens.pinhole_focal_length_mm, setup.frame_size_mm, squeeze)
-    projection = camera.at(scene.time).projection
+    projection = camera.frozen_at(scene.time).projection
     if projection is not None:
         full = shown = projection.field_of_view()
     return Facts(

@@ -48,7 +48,7 @@ class RectifiedView:
     ) -> None:
         scene = scene or Scene()
         begin, end = shutter.interval(camera, scene.time, resolution)
-        still = camera.at(0.5 * (begin + end))
+        still = camera.frozen_at(0.5 * (begin + end))
         self.resolution = resolution
         self.setup = set_up(scene, still, resolution, core_scene, overscan=overscan)
         lens = self.setup.lens

@@ -219,7 +219,7 @@ def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
 
 def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
     """Empty where the camera has none: of glass, tilted lenses, shifts that change."""
-    camera, setup = truth.camera.at(moment.scene.time), moment.setup
+    camera, setup = truth.camera.frozen_at(moment.scene.time), moment.setup
     width, height = truth.resolution
     (x0, y0), model = truth.crop[:2], setup.lens.model
     if camera.projection is not None:

@@ -322,7 +322,7 @@ class Session:
         """The pupils of mid-shutter, if light is diffracted."""
         if self.diffraction is None:
             return None
-        camera = self.camera.at(0.5 * (self.interval[0] + self.interval[1]))
+        camera = self.camera.frozen_at(0.5 * (self.interval[0] + self.interval[1]))
         resolution = (self.width, self.height)
         frame, middle = frame_around(self._setup, resolution, self.overscan)
         setup = replace(self._setup, frame_size_mm=frame, shift_mm=middle)

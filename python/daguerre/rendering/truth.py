@@ -169,7 +169,7 @@ class GroundTruth:
         settings = _core.RenderSettings()
         settings.resolution = self.resolution
         settings.sensor_size_mm = setup.frame_size_mm
-        right, up = camera.at(scene.time).shift
+        right, up = camera.frozen_at(scene.time).shift
         settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads

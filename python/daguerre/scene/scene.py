@@ -375,7 +375,7 @@ def scene_at(scene: Scene, time: float) -> Scene:
     moved: dict[str, Any] = {
         "materials": _replaced(scene.materials, motion.materials, time),
         "lights": _replaced(scene.lights, motion.lights, time),
-        "cameras": {name: camera.moved_to(time) for name, camera in scene.cameras.items()},
+        "cameras": {name: camera.evaluated_at(time) for name, camera in scene.cameras.items()},
     }
     meshes = list(scene.meshes)
     for i, vertices in motion.meshes.items():

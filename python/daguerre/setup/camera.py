@@ -60,7 +60,7 @@ def set_up(
     pose = pose_over(camera, begin, end)
     world = pose.at(0.5)
     changing = changes(camera, begin, end)
-    now = camera.at(0.5 * (begin + end))  # what is said of a camera is said of mid-shutter
+    now = camera.frozen_at(0.5 * (begin + end))  # what is said of a camera is said of mid-shutter
     size = _picture_size(now, resolution)
     check(now, model, prescription=prescription is not None)
     focus = Focus(scene, now, resolution, size, world, core_scene)

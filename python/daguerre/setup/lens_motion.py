@@ -102,11 +102,11 @@ class LensMotion:
     @cached_property
     def _still(self) -> Camera:
         """The camera at mid-exposure."""
-        return self.camera.at(0.5 * (self.begin + self.end))
+        return self.camera.frozen_at(0.5 * (self.begin + self.end))
 
     def _at(self, time: float) -> Camera:
         """The camera at a time; what it focuses on is known."""
-        now = self.camera.at(time)
+        now = self.camera.frozen_at(time)
         distance = self.lens.focus_distance_m
         if "focus_distance" in self.changing or distance is None:
             return now

@@ -89,7 +89,7 @@ def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
     """
     moving = camera.motion.get("transform")
     if moving is None or not end > begin:
-        return _core.Motion.still(rigid(camera.at(0.5 * (begin + end)).transform))
+        return _core.Motion.still(rigid(camera.frozen_at(0.5 * (begin + end)).transform))
     if isinstance(moving, Spin):
         base = moving.transform
         if not isinstance(base, Keys):
