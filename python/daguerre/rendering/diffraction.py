@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import whole
-from daguerre.color.spectra import band_colours, band_wavelengths
+from daguerre.color.spectra import band_colors, band_wavelengths
 from daguerre.errors import InputError, UsageError
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
@@ -156,7 +156,7 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
             raise ValueError("channels")
     except (ValueError, TypeError, KeyError) as error:
         raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
-    sums = [(film.mean_xyz, band_colours(bands.shape[2]).astype(np.float32))]
+    sums = [(film.mean_xyz, band_colors(bands.shape[2]).astype(np.float32))]
     if sensor.size:
         sums.append((film.mean_channels, sensor))
     light = np.sum([colours.sum(axis=1) for _, colours in sums], axis=0)

@@ -121,7 +121,7 @@ class _DepthOfField(Step):
         depth = np.asarray(band.planes[self._plane], np.float32)
         depth = np.where(np.isnan(depth) | (depth == 0), np.float32(np.inf), depth)
         if self._along_ray:
-            x, y = offsets(self._canvas, band.rows, self._film.centre)
+            x, y = offsets(self._canvas, band.rows, self._film.center)
             slope = np.hypot(x, y) * np.float32(self._film.pitch_mm / self._lens.film_mm)
             depth = np.asarray(depth / np.hypot(1, slope), np.float32)
         radius = self._lens.radius_mm(depth) / np.float32(self._film.pitch_mm)
