@@ -182,7 +182,7 @@ class Shoot:
         from daguerre.camera.overscan import check_overscan
         from daguerre.camera.shutter import interval
         from daguerre.distortion.overscan import note, to_undistort
-        from daguerre.distortion.rectified import Sight
+        from daguerre.distortion.rectified import RectifiedView
         from daguerre.rendering.truth import focused
         from daguerre.setup.camera import set_up
         from daguerre.setup.scene import build
@@ -192,10 +192,12 @@ class Shoot:
         size = plan.resolution
         # Nothing is drawn, but what is in focus may have to be found.
         setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
-        camera = focused(camera, setup.facts)
+        camera = focused(camera, setup.lens.focus_distance_m)
         overscan = check_overscan(plan.overscan, size, "--overscan")
         if overscan is None:
-            overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+            overscan = to_undistort(
+                RectifiedView(camera, size, scene=scene), "--overscan undistort"
+            )
             console.note(note(overscan))
         plan.maps.write(scene, camera, size, overscan, plan.gt_time)
 
