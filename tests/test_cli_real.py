@@ -209,20 +209,20 @@ def test_noise_is_reached_and_told(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_noise_goes_on_from_checkpoints_that_fit(capsys: pytest.CaptureFixture[str]) -> None:
-    from daguerre.cli.render import job
+    from daguerre.rendering import job
 
     noise = ["--noise", "0.01", *QUICK]
     assert main(["render", "s.glb", "-o", "whole.exr", *noise]) == 0
-    finish = job.Job._finish
+    finish = job.Drawing._finish
 
-    def keep(self: job.Job) -> None:
+    def keep(self: job.Drawing) -> None:
         self.loop.save()
 
-    job.Job._finish = keep  # type: ignore[method-assign]
+    job.Drawing._finish = keep  # type: ignore[method-assign]
     try:  # a coarser noise leaves the checkpoint of an interrupted run
         assert main(["render", "s.glb", "-o", "a.exr", "--noise", "0.03", *QUICK]) == 0
     finally:
-        job.Job._finish = finish  # type: ignore[method-assign]
+        job.Drawing._finish = finish  # type: ignore[method-assign]
     capsys.readouterr()
     assert main(["render", "s.glb", "-o", "a.exr", "--resume", *QUICK]) == 4
     assert "drawn with --noise" in capsys.readouterr().err

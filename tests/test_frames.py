@@ -9,7 +9,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.cli.render.frames import frame_numbers, numbered
+from daguerre.cli.render.frames import frame_numbers
+from daguerre.rendering.names import numbered
 
 from . import fake_session
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         lenses,
         polynomial,
         post,
+        rendering,
         sensors,
         stocks,
     )
@@ -40,9 +41,11 @@ if TYPE_CHECKING:
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
     from .rendering.diffraction import Diffraction
+    from .rendering.merged import merge
     from .rendering.render import iter_render, render
     from .rendering.rig import render_rig, stereo_pair
     from .rendering.session import Session
+    from .rendering.settings import RenderSettings
 
 __all__ = [
     "Camera",
@@ -65,6 +68,7 @@ __all__ = [
     "Projection",
     "Raw",
     "RayMap",
+    "RenderSettings",
     "RollingShutter",
     "Scene",
     "Session",
@@ -88,12 +92,14 @@ __all__ = [
     "lenses",
     "load",
     "load_frame",
+    "merge",
     "metering",
     "polynomial",
     "post",
     "raymap",
     "render",
     "render_rig",
+    "rendering",
     "sensors",
     "spin",
     "stereo_pair",
@@ -114,8 +120,10 @@ _LAZY = {
     "raymap": "maps.ray_map",
     "StMaps": "maps.st_maps",
     "stmaps": "maps.st_maps",
+    "RenderSettings": "rendering.settings",
     "Session": "rendering.session",
     "iter_render": "rendering.render",
+    "merge": "rendering.merged",
     "render": "rendering.render",
     "render_rig": "rendering.rig",
     "stereo_pair": "rendering.rig",
@@ -126,7 +134,7 @@ _MODULES = {
     name: name
     for name in (
         "calibration", "charts", "development", "distortion", "exposure", "lenses",
-        "polynomial", "post", "sensors", "stocks",
+        "polynomial", "post", "rendering", "sensors", "stocks",
     )
 } | {"metering": "exposure.metering"}  # fmt: skip
 

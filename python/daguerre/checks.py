@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import DaguerreError, InputError, UsageError
 
-#: A side of a picture (px), and the samples of a pixel.
+#: Limits of the side of a picture (px) and the samples of a pixel, and the size that pictures have.
 MAX_RESOLUTION = 65536
+DEFAULT_RESOLUTION = (960, 540)
 MAX_SAMPLES = 1 << 31
 #: Deflate cannot shrink data more than this (zlib's "Technical details").
 DEFLATE_LIMIT = 1032

@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from daguerre.checks import DEFAULT_RESOLUTION
 from daguerre.motion.subdivision import some_breaks
 from daguerre.scene.framing import bounds
 
@@ -86,7 +87,7 @@ def camera_facts(
     camera: Camera,
     scene: Scene,
     core_scene: Any = None,
-    resolution: tuple[int, int] = (960, 540),
+    resolution: tuple[int, int] = DEFAULT_RESOLUTION,
 ) -> Facts:
     """Returns the numbers of a camera, resolved as for a render.
 

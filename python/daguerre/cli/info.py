@@ -15,7 +15,7 @@ from .flags.camera import CameraFlags
 from .flags.groups import option, with_flags
 from .flags.scene import SceneFlags
 from .flags.shutter import ShutterFlags
-from .render.views import views_of
+from .render.views import Cameras
 
 if TYPE_CHECKING:
     from daguerre.analysis.camera_facts import Facts
@@ -49,18 +49,15 @@ def info(
     from daguerre.camera.camera import Camera
     from daguerre.setup.scene import build
 
-    views = views_of(camera_flags.camera, calibration_flags.found, None)
     changes = camera_flags.changes() | shutter_flags.changes()
+    flags = Cameras(camera_flags.camera, calibration_flags, changes)
+    views = flags.views(None)
     calibration_flags.check(changes)
     scene = scene_flags.load(scene_path)
     if camera_flags.camera is None and len(views) == 1:
         views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
-    cameras: dict[str, Camera] = {
-        view.name: view.of(scene, calibration_flags, changes) for view in views
-    }
-    sizes = {
-        view.name: calibration_flags.resolution(view.calibration, res, (960, 540)) for view in views
-    }
+    cameras: dict[str, Camera] = {view.name: view.view(flags).camera(scene) for view in views}
+    sizes = {view.name: flags.size(view, res) for view in views}
     content = facts_of.scene_facts(scene)
     core_scene = None
     if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from daguerre.errors import MismatchError, UsageError
-from daguerre.rendering.ranges import Range, missing_ranges, show_ranges
+from daguerre.errors import UsageError
+from daguerre.rendering.ranges import show_ranges
 
 from . import console
 from .flags.groups import option
@@ -40,8 +39,7 @@ def merge(
     """Adds passes to one picture, with the bits of a render in one go."""
     from daguerre.files import atomic
     from daguerre.frame.frame import TONES, check_format
-    from daguerre.rendering import merging
-    from daguerre.rendering.passes import write_pass
+    from daguerre.rendering import merged, merging
 
     console.quiet = quiet
     formats = [check_format(path) for path in output]
@@ -56,36 +54,22 @@ def merge(
 
         check_available()
     frame, total = merging.merge(passes)
-    _name_missing(total.ranges, strict=strict)
+    if strict:
+        merged.refuse_gaps(total)
+    elif text := merged.gaps(total):
+        console.warn(text)
     if denoise:
         from daguerre.rendering.denoise import denoise as clean
 
         frame = clean(frame)
-    frame = replace(frame, aovs=frame.aovs | total.truth)
-    wanted = total.metadata.get("aovs")
-    if wanted is not None:
-        keep = {name: p for name, p in frame.aovs.items() if name.split(".")[0] in wanted}
-        frame = replace(frame, aovs=keep)
+    frame = merged.whole(frame, total)
     for path in output:
-        if keep_sums and path.suffix.lower() == ".exr":
-            write_pass(path, frame, total)
-        else:
-            frame.save(path, tone=tone)
+        merged.write(path, frame, total, keep_sums=keep_sums, tone=tone)
     count, places = frame.bad_samples
     if count:
-        from .render.job import bad_samples
+        from .render.reporter import bad_samples
 
         console.warn(bad_samples(count, places))
     names = ", ".join(map(str, output))
     console.note(f"wrote {names} (samples {show_ranges(total.ranges)})")
     return 0
-
-
-def _name_missing(ranges: list[Range], *, strict: bool) -> None:
-    gaps = missing_ranges(ranges)
-    if not gaps:
-        return
-    text = f"samples {show_ranges(gaps)} are missing between the passes"
-    if strict:
-        raise MismatchError(f"merge: {text}")
-    console.warn(text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from daguerre.errors import UsageError
-from daguerre.rendering.progress import RowStatus, Silent
+from daguerre.rendering.progress import RowStatus
 
 from . import console, progress
 from .flags.groups import option
@@ -110,7 +110,7 @@ def _run(
     output: Path,
     planned: list[Planned],
     roles: dict[str, str],
-    shown: Silent,
+    shown: progress.Silent,
 ) -> Report:
     from daguerre.files.atomic import check_writable
     from daguerre.post.run import process

@@ -9,11 +9,32 @@ from dataclasses import asdict
 from types import TracebackType
 from typing import Any, Self
 
-from daguerre.rendering.progress import AnyStatus, Silent
+from daguerre.rendering.progress import AnyStatus
 
 from . import console
 
 Which = dict[str, Any]
+
+
+class Silent:
+    """Says nothing; the base of the others."""
+
+    def update(self, status: AnyStatus) -> None:
+        """Shows the newest status."""
+
+    def event(self, name: str, **facts: Any) -> None:
+        """Something that happened once: done, checkpoint, interrupted."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        console.writer = None
 
 
 class Lines(Silent):

@@ -1,1 +1,26 @@
-"""Renders: sessions, passes, checkpoints, merging, ground truth."""
+"""Renders: settings, sessions, jobs with checkpoints, passes and merging; for any front end."""
+
+from .checkpoint import Checkpoint
+from .job import Job
+from .output import Output
+from .photograph import Photograph
+from .picture import Picture, View, in_order
+from .progress import Status
+from .reporter import Control, Finished, Reporter, Stopped
+from .settings import RenderSettings
+
+__all__ = [
+    "Checkpoint",
+    "Control",
+    "Finished",
+    "Job",
+    "Output",
+    "Photograph",
+    "Picture",
+    "RenderSettings",
+    "Reporter",
+    "Status",
+    "Stopped",
+    "View",
+    "in_order",
+]

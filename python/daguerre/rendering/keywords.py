@@ -12,6 +12,8 @@ import textwrap
 from collections.abc import Callable, Iterable
 from typing import Any, TypedDict, TypeVar
 
+from daguerre.parameters.parameter import fill
+
 from .diffraction import Diffraction
 from .parameters import TABLE
 from .settings import OverscanLike, RenderSettings
@@ -99,12 +101,22 @@ def with_rows(text: str | None, names: Iterable[str]) -> str | None:
     indent = line[: len(line) - len(line.lstrip())]
     rows = [
         textwrap.fill(
-            f"{name}: {TABLE[name].meaning}", WIDTH, initial_indent=indent,
+            f"{name}: {described(name)}", WIDTH, initial_indent=indent,
             subsequent_indent=indent + "    ", break_long_words=False, break_on_hyphens=False,
         )
         for name in names
     ]  # fmt: skip
     return text.replace(line, "\n".join(rows))
+
+
+def described(name: str) -> str:
+    """Meaning, unit, default and what else is told of a parameter."""
+    row = TABLE[name]
+    unit = f", {row.unit}" if row.unit else ""
+    default = f"; default: {row.default_words}" if row.default_words else ""
+    page = f" See ``docs/{row.explained}``." if row.explained else ""
+    more = f" {row.more}" if row.more else ""
+    return fill(f"{row.meaning}{unit}{default}.{more}{page}", "``{}``".format)
 
 
 def settings_of(given: RenderSettings | None, keywords: Any) -> RenderSettings:

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import TracebackType
-from typing import Any, Self
-
-from daguerre.cli import console
 
 
 @dataclass(frozen=True)
@@ -69,27 +65,6 @@ class RowStatus:
 
 
 AnyStatus = Status | RowStatus
-
-
-class Silent:
-    """Says nothing; the base of the others."""
-
-    def update(self, status: AnyStatus) -> None:
-        """Shows the newest status."""
-
-    def event(self, name: str, **facts: Any) -> None:
-        """Something that happened once: done, checkpoint, interrupted."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        tb: TracebackType | None,
-    ) -> None:
-        console.writer = None
 
 
 def _noise(status: Status) -> str:

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Unpack
 
 from daguerre.camera.camera import Camera
 from daguerre.frame.frame import Frame
 from daguerre.scene.scene import Scene
 
+from .checkpoint import Checkpoint
 from .keywords import RenderKeywords, settings_of, takes
+from .loop import Loop
+from .progress import Status
+from .reporter import Control, Reporter
 from .rounds import rounds
+from .schedule import work_of
 from .session import Session
 from .settings import RenderSettings
+
+#: Told how far a picture is; False stops it.
+Progress = Callable[[Status], bool | None]
 
 
 @takes(RenderKeywords)
@@ -21,6 +31,8 @@ def render(
     camera: Camera | str | None = None,
     *,
     settings: RenderSettings | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
     **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Renders a picture.
@@ -29,12 +41,26 @@ def render(
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
         settings: How it is rendered; the keywords change it.
+        checkpoint: File, an .exr, that keeps the samples until the picture is complete: every
+            minute, and when ``progress`` stops. If it is there, the render goes on from it.
+        progress: Called some ten times a second with a ``rendering.Status``; returning False
+            stops after the samples that are being drawn, and the picture so far is returned.
         {keywords}
 
     Returns:
         The frame; ``frame.rgb`` is float32 (H, W, 3), scene-linear Rec.709.
+
+    Raises:
+        UsageError: A parameter is out of its range.
+        InputError: The scene or the lens cannot be used.
+        MismatchError: The checkpoint belongs to another picture.
     """
-    return finish(Session(scene, camera, settings=settings_of(settings, keywords)))
+    session = Session(scene, camera, settings=settings_of(settings, keywords))
+    if checkpoint is None and progress is None:
+        return finish(session)
+    kept = Checkpoint(None if checkpoint is None else Path(checkpoint))
+    _draw(session, kept, _Watch(progress or (lambda status: None)))
+    return session.frame()
 
 
 def finish(session: Session) -> Frame:
@@ -48,6 +74,29 @@ def finish(session: Session) -> Frame:
     return session.frame()
 
 
+class _Watch(Reporter, Control):
+    """Tells a function how far a picture is, and stops when it says so."""
+
+    def __init__(self, told: Progress) -> None:
+        self._told = told
+
+    def progress(self, status: Status) -> None:
+        """Calls the function; a picture of no samples is none, so one pass is always drawn."""
+        if self._told(status) is False and status.samples:
+            self.stops = 1
+
+
+def _draw(session: Session, checkpoint: Checkpoint, watch: _Watch) -> None:
+    sampling = session.settings.sampling
+    work = work_of(session, (0, sampling.most), sampling.noise)
+    checkpoint.load(session, work)
+    loop = Loop(session, work, checkpoint, watch, watch)
+    if loop.run():
+        checkpoint.remove()
+    else:
+        checkpoint.save(session)
+
+
 @takes(RenderKeywords)
 def iter_render(
     scene: Scene,
@@ -58,7 +107,13 @@ def iter_render(
 ) -> Iterator[Frame]:
     """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
 
-    With ``noise``, after each round of adaptive sampling. Arguments are those of :func:`render`.
+    With ``noise``, after each round of adaptive sampling.
+
+    Args:
+        scene: The scene.
+        camera: Camera, or its name in the scene; default: the scene's own.
+        settings: How it is rendered; the keywords change it.
+        {keywords}
     """
     session = Session(scene, camera, settings=settings_of(settings, keywords))
     sampling = session.settings.sampling

@@ -146,6 +146,11 @@ class Rounds:
         return self.session.round
 
 
+def work_of(session: Session, wanted: tuple[int, int], noise: float | None) -> Work:
+    """Samples [begin, end) of each pixel, or rounds until a noise with ``end`` of each at most."""
+    return Range(session, wanted) if noise is None else Rounds(session, noise, wanted[1])
+
+
 def pass_size(missing: tuple[int, int], limit: float) -> int:
     """How many samples the next pass draws: a power of two, on its multiples.
 

@@ -16,12 +16,10 @@ from daguerre.errors import UsageError, suggest
 
 from .adaptive import MAX_SPP
 from .diffraction import Diffraction, with_bands
-from .parameters import DEFAULT, TABLE, THREADS
+from .parameters import DEFAULT, DEFAULT_SPP, TABLE, THREADS
 from .rules import Named, check_together
 from .truth import GT_RAYS
 
-#: Samples per pixel, where neither they nor a noise are asked for.
-DEFAULT_SPP = 64
 OverscanLike = Overscan | str | float | tuple[int, int, int, int]
 
 

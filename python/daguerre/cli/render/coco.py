@@ -1,23 +1,62 @@
-"""``--coco`` and ``--categories``: checked before anything is drawn."""
+"""``--coco`` and ``--categories``: labels of what the pictures show, in one file."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from daguerre.cli import console
 from daguerre.errors import UsageError
+from daguerre.rendering.picture import Picture
+from daguerre.scene.scene import Scene
 
 if TYPE_CHECKING:
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
+    from daguerre.rendering.session import Session
 
-    from .pictures import Picture
+    from .plan import Plan
 
 
-def coco_of(
-    path: Path | None, categories: Path | None, wanted: list[Picture]
-) -> tuple[CocoFile | None, Categories | None]:
-    """The file in the making, and what things are.
+@dataclass(frozen=True)
+class Labels:
+    """Labels in the making.
+
+    Attributes:
+        file: The file; None: no labels are wanted.
+        categories: Categories of things; None: their names.
+    """
+
+    file: CocoFile | None = None
+    categories: Categories | None = None
+
+    def check(self, scene: Scene) -> None:
+        """Refuses categories that do not fit the scene."""
+        if self.categories is not None:
+            self.categories.things(scene)
+
+    def add(self, picture: Picture, session: Session) -> None:
+        """Notes what a picture shows."""
+        if self.file is None:
+            return
+        from daguerre.labels.annotations import annotations_of
+
+        seen = annotations_of(session, self.categories)
+        # Readers of data sets want files that image libraries open.
+        files = picture.output.files
+        plain = (f for f in files if f.suffix.lower() not in (".exr", ".dng"))
+        self.file.add(seen, next(plain, files[0]), picture.facts)
+
+    def write(self) -> None:
+        """Writes the file, if labels are wanted."""
+        if self.file is not None:
+            self.file.write()
+            console.note(f"wrote {self.file.path}")
+
+
+def coco_of(path: Path | None, categories: Path | None, plan: Plan) -> Labels:
+    """The labels that the flags ask for.
 
     Raises:
         UsageError: Flags that do not go together, or a name that is taken.
@@ -27,14 +66,14 @@ def coco_of(
     if path is None:
         if categories is not None:
             raise UsageError("--categories: wanted --coco FILE.json too")
-        return None, None
+        return Labels()
     if path.suffix.lower() != ".json":
         raise UsageError(f"--coco: wanted a name ending in .json, got {path}")
-    if not wanted[0].plan.outputs:
+    if not plan.flags.paths:
         raise UsageError("--coco: wanted a picture with -o, got maps alone")
-    if wanted[0].plan.overscan is not None:
+    if plan.pictures[0].settings.film.overscan is not None:
         raise UsageError("--coco and --overscan: wanted one of them: pictures have no overscan")
-    taken = {file.resolve() for picture in wanted for file in picture.plan.written}
+    taken = {file.resolve() for picture in plan.pictures for file in plan.written(picture)}
     if path.resolve() in taken or (
         categories is not None and path.resolve() == categories.resolve()
     ):
@@ -42,4 +81,4 @@ def coco_of(
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
 
-    return CocoFile(path), None if categories is None else Categories.read(categories)
+    return Labels(CocoFile(path), None if categories is None else Categories.read(categories))

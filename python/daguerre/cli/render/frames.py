@@ -6,10 +6,10 @@ import re
 from pathlib import Path
 
 from daguerre.errors import UsageError
+from daguerre.rendering.names import has_frame
 
 MOST = 1_000_000
 _RANGE = re.compile(r"\s*(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?\s*")
-_PLACE = re.compile(r"#+(?=[^#]*$)")  # the last run of #
 
 
 def frame_numbers(flag: str, text: str) -> list[int]:
@@ -31,21 +31,6 @@ def frame_numbers(flag: str, text: str) -> list[int]:
     return list(found)
 
 
-def numbered(path: Path, frame: int) -> Path:
-    """``shot.####.exr`` with the frame in the place of #, with as many digits at least."""
-    return path.with_name(
-        _PLACE.sub(lambda place: f"{frame:0{len(place[0])}d}", path.name, count=1)
-    )
-
-
-def before_number(path: Path, word: str) -> Path:
-    """``shot.####.exr`` as ``shot.WORD.####.exr``; ``shot.exr`` as ``shot.WORD.exr``."""
-    place = _PLACE.search(path.name)
-    cut = place.start() if place else len(path.stem)
-    head, tail = path.name[:cut].rstrip("."), path.name[cut:].lstrip(".")
-    return path.with_name(".".join(part for part in (head, word, tail) if part))
-
-
 def check_names(outputs: list[Path], frames: list[int] | None) -> None:
     """Each of several frames needs a file of its own, and # means a frame.
 
@@ -53,7 +38,7 @@ def check_names(outputs: list[Path], frames: list[int] | None) -> None:
         UsageError: Names without # for several frames, or with # and no frames.
     """
     for path in outputs:
-        has_place = _PLACE.search(path.name) is not None
+        has_place = has_frame(path)
         if frames is None and has_place:
             raise UsageError(f"-o {path}: # stands for the number of a frame; wanted --frames")
         if frames is not None and len(frames) > 1 and not has_place:

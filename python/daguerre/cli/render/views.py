@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
 from daguerre.errors import UsageError, suggest
-
-from .frames import before_number
+from daguerre.rendering import picture
+from daguerre.rendering.names import CAMERA
+from daguerre.rendering.parameters import DEFAULT
 
 if TYPE_CHECKING:
     from daguerre.calibration import Calibration
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from daguerre.cli.flags.calibration import CalibrationFlags
     from daguerre.scene.scene import Scene
 
-#: Stands for the name of a camera in the name of a file.
-PLACE = "{camera}"
 SIDES = {"left": -0.5, "right": 0.5}
 
 
@@ -44,14 +43,45 @@ class View:
     calibration: Calibration | None = None
     shift: float = 0.0
 
-    def of(self, scene: Scene, flags: CalibrationFlags, changes: dict[str, Any]) -> Camera:
-        """The camera itself."""
-        camera: Camera = flags.camera(scene.camera(self.camera), self.calibration, changes)
-        if not self.shift:
-            return camera
-        from daguerre.setup.pose import moved_right
+    def view(self, cameras: Cameras) -> picture.View:
+        """The camera for a job."""
 
-        return moved_right(camera, self.shift)
+        def camera(scene: Scene) -> Camera:
+            given = scene.camera(self.camera)
+            found: Camera = cameras.flags.camera(given, self.calibration, cameras.changes)
+            if not self.shift:
+                return found
+            from daguerre.setup.pose import moved_right
+
+            return moved_right(found, self.shift)
+
+        def notes(camera: Camera) -> list[str]:
+            return cameras.flags.notes(camera, self.calibration)
+
+        return picture.View(self.name, camera, notes)
+
+
+@dataclass(frozen=True)
+class Cameras:
+    """Flags of the cameras of a call.
+
+    Attributes:
+        names: Value of ``--camera``.
+        flags: Calibrations that replace lenses.
+        changes: Parameters that the command line changes.
+    """
+
+    names: str | None
+    flags: CalibrationFlags
+    changes: dict[str, Any]
+
+    def views(self, stereo: str | None) -> list[View]:
+        """The cameras, with those of a stereo pair."""
+        return views_of(self.names, self.flags.found, stereo)
+
+    def size(self, view: View, res: str | None) -> tuple[int, int]:
+        """Size of a camera's picture, px."""
+        return self.flags.resolution(view.calibration, res, DEFAULT["resolution"])
 
 
 def views_of(
@@ -104,22 +134,10 @@ def check_places(outputs: list[Path], views: list[View]) -> None:
     """
     for path in outputs:
         for place in re.findall(r"\{[^{}]*\}", str(path)):
-            if place != PLACE and suggest(place, [PLACE]):
-                raise UsageError(f"-o {path}: wanted {PLACE}, got {place}")
-        if PLACE in str(path) and not views[0].name:
+            if place != CAMERA and suggest(place, [CAMERA]):
+                raise UsageError(f"-o {path}: wanted {CAMERA}, got {place}")
+        if CAMERA in str(path) and not views[0].name:
             raise UsageError(
-                f"-o {path}: {PLACE} stands for the name of a camera; wanted --camera, "
+                f"-o {path}: {CAMERA} stands for the name of a camera; wanted --camera, "
                 "--calibration or --stereo"
             )
-
-
-def named(path: Path, view: View, *, several: bool) -> Path:
-    """The file of a camera: its name in the place of ``{camera}``.
-
-    Without that place names of several cameras stand before the frame's number, or at the end.
-    """
-    name = re.sub(r"[/\\\x00-\x1f\x7f]", "_", view.name)
-    name = "_" * len(name) if name in (".", "..") else name
-    if PLACE in str(path):
-        return Path(str(path).replace(PLACE, name))
-    return before_number(path, name) if several else path

@@ -1,0 +1,35 @@
+"""Flags of how a picture is rendered: one for each row of the table of parameters that has any."""
+
+from typing import Any
+
+from daguerre.errors import UsageError
+from daguerre.rendering.diffraction import Diffraction
+from daguerre.rendering.parameters import DEFAULT, DIFFRACTION_ROWS, FLAGS
+from daguerre.rendering.settings import RenderSettings
+
+from .from_table import TableFlags, made_of
+
+
+@made_of(FLAGS)
+class SettingsFlags(TableFlags):
+    """Values of the flags; what is not given has the default of the table."""
+
+    def settings(self, **more: Any) -> RenderSettings:
+        """The settings, with parameters that come of other flags.
+
+        Raises:
+            UsageError: A value is wrong, or does not go with another; the message names the flag.
+        """
+        given = self.given()
+        waves = {
+            row.name: row.check(given.pop(row.name, row.default), row.flag)
+            for row in DIFFRACTION_ROWS
+        }
+        bands, wanted = given.get("bands", DEFAULT["bands"]), waves["diffraction_bands"]
+        if bands and wanted not in (Diffraction.bands, bands):
+            raise UsageError(f"--bands {bands} and --diffraction-bands {wanted}: wanted one number")
+        if given.get("diffraction"):
+            given["diffraction"] = Diffraction(*waves.values())
+        elif any(waves[row.name] != row.default for row in DIFFRACTION_ROWS):
+            raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
+        return RenderSettings.read(given | more, FLAGS.flag)

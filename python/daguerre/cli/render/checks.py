@@ -1,0 +1,146 @@
+"""Checks of a render's flags that go together, each naming the flag that is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from daguerre import units as q
+from daguerre.camera.overscan import check_overscan as overscan_of
+from daguerre.cli.flags.job import JobFlags
+from daguerre.cli.flags.map import MapFlags
+from daguerre.cli.flags.settings import SettingsFlags
+from daguerre.errors import UsageError, suggest
+from daguerre.frame.aovs import BY_NAME, EXACT_ONLY, Source, names_of
+from daguerre.rendering.output import DISPARITY, EXPOSED, Output
+from daguerre.rendering.parameters import TABLE
+from daguerre.rendering.settings import Film, RenderSettings
+
+
+def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[str]:
+    """Formats, tone and channels; the groups of channels that are asked for."""
+    from daguerre.frame.frame import TONES, check_format
+
+    if not flags.paths and not maps.files:
+        raise UsageError("-o, --output: wanted a file, which only maps (--export-...) do without")
+    formats = [check_format(path, (".dng",)) for path in flags.paths]
+    tone = flags.tone
+    if tone not in TONES:
+        raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}{suggest(tone, TONES)}")
+    groups = _groups(flags.aov or [], everything=flags.aovs)
+    drawn = (flags.aov, flags.aovs, flags.samples, "noise" in rows.given(), flags.denoise)
+    if not formats and any(drawn):
+        raise UsageError("-o: wanted a file for the picture, since maps alone draw nothing")
+    if flags.samples and ".exr" not in formats:
+        raise UsageError("--samples: a pass keeps its sums in an .exr; got none with -o")
+    if flags.denoise:
+        from daguerre.rendering.denoise import check_available
+
+        check_available()
+    return groups
+
+
+def check_samples(
+    flags: JobFlags, rows: SettingsFlags, groups: list[str]
+) -> tuple[int, int] | None:
+    """The range of a pass, and whether a pass can have what is asked for."""
+    if not flags.samples:
+        return None
+    given = rows.given()
+    if "noise" in given:
+        raise UsageError(
+            "--noise and --samples: what is drawn for a noise depends on what was drawn before, "
+            "so it has no passes; wanted one of the two"
+        )
+    samples = q.sample_range("--samples", flags.samples)
+    TABLE["spp"].check(samples[1], f"--samples {flags.samples}")
+    if given.get("spp", samples[1]) < samples[1]:
+        raise UsageError(f"--samples {flags.samples}: wanted at most --spp {given['spp']}")
+    if flags.denoise:
+        raise UsageError(
+            "--samples and --denoise: denoise after merging, `daguerre merge --denoise`"
+        )
+    if found := [name for name in EXPOSED if name in groups]:
+        raise UsageError(f"--samples: a pass is not exposed; wanted no --aov {','.join(found)}")
+    if DISPARITY in groups:
+        raise UsageError("--samples: wanted no --aov disparity; depth comes through a pass")
+    return samples
+
+
+def settings_of(
+    flags: JobFlags, rows: SettingsFlags, groups: list[str], size: tuple[int, int]
+) -> RenderSettings:
+    """The settings of a picture of this size; some channels ask for ground truth by themselves."""
+    more: dict[str, Any] = {
+        "resolution": size,
+        "aovs": bool(groups) or flags.denoise,
+        "motion": any(name in groups for name in names_of(Source.MOTION)),
+    }
+    if any(name in groups for name in (*EXACT_ONLY, DISPARITY)):
+        more["gt_time"] = rows.given().get("gt_time", "mid")
+    return rows.settings(**more)
+
+
+def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
+    """Pixels beside the picture need a file that can have them."""
+    if settings.film.overscan is None or not flags.paths:
+        return
+    if not any(path.suffix.lower() == ".exr" for path in flags.paths):
+        raise UsageError("--overscan: wanted an .exr with -o: pictures for the eye have none")
+
+
+def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
+    """Ground truth goes into channels, and some of them need means, or none."""
+    given = rows.given()
+    means = given.get("gt_lens", "chief") != "chief"
+    if not groups and (means or ("gt_time" in given and maps.export_raymap is None)):
+        flag = "--gt-time" if "gt_time" in given else "--gt-lens"
+        raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
+    if "coverage" in groups and not means:
+        raise UsageError("--aov coverage: of the chief ray there is none; wanted --gt-lens mean")
+    if DISPARITY in groups and means:
+        raise UsageError("--aov disparity: wanted --gt-lens chief, as means have no one place")
+
+
+def check_crop(film: Film) -> None:
+    """A crop lies within the picture and its overscan, as far as that is known yet."""
+    beside = overscan_of(film.overscan, film.resolution, "--overscan")
+    if film.crop is None or beside is None:  # the camera decides
+        return
+    x0, y0, x1, y1 = film.crop
+    left, top, right, bottom = beside.region(film.resolution)
+    if not (left <= x0 < x1 <= right and top <= y0 < y1 <= bottom):
+        raise UsageError(
+            f"--crop: wanted x0 < x1 within {left}..{right} and y0 < y1 within "
+            f"{top}..{bottom}; got '{x0},{x1},{y0},{y1}'"
+        )
+
+
+def check_writable(written: list[Path], output: Output) -> None:
+    """Refuses files that cannot be written at all, before hours are spent."""
+    from daguerre.files.atomic import check_writable as check
+
+    names = [path.resolve() for path in written]
+    if len(set(names)) < len(names):
+        raise UsageError("-o: the same file is named twice")
+    if output.paths and output.checkpoint.resolve() in names:
+        raise UsageError(f"-o {output.checkpoint}: this name is kept for the checkpoint")
+    for path in written:
+        check(path)
+
+
+def _groups(names: list[str], *, everything: bool) -> list[str]:
+    """Groups of channels by what the flags call them; those of every picture go without saying."""
+    film = names_of(Source.FILM)
+    groups = set(film) if everything else set()
+    for name in (part.strip() for text in names for part in text.split(",")):
+        if name == "all":
+            groups |= set(film)
+        elif name in BY_NAME:
+            groups.add(BY_NAME[name].name)
+        else:
+            known = [*BY_NAME, "all"]
+            raise UsageError(
+                f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
+            )
+    return sorted(groups - set(names_of(Source.ALWAYS)))

@@ -1,0 +1,47 @@
+"""Maps of cameras, without their pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from daguerre.cli import console
+from daguerre.rendering.job import Job
+from daguerre.rendering.picture import Picture
+
+if TYPE_CHECKING:
+    from .plan import Plan
+
+
+def write_maps(plan: Plan, job: Job) -> bool:
+    """Writes the maps of all pictures; True: all of them are there."""
+    for view in {picture.view.name: picture.view for picture in plan.pictures}.values():
+        view.camera(job.scene)
+    for i, picture in enumerate(plan.pictures):
+        if picture.words:
+            console.note(f"{picture.words} ({i + 1} of {len(plan.pictures)})")
+        _write(plan, job, picture)
+        job.done = i + 1
+    return True
+
+
+def _write(plan: Plan, job: Job, picture: Picture) -> None:
+    """The maps of a camera: nothing is drawn, but its focus may have to be found."""
+    from daguerre.camera.overscan import check_overscan
+    from daguerre.camera.shutter import interval
+    from daguerre.distortion.overscan import note, to_undistort
+    from daguerre.distortion.rectified import RectifiedView
+    from daguerre.rendering.truth import focused
+    from daguerre.setup.camera import set_up
+    from daguerre.setup.scene import build
+
+    scene, camera = job.scene_of(picture), job.camera_of(picture)
+    size = picture.settings.film.resolution
+    setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
+    camera = focused(camera, setup.lens.focus_distance_m)
+    overscan = check_overscan(picture.settings.film.overscan, size, "--overscan")
+    if overscan is None:
+        view = RectifiedView(camera, size, scene=scene)
+        overscan = to_undistort(view, "--overscan undistort")
+        console.note(note(overscan))
+    moment = picture.settings.truth.moment
+    plan.maps_of(picture).write(scene, camera, size, overscan, moment)

@@ -1,0 +1,109 @@
+"""Runs a plan: a job with the console as its reporter, maps and labels beside the pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from daguerre.cli import console
+from daguerre.cli.signals import Signals
+from daguerre.rendering.job import Job
+from daguerre.rendering.picture import Picture
+from daguerre.scene.scene import Scene
+
+from .coco import Labels
+from .maps import write_maps
+from .plan import Plan
+from .reporter import ConsoleReporter
+
+INTERRUPTED = 75
+
+
+def run(plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float) -> int:
+    """Draws pictures one after the other; the exit code.
+
+    Args:
+        plan: The pictures.
+        scene: The scene at the time of frame 0.
+        path: Its file, for messages.
+        labels: Labels of what they show.
+        launched: When the command began, by ``time.monotonic``.
+    """
+    job = _job(plan, scene, path)
+
+    def opened(picture: Picture, session: Any) -> None:
+        maps = plan.maps_of(picture)
+        if maps.files:
+            how = (session.overscan, picture.settings.truth.moment)
+            maps.write(
+                session.scene, session.focused_camera, picture.settings.film.resolution, *how
+            )
+
+    def skipped(picture: Picture) -> None:
+        if labels.file is not None:
+            labels.add(picture, job.open(picture))
+
+    job.opened, job.written, job.skipped = opened, labels.add, skipped
+    labels.check(scene)
+    try:
+        if plan.flags.paths:
+            complete = job.run(resume=plan.flags.resume, since=launched)
+        else:
+            complete = write_maps(plan, job)
+    except KeyboardInterrupt:
+        return (
+            interrupted_between(job.done, len(plan.pictures)) if job.done else interrupted_early()
+        )
+    if not complete:
+        return INTERRUPTED
+    labels.write()
+    return 0
+
+
+def describe(plan: Plan, scene: Scene, path: Path) -> int:
+    """Prints what would be drawn: of a sequence its first frame, of a rig each camera."""
+    from daguerre.io.exr.write import jsonable, without_infinity
+
+    job, frame = _job(plan, scene, path), plan.pictures[0].frame
+    first = [picture for picture in plan.pictures if picture.frame == frame]
+    told = {picture.view.name: _facts(job, picture, path) for picture in first}
+    facts = {"cameras": told} if len(first) > 1 else next(iter(told.values()))
+    print(json.dumps(without_infinity(facts), indent=2, default=jsonable))
+    return 0
+
+
+def _facts(job: Job, picture: Picture, path: Path) -> dict[str, Any]:
+    session = job.open(picture)
+    return {
+        "scene": str(path),
+        "outputs": [str(path) for path in picture.output.files],
+        "resolution": list(picture.settings.film.resolution),
+        "crop": list(session.crop),
+        "samples": list(picture.wanted),
+        "noise": picture.settings.sampling.noise,
+        "aovs": list(picture.output.aovs),
+        "camera": session.metadata.get("camera"),
+        "key": session.key,
+    }
+
+
+def _job(plan: Plan, scene: Scene, path: Path) -> Job:
+    flags = plan.flags
+    told = ConsoleReporter(quiet=flags.quiet, as_json=flags.json_progress, stats=flags.stats)
+    job = Job(scene, plan.pictures, told, Signals(), plan.interval_s)
+    job.name = str(path)
+    return job
+
+
+def interrupted_between(done: int, wanted: int) -> int:
+    """Says so between two pictures, and how to go on; the exit code."""
+    console.say(f"daguerre: interrupted after {done} of {wanted} pictures; resume with:")
+    console.say(console.command_line("--resume"))
+    return INTERRUPTED
+
+
+def interrupted_early() -> int:
+    """Says so; the exit code."""
+    console.say("daguerre: interrupted before the first sample; nothing was written")
+    return INTERRUPTED

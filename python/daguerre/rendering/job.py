@@ -1,0 +1,214 @@
+"""Job: renders pictures of a scene into their files, one after the other, for any front end."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from daguerre.camera.camera import Camera
+from daguerre.scene.scene import Scene
+
+from .checkpoint import INTERVAL_S, Checkpoint
+from .loop import Loop
+from .picture import Picture
+from .reporter import Control, Finished, Reporter, Stopped
+from .schedule import work_of
+
+if TYPE_CHECKING:
+    from daguerre.setup.built_scene import BuiltScene
+
+    from .session import Session
+
+#: Called with a picture and the session that draws it.
+Hook = Callable[[Picture, "Session"], None]
+
+
+def _nothing(picture: Picture, session: Session) -> None:
+    pass
+
+
+class Job:
+    """Renders pictures of one scene: a single one, those of a rig, the frames of a sequence.
+
+    Samples that were drawn are kept in a checkpoint beside the first file of a picture, until that
+    is complete.
+
+    Args:
+        scene: The scene, at the time of frame 0.
+        pictures: Pictures, each with its camera, settings and files.
+        reporter: Told what happens.
+        control: Decides when to stop.
+        interval_s: Time between checkpoints, s; 0: only when the job stops.
+
+    Attributes:
+        name: Name of the scene, for messages.
+        opened: Called when a picture's scene is built, before its first sample.
+        written: Called when a picture is in its files.
+        skipped: Called with a picture that was there already.
+        done: Number of pictures that are complete.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        pictures: Sequence[Picture],
+        reporter: Reporter | None = None,
+        control: Control | None = None,
+        interval_s: float = INTERVAL_S,
+    ) -> None:
+        self.scene, self.pictures = scene, list(pictures)
+        self.reporter, self.control = reporter or Reporter(), control or Control()
+        self.interval_s = interval_s
+        self.name = "scene"
+        self.opened: Hook = _nothing
+        self.written: Hook = _nothing
+        self.skipped: Callable[[Picture], None] = lambda picture: None
+        self.done = 0
+        self._warned: set[str] = set()
+        self._seen: Scene | None = None
+        self._built: BuiltScene | None = None
+
+    def run(self, *, resume: bool = False, since: float | None = None) -> bool:
+        """Renders the pictures.
+
+        Args:
+            resume: Whether to go on from checkpoints, and to leave pictures that are complete.
+            since: When the set-up of the first one began, by ``time.monotonic``.
+
+        Returns:
+            False if the control stopped it.
+        """
+        for view in {picture.view.name: picture.view for picture in self.pictures}.values():
+            view.camera(self.scene)  # an error comes before hours are spent, not after
+        began = time.monotonic() if since is None else since
+        for i, picture in enumerate(self.pictures):
+            if picture.words:
+                self.reporter.note(f"{picture.words} ({i + 1} of {len(self.pictures)})")
+            if resume and self._is_complete(picture):
+                self.reporter.note(f"{picture.output.paths[0]} is complete")
+                self.skipped(picture)
+            elif not self._render(picture, began, resume=resume):
+                return False
+            self.done, began = i + 1, time.monotonic()
+        return True
+
+    def scene_of(self, picture: Picture) -> Scene:
+        """The scene at the time of a frame: the same one for all cameras of a rate."""
+        if not picture.frame:
+            return self.scene
+        when = self.scene.time + picture.frame / picture.view.camera(self.scene).fps
+        if self._seen is None or self._seen.time != when:
+            self._seen = self.scene.at(when)
+        return self._seen
+
+    def camera_of(self, picture: Picture) -> Camera:
+        """The camera of a picture."""
+        return picture.view.camera(self.scene_of(picture))
+
+    def open(self, picture: Picture) -> Session:
+        """The session of a picture, checked and not drawn; warnings of a camera come once."""
+        from daguerre.analysis.camera_facts import camera_warnings, lit
+
+        from .session import Session
+
+        scene, camera, name = self.scene_of(picture), self.camera_of(picture), picture.view.name
+        first, new = not self._warned, name not in self._warned
+        self._warned.add(name)
+        which = f"camera {name}: " if "camera" in picture.facts else ""
+        for warning in camera_warnings(camera) if new else ():
+            self.reporter.warning(which + warning)
+        session = Session(scene, camera, settings=picture.settings, built=self._built)
+        self._built = session.built
+        picture.output.check(session.metadata, self.reporter)
+        if first and not lit(scene):
+            self.reporter.warning(
+                f"{self.name}: the scene has no lights, so the picture will be black; "
+                "add one or use --env"
+            )
+        for text in session.warnings:
+            self.reporter.warning(f"{self.name}: {text}")
+        for text in (*(picture.view.notes(camera) if new else ()), *session.notes):
+            self.reporter.note(text)
+        return session
+
+    def _is_complete(self, picture: Picture) -> bool:
+        """Whether its files are there; those of a single picture may be of another call."""
+        one = len(self.pictures) == 1 and picture.frame is None
+        files = all(path.exists() for path in picture.output.files)
+        return files and not one and not picture.output.checkpoint.exists()
+
+    def _render(self, picture: Picture, began: float, *, resume: bool) -> bool:
+        session = self.open(picture)
+        self.opened(picture, session)
+        setup_s = time.monotonic() - began
+        with self.control.watching(), self.reporter.drawing(picture.facts):
+            drawn = Drawing(self, picture, session, setup_s).run(resume=resume)
+        if drawn:
+            self.written(picture, session)
+        return drawn
+
+
+class Drawing:
+    """One picture of a job, from its first sample to its files."""
+
+    def __init__(self, job: Job, picture: Picture, session: Session, setup_s: float) -> None:
+        self.picture, self.output, self.session = picture, picture.output, session
+        self.tell, self.control, self.setup_s = job.reporter, job.control, setup_s
+        self.checkpoint = Checkpoint(self.output.checkpoint, job.interval_s)
+        work = work_of(session, picture.wanted, picture.settings.sampling.noise)
+        self.loop = Loop(session, work, self.checkpoint, self.tell, self.control, self._snapshot)
+
+    def run(self, *, resume: bool) -> bool:
+        """Draws and writes; False if the control stopped it."""
+        work = self.loop.work
+        if resume and self.checkpoint.load(self.session, work):
+            self.tell.note(f"resuming at {self._samples()} of {work.total():.6g} samples")
+        elif resume:
+            self.tell.note(f"nothing to resume: no {self.checkpoint.path}; starting anew")
+        if not self.loop.run():
+            self._stop()
+            return False
+        self._finish()
+        return True
+
+    def _finish(self) -> None:
+        try:
+            frame = self.output.frame(self.session, self.loop.work.done(), self.tell)
+            self.output.write(self.session, frame, self.output.paths, self.tell)
+        except BaseException:
+            # Hours of work must not die with a full disk, or with a channel that cannot be made.
+            if not self.checkpoint.exists:
+                self.loop.save(rescued=True)
+            raise
+        self.checkpoint.remove()
+        loop, seconds = self.loop, time.monotonic() - self.loop.started
+        self.tell.finished(
+            Finished(
+                self.session, frame, self.output.files, loop.work.done(), loop.drawn_here, seconds,
+                self.setup_s,
+            )
+        )  # fmt: skip
+
+    def _stop(self) -> None:
+        """Keeps what is drawn; a second request means now: the last checkpoint has to do."""
+        work = self.loop.work
+        saved = bool(self.control.stops < 2 and work.done() and self.loop.save())
+        there = self.checkpoint.path if self.checkpoint.exists else None
+        self.tell.stopped(Stopped(work.done(), work.total(), there, saved))
+
+    def _snapshot(self) -> None:
+        paths: list[Path] = [p.with_suffix(f".snapshot{p.suffix}") for p in self.output.paths]
+        frame = self.output.frame(self.session, self.loop.work.done(), self.tell)
+        self.output.write(self.session, frame, paths, self.tell)
+        names = ", ".join(map(str, paths))
+        self.tell.note(f"snapshot: {names} ({self._samples()} samples per pixel)")
+
+    def _samples(self) -> str:
+        return shown(self.loop.work.done())
+
+
+def shown(samples: float) -> str:
+    """Samples per pixel; a mean with one decimal."""
+    return f"{round(samples, 1):.10g}"

@@ -1,0 +1,83 @@
+"""Merging passes into a picture and its files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from daguerre.errors import MismatchError
+from daguerre.frame.frame import Frame
+
+from . import merging
+from .output import only
+from .passes import Pass, write_pass
+from .ranges import missing_ranges, show_ranges
+
+PathLike = str | os.PathLike[str]
+
+
+def merge(
+    passes: Iterable[PathLike],
+    out: PathLike | Sequence[PathLike] = (),
+    *,
+    strict: bool = False,
+    keep_sums: bool = False,
+) -> Frame:
+    """Adds passes of one picture, in any order: it has the bits of a render in one go.
+
+    Args:
+        passes: Files of ``daguerre render --samples``, or of a ``rendering.Job``.
+        out: Files to write, .exr, .png and so on; default: none.
+        strict: Whether a range of samples that is missing between the passes is an error.
+        keep_sums: Whether an .exr keeps the sums, so that it can be merged further.
+
+    Returns:
+        The picture, with the channels that the passes were asked for.
+
+    Raises:
+        InputError: A file cannot be read, or has no sums.
+        MismatchError: Passes of different pictures, samples drawn twice, or missing ones.
+        OutputError: A file cannot be written.
+    """
+    frame, total = merging.merge(passes)
+    if strict:
+        refuse_gaps(total)
+    frame = whole(frame, total)
+    for path in (out,) if isinstance(out, str | os.PathLike) else out:
+        write(Path(path), frame, total, keep_sums=keep_sums)
+    return frame
+
+
+def whole(frame: Frame, total: Pass) -> Frame:
+    """The picture with ground truth, and with the channels that were asked for alone."""
+    frame = replace(frame, aovs=frame.aovs | total.truth)
+    wanted = total.metadata.get("aovs")
+    return frame if wanted is None else only(frame, wanted)
+
+
+def gaps(total: Pass) -> str | None:
+    """The ranges that are missing between the passes, in words; None: there are none."""
+    found = missing_ranges(total.ranges)
+    return f"samples {show_ranges(found)} are missing between the passes" if found else None
+
+
+def refuse_gaps(total: Pass) -> None:
+    """Refuses passes between which a range is missing.
+
+    Raises:
+        MismatchError: The message names it.
+    """
+    if text := gaps(total):
+        raise MismatchError(f"merge: {text}")
+
+
+def write(
+    path: Path, frame: Frame, total: Pass, *, keep_sums: bool = False, tone: str = "srgb"
+) -> None:
+    """Writes the picture; an .exr with its sums, if they are kept."""
+    if keep_sums and path.suffix.lower() == ".exr":
+        write_pass(path, frame, total)
+    else:
+        frame.save(path, tone=tone)

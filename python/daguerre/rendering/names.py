@@ -1,0 +1,42 @@
+"""Names of files of several pictures: ``shot.####.exr`` for frames, ``{camera}`` for cameras."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+#: Place of a camera's name in the name of a file.
+CAMERA = "{camera}"
+_FRAME = re.compile(r"#+(?=[^#]*$)")  # the last run of #
+
+
+def has_frame(path: Path) -> bool:
+    """Whether the name has a place for the number of a frame."""
+    return _FRAME.search(path.name) is not None
+
+
+def numbered(path: Path, frame: int) -> Path:
+    """``shot.####.exr`` with the frame in the place of #, with as many digits at least."""
+    return path.with_name(
+        _FRAME.sub(lambda place: f"{frame:0{len(place[0])}d}", path.name, count=1)
+    )
+
+
+def named(path: Path, camera: str, *, several: bool) -> Path:
+    """The file of a camera: its name in the place of ``{camera}``.
+
+    Without that place names of several cameras stand before the frame's number, or at the end.
+    """
+    name = re.sub(r"[/\\\x00-\x1f\x7f]", "_", camera)
+    name = "_" * len(name) if name in (".", "..") else name
+    if CAMERA in str(path):
+        return Path(str(path).replace(CAMERA, name))
+    return _before_number(path, name) if several else path
+
+
+def _before_number(path: Path, word: str) -> Path:
+    """``shot.####.exr`` as ``shot.WORD.####.exr``; ``shot.exr`` as ``shot.WORD.exr``."""
+    place = _FRAME.search(path.name)
+    cut = place.start() if place else len(path.stem)
+    head, tail = path.name[:cut].rstrip("."), path.name[cut:].lstrip(".")
+    return path.with_name(".".join(part for part in (head, word, tail) if part))

@@ -1,0 +1,118 @@
+"""Output of a picture: the channels that are kept, its development, and its files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daguerre.errors import OutputError
+from daguerre.frame.aovs import Source, names_of
+
+from .photograph import Photograph
+from .reporter import Reporter
+
+if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
+
+    from .session import Session
+
+(DISPARITY,) = names_of(Source.STEREO)
+EXPOSED = names_of(Source.EXPOSURE)
+
+
+@dataclass(frozen=True)
+class Output:
+    """Files of a picture.
+
+    Attributes:
+        paths: Files to write, .exr, .png and so on; of a bracket each stands for several.
+        aovs: Groups of channels to keep, see ``daguerre.frame.aovs``.
+        denoise: Whether the picture is denoised.
+        tone: Curve of pictures that are not developed.
+        photograph: How pictures are exposed and developed.
+        is_pass: Whether an .exr keeps the sums, so that it can be merged.
+        baseline: Distance of the cameras of a stereo pair, m; 0: there is none.
+    """
+
+    paths: tuple[Path, ...] = ()
+    aovs: tuple[str, ...] = ()
+    denoise: bool = False
+    tone: str = "srgb"
+    photograph: Photograph = field(default_factory=Photograph)
+    is_pass: bool = False
+    baseline: float = 0.0
+
+    @property
+    def exposed(self) -> bool:
+        """Whether truth about the exposure is asked for."""
+        return any(name in self.aovs for name in EXPOSED)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that is written: of a bracket each exposure."""
+        return tuple(file for path in self.paths for file, _ in self.photograph.files(path))
+
+    @property
+    def checkpoint(self) -> Path:
+        """Where the sums are kept until the picture is complete."""
+        if not self.paths:
+            raise OutputError("output: wanted a file, got none")
+        return self.paths[0].with_suffix(".checkpoint.exr")
+
+    def check(self, metadata: dict[str, Any], tell: Reporter) -> None:
+        """Refuses a camera that cannot give what is asked for, before anything is drawn."""
+        self.photograph.check(metadata, self.paths, tell)
+        if DISPARITY in self.aovs:
+            from .rig import check_straight
+
+            check_straight(metadata)
+        if self.exposed:
+            from daguerre.exposure.lux_seconds import luminance_exposure
+
+            luminance_exposure(metadata)  # or an error that names what is missing
+
+    def frame(self, session: Session, samples: float, tell: Reporter) -> Frame:
+        """The picture so far, with the channels that were asked for."""
+        frame = session.frame(truth=False)
+        facts = {
+            "resolution": (session.width, session.height),
+            "crop": session.crop,
+            "samples": samples,
+            "aovs": list(self.aovs),
+        }
+        frame = replace(frame, metadata={**frame.metadata, **facts})
+        if self.denoise:
+            from .denoise import denoise
+
+            frame = denoise(frame)  # by means over the samples, blurred as the picture is
+            if self.photograph.sensor is not None:
+                tell.note("denoised: the sensor's channels are fitted from the clean colours")
+        frame = session.with_truth(frame)
+        if DISPARITY in self.aovs:
+            from .rig import disparity
+
+            apart = disparity(frame, self.baseline)
+            frame = replace(frame, aovs={**frame.aovs, f"{DISPARITY}.X": apart})
+        frame = self.photograph.metered(frame, self.paths, tell)
+        if self.exposed:
+            truth = frame.exposure_truth(self.photograph.sensor)
+            frame = replace(frame, aovs=frame.aovs | truth)
+        return only(frame, self.aovs)
+
+    def write(self, session: Session, frame: Frame, paths: Sequence[Path], tell: Reporter) -> None:
+        """Writes the picture to these files."""
+        from .passes import pass_of, write_pass
+
+        passes = [p for p in paths if self.is_pass and p.suffix.lower() == ".exr"]
+        for path in passes:
+            write_pass(path, frame, replace(pass_of(session), metadata=frame.metadata))
+        pictures = [path for path in paths if path not in passes]
+        self.photograph.write(frame, pictures, self.tone, tell)
+
+
+def only(frame: Frame, groups: Sequence[str]) -> Frame:
+    """The frame with these groups of channels alone."""
+    keep = {name: plane for name, plane in frame.aovs.items() if name.split(".")[0] in groups}
+    return replace(frame, aovs=keep)

@@ -1,0 +1,166 @@
+"""How a render becomes photographs: exposure by the triangle or by a meter, brackets, development.
+
+An ``.exr`` is never changed by exposure. Other pictures show 1 as white, unless something of
+exposure or development was asked for; a ``.dng`` is always exposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daguerre.errors import DaguerreError, UsageError
+
+from .reporter import Reporter
+
+if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
+    from daguerre.sensors import Sensor
+
+PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """How pictures are photographed, developed and bracketed.
+
+    Attributes:
+        develops: Whether pictures are developed; else 1 is white.
+        sensor: Sensor that takes the picture; None: a perfect one.
+        iso: ISO as set; None: by the meter, or 100.
+        meters: Way to meter; None: the ISO is set.
+        ev: Compensation; what is not metered has it from the frame's facts.
+        bracket: Exposures, EV, each with a picture; empty: one.
+        look: Tone curve; None: neutral.
+        seed: Seed of the noise.
+        focus_at: Pixel that is in focus, if one was named: where the spot is metered.
+    """
+
+    develops: bool = False
+    sensor: Sensor | None = None
+    iso: float | None = None
+    meters: str | None = None
+    ev: float = 0.0
+    bracket: tuple[float, ...] = ()
+    look: str | None = None
+    seed: int = 0
+    focus_at: tuple[float, float] | None = None
+
+    def exposes(self, path: Path) -> bool:
+        """Whether what is written there depends on exposure."""
+        return _is_raw(path) or (self.develops and path.suffix.lower() in PICTURES)
+
+    def files(self, path: Path) -> list[tuple[Path, float]]:
+        """The pictures that an output stands for, and how they are exposed, EV."""
+        if not self.bracket or not self.exposes(path):
+            return [(path, 0.0)]
+        return [
+            (path.with_name(f"{path.stem}_{offset_name(ev)}{path.suffix}"), ev)
+            for ev in self.bracket
+        ]
+
+    def check(self, metadata: dict[str, Any], paths: Sequence[Path], tell: Reporter) -> None:
+        """Before anything is drawn: whether the camera's facts tell an exposure.
+
+        Raises:
+            InputError: They do not; the message names the field.
+        """
+        if not any(self.exposes(path) for path in paths):
+            if self.meters or self.bracket:
+                raise UsageError(
+                    f"--{'exposure' if self.meters else 'bracket'}: wanted a picture with -o that "
+                    f"is exposed (.dng, {', '.join(PICTURES)})"
+                )
+            return
+        from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note
+
+        luminance_exposure(metadata)
+        if note := pinhole_note(metadata):
+            tell.note(note)
+        if self.bracket:
+            tell.note("bracketed by time: motion blur is that of 0 EV")
+
+    def metered(self, frame: Frame, paths: Sequence[Path], tell: Reporter) -> Frame:
+        """The frame with the ISO that the meter chooses, if it is to; says which."""
+        if not any(self.exposes(path) for path in paths) or self.meters is None:
+            return frame
+        from daguerre.exposure.metering import meter
+
+        try:
+            read = meter(frame, self.meters, at=self.focus_at)
+        except DaguerreError as error:  # black, say: no reason to lose what was drawn
+            tell.warning(f"--exposure auto: {error}; exposed as set")
+            return frame
+        wanted = read.iso * 2.0**self.ev
+        low, high = (1.0, 1e7) if self.sensor is None else self.sensor.iso_range
+        iso = float(round(min(max(wanted, low), high), 0 if wanted > 50 else 2))
+        compensated = f", {self.ev:+g} EV" if self.ev else ""
+        tell.note(
+            f"metered ({read.mode}): {read.luminance:.3g} cd/m2, EV100 {read.ev100:.1f}; "
+            f"ISO {iso:g}{compensated}"
+        )
+        if not low <= wanted <= high:
+            tell.warning(
+                f"--exposure auto: ISO {wanted:.3g} is beyond {low:g} .. {high:g}: the picture is "
+                f"{_stops(wanted, iso)}"
+            )
+        facts = {**frame.metadata, "isoSpeed": iso, "metering": read.mode}
+        facts.pop("exposure_compensation", None)  # the ISO has it
+        return replace(frame, metadata=facts)
+
+    def write(self, frame: Frame, paths: Sequence[Path], tone: str, tell: Reporter) -> None:
+        """Writes outputs; each exposure is taken once, whatever its formats."""
+        exposed = [path for path in paths if self.exposes(path)]
+        for path in paths:
+            if path not in exposed:
+                frame.save(path, tone=tone)
+        offsets = self.bracket or (0.0,)
+        for offset in offsets if exposed else ():
+            files = [file for path in exposed for file, ev in self.files(path) if ev == offset]
+            # Messages about a bracket speak of one of its pictures.
+            told = tell if offset == min(offsets, key=abs) else Reporter()
+            self._shoot(frame, offset, files, told)
+
+    def _shoot(self, frame: Frame, offset: float, files: list[Path], tell: Reporter) -> None:
+        """One exposure into its files."""
+        from daguerre.development import develop
+        from daguerre.development.dng import size_note
+        from daguerre.exposure.lux_seconds import with_exposure
+
+        if offset:
+            frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
+        looks: dict[str, Any] = {} if self.look is None else {"look": self.look}
+        raw = None
+        if self.sensor is not None or any(_is_raw(file) for file in files):
+            chosen = self.iso is not None or "metering" in frame.metadata
+            iso = frame.metadata.get("isoSpeed") if chosen else None  # the sensor has its own
+            raw = frame.expose(self.sensor, iso, seed=self.seed)
+            for text in raw.notes:
+                tell.note(text)
+        for file in files:
+            if raw is not None and _is_raw(file):
+                raw.save(file)
+                if remark := size_note(raw):
+                    tell.note(f"{file}: {remark}")
+            elif raw is not None and self.sensor is not None:
+                develop(raw, **looks).save(file)
+            else:
+                develop(frame, **looks).save(file)
+
+
+def _is_raw(path: Path) -> bool:
+    return path.suffix.lower() == ".dng"
+
+
+def offset_name(ev: float) -> str:
+    """``+1ev``: an exposure of a bracket, in the names of files."""
+    return f"{ev:+.3g}ev" if ev else "0ev"
+
+
+def _stops(wanted: float, iso: float) -> str:
+    import math
+
+    stops = math.log2(wanted / iso)
+    return f"{abs(stops):.1f} EV too {'dark' if stops > 0 else 'bright'}"
