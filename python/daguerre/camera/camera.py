@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import UsageError, suggest
+from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
 if TYPE_CHECKING:
@@ -65,8 +66,8 @@ RIVALS = (
 )
 
 
-@dataclass(frozen=True)
-class Camera:
+@dataclass(frozen=True, eq=False)
+class Camera(Value):
     """A camera; ``with_`` makes changed copies.
 
     Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
@@ -207,6 +208,21 @@ class Camera:
         for name, value in found.items():
             object.__setattr__(self, name, value.at(0.0))
         object.__setattr__(self, "motion", {**self.motion, **found})
+
+    def __getstate__(self) -> dict[str, Any]:
+        # ``sensor_size`` tells by its identity that nobody chose it.
+        unchosen = self.sensor_size is FULL_FRAME
+        return super().__getstate__() | ({"sensor_size": None} if unchosen else {})
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        unchosen = state["sensor_size"] is None
+        super().__setstate__(state | ({"sensor_size": FULL_FRAME} if unchosen else {}))
+
+    def __repr__(self) -> str:
+        """Names what is not as a camera has it without being told."""
+        told = [text for text in changed(self) if not text.startswith("motion=")]
+        moving = [f"moving: {', '.join(self.motion)}"] if self.motion else []
+        return f"<Camera {', '.join(told + moving) or 'at the origin'}>"
 
     @classmethod
     def from_opencv(

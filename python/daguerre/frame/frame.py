@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from daguerre.color.display import _into_gamut, _shoulder, _srgb
 from daguerre.errors import UsageError, suggest
+from daguerre.files.value import Value
 
 if TYPE_CHECKING:
     import os
@@ -26,8 +27,8 @@ FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
 
 
-@dataclass
-class Frame:
+@dataclass(eq=False)
+class Frame(Value):
     """A picture in the making or made.
 
     Attributes:
@@ -58,6 +59,8 @@ class Frame:
     flare: NDArray[np.float32] | None = None
     channels: NDArray[np.float32] | None = None
     bands: NDArray[np.float32] | None = None
+
+    __hash__ = None  # type: ignore[assignment]  # it changes
 
     def __post_init__(self) -> None:
         if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:

@@ -9,6 +9,8 @@ from typing import Any
 
 import daguerre._core as _core
 
+from .medium import Medium
+
 #: What ``kind`` may be.
 KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
 #: Kinds whose two sections have curvatures of their own.
@@ -29,7 +31,7 @@ class LensSurface:
         semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
         glass: What follows it, by name or nd/Vd; empty: air.
         stop: The iris lies here.
-        core_glass: What follows it.
+        medium: What follows it, by its numbers.
         conic: k: 0 is a sphere, -1 a paraboloid.
         asphere: Coefficients by power of r = hypot(x, y), added to the sag.
         radius_x: Radius in the x-z plane of a biconic or toroid.
@@ -49,7 +51,7 @@ class LensSurface:
     semi_diameter: float | None
     glass: str
     stop: bool
-    core_glass: _core.Glass = field(repr=False, compare=False)
+    medium: Medium = field(repr=False)
     conic: float = 0.0
     asphere: dict[int, float] = field(default_factory=dict)
     radius_x: float | None = None
@@ -66,6 +68,11 @@ class LensSurface:
         """A copy with some fields changed."""
         return dataclasses.replace(self, **changes)
 
+    @property
+    def core_glass(self) -> _core.Glass:
+        """What follows it, in the core."""
+        return self.medium.core
+
     def core(self) -> _core.Surface:
         """The core's version."""
         clear = math.inf if self.semi_diameter is None else self.semi_diameter
@@ -73,7 +80,7 @@ class LensSurface:
             _curvature(self.radius),
             self.thickness or 0.0,
             clear,
-            self.core_glass,
+            self.medium.core,
             self.stop,
             self.kind,
             conic=self.conic,

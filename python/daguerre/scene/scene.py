@@ -19,6 +19,7 @@ from daguerre.checks import array, frozen, given_up, matrix, optional_array, sho
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 
 from .illuminance import scale_for
@@ -29,8 +30,8 @@ from .parts import Environment, Instance, Mesh, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 
 
-@dataclass
-class Scene:
+@dataclass(eq=False)
+class Scene(Value):
     """What the camera looks at.
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
@@ -64,6 +65,16 @@ class Scene:
     variants: list[str] = field(default_factory=list)
     #: what the reader met and did not understand, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
+
+    __hash__ = None  # type: ignore[assignment]  # it changes
+
+    def __repr__(self) -> str:
+        names = ("mesh", "instance", "light", "camera")
+        counts = [len(p) for p in (self.meshes, self.instances, self.lights, self.cameras)]
+        words = [_counted(count, name) for count, name in zip(counts, names, strict=True)]
+        words += ["an environment"] if self.environment is not None else []
+        words += ["moving"] if self.motion else []
+        return f"<Scene {self.path.name if self.path else 'of arrays'}: {', '.join(words)}>"
 
     def at(self, time: float) -> Scene:
         """The same scene at another time, s; what does not change is shared."""
@@ -325,6 +336,10 @@ class Scene:
                 f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"
             )
         return self.cameras[name]
+
+
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}" + ("" if count == 1 else "es" if name == "mesh" else "s")
 
 
 def _dynamic(value: Any) -> Dynamic | None:

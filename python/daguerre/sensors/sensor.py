@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from daguerre.color import illuminants
 from daguerre.errors import UsageError
+from daguerre.files.value import Value
 
 from . import fit
 from .checking import check
@@ -75,7 +76,7 @@ class DualGain:
 
 
 @dataclass(frozen=True, eq=False)
-class Sensor:
+class Sensor(Value):
     """A sensor, as its maker or a laboratory measured it.
 
     Attributes:

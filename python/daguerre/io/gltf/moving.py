@@ -50,11 +50,11 @@ class Moving:
         self._scene, self._animations, self._poses = scene, animations, poses
 
     def materials(self, read: Callable[[Item], Material], root: Item) -> None:
-        """All materials that change."""
+        """All materials that change; ``read`` can be pickled."""
         items = root.list_of("materials")
         for index in self._animations.parts("materials"):
             channels = self._animations.of("materials", str(index))
-            over = PartOverTime(channels, partial(read, items[index]))
+            over = PartOverTime(items[index], channels, read)
             self._scene.motion.materials[index] = over
 
     def position(self, node: int, name: str) -> None:
@@ -104,20 +104,23 @@ class Moving:
         for channel in channels:
             for name in fields_of(channel.tokens):
                 if name in MOVABLE and getattr(camera, name) is not None:
-                    read = partial(_parameter, item, camera.transform, name)
-                    motion[name] = PartOverTime(channels, read)
+                    read = partial(_parameter, name=name, transform=camera.transform)
+                    motion[name] = PartOverTime(item, channels, read)
         return replace(camera, motion=motion) if motion else camera
 
     def light(
-        self, read: Callable[[], PointLight | SpotLight | DirectionalLight], item: Item, node: int
+        self,
+        read: Callable[[Item], PointLight | SpotLight | DirectionalLight],
+        item: Item,
+        node: int,
     ) -> LightOverTime | None:
         """A light and its transform over time; None if nothing of it changes."""
         channels = self._animations.of("extensions", "KHR_lights_punctual", "lights", str(item.key))
         poses = self._poses
         if not (channels or poses.moves(node) or poses.blinks(node)):
             return None
-        return LightOverTime(NodeOverTime(poses, node), PartOverTime(channels, read))
+        return LightOverTime(NodeOverTime(poses, node), PartOverTime(item, channels, read))
 
 
-def _parameter(item: Item, transform: Matrices, name: str) -> Any:
+def _parameter(item: Item, name: str, transform: Matrices) -> Any:
     return getattr(read_camera(item, transform, Notes()), name)

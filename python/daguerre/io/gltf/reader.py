@@ -17,7 +17,7 @@ import numpy as np
 from daguerre.errors import InputError, UsageError
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
-from daguerre.files.notes import Notes
+from daguerre.files.notes import Notes, Silence
 from daguerre.files.uris import Folder
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
@@ -27,6 +27,7 @@ from .animation import Animations
 from .cameras import read_camera
 from .extensions import check_extensions
 from .file import load_buffers, open_document
+from .images import Images
 from .instancing import instance_transforms
 from .lights import light_items, read_light
 from .materials import read_material, read_materials
@@ -111,10 +112,12 @@ class _Reader:
 
     def read(self, scene_index: int | None) -> Scene:
         scene = self.scene
-        textures = Textures(self.document, self.accessors, self.notes)
+        images = Images(self.document, self.accessors)
+        textures = Textures(self.root, images.same, self.notes)
         scene.materials = read_materials(self.root, textures, self.notes)
-        textures.decode(scene)
-        self.moving.materials(partial(read_material, textures=textures, notes=Notes()), self.root)
+        images.decode(textures.plans, scene)
+        again = partial(read_material, textures=textures.silenced(), notes=Silence())
+        self.moving.materials(again, self.root)
         placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
         firsts = []
         for position in placed:
@@ -182,7 +185,7 @@ class _Reader:
 
     def _light(self, item: Item, placed: Placed, name: str) -> None:
         light = read_light(item, name)
-        motion = self.moving.light(partial(read_light, item, name), item, placed.index)
+        motion = self.moving.light(partial(read_light, name=name), item, placed.index)
         rigid = without_scale(placed.world)
         if motion is not None:
             self.scene.motion.lights[len(self.scene.lights)] = motion
