@@ -252,17 +252,15 @@ class Camera(Value):
         Raises:
             InputError: The calibration cannot be used; the message names the place.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_opencv
 
-        found = read(
-            *(calibration, name),
-            format="opencv",
+        return from_opencv(
+            *(calibration, name, camera, pixel_pitch),
             model=model,
             size=size,
             rectified=rectified,
             unit_m=unit_m,
         )
-        return found.camera(camera, pixel_pitch)
 
     @classmethod
     def from_ros(
@@ -278,9 +276,9 @@ class Camera(Value):
         Args: as of :meth:`from_opencv`; ``camera`` stands where the rig's first, rectified, does.
             ``rectified`` draws that picture, by P.
         """
-        from daguerre.calibration import read_ros
+        from daguerre.calibration.cameras import from_ros
 
-        return read_ros(calibration, rectified=rectified).camera(camera, pixel_pitch)
+        return from_ros(calibration, rectified, camera, pixel_pitch)
 
     @classmethod
     def from_kalibr(
@@ -297,10 +295,9 @@ class Camera(Value):
         Args: as of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
             ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_kalibr
 
-        found = read(calibration, name, format="kalibr")
-        return found.camera(camera, pixel_pitch, timeshift=timeshift)
+        return from_kalibr(calibration, name, timeshift, camera, pixel_pitch)
 
     @classmethod
     def from_colmap(
@@ -316,10 +313,9 @@ class Camera(Value):
 
         Args: as of :meth:`from_opencv`; ``name`` is that of the picture.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_colmap
 
-        found = read(folder, name, format="colmap", unit_m=unit_m)
-        return found.camera(camera, pixel_pitch)
+        return from_colmap(folder, name, unit_m, camera, pixel_pitch)
 
     @classmethod
     def from_opentrackio(
@@ -334,11 +330,9 @@ class Camera(Value):
 
         Args: as of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
         """
-        from daguerre.calibration import read_opentrackio, read_track
+        from daguerre.calibration.cameras import from_opentrackio
 
-        if isinstance(calibration, list):
-            return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
-        return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
+        return from_opentrackio(calibration, size, camera, pixel_pitch)
 
     def at(self, time: float) -> Camera:
         """The camera as it is at a time in s; nothing in it moves."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.color.display import _into_gamut, _shoulder, _srgb
 from daguerre.errors import UsageError, suggest
+from daguerre.files import formats
 from daguerre.files.value import Value
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from .raw import Raw
 
 TONES = ("srgb", "soft")
-FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
 
 
@@ -136,7 +135,7 @@ class Frame(Value):
             shown[rows] = np.rint(encoded * 255)
         return shown
 
-    def _encoded(self, tone: str) -> NDArray[np.float32]:
+    def encoded(self, tone: str) -> NDArray[np.float32]:
         """As ``display``, 0 to 1."""
         shown = np.empty(self.rgb.shape, np.float32)
         for rows, encoded in self._stripes(tone):
@@ -167,20 +166,7 @@ class Frame(Value):
             UsageError: Another ending.
             OutputError: The file cannot be written.
         """
-        suffix = check_format(path)
-        if suffix == ".exr":
-            from daguerre.io.exr.write import write_exr
-
-            write_exr(path, self)
-        elif suffix == ".png":
-            from daguerre.io.png import write_png
-
-            write_png(path, self.without_overscan(), tone)
-        else:
-            from daguerre.development import Picture
-
-            shown = self.without_overscan()
-            Picture(shown._encoded(tone), "srgb", shown.metadata).save(path)
+        formats.write("frame", path, self, tone=tone)
 
     def expose(
         self,
@@ -282,12 +268,4 @@ def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> st
     Raises:
         UsageError: Not one that can be written; the message lists those.
     """
-    suffix = Path(path).suffix.lower()
-    known = (*FORMATS, *more)
-    if suffix not in known:
-        wanted = f"{', '.join(known[:-1])} or {known[-1]}"
-        hint = "; a raw file is made by frame.expose().save()" if suffix == ".dng" else ""
-        raise UsageError(
-            f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
-        )
-    return suffix
+    return formats.check_written(path, (*formats.written("frame"), *more))

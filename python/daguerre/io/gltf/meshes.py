@@ -221,14 +221,13 @@ class Meshes:
         moves = bool(source.changes)
         moves = moves or (source.skin is not None and self._skins.moves(source.skin))
         made = finished(arrays, base if moves else {}, triangles, self._notes)
-        index = self._scene.add_mesh(
+        over = self._over_time(source, base, triangles, influences) if moves else None
+        return self._scene.add_mesh(
             indices=given_up(triangles),
+            motion=over,
             name=name,
             **{key: cast("Any", given_up(v)) for key, v in vars(made).items() if v is not None},
         )
-        if moves:
-            self._scene.motion.meshes[index] = self._over_time(source, base, triangles, influences)
-        return index
 
     def _over_time(
         self,
