@@ -29,7 +29,7 @@ class Format:
 
     Attributes:
         name: For messages, such as ``glTF 2.0``.
-        kind: What is in such a file.
+        kind: Contents of such a file.
         suffixes: Ends of names, lower case, with their dots; or ``ANY``.
         reads: Called as ``reads(path, **options)``; None: it cannot be read.
         writes: Called as ``writes(path, value, **options)``; None: it cannot be written.

@@ -1,4 +1,4 @@
-"""What light goes through in a lens: an index by wavelength, and absorption, as plain numbers."""
+"""Glasses and other media as plain numbers: an index by wavelength, and absorption."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CORE: dict[str, Callable[..., _core.Glass]] = {
 
 @dataclass(frozen=True, eq=False)
 class Medium(Value):
-    """A glass, or what else light goes through.
+    """A glass, or another medium that light crosses.
 
     The core's glass is made when a medium is, and again after a trip. Impossible numbers are a
     ``ValueError`` in the core's words.

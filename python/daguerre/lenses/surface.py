@@ -31,7 +31,7 @@ class LensSurface:
         semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
         glass: What follows it, by name or nd/Vd; empty: air.
         stop: The iris lies here.
-        medium: What follows it, by its numbers.
+        medium: Medium that follows it.
         conic: k: 0 is a sphere, -1 a paraboloid.
         asphere: Coefficients by power of r = hypot(x, y), added to the sag.
         radius_x: Radius in the x-z plane of a biconic or toroid.
@@ -70,7 +70,7 @@ class LensSurface:
 
     @property
     def core_glass(self) -> _core.Glass:
-        """What follows it, in the core."""
+        """The medium that follows it, in the core."""
         return self.medium.core
 
     def core(self) -> _core.Surface:

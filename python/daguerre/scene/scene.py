@@ -300,7 +300,7 @@ class Scene(Value):
             mesh: Index from ``add_mesh``.
             material: Index from ``add_material``.
             transforms: World from local, shape (N, 4, 4).
-            name: As of :meth:`add_instance`, of all.
+            name: Name of all of them, as in :meth:`add_instance`.
 
         Raises:
             InputError: There is no such mesh or material, or a transform is no finite matrix.

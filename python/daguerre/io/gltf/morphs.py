@@ -40,7 +40,7 @@ class Displacement:
 
 
 class Shapes(Protocol):
-    """What knows displacements: the accessors of a file, or what was kept of them."""
+    """Looks displacements up: the accessors of a file, or arrays that were kept of them."""
 
     def index(self, use: Item) -> int:
         """The accessor that ``use`` names."""
@@ -58,7 +58,7 @@ class KeptShapes(Value):
     """The displacements of one primitive that its weights may ask for.
 
     Args:
-        uses: What names them in its targets.
+        uses: Members of its targets that name them.
         accessors: Those of the file.
     """
 
@@ -85,7 +85,7 @@ class KeptShapes(Value):
 
 
 def all_uses(primitive: Item) -> Iterator[Item]:
-    """What names displacements of attributes that the primitive has."""
+    """Members of targets that name displacements of attributes that the primitive has."""
     attributes = primitive.need("attributes")
     for target in primitive.list_of("targets"):
         for use in target.members():
@@ -130,7 +130,7 @@ def displacements(
 def displacements_again(
     owner: Item, primitive: Item, shapes: KeptShapes
 ) -> tuple[Displacement, ...]:
-    """As :func:`displacements`, with the weights of a node or mesh as they are at some time."""
+    """Does as :func:`displacements`, with the weights of a node or mesh at some time."""
     return displacements(primitive, owner.get("weights"), shapes, Silence())
 
 
