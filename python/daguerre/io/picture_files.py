@@ -18,31 +18,15 @@ from numpy.typing import NDArray
 
 from daguerre.checks import whole
 from daguerre.color import spaces
-from daguerre.errors import OutputError, UsageError, suggest
+from daguerre.errors import OutputError, UsageError
 from daguerre.files.atomic import atomic_path
+from daguerre.files.formats import check_written, written
 from daguerre.frame.picture import quantized
 
 from . import exif, icc
 from .tiff import TiffImage, write_tiff
 
-ENDINGS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr")
 _PNG_START = 8 + 25  # signature and IHDR
-
-
-def check_ending(path: str | os.PathLike[str], known: tuple[str, ...] = ENDINGS) -> str:
-    """The ending of an output, in lower case.
-
-    Raises:
-        UsageError: Not one of ``known``.
-    """
-    suffix = Path(path).suffix.lower()
-    if suffix not in known:
-        wanted = ", ".join(known)
-        raise UsageError(
-            f"{path}: output format: wanted a name ending in {wanted}; got {suffix!r}"
-            f"{suggest(suffix, known)}"
-        )
-    return suffix
 
 
 def write_picture(
@@ -69,7 +53,7 @@ def write_picture(
         UsageError: Another ending, a quality beyond 1 to 100, or bits that the format lacks.
         OutputError: The file cannot be written.
     """
-    suffix = check_ending(path)
+    suffix = check_written(path, written("picture"))
     whole(quality, f"{path}: quality", 1, 100)
     if suffix == ".exr":
         _write_linear(path, pixels, space, metadata)

@@ -118,13 +118,6 @@ def band_names(count: int) -> list[str]:
     return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]
 
 
-def read_frame(path: str | os.PathLike[str]) -> Frame:
-    """Reads a picture with all its channels and facts; see :mod:`daguerre.io.exr.read`."""
-    from .read import read_frame as read
-
-    return read(path)
-
-
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
     """Writes a frame, atomically, as one multichannel part."""
     write_parts(path, [("beauty", attributes(frame.metadata), channels(frame))], frame)
