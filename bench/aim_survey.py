@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from daguerre import _core
+from daguerre.errors import CoreError, DaguerreError
 
 SAMPLES = 1 << 15
 RINGS = 64
@@ -90,7 +91,10 @@ def measure(
     efl = lens.first_order(587.5618).efl
     started = time.thread_time()
     draw = _core.PupilDraw.slope_boxes if boxes else _core.PupilDraw.aimed
-    exact = _core.ExactLens(lens, f_stop, _core.Iris(), 0.05 * abs(efl), False, half, draw)
+    settings = _core.ExactLensSettings(
+        f_stop=f_stop, focus_distance_m=0.05 * abs(efl), half_diagonal_mm=half, draw=draw
+    )
+    exact = _core.ExactLens(lens, settings)
     setup = time.thread_time() - started
     random = np.random.default_rng(1)
     size = 2 * half * np.array([3, 2]) / math.sqrt(13)
@@ -126,7 +130,7 @@ def survey(path: Path, every: bool, boxes: bool) -> list[dict[str, Any]]:
             row["stops"] = [
                 measure(lens, order.f_number * 2 ** (k / 2), half, boxes) for k in (0, 2, 4)
             ]
-        except ValueError as error:
+        except (CoreError, DaguerreError) as error:
             row["error"] = str(error)
         rows.append(row)
     return rows

@@ -52,14 +52,15 @@ def set_up(case: Case) -> tuple[_core.ExactLens, Callable[[], Any]]:
     focused = dg.lenses.load(case.lens).focused(3.0, zoom_mm=case.zoom_mm)
     film = [float(s) for s in (focused.lens.data.get("format") or "36x24").split("x")]
 
+    settings = _core.ExactLensSettings(
+        half_diagonal_mm=0.51 * math.hypot(*film),
+        film_z_mm=focused.film_z_mm,
+        tilt_deg=case.tilt_deg,
+        film_half_mm=(0.51 * film[0], 0.51 * film[1]),
+    )
+
     def make(cache: bytes | None) -> _core.ExactLens:
-        return _core.ExactLens(
-            *(focused.lens.prescription, 0.0, _core.Iris(), 3.0, False, 0.51 * math.hypot(*film)),
-            film_z_mm=focused.film_z_mm,
-            tilt_deg=case.tilt_deg,
-            film_half_mm=(0.51 * film[0], 0.51 * film[1]),
-            cache=cache,
-        )
+        return _core.ExactLens(focused.lens.prescription, settings, cache)
 
     exact = make(None)
     return exact, lambda: make(exact.aim_state)

@@ -37,7 +37,7 @@ DEGREES = (3, 5, 7, 9)
 TAYLOR = 5
 
 Picture = NDArray[np.float64]
-Maker = Callable[..., _core.ExactLens]
+Maker = Callable[[_core.Prescription, _core.ExactLensSettings], _core.ExactLens]
 
 
 def scene() -> dg.Scene:
@@ -60,34 +60,35 @@ def scene() -> dg.Scene:
     return made
 
 
-def guided(*args: Any, **more: Any) -> _core.ExactLens:
+def guided(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
     """The exact lens as it is."""
-    return _core.ExactLens(*args, **more)
+    return _core.ExactLens(lens, settings)
 
 
-def boxes(*args: Any, **more: Any) -> _core.ExactLens:
-    """With boxes around the exit pupil."""
-    return drawn(_core.PupilDraw.slope_boxes, *args, **more)
+def drawn(draw: _core.PupilDraw) -> Maker:
+    """The exact lens, drawn otherwise: from boxes, or the whole last surface without any aim."""
 
+    def make(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
+        settings.draw = draw
+        return _core.ExactLens(lens, settings)
 
-def rear_disc(*args: Any, **more: Any) -> _core.ExactLens:
-    """Toward the whole last surface, as without any knowledge of the iris."""
-    return drawn(_core.PupilDraw.rear_disc, *args, **more)
-
-
-def drawn(draw: _core.PupilDraw, *args: Any, **more: Any) -> _core.ExactLens:
-    """The exact lens, drawn otherwise."""
-    return _core.ExactLens(*args, draw, **more)
+    return make
 
 
 def fitted(degree: int) -> Maker:
     """By polynomials of a degree."""
-    return lambda *args, **more: _core.ExactLens(*args, **{**more, "fit_degree": degree})
+
+    def make(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
+        settings.fit_degree = degree
+        return _core.ExactLens(lens, settings)
+
+    return make
 
 
-def taylor(*args: Any, **more: Any) -> _core.ExactLens:
+def taylor(prescription: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
     """By the series about the axis, in the basis of a fit of its degree."""
-    lens = _core.ExactLens(*args, **{**more, "fit_degree": TAYLOR})
+    settings.fit_degree = TAYLOR
+    lens = _core.ExactLens(prescription, settings)
     fit = dg.polynomial.LensFit(lens.fit)
     u = qmc_points(4000)
     f, q = disc(u[:, :2]) * lens.fit.film_half[0], disc(u[:, 2:4])
@@ -99,7 +100,7 @@ def taylor(*args: Any, **more: Any) -> _core.ExactLens:
         degree=TAYLOR,
         wavelength=dg.polynomial.wavelength_nodes(380, 780, 5),
         reverse=True,
-        film_z=more["film_z_mm"],
+        film_z=settings.film_z_mm,
     )
     cosines = -m / np.sqrt(1 + (m**2).sum(axis=1, keepdims=True))
     out = system(np.concatenate([f, cosines], axis=1), nm)
@@ -107,9 +108,7 @@ def taylor(*args: Any, **more: Any) -> _core.ExactLens:
     across = (out[:, 2:] ** 2).sum(axis=1, keepdims=True)
     directions = np.concatenate([out[:, 2:], -np.sqrt(np.maximum(1e-6, 1 - across))], axis=1)
     other = fit.refitted(f, m, nm, origins, directions)
-    return _core.ExactLens(
-        *args, **{**more, "fit_degree": TAYLOR, "cache": lens.state_with_fit(other.core)}
-    )
+    return _core.ExactLens(prescription, settings, lens.state_with_fit(other.core))
 
 
 def qmc_points(count: int) -> Picture:
@@ -127,8 +126,8 @@ def disc(u: Picture) -> Picture:
 def variants() -> dict[str, Maker]:
     """Cameras to compare, by name."""
     return {
-        "rear disc": rear_disc,
-        "boxes": boxes,
+        "rear disc": drawn(_core.PupilDraw.rear_disc),
+        "boxes": drawn(_core.PupilDraw.slope_boxes),
         "guided": guided,
         "taylor": taylor,
         **{f"fit {degree}": fitted(degree) for degree in DEGREES},
@@ -144,9 +143,11 @@ class Drawing:
         )
         self.setup_seconds = self.ray_error = 0.0
 
-        def timed(*args: Any, **more: Any) -> _core.ExactLens:
+        def timed(
+            prescription: _core.Prescription, settings: _core.ExactLensSettings
+        ) -> _core.ExactLens:
             started = time.process_time()
-            lens = make(*args[:4], False, args[4], **more)
+            lens = make(prescription, settings)
             self.setup_seconds = time.process_time() - started
             self.ray_error = ray_error(lens)
             return lens

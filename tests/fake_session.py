@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 import daguerre
+from daguerre import _core
 from daguerre.camera.camera import Camera
+from daguerre.errors import InputError
 from daguerre.frame.frame import Frame
-from daguerre.rendering.counters import RenderCounters
 from daguerre.rendering.keywords import settings_of
 from daguerre.rendering.ranges import join_ranges
 from daguerre.rendering.settings import RenderSettings
@@ -47,7 +48,7 @@ class FakeSession:
         self.settings = settings_of(settings, keywords)
         film, sampling = self.settings.film, self.settings.sampling
         if camera.f_stop is not None and camera.f_stop <= 0:
-            raise ValueError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
+            raise InputError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
         self.width, self.height = film.resolution
         self.crop = film.crop or (0, 0, *film.resolution)
         self.notes = ["autofocus: centre ray hit at 1.532 m"]
@@ -65,7 +66,7 @@ class FakeSession:
         }
         self.ranges: list[tuple[int, int]] = []
         self.round = None
-        self.counters = RenderCounters()
+        self.counters = _core.RenderCounters()
         self.flare_spots = self.survey_rays = 0
         self.light_paths = (0.0, 0.0)
         x0, y0, x1, y1 = self.crop
@@ -90,7 +91,7 @@ class FakeSession:
             sums += sample_value(i, *self.shape).astype(np.uint64)
         self.sums = sums
         self.ranges = join_ranges([*self.ranges, (begin, end)])
-        self.counters += RenderCounters(rays=(end - begin) * sums.size * 3)
+        self.counters += _core.RenderCounters(rays=(end - begin) * sums.size * 3)
         return True
 
     def with_truth(self, frame: Frame) -> Frame:

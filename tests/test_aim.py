@@ -6,7 +6,6 @@ import math
 import zlib
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -142,12 +141,18 @@ def comparisons(case: Case, rays: int) -> dict[str, list[Comparison]]:
     lens, film_z, rear = prescription(case)
     widest = lens.first_order(587.5618).f_number
     found: dict[str, list[Comparison]] = {"guided": [], "boxes": []}
-    settings: dict[str, Any] = {"film_z_mm": film_z, "tilt_deg": case.tilt}
     seed = zlib.crc32(repr(case).encode()) % 10**6
     for stop, f_stop in enumerate((widest, 2 * widest, 4 * widest)):
         exact = {
             kind: _core.ExactLens(
-                lens, f_stop, _core.Iris(), 3.0, False, case.half_mm, DRAWN[kind], **settings
+                lens,
+                _core.ExactLensSettings(
+                    f_stop=f_stop,
+                    half_diagonal_mm=case.half_mm,
+                    draw=DRAWN[kind],
+                    film_z_mm=film_z,
+                    tilt_deg=case.tilt,
+                ),
             )
             for kind in found
         }
@@ -197,7 +202,10 @@ def test_nothing_is_lost_or_gained_at_the_corner(case: Case) -> None:
     """Both sides by quadrature, where a fault in a part of the iris would drown in noise."""
     lens, film_z, rear = prescription(case)
     f_stop = 1.4 * lens.first_order(587.5618).f_number
-    exact = _core.ExactLens(lens, f_stop, _core.Iris(), 3.0, False, case.half_mm, film_z_mm=film_z)
+    settings = _core.ExactLensSettings(
+        f_stop=f_stop, half_diagonal_mm=case.half_mm, film_z_mm=film_z
+    )
+    exact = _core.ExactLens(lens, settings)
     film = 0.95 * case.half_mm * np.array([0.8, 0.6])
     side = 320
     u_lens = midpoints(side).astype(np.float32)
@@ -224,9 +232,8 @@ def test_every_lens_of_the_library(name: str) -> None:
 @pytest.mark.parametrize("curvature", [0.0, -0.5], ids=["pentagon", "star"])
 def test_exposure_is_the_same_at_every_azimuth(curvature: float) -> None:
     lens = dg.lenses.load("double-gauss-50mm-f2").prescription
-    exact = _core.ExactLens(
-        lens, 5.6, _core.Iris.polygon(5, 7.0, curvature), math.inf, False, 21.64
-    )
+    iris = _core.Iris.polygon(5, 7.0, curvature)
+    exact = _core.ExactLens(lens, _core.ExactLensSettings(f_stop=5.6, iris=iris))
     side = 256
     u_lens = midpoints(side).astype(np.float32)
     nm = np.full(side * side, 550, np.float32)
@@ -240,7 +247,7 @@ def test_exposure_is_the_same_at_every_azimuth(curvature: float) -> None:
 def test_light_on_the_film_is_light_into_the_pupil() -> None:
     """Etendue: the sum of E dA is the flux from the front that lands there, times T."""
     lens = dg.lenses.load("double-gauss-50mm-f2").prescription
-    exact = _core.ExactLens(lens, 2.8, _core.Iris(), math.inf, False, 15.0)
+    exact = _core.ExactLens(lens, _core.ExactLensSettings(f_stop=2.8, half_diagonal_mm=15.0))
     random = np.random.default_rng(5)
     n = 1 << 17
     radius, angle = 14.0 * np.sqrt(random.random(n)), 2 * math.pi * random.random(n)

@@ -22,7 +22,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def lens(f_stop: float = 4.0, **settings: object) -> _core.ExactLens:
     prescription = dg.lenses.load("double-gauss-50mm-f2").prescription
-    return aim_cache.exact_lens(prescription, f_stop, _core.Iris(), 3.0, 20.0, **settings)  # type: ignore[arg-type]
+    known = {"f_stop": f_stop, "focus_distance_m": 3.0, "half_diagonal_mm": 20.0}
+    return aim_cache.exact_lens(prescription, _core.ExactLensSettings(**known, **settings))
 
 
 def rays(exact: _core.ExactLens) -> list[np.ndarray]:

@@ -374,7 +374,8 @@ def test_a_point_seen_by_the_camera_is_the_benchs_spread(gauss: lenses.Lens) -> 
     assert light is not None
     assert light.source is not None
     spot = analysis.spot(light, [550], [1], grid=256)
-    camera = _core.ExactLens(gauss.prescription, f_stop, _core.Iris(), focus, False, 21.64)
+    settings = _core.ExactLensSettings(f_stop=f_stop, focus_distance_m=focus)
+    camera = _core.ExactLens(gauss.prescription, settings)
     rng = np.random.default_rng(5)
     half, radius, count = 0.6, 2.0, 1_200_000  # mm on the film, mm of the ball
     # Film points of the camera are upright: the image of the scene, turned.

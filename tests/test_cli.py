@@ -17,8 +17,8 @@ import OpenEXR
 import pytest
 
 import daguerre
+from daguerre import _core
 from daguerre.cli import console, main
-from daguerre.rendering.counters import RenderCounters
 from daguerre.rendering.schedule import pass_size
 
 from . import fake_session
@@ -186,6 +186,20 @@ def test_internal_errors_ask_for_a_report(
     monkeypatch.setenv("DAGUERRE_DEBUG", "1")
     assert main(["render", "s.glb", "-o", "a.exr", "--quiet", *SMALL]) == 70
     assert "Traceback" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unexpected_value_error_is_internal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def draw(*_: Any) -> bool:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr(sys.modules["daguerre.rendering.session"].Session, "draw", draw)
+    assert main(["render", "s.glb", "-o", "a.exr", "--quiet", *SMALL]) == 70
+    err = capsys.readouterr().err
+    assert "ValueError: operands could not be broadcast together" in err
+    assert "please report" in err
     assert not list(tmp_path.iterdir())
 
 
@@ -465,11 +479,16 @@ def test_stats_count_light_beside_the_frame(
         def __init__(self, *args: Any, **options: Any) -> None:
             super().__init__(*args, **options)
             self.light_paths = (50.0, 0.0)
-            self.counters = RenderCounters(
-                light_paths=200, splats_off_film=30, flare_paths=100, flare_rays=400,
-                flare_hits=300, camera_rays=400, stopped_rays=100,
-            )  # fmt: skip
             self.flare_spots, self.survey_rays = 3, 1000
+            self.counters = _core.RenderCounters(
+                camera_rays=400,
+                stopped_rays=100,
+                light_paths=200,
+                splats_off_film=30,
+                flare_paths=100,
+                flare_rays=400,
+                flare_hits=300,
+            )
 
     monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0

@@ -233,7 +233,8 @@ def test_an_anamorphic_picture_is_as_wide_as_its_metadata_says(
 def test_chief_rays_at_a_corner_that_stops_some_rays() -> None:
     """Stopped rays have no direction, and no say in the mean."""
     lens = lenses.load("schneider-anamorphic-60mm")
-    exact = _core.ExactLens(lens.prescription, 4.0, _core.Iris(), 5.0, False, 21.64)
+    settings = _core.ExactLensSettings(f_stop=4.0, focus_distance_m=5.0)
+    exact = _core.ExactLens(lens.prescription, settings)
     u = (np.indices((48, 48)).reshape(2, -1).T + 0.5) / 48
     film = np.array([[14.345, 10.52]])
     many = np.repeat(film, len(u), axis=0).astype(np.float32)

@@ -68,7 +68,10 @@ def test_lanes_follow_the_reference(name: str) -> None:
     """Rays of the kernels, traced back in double, land on the film point they were drawn for."""
     lens = lenses.load(name)
     prescription, order = lens.prescription, lens.first_order()
-    exact = _core.ExactLens(prescription, order.f_number, _core.Iris(), 4.0, False, 12.0)
+    settings = _core.ExactLensSettings(
+        f_stop=order.f_number, focus_distance_m=4.0, half_diagonal_mm=12.0
+    )
+    exact = _core.ExactLens(prescription, settings)
     random = np.random.default_rng(2)
     film = (15 * (random.random((2000, 2)) - 0.5)).astype(np.float32)
     u = random.random((2000, 2)).astype(np.float32)
@@ -107,7 +110,8 @@ def test_rays_say_which_surface_stops_them() -> None:
 def test_the_bits_of_a_ray_do_not_depend_on_its_neighbours(name: str) -> None:
     """Lanes come to rest one by one; what other lanes still need must not move them."""
     lens = lenses.load(name)
-    camera = _core.ExactLens(lens.prescription, 2.0, _core.Iris(), 3.0, False, 15.0)
+    settings = _core.ExactLensSettings(f_stop=2.0, focus_distance_m=3.0, half_diagonal_mm=15.0)
+    camera = _core.ExactLens(lens.prescription, settings)
     rng, n = np.random.default_rng(2), 4000
     film = rng.uniform(-8, 8, (n, 2)).astype(np.float32)
     at = rng.random((n, 2), dtype=np.float32)

@@ -28,9 +28,12 @@ WAVELENGTHS = {"F": 486.1327, "d": 587.5618, "C": 656.2725}
 def test_guided_rays_see_what_a_blind_search_sees(name: str) -> None:
     """A white wall through the lens: the aim against boxes of slopes and the whole last surface."""
     lens = lenses.load(name)
-    settings = (lens.prescription, lens.nominal.f_number, _core.Iris(), 4.0, False, 21.64)
+    stop = {"f_stop": lens.nominal.f_number, "focus_distance_m": 4.0}
     drawn = (_core.PupilDraw.aimed, _core.PupilDraw.slope_boxes, _core.PupilDraw.rear_disc)
-    exact, *others = (_core.ExactLens(*settings, draw) for draw in drawn)
+    exact, *others = (
+        _core.ExactLens(lens.prescription, _core.ExactLensSettings(**stop, draw=draw))
+        for draw in drawn
+    )
     assert exact.aim_fallback_segments == 0
     random = np.random.default_rng(1)
     count, scores = 20000, []
@@ -313,15 +316,18 @@ def test_a_configuration_is_chosen_by_name(tmp_path: Path) -> None:
 def exact(f_stop: float = 2.0, focus_m: float = 3.0, *, from_sensor: bool = False) -> Any:
     """The 50 mm double Gauss as a camera lens."""
     lens = lenses.load("double-gauss-50mm-f2")
-    return _core.ExactLens(lens.prescription, f_stop, _core.Iris(), focus_m, from_sensor, 21.64)
+    settings = _core.ExactLensSettings(
+        f_stop=f_stop, focus_distance_m=focus_m, focus_from_sensor=from_sensor
+    )
+    return _core.ExactLens(lens.prescription, settings)
 
 
 def test_what_the_lens_cannot_do_is_said_with_the_limit() -> None:
-    with pytest.raises(ValueError, match=r"f/2 or narrower"):
+    with pytest.raises(_core.LensError, match=r"f/2 or narrower"):
         exact(f_stop=1.2)
-    with pytest.raises(ValueError, match="nearest possible"):
+    with pytest.raises(_core.LensError, match="nearest possible"):
         exact(focus_m=0.05)
-    with pytest.raises(ValueError, match="nearest possible"):
+    with pytest.raises(_core.LensError, match="nearest possible"):
         exact(focus_m=0.15, from_sensor=True)
     assert exact(focus_m=math.inf).film_z_mm < exact(focus_m=1.0).film_z_mm
 

@@ -71,7 +71,8 @@ def seen() -> tuple[np.ndarray, np.ndarray]:
 def test_the_film_point_of_a_chief_ray_is_where_it_came_from(name: str) -> None:
     lens = lenses.load(name)
     f_stop = lens.first_order().f_number
-    exact = _core.ExactLens(lens.prescription, f_stop, _core.Iris(), 3.0, False, 22.0)
+    settings = _core.ExactLensSettings(f_stop=f_stop, focus_distance_m=3.0, half_diagonal_mm=22.0)
+    exact = _core.ExactLens(lens.prescription, settings)
     chief = _core.Camera.exact(_core.Motion.still(np.eye(4)), exact).chief_rays()
     radius, angle = np.random.default_rng(1).uniform(0, [[21.6], [6.28]], (2, 500))
     film = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)

@@ -49,4 +49,12 @@ nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> values, std::initializer_list<
     return nb::ndarray<nb::numpy, T>(owned->data(), shape, owner);
 }
 
+/// The names of a list of channels, as a tuple.
+template <typename Channels>
+nb::tuple names_of(const Channels& channels) {
+    nb::list names;
+    for (const auto& channel : channels) names.append(channel.name);
+    return nb::tuple(names);
+}
+
 }  // namespace dg::bind

@@ -10,9 +10,9 @@
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
-#include "camera/chief.h"
+#include "camera/inverse/chief.h"
 #include "math/error.h"
-#include "render/ray_map.h"
+#include "render/truth/ray_map.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -136,9 +136,7 @@ std::vector<std::vector<double>> lens_numbers(const dg::Camera& camera) {
     throw dg::Error("camera: lens numbers: wanted a pinhole, a thin lens or a projection");
 }
 
-}  // namespace
-
-void bind_camera(nb::module_& m) {
+void bind_iris(nb::module_& m) {
     using namespace dg;
     nb::class_<Iris>(m, "Iris")
         .def(nb::init<>())
@@ -163,6 +161,10 @@ void bind_camera(nb::module_& m) {
                      "Distance of the arcs' centres, along the vectors of the edges.")
         .def_prop_ro("arc_radius", [](const Iris& i) { return i.blades().arc_radius; })
         .def_prop_ro("outer_radius", &Iris::outer_radius);
+}
+
+void bind_thick_lens(nb::module_& m) {
+    using namespace dg;
     nb::class_<ThickLens>(m, "ThickLens")
         .def("__init__",
              [](ThickLens* self, const Prescription& lens, double f_stop, const Iris& iris,
@@ -182,6 +184,10 @@ void bind_camera(nb::module_& m) {
         .def_prop_ro("transmittance", &ThickLens::transmittance)
         .def_prop_ro("f_stop", &ThickLens::f_stop)
         .def_prop_ro("film_z_mm", &ThickLens::film_z_mm, "On the lens's axis, in its frame.");
+}
+
+void bind_chief_rays(nb::module_& m) {
+    using namespace dg;
     nb::class_<ChiefRays>(m, "ChiefRays")
         .def("rays", &chief_rays, "film_mm"_a,
              "(origins, directions), m, of the chief rays of film points (N, 2) (mm, upright).")
@@ -189,8 +195,12 @@ void bind_camera(nb::module_& m) {
              "Whether light comes to film points (N, 2) (mm, upright) of the camera that these are of.")
         .def("film_points", &film_points, "points"_a, "at_infinity"_a = false,
              "Where the chief rays of points (N, 3) meet the film (mm, upright); NaN: behind the camera.");
-    nb::class_<Camera>(m, "Camera")
-        .def_static("pinhole",
+}
+
+/// One maker for each kind of camera.
+void def_kinds(nb::class_<dg::Camera>& c) {
+    using namespace dg;
+    c.def_static("pinhole",
                     [](const Motion& world, double film_distance_mm, bool natural_vignetting) {
                         return Camera{world,
                                       Pinhole{film_distance_mm, natural_vignetting}};
@@ -226,8 +236,17 @@ void bind_camera(nb::module_& m) {
                                                         focus_distance_m, iris}};
                     },
                     "world_from_camera"_a, "model"_a, "focal_mm"_a, "principal_mm"_a, "aperture_radius_mm"_a,
-                    "focus_distance_m"_a, "iris"_a)
-        .def("change_lens", &change_lens, "times"_a, "cameras"_a,
+                    "focus_distance_m"_a, "iris"_a);
+}
+
+}  // namespace
+
+void bind_camera(nb::module_& m) {
+    using namespace dg;
+    bind_iris(m), bind_thick_lens(m), bind_chief_rays(m);
+    nb::class_<Camera> c(m, "Camera");
+    def_kinds(c);
+    c.def("change_lens", &change_lens, "times"_a, "cameras"_a,
              "The lens at some moments (fractions of the interval) is that of these cameras.")
         .def("change_setting", &change_setting, "times"_a, "iris_openings"_a, "film_shifts_mm"_a,
              "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")

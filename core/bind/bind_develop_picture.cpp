@@ -7,6 +7,7 @@
 #include <array>
 
 #include "bind/arrays.h"
+#include "bind/record.h"
 #include "develop/picture.h"
 #include "develop/sharpen.h"
 #include "math/error.h"
@@ -29,11 +30,7 @@ std::optional<dg::Curve> curve(Values values) {
 }
 
 template <typename T>
-void develop(const Pixels<const T>& in, const Pixels<float>& out, const Numbers& balance, const Numbers& full,
-             std::string_view highlights, const std::array<float, 9>& matrix, const Numbers& luminance,
-             Values tone, Values encode) {
-    const dg::Development how{vec(balance), vec(full), dg::highlights_of(highlights), matrix, vec(luminance),
-                              curve(std::move(tone)), curve(std::move(encode))};
+void develop(const Pixels<const T>& in, const Pixels<float>& out, const dg::Development& how) {
     nb::gil_scoped_release unlocked;
     dg::develop(how, std::span(in.data(), in.size()), std::span(out.data(), out.size()));
 }
@@ -46,15 +43,45 @@ void sharpen(const Pixels<float>& rgb, const Numbers& luminance, float amount, f
 
 template <typename T>
 void def_develop(nb::module_& m) {
-    m.def("develop_picture", &develop<T>, "pixels"_a.noconvert(), "out"_a.noconvert(), "balance"_a, "full"_a,
-          "highlights"_a, "rgb_from_balanced"_a, "luminance"_a, "tone"_a = nb::none(), "encode"_a = nb::none(),
-          "Channels (H, W, 3) into the numbers of a picture, written to `out`; curves by their values at "
-          "curve_breakpoints().");
+    m.def("develop_picture", &develop<T>, "pixels"_a.noconvert(), "out"_a.noconvert(), "how"_a,
+          "Channels (H, W, 3) into the numbers of a picture, written to `out`.");
+}
+
+/// A field of three channels.
+void def_numbers(nb::class_<dg::Development>& c, const char* name, dg::Vec3f dg::Development::* member,
+                 const char* doc) {
+    c.def_prop_rw(
+        name, [member](const dg::Development& d) { const dg::Vec3f v = d.*member; return Numbers{v.x, v.y, v.z}; },
+        [member](dg::Development& d, const Numbers& v) { d.*member = vec(v); }, doc);
+}
+
+void bind_development(nb::module_& m) {
+    using dg::Development;
+    nb::class_<Development> c(m, "Development", "From linear channels to the numbers of a picture.");
+    dg::bind::def_fields_init(c, "Fields by name.");
+    def_numbers(c, "balance", &Development::balance, "Factor of each channel: the neutral has three equal numbers.");
+    def_numbers(c, "full", &Development::full, "Where channels are full, before balance.");
+    def_numbers(c, "luminance", &Development::luminance, "Weights of linear R, G, B.");
+    c.def_rw("rgb_from_balanced", &Development::rgb_from_balanced, "Matrix, linear, row by row.")
+        .def_prop_rw(
+            "highlights", [](const Development& d) { return int(d.highlights); },
+            [](Development& d, std::string_view name) { d.highlights = dg::highlights_of(name); })
+        .def_prop_rw(
+            "tone", [](const Development& d) { return d.tone.has_value(); },
+            [](Development& d, Values values) { d.tone = curve(std::move(values)); },
+            nb::for_setter(nb::arg("values").none()),
+            "Scene to display, both linear: values at curve_breakpoints(); None: as it is up to 1.")
+        .def_prop_rw(
+            "encode", [](const Development& d) { return d.encode.has_value(); },
+            [](Development& d, Values values) { d.encode = curve(std::move(values)); },
+            nb::for_setter(nb::arg("values").none()),
+            "Display to numbers of the file: values at curve_breakpoints(); None: scene-linear.");
 }
 
 }  // namespace
 
 void bind_develop_picture(nb::module_& m) {
+    bind_development(m);
     def_develop<std::uint16_t>(m);
     def_develop<float>(m);
     m.def("curve_breakpoints", &dg::Curve::breakpoints, "Where a curve of light has to be known.");

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind/arrays.h"
+#include "bind/record.h"
 #include "film/film.h"
 #include "film/filter.h"
 #include "film/neighbours.h"
@@ -63,20 +64,29 @@ WordsView state_view(nb::handle film, const std::string& part) {
     return WordsView(bytes.data(), {height, width, bytes.size() / 4 / height / width}, film);
 }
 
+void bind_layout(nb::module_& m) {
+    using dg::FilmLayout;
+    nb::class_<FilmLayout> c(m, "FilmLayout", "What a film keeps, and of which part of the frame.");
+    dg::bind::def_fields_init(c, "Fields by name; nothing but the picture otherwise.");
+    c.def_rw("width", &FilmLayout::width, "px, of the region that is stored.")
+        .def_rw("height", &FilmLayout::height)
+        .def_rw("offset_x", &FilmLayout::offset_x, "px, of that region in the full frame.")
+        .def_rw("offset_y", &FilmLayout::offset_y)
+        .def_rw("aovs", &FilmLayout::aovs, "Auxiliary channels, FILM_AOVS.")
+        .def_rw("splats", &FilmLayout::splats, "Light paths may add to any pixel.")
+        .def_rw("flare", &FilmLayout::flare, "Ghosts may add to any pixel.")
+        .def_rw("bands", &FilmLayout::bands, "Bands of equal width over all wavelengths.")
+        .def_rw("channels", &FilmLayout::channels, "Channels of a sensor (Film.set_responses).");
+    m.attr("FILM_AOVS") = dg::bind::names_of(dg::kAovChannels);
+}
+
 }  // namespace
 
 void bind_film(nb::module_& m) {
     using namespace dg;
+    bind_layout(m);
     nb::class_<Film>(m, "Film")
-        .def("__init__",
-             [](Film* f, int width, int height, int offset_x, int offset_y, bool aovs,
-                bool splats, bool flare, int bands, int channels) {
-                 new (f) Film(FilmLayout{width, height, offset_x, offset_y, aovs, splats, flare, bands,
-                                         channels});
-             },
-             "width"_a, "height"_a, "offset_x"_a = 0, "offset_y"_a = 0, "aovs"_a = false,
-             "splats"_a = false, "flare"_a = false, "bands"_a = 0,
-             "channels"_a = 0)
+        .def(nb::init<FilmLayout>(), "layout"_a)
         .def("set_responses",
              [](Film& f, const Curves& curves) {
                  f.set_responses(Responses(std::span(curves.data(), curves.size())));

@@ -7,8 +7,8 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "optics/best_focus.h"
-#include "optics/seidel.h"
+#include "optics/first_order/best_focus.h"
+#include "optics/first_order/seidel.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -2,6 +2,6 @@
 #pragma once
 #include <nanobind/nanobind.h>
 
-#include "optics/prescription.h"
+#include "optics/lens/prescription.h"
 
 void bind_first_order(nanobind::module_& m, nanobind::class_<dg::Prescription>& lens);

@@ -7,7 +7,7 @@
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
-#include "optics/ghost_spots.h"
+#include "optics/stray/ghost_spots.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -3,7 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind/arrays.h"
-#include "optics/glass.h"
+#include "optics/lens/glass.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

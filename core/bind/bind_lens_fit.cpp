@@ -14,44 +14,31 @@
 #include <memory>
 
 #include "bind/arrays.h"
+#include "bind/record.h"
 #include "bind/thread_seconds.h"
-#include "camera/fit_state.h"
+#include "camera/kept/fit_state.h"
 #include "math/error.h"
-#include "optics/paraxial.h"
-#include "optics/polynomial/lens_fit_simd.h"
+#include "optics/first_order/paraxial.h"
+#include "optics/expansion/lens_fit_simd.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
 
-using Pair = std::pair<double, double>;
 using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Powers =
     nb::ndarray<const std::int32_t, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using dg::bind::def_pair;
+using dg::bind::Pair;
 using dg::bind::to_numpy;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
-dg::Vec2d vec(Pair p) {
-    return {p.first, p.second};
-}
-
-/// A member that is a Vec2d, as a pair.
-template <typename T, dg::Vec2d T::*kMember>
-void pair_member(nb::class_<T>& c, const char* name) {
-    c.def_prop_rw(
-        name,
-        [](const T& t) {
-            return Pair{(t.*kMember).x, (t.*kMember).y};
-        },
-        [](T& t, Pair p) { t.*kMember = vec(p); });
-}
-
-void bind_parts(nb::module_& m) {
+void bind_functions(nb::module_& m) {
     using namespace dg;
     nb::class_<FitFunctions>(m, "FitFunctions")
         .def(
@@ -88,6 +75,10 @@ void bind_parts(nb::module_& m) {
                                 {f.terms.size(), std::size_t(f.count)});
             },
             nb::rv_policy::automatic);
+}
+
+void bind_parts(nb::module_& m) {
+    using namespace dg;
     nb::class_<FitBlock>(m, "FitBlock")
         .def(nb::init<>())
         .def_rw("x", &FitBlock::x)
@@ -102,9 +93,9 @@ void bind_parts(nb::module_& m) {
         .def_rw("light", &FitSegment::light);
     nb::class_<FitPupil> pupil(m, "FitPupil");
     pupil.def(nb::init<>());
-    pair_member<FitPupil, &FitPupil::by_film>(pupil, "by_film");
-    pair_member<FitPupil, &FitPupil::by_slope>(pupil, "by_slope");
-    pair_member<FitPupil, &FitPupil::shift>(pupil, "shift");
+    def_pair(pupil, "by_film", &FitPupil::by_film);
+    def_pair(pupil, "by_slope", &FitPupil::by_slope);
+    def_pair(pupil, "shift", &FitPupil::shift);
     nb::class_<FitInverse>(m, "FitInverse")
         .def(nb::init<>())
         .def_rw("direction", &FitInverse::direction)
@@ -196,19 +187,28 @@ auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& direct
                           to_numpy(std::move(slope), {n, 2}));
 }
 
-dg::LensFit fit(const dg::Prescription& lens, double f_stop, const dg::Iris& iris,
-                double film_z_mm, double film_radius_mm, Pair film_half_mm, int degree,
-                int segments, int terms) {
-    dg::LensFitRequest request;
-    request.film_z = film_z_mm, request.film_radius = film_radius_mm;
-    request.film.half = vec(film_half_mm);
+dg::LensFit fit(const dg::Prescription& lens, double f_stop, dg::LensFitRequest request) {
     const dg::FirstOrder order = dg::first_order(lens);
-    request.iris = iris;
     request.iris_radius =
         dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
-    request.degree = degree, request.segments = segments, request.terms = terms;
     const nb::gil_scoped_release release;
     return make_lens_fit(dg::Tracer(lens), request);
+}
+
+void bind_request(nb::module_& m) {
+    using dg::LensFitRequest;
+    nb::class_<LensFitRequest> c(m, "LensFitRequest", "The part of the film that a fit is for, and how fine it is.");
+    dg::bind::def_fields_init(c, "Fields by name.");
+    c.def_rw("film_z_mm", &LensFitRequest::film_z, "Place of the film in the lens frame.")
+        .def_rw("film_radius_mm", &LensFitRequest::film_radius, "Its farthest point.")
+        .def_prop_rw(
+            "film_half_mm", [](const LensFitRequest& r) { return dg::bind::pair(r.film.half); },
+            [](LensFitRequest& r, Pair half) { r.film.half = dg::bind::vec(half); },
+            "Half its width and height; (0, 0): all within the radius.")
+        .def_rw("iris", &LensFitRequest::iris)
+        .def_rw("degree", &LensFitRequest::degree, "Odd, 1 to 13.")
+        .def_rw("segments", &LensFitRequest::segments, "Parts of the film's radius.")
+        .def_rw("terms", &LensFitRequest::terms, "Terms of each vector; 0: all.");
 }
 
 /// Directions (rad) and offsets of scene rays.
@@ -282,32 +282,10 @@ nb::bytes bytes(const dg::LensFit& fit) {
     return nb::bytes(b.data(), b.size());
 }
 
-}  // namespace
-
-void bind_lens_fit(nb::module_& m) {
+/// Parts of a fit, which files keep.
+void def_data(nb::class_<dg::LensFit>& c) {
     using namespace dg;
-    bind_parts(m), bind_error(m);
-    nb::class_<LensFit> c(m, "LensFit");
-    c.def(nb::init<>())
-        .def_static("fit", &fit, "prescription"_a, "f_stop"_a, "iris"_a, "film_z_mm"_a,
-                    "film_radius_mm"_a, "film_half_mm"_a, "degree"_a, "segments"_a,
-                    "terms"_a, "f_stop 0: as wide as the lens opens; terms 0: all.")
-        .def("describe", &describe, "origins"_a, "directions"_a)
-        .def("refitted", &refitted, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
-             "angles"_a, "offsets"_a)
-        .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
-             "repeats"_a, "CPU seconds of the kernels: film to scene, scene to film.")
-        .def("to_bytes", &bytes)
-        .def_static(
-            "from_bytes",
-            [](const nb::bytes& b) {
-                return fit_from_bytes(std::string(b.c_str(), b.size()));
-            },
-            "None if they are damaged.")
-        .def("check", &check_lens_fit, "Error if its parts do not fit together.")
-        .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
-        .def("to_film", &to_film, "origins"_a, "directions"_a, "wavelength_nm"_a)
-        .def_rw("lens", &LensFit::lens)
+    c.def_rw("lens", &LensFit::lens)
         .def_rw("degree", &LensFit::degree)
         .def_prop_rw(
             "symmetry",
@@ -344,6 +322,33 @@ void bind_lens_fit(nb::module_& m) {
         .def_rw("segments", &LensFit::segments)
         .def_rw("inverse", &LensFit::inverse)
         .def_rw("error", &LensFit::error);
-    pair_member<LensFit, &LensFit::film_center>(c, "film_center");
-    pair_member<LensFit, &LensFit::film_half>(c, "film_half");
+    def_pair(c, "film_center", &LensFit::film_center);
+    def_pair(c, "film_half", &LensFit::film_half);
+}
+
+}  // namespace
+
+void bind_lens_fit(nb::module_& m) {
+    using namespace dg;
+    bind_functions(m), bind_parts(m), bind_error(m), bind_request(m);
+    nb::class_<LensFit> c(m, "LensFit");
+    c.def(nb::init<>())
+        .def_static("fit", &fit, "prescription"_a, "f_stop"_a, "request"_a,
+                    "f_stop 0: as wide as the lens opens.")
+        .def("describe", &describe, "origins"_a, "directions"_a)
+        .def("refitted", &refitted, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
+             "angles"_a, "offsets"_a)
+        .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
+             "repeats"_a, "CPU seconds of the kernels: film to scene, scene to film.")
+        .def("to_bytes", &bytes)
+        .def_static(
+            "from_bytes",
+            [](const nb::bytes& b) {
+                return fit_from_bytes(std::string(b.c_str(), b.size()));
+            },
+            "None if they are damaged.")
+        .def("check", &check_lens_fit, "Error if its parts do not fit together.")
+        .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
+        .def("to_film", &to_film, "origins"_a, "directions"_a, "wavelength_nm"_a);
+    def_data(c);
 }

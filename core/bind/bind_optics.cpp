@@ -4,14 +4,12 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
-#include <cmath>
-#include <limits>
-
 #include "bind/arrays.h"
+#include "bind/record.h"
 #include "bind/thread_seconds.h"
-#include "camera/aim_state.h"
+#include "camera/kept/aim_state.h"
 #include "camera/exact.h"
-#include "camera/fit_state.h"
+#include "camera/kept/fit_state.h"
 #include "math/error.h"
 
 namespace nb = nanobind;
@@ -19,34 +17,8 @@ using namespace nb::literals;
 
 namespace {
 
-using Pair = std::pair<double, double>;
 using Picture = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using ColumnF = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
-dg::Vec2d vec(Pair p) {
-    return {p.first, p.second};
-}
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-dg::ExactLensSettings settings(double f_stop, const dg::Iris& iris, double focus_distance_m,
-                               bool focus_from_sensor, double half_diagonal_mm,
-                               dg::PupilDraw draw, double film_z_mm, Pair tilt_deg,
-                               Pair film_center_mm, Pair film_half_mm,
-                               std::optional<int> fit_degree) {
-    return {f_stop,
-            iris,
-            focus_distance_m,
-            focus_from_sensor ? dg::FocusFrom::sensor : dg::FocusFrom::pupil,
-            half_diagonal_mm,
-            draw,
-            std::isnan(film_z_mm) ? std::nullopt : std::optional(film_z_mm),
-            vec(tilt_deg),
-            vec(film_center_mm),
-            vec(film_half_mm),
-            fit_degree ? std::optional(dg::FittedGlass{*fit_degree}) : std::nullopt,
-            ""};
-}
 
 std::vector<dg::CameraSample> camera_samples(const dg::bind::Rows2f& film_mm,
                                              const dg::bind::Rows2f& u_lens,
@@ -113,56 +85,49 @@ std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
     return {passed, dg::bind::thread_seconds() - start};
 }
 
-}  // namespace
+void bind_settings(nb::module_& m) {
+    using S = dg::ExactLensSettings;
+    nb::class_<S> c(m, "ExactLensSettings", "An exact lens at one focus and f-stop, and the film that it covers.");
+    dg::bind::def_fields_init(c, "Fields by name.");
+    c.def_rw("f_stop", &S::f_stop, "0: as wide as the lens opens.")
+        .def_rw("iris", &S::iris)
+        .def_rw("focus_distance_m", &S::focus_distance_m, "Not used if film_z_mm is given.")
+        .def_prop_rw(
+            "focus_from_sensor", [](const S& s) { return s.focus_from == dg::FocusFrom::sensor; },
+            [](S& s, bool sensor) { s.focus_from = sensor ? dg::FocusFrom::sensor : dg::FocusFrom::pupil; },
+            "Whether the distance is from the film, else from the entrance pupil.")
+        .def_rw("half_diagonal_mm", &S::half_diagonal_mm, "Farthest film point, shift included.")
+        .def_rw("draw", &S::draw)
+        .def_rw("film_z_mm", &S::film_z, nb::for_setter(nb::arg("value").none()),
+                "Place of the film in the lens frame; None: solved for the distance.")
+        .def_prop_rw(
+            "fit_degree",
+            [](const S& s) { return s.fitted ? std::optional(s.fitted->degree) : std::nullopt; },
+            [](S& s, std::optional<int> degree) {
+                s.fitted = degree ? std::optional(dg::FittedGlass{*degree}) : std::nullopt;
+            },
+            nb::for_setter(nb::arg("value").none()),
+            "Draw from polynomials of that degree; None: from the surfaces.");
+    dg::bind::def_pair(c, "tilt_deg", &S::tilt_deg, "Turn about x, then y of the camera's frame.");
+    dg::bind::def_pair(c, "film_center_mm", &S::film_center_mm, "Middle of the part that is used, upright.");
+    dg::bind::def_pair(c, "film_half_mm", &S::film_half_mm, "Half its size; (0, 0): all within half_diagonal_mm.");
+}
 
-void bind_optics(nb::module_& m) {
+/// Building a lens, and what its set-up found out.
+void def_set_up(nb::class_<dg::ExactLens>& c) {
     using namespace dg;
-    m.def("simd_target", &simd_target_name,
-          "Instruction set of the lens kernels on this machine.");
-    nb::enum_<PupilDraw>(m, "PupilDraw")
-        .value("aimed", PupilDraw::aimed)
-        .value("slope_boxes", PupilDraw::slope_boxes)
-        .value("rear_disc", PupilDraw::rear_disc);
-    nb::class_<ExactLens>(m, "ExactLens")
-        .def(
-            "__init__",
-            [](ExactLens* self, const Prescription& lens, double f_stop, const Iris& iris,
-               double focus_distance_m, bool focus_from_sensor, double half_diagonal_mm,
-               PupilDraw draw, double film_z_mm, Pair tilt_deg, Pair film_center_mm,
-               Pair film_half_mm, std::optional<int> fit_degree,
-               const std::optional<nb::bytes>& cache) {
-                ExactLensSettings s =
-                    settings(f_stop, iris, focus_distance_m, focus_from_sensor, half_diagonal_mm,
-                             draw, film_z_mm, tilt_deg, film_center_mm, film_half_mm,
-                             fit_degree);
-                if (cache) s.cache.assign(cache->c_str(), cache->size());
-                nb::gil_scoped_release release;   // states of a lens are set up side by side
-                new (self) ExactLens(lens, s);
-            },
-            "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
-            "focus_from_sensor"_a, "half_diagonal_mm"_a, "draw"_a = PupilDraw::aimed,
-            nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
-            "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
-            "fit_degree"_a = nb::none(), "cache"_a = nb::none(),
-            "fit_degree: draw from polynomials of that degree instead of the surfaces. "
-            "cache: aim_state of an earlier one; not used unless it fits.")
-        .def_static(
-            "aim_key",
-            [](const Prescription& lens, double f_stop, const Iris& iris, double focus_distance_m,
-               bool focus_from_sensor, double half_diagonal_mm, PupilDraw draw,
-               double film_z_mm, Pair tilt_deg, Pair film_center_mm, Pair film_half_mm,
-               std::optional<int> fit_degree) {
-                return aim_key(lens, settings(f_stop, iris, focus_distance_m, focus_from_sensor,
-                                              half_diagonal_mm, draw, film_z_mm,
-                                              tilt_deg, film_center_mm, film_half_mm,
-                                              fit_degree));
-            },
-            "prescription"_a, "f_stop"_a, "iris"_a, "focus_distance_m"_a,
-            "focus_from_sensor"_a, "half_diagonal_mm"_a, "draw"_a = PupilDraw::aimed,
-            nb::kw_only(), "film_z_mm"_a = kNan, "tilt_deg"_a = Pair{0, 0},
-            "film_center_mm"_a = Pair{0, 0}, "film_half_mm"_a = Pair{0, 0},
-            "fit_degree"_a = nb::none(),
-            "Name of the aim_state that a lens with these arguments has.")
+    c.def(
+         "__init__",
+         [](ExactLens* self, const Prescription& lens, ExactLensSettings settings,
+            const std::optional<nb::bytes>& cache) {
+             if (cache) settings.cache.assign(cache->c_str(), cache->size());
+             nb::gil_scoped_release release;   // states of a lens are set up side by side
+             new (self) ExactLens(lens, settings);
+         },
+         "prescription"_a, "settings"_a, "cache"_a = nb::none(),
+         "cache: aim_state of an earlier one; not used unless it fits.")
+        .def_static("aim_key", &aim_key, "prescription"_a, "settings"_a,
+                    "Name of the aim_state that a lens with these settings has.")
         .def_prop_ro("aim_state",
                      [](const ExactLens& lens) {
                          const std::string state = lens.aim_state();
@@ -170,8 +135,13 @@ void bind_optics(nb::module_& m) {
                      },
                      "Results of the set-up, for `cache` of the same lens another time.")
         .def("state_with_fit", &state_with_fit, "fit"_a,
-             "Its aim_state with another fit in place of its own, for comparisons.")
-        .def("with_dirt",
+             "Its aim_state with another fit in place of its own, for comparisons.");
+}
+
+/// The same lens with or without something.
+void def_variants(nb::class_<dg::ExactLens>& c) {
+    using namespace dg;
+    c.def("with_dirt",
              [](const ExactLens& lens, const std::optional<Picture>& front,
                 const std::optional<Picture>& iris) {
                  const auto mask = [](const std::optional<Picture>& p) {
@@ -185,8 +155,12 @@ void bind_optics(nb::module_& m) {
              "Dust and scratches: transmittances (H, W) over the clear front and the open iris.")
         .def("without_fit", &ExactLens::without_fit, "The same lens, traced surface by surface.")
         .def_prop_ro("fit", &ExactLens::fit, nb::rv_policy::reference_internal,
-                     "Fit that rays are drawn from instead of the surfaces; None: they are traced.")
-        .def_prop_ro("h0", &ExactLens::h0)
+                     "Fit that rays are drawn from instead of the surfaces; None: they are traced.");
+}
+
+void def_numbers(nb::class_<dg::ExactLens>& c) {
+    using namespace dg;
+    c.def_prop_ro("h0", &ExactLens::h0)
         .def_prop_ro("transmittance", &ExactLens::transmittance)
         .def_prop_ro("f_stop", &ExactLens::f_stop)
         .def_prop_ro("iris_radius_mm", &ExactLens::iris_radius_mm)
@@ -198,8 +172,12 @@ void bind_optics(nb::module_& m) {
                          return t.free.degree > 0 ? t.free.degree : t.degree;
                      })
         .def_prop_ro("aim_fallback_segments",
-                     [](const ExactLens& lens) { return lens.aim().fallback_segments; })
-        .def("first_order", &ExactLens::first_order)
+                     [](const ExactLens& lens) { return lens.aim().fallback_segments; });
+}
+
+void def_rays(nb::class_<dg::ExactLens>& c) {
+    using namespace dg;
+    c.def("first_order", &ExactLens::first_order)
         .def(
             "film_plane",
             [](const ExactLens& lens) {
@@ -222,4 +200,22 @@ void bind_optics(nb::module_& m) {
              "repeats"_a,
              "Draws the samples again and again in one thread: (rays that passed, "
              "seconds).");
+}
+
+}  // namespace
+
+void bind_optics(nb::module_& m) {
+    using namespace dg;
+    m.def("simd_target", &simd_target_name,
+          "Instruction set of the lens kernels on this machine.");
+    nb::enum_<PupilDraw>(m, "PupilDraw")
+        .value("aimed", PupilDraw::aimed)
+        .value("slope_boxes", PupilDraw::slope_boxes)
+        .value("rear_disc", PupilDraw::rear_disc);
+    bind_settings(m);
+    nb::class_<ExactLens> c(m, "ExactLens");
+    def_set_up(c);
+    def_variants(c);
+    def_numbers(c);
+    def_rays(c);
 }

@@ -10,9 +10,9 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "optics/ghost.h"
-#include "optics/polynomial/elements.h"
-#include "optics/polynomial/system.h"
+#include "optics/stray/ghost.h"
+#include "optics/expansion/elements.h"
+#include "optics/expansion/system.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

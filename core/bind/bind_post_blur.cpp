@@ -64,12 +64,11 @@ auto defocus(const Colours& image, const Plane& radius, const dg::IrisShape& iri
 }
 
 auto motion_blur(const Colours& image, const Flow& next, const Flow& last, const Plane& nearness, float step,
-                 double open, double close, std::vector<double> arrived, std::pair<int, int> rows) {
+                 const dg::ShutterTime& shutter, std::pair<int, int> rows) {
     same_size(image, next.shape(0), next.shape(1), "motion");
     same_size(image, last.shape(0), last.shape(1), "motion");
     same_size(image, nearness.shape(0), nearness.shape(1), "nearness");
     const dg::SpreadRows wanted = rows_of(image, rows);
-    const dg::ShutterTime shutter{open, close, std::move(arrived)};
     return made_rows(image, wanted, [&] {
         return dg::motion_blur(int(image.shape(1)), values_of(image), {values_of(next), values_of(last)},
                                values_of(nearness), step, shutter, wanted);
@@ -91,7 +90,9 @@ void bind_post_blur(nb::module_& m) {
     m.def("defocus", &defocus, "image"_a, "radius"_a, "iris"_a, "rows"_a,
           "Pixels (H, W, 4) spread by the iris; radius (H, W) in px, positive before the focus.");
     m.def("rounded_blur", &dg::IrisKernels::rounded, "radius"_a, "The radius that stands for this one in defocus, px.");
-    m.def("motion_blur", &motion_blur, "image"_a, "next"_a, "last"_a, "nearness"_a, "step"_a, "open"_a,
-          "close"_a, "arrived"_a, "rows"_a,
-          "Pixels (H, W, 4) spread along motion (H, W, 2) in px per frame, from open to close in frames.");
+    nb::class_<dg::ShutterTime>(m, "ShutterTime")
+        .def(nb::init<double, double, std::vector<double>>(), "open"_a, "close"_a, "arrived"_a,
+             "open, close: in frames. arrived: shares of the light, at equal steps of that time.");
+    m.def("motion_blur", &motion_blur, "image"_a, "next"_a, "last"_a, "nearness"_a, "step"_a,
+          "shutter"_a, "rows"_a, "Pixels (H, W, 4) spread along motion (H, W, 2) in px per frame.");
 }

@@ -1,4 +1,5 @@
 // bind_post_warp.cpp -- pictures through maps.
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
@@ -42,7 +43,8 @@ struct BoundMap {
 
 auto remap(const Image& image, int first, int height,
            const std::vector<const BoundMap*>& maps, const std::vector<int>& map_of,
-           int begin, int end, std::string_view filter, bool antialias) {
+           std::pair<int, int> rows, std::string_view filter, bool antialias) {
+    const auto [begin, end] = rows;
     std::vector<dg::SourceMap> given;
     for (const BoundMap* m : maps) given.push_back(m->map);
     const dg::RemapSource source{values_of(image), int(image.shape(1)), height,
@@ -56,8 +58,8 @@ auto remap(const Image& image, int first, int height,
     }
     float* values = out.values.release();
     nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<float*>(p); });
-    const std::size_t rows = end - begin;
-    nb::ndarray<nb::numpy, float> made(values, {rows, image.shape(1), image.shape(2)},
+    const std::size_t height_made = end - begin;
+    nb::ndarray<nb::numpy, float> made(values, {height_made, image.shape(1), image.shape(2)},
                                        owner);
     return nb::make_tuple(std::move(made), out.undefined);
 }
@@ -109,7 +111,7 @@ void bind_post_warp(nb::module_& m) {
             "points"_a,
             "At points (N, 2), pixels by index, (N, 2), px; NaN where nodes do not tell.");
     m.def("remap", &remap, "image"_a, "first"_a, "height"_a, "maps"_a, "map_of"_a,
-          "begin"_a, "end"_a, "filter"_a, "antialias"_a,
+          "rows"_a, "filter"_a, "antialias"_a,
           "Rows [begin, end) of a picture seen through maps, and how many pixels no map "
           "defines. image: "
           "rows from `first` on of a picture of `height` rows, (rows, W, C).");

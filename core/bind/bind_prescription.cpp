@@ -16,7 +16,7 @@
 #include "bind/arrays.h"
 #include "bind/bind_first_order.h"
 #include "math/error.h"
-#include "optics/ghost.h"
+#include "optics/stray/ghost.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -136,9 +136,7 @@ auto jacobian(const dg::Prescription& lens, std::array<double, 3> origin,
     return dg::bind::to_numpy(std::move(flat), {4, 4});
 }
 
-}  // namespace
-
-void bind_prescription(nb::module_& m) {
+void bind_surface(nb::module_& m) {
     using namespace dg;
     nb::class_<Surface>(m, "Surface")
         .def(
@@ -169,6 +167,13 @@ void bind_prescription(nb::module_& m) {
             "tilt"_a = std::array<double, 3>{}, "coating"_a = "",
             "ripple"_a = std::tuple<double, double, unsigned>{0, 0, 0},
             "asphere: {power of r: coefficient}; tilt in degrees; ripple: (nm RMS, period um, seed).");
+}
+
+}  // namespace
+
+void bind_prescription(nb::module_& m) {
+    using namespace dg;
+    bind_surface(m);
     nb::class_<Prescription> lens(m, "Prescription");
     lens.def(
             "__init__",

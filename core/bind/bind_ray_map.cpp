@@ -2,7 +2,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
-#include "render/ray_map.h"
+#include "render/truth/ray_map.h"
 #include "render/render.h"
 
 namespace nb = nanobind;
@@ -22,7 +22,7 @@ auto planes(const std::vector<dg::Vec3d>& values, std::size_t height, std::size_
 auto rays(const dg::Camera& camera, const dg::RenderSettings& settings, const Region& crop, bool world) {
     const auto [x0, y0, x1, y1] = crop;
     const std::size_t height = y1 - y0, width = x1 - x0;
-    dg::RayMap map;
+    dg::PixelRays map;
     {
         nb::gil_scoped_release release;
         map = ray_map(camera, settings.sensor, settings.shutter, {x1 - x0, y1 - y0, x0, y0},

@@ -4,7 +4,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
-#include "optics/film_walks.h"
+#include "optics/stray/film_walks.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

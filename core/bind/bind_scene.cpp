@@ -259,12 +259,7 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     return std::tuple{hit->surface.t, hit->surface.instance};
 }
 
-}  // namespace
-}  // namespace dg::bind
-
-void bind_scene(nb::module_& m) {
-    using namespace dg;
-    using namespace dg::bind;
+void bind_built_scene(nb::module_& m) {
     nb::class_<Scene>(m, "Scene")
         .def_prop_ro("triangle_count", &Scene::triangle_count)
         .def_prop_ro("intersector", &Scene::intersector_name)
@@ -276,15 +271,24 @@ void bind_scene(nb::module_& m) {
                      })
         .def("first_hit", &first_hit, "origin"_a, "direction"_a,
              "Distance (m) and instance index of the nearest surface at mid-interval, or None.");
+}
 
-    nb::class_<Builder>(m, "SceneBuilder")
-        .def(nb::init<>())
-        .def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
+/// Meshes, textures, and where meshes stand.
+void def_shapes(nb::class_<Builder>& c) {
+    c.def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
              "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
              "colors"_a.none())
         .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
              "wrap_v"_a, "filter"_a, "min_filter"_a)
-        .def("add_diffuse",
+        .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
+             "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
+        .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
+             "motion"_a, "shown"_a = nb::none());
+}
+
+/// One maker for each kind of material.
+void def_materials(nb::class_<Builder>& c) {
+    c.def("add_diffuse",
              [](Builder& b, const std::string& name, const Triple& reflectance,
                 const Triple& emission, bool two_sided) {
                  return b.add_material(name, DiffuseMaterial{to_rgb(reflectance)}, emission, two_sided);
@@ -305,17 +309,12 @@ void bind_scene(nb::module_& m) {
              [](Builder& b, const std::string& name, const nb::dict& values,
                 const Triple& emission, bool two_sided) {
                  return b.add_material(name, to_gltf(values), emission, two_sided);
-             })
-        .def("set_interval",
-             [](Builder& b, double open_s, double close_s) {
-                 b.description.interval = {open_s, close_s};
-             },
-             "open_s"_a, "close_s"_a, "Exposed interval of the picture, s; keys of time are in s as well.")
-        .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
-             "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
-        .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
-             "motion"_a, "shown"_a = nb::none())
-        .def("add_point_light",
+             });
+}
+
+/// One maker for each kind of light that is no mesh.
+void def_lights(nb::class_<Builder>& c) {
+    c.def("add_point_light",
              [](Builder& b, const Triple& position, const Triple& intensity, float range) {
                  b.add_light(PointLight{vec(position), to_rgb(intensity), range});
              })
@@ -332,14 +331,12 @@ void bind_scene(nb::module_& m) {
         .def("add_sphere_light",
              [](Builder& b, const Triple& center, float radius, const Triple& luminance) {
                  b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance)});
-             })
-        .def("fold_materials", &Builder::fold_materials, "times_s"_a,
-             "The materials added last, one per time (s), become keys of a single one.")
-        .def("fold_lights", &Builder::fold_lights, "times_s"_a,
-             "The lights added last, one per time (s), become keys of a single one.")
-        .def("key_environment", &Builder::key_environment, "times_s"_a, "poses"_a,
-             "Poses of the environment: RGB that its light is multiplied by, and a turn about +y, rad.")
-        .def("set_environment_image",
+             });
+}
+
+/// Light from infinitely far away.
+void def_environment(nb::class_<Builder>& c) {
+    c.def("set_environment_image",
              [](Builder& b, const PixelsF& pixels, float scale, const Matrix4& matrix) {
                  EnvironmentImage image;
                  image.height = int(pixels.shape(0));
@@ -354,8 +351,27 @@ void bind_scene(nb::module_& m) {
         .def("set_environment_color",
              [](Builder& b, const Triple& luminance) {
                  b.description.environment = Environment::constant(to_rgb(luminance));
-             })
-        .def("build",
+             });
+}
+
+/// Motion while the picture is exposed.
+void def_time(nb::class_<Builder>& c) {
+    c.def("set_interval",
+             [](Builder& b, double open_s, double close_s) {
+                 b.description.interval = {open_s, close_s};
+             },
+             "open_s"_a, "close_s"_a, "Exposed interval of the picture, s; keys of time are in s as well.")
+        .def("fold_materials", &Builder::fold_materials, "times_s"_a,
+             "The materials added last, one per time (s), become keys of a single one.")
+        .def("fold_lights", &Builder::fold_lights, "times_s"_a,
+             "The lights added last, one per time (s), become keys of a single one.")
+        .def("key_environment", &Builder::key_environment, "times_s"_a, "poses"_a,
+             "Poses of the environment: RGB that its light is multiplied by, and a turn about +y, rad.");
+}
+
+/// From parts to a scene.
+void def_build(nb::class_<Builder>& c) {
+    c.def("build",
              [](Builder& b, const std::string& light_choice) {
                  b.description.light_choice =
                      choose<LightChoice>("light_choice", light_choice,
@@ -369,4 +385,20 @@ void bind_scene(nb::module_& m) {
              "light_choice"_a = "tree",
              "Checks everything, finds emissive triangles and builds the ray tracer; the builder is "
              "empty afterwards.");
+}
+
+}  // namespace
+}  // namespace dg::bind
+
+void bind_scene(nb::module_& m) {
+    using namespace dg::bind;
+    bind_built_scene(m);
+    nb::class_<Builder> c(m, "SceneBuilder");
+    c.def(nb::init<>());
+    def_shapes(c);
+    def_materials(c);
+    def_lights(c);
+    def_environment(c);
+    def_time(c);
+    def_build(c);
 }

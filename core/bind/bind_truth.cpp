@@ -6,47 +6,40 @@
 
 #include "bind/arrays.h"
 #include "math/error.h"
-#include "render/truth_mean.h"
-#include "render/truth_objects.h"
+#include "render/truth/truth_channels.h"
+#include "render/truth/truth_mean.h"
+#include "render/truth/truth_objects.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
 
-/// One value per pixel of a member of Truth.
-template <typename T, typename From, typename Of>
-auto plane(const dg::TruthPlanes& truth, const std::vector<From>& values, const Of& of) {
-    std::vector<T> out;
-    out.reserve(values.size());
-    for (const From& value : values) out.push_back(of(value));
-    return dg::bind::to_numpy(std::move(out), {std::size_t(truth.region.height),
-                                               std::size_t(truth.region.width)});
+/// One value per pixel: value_at(index).
+template <typename Make>
+nb::object plane(const dg::TruthPlanes& truth, const Make& value_at) {
+    std::vector<decltype(value_at(0))> out(truth.depth.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = value_at(i);
+    return nb::cast(dg::bind::to_numpy(std::move(out), {std::size_t(truth.region.height),
+                                                        std::size_t(truth.region.width)}));
 }
 
 /// A plane by the name that it has in files.
 nb::object plane_named(const dg::TruthPlanes& t, const std::string& name) {
-    const auto same = [](auto value) { return value; };
-    if (name == "depth.Z") return nb::cast(plane<float>(t, t.depth, same));
-    if (name == "distance.Z") return nb::cast(plane<float>(t, t.distance, same));
-    if (name == "object_id") return nb::cast(plane<std::uint32_t>(t, t.object_id, same));
-    if (name == "material_id")
-        return nb::cast(plane<std::uint32_t>(t, t.material_id, same));
-    const int axis = name.empty() ? -1 : name.back() - 'X';
-    if (axis >= 0 && axis < 3 && name.size() == 3 && name[1] == '.') {
-        const auto component = [axis](dg::Vec3f v) { return v[axis]; };
-        if (name[0] == 'P') return nb::cast(plane<float>(t, t.position, component));
-        if (name[0] == 'N') return nb::cast(plane<float>(t, t.normal, component));
+    std::string known;
+    for (const dg::TruthChannel& channel : dg::kTruthChannels) {
+        if (name == channel.name)
+            return std::visit(
+                [&](auto value) { return plane(t, [&](std::size_t i) { return value(t, i); }); },
+                channel.value);
+        known += (known.empty() ? "" : ", ") + std::string(channel.name);
     }
-    throw dg::input_error(
-        "truth", "plane",
-        "depth.Z, distance.Z, P.X/Y/Z, N.X/Y/Z, object_id or material_id", name);
+    throw dg::input_error("truth", "plane", "one of " + known, name);
 }
 
 /// The means have one more.
 nb::object mean_plane_named(const dg::MeanTruth& t, const std::string& name) {
-    const auto same = [](float value) { return value; };
-    if (name == "coverage.Y") return nb::cast(plane<float>(t, t.coverage, same));
+    if (name == dg::kCoverageChannel) return plane(t, [&](std::size_t i) { return t.coverage[i]; });
     return plane_named(t, name);
 }
 
@@ -144,6 +137,8 @@ auto outlines_of(const dg::Scene& scene, const dg::Camera& camera,
 
 void bind_truth(nb::module_& m) {
     using namespace dg;
+    m.attr("TRUTH_PLANES") = dg::bind::names_of(kTruthChannels);
+    m.attr("COVERAGE_PLANE") = kCoverageChannel;
     nb::class_<Truth>(m, "Truth")
         .def("plane", [](const Truth& t, const std::string& name) { return plane_named(t, name); },
              "name"_a, "Values (H, W) by the name of the channel.")

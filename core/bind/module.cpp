@@ -1,11 +1,11 @@
 // module.cpp -- daguerre._core. Thin: arrays in, arrays out, no logic.
 #include <nanobind/nanobind.h>
 
-#include "math/error.h"
 #include "version.h"
 
 namespace nb = nanobind;
 
+void bind_errors(nb::module_& m);
 void bind_codec(nb::module_& m);
 void bind_motion(nb::module_& m);
 void bind_glass(nb::module_& m);
@@ -21,6 +21,7 @@ void bind_camera(nb::module_& m);
 void bind_shutter(nb::module_& m);
 void bind_spectrum(nb::module_& m);
 void bind_film(nb::module_& m);
+void bind_render_settings(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_ray_map(nb::module_& m);
 void bind_truth(nb::module_& m);
@@ -33,13 +34,7 @@ void bind_post_waves(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
-    nb::register_exception_translator([](const std::exception_ptr& p, void*) {
-        try {
-            std::rethrow_exception(p);
-        } catch (const dg::Error& e) {
-            PyErr_SetString(PyExc_ValueError, e.what());
-        }
-    });
+    bind_errors(m);
     bind_codec(m);
     bind_motion(m);
     bind_glass(m);
@@ -55,6 +50,7 @@ NB_MODULE(_core, m) {
     bind_shutter(m);
     bind_spectrum(m);
     bind_film(m);
+    bind_render_settings(m);
     bind_render(m);
     bind_ray_map(m);
     bind_truth(m);

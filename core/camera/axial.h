@@ -1,6 +1,6 @@
 // axial.h -- how bright the middle of the film is: what exposures are divided by.
 #pragma once
-#include "optics/trace.h"
+#include "optics/trace/trace.h"
 
 namespace dg {
 

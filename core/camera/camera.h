@@ -3,11 +3,25 @@
 //
 // Camera frame: metres, origin = centre of the entrance pupil, -z along the view, +x right, +y up.
 // Film points: mm, as the picture is seen upright: +x right, +y up, (0,0) on the optical axis.
-// Adding a kind: x.h/x.cpp with generate(), and an alternative of LensKind.
+//
+// Adding a kind X, in this order; up to the bindings the compiler says what is missing:
+//   camera/x.h, x.cpp, x_test.cpp     what camera_kind.h asks for: generate(), reproject(), chief_direction(), and
+//                                     either numbers() with blend(), or in_the_body_of()
+//   camera/camera.h                   X as an alternative of LensKind
+//   camera/inverse/chief.h, .cpp      ChiefRays::of(X), and where points land
+//   camera/inverse/pupil_view.h, .cpp PupilView::of(X), and a kind of view if none fits
+//   camera/inverse/pixel_cone.cpp     only if it is not the same on all sides of its axis
+//   camera/inverse/view_cases.h       X among the cameras that all tests of the way back run through
+//   bind/bind_camera.cpp              a constructor, and its numbers in lens_numbers()
+//   python/daguerre                   the fields of Camera, which of them go together, and the set-up that calls the
+//                                     constructor; the table of parameters, and with it flags and docs
+//   docs/lens-models.md or docs/projections.md, CHANGELOG.md
+// Nothing in render asks for a kind, but for what only an exact lens has: wavelengths that part, ghosts, scatter.
 #pragma once
 #include <span>
 #include <variant>
 
+#include "camera/camera_kind.h"
 #include "camera/exact.h"
 #include "camera/pinhole.h"
 #include "camera/projection.h"
@@ -21,9 +35,15 @@ namespace dg {
 
 using LensKind = std::variant<Pinhole, ThinLens, ThickLens, ExactLens, Projection>;
 
-/// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Ideal
-/// lenses and the numbers of projections change evenly from one to the next; of thick and exact ones, and of
-/// the parameters of a projection's model, each sample takes the nearest in time.
+template <typename Kinds>
+inline constexpr bool kCameraKinds = false;
+template <typename... L>
+inline constexpr bool kCameraKinds<std::variant<L...>> = (CameraKind<L> && ...);
+static_assert(kCameraKinds<LensKind>);
+
+/// The lens at some moments (fractions of the scene's interval that do not fall), all of one kind. Kinds that
+/// have numbers change evenly from one to the next; of others, and of what is no number (the parameters of a
+/// projection's model), each sample takes the nearest in time.
 struct LensMotion {
     std::vector<float> times;       // empty: it stays as it is
     std::vector<LensKind> lenses;   // real ones relative to the camera's own (in_the_body_of)
@@ -60,6 +80,9 @@ void generate_rays(const Camera& camera, std::span<const CameraSample> samples,
 /// own film point with its own weight, aim_weight x transmittance.
 void reproject(const Camera& camera, std::span<const CameraRay> rays,
                std::span<const float> wavelength_nm, std::span<Reprojection> out);
+
+/// Film points of the picture from those on the film, which lay elsewhere where it is shifted at the rays' times.
+void undo_film_shift(const Camera& camera, std::span<const CameraRay> rays, std::span<Reprojection> landings);
 
 /// The camera's setting at a time.
 inline LensSetting setting_at(const Camera& camera, float time) {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <functional>
 
-#include "camera/aim_state.h"
-#include "camera/fit_state.h"
+#include "camera/kept/aim_state.h"
+#include "camera/kept/fit_state.h"
 #include "camera/mean_ray.h"
 #include "camera/tilt.h"
-#include "optics/intersect.h"
-#include "optics/lens_error.h"
-#include "optics/polynomial/lens_fit_simd.h"
+#include "optics/expansion/lens_fit_simd.h"
+#include "optics/lens/lens_error.h"
+#include "optics/trace/intersect.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {

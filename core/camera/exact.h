@@ -10,15 +10,15 @@
 #include "camera/axial.h"
 #include "camera/camera_sample.h"
 #include "camera/lens_mask.h"
-#include "optics/paraxial.h"
-#include "optics/polynomial/lens_fit.h"
-#include "optics/ghost_lens.h"
-#include "optics/pupil.h"
-#include "optics/scatter_lens.h"
+#include "optics/aim/pupil.h"
+#include "optics/expansion/lens_fit.h"
+#include "optics/first_order/paraxial.h"
+#include "optics/stray/ghost_lens.h"
+#include "optics/stray/scatter_lens.h"
 
 namespace dg {
 
-/// The glass as polynomials (optics/polynomial/lens_fit.h) instead of surface by surface.
+/// The glass as polynomials (optics/expansion/lens_fit.h) instead of surface by surface.
 struct FittedGlass {
     int degree = 7;
 };

@@ -7,7 +7,7 @@
 
 #include "math/error.h"
 #include "math/statistics.h"
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 #include "spectrum/wavelengths.h"
 
 using namespace dg;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "camera/aim_state.h"
 #include "camera/exact.h"
-#include "optics/test_lenses.h"
+#include "camera/kept/aim_state.h"
+#include "optics/lens/test_lenses.h"
 
 using namespace dg;
 

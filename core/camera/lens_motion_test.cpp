@@ -5,7 +5,7 @@
 
 #include "camera/camera.h"
 #include "math/hash.h"
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 
 namespace dg {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "camera/camera_sample.h"
 #include "math/vec.h"
-#include "optics/glass.h"
+#include "optics/lens/glass.h"
 
 namespace dg {
 

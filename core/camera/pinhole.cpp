@@ -2,11 +2,11 @@
 
 namespace dg {
 
-void Pinhole::generate(std::span<const CameraSample> samples,
+void Pinhole::generate(const Numbers& numbers, std::span<const CameraSample> samples,
                        std::span<CameraRay> rays) const {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Vec2f film = samples[i].film_mm;
-        const Vec3f direction = normalize(Vec3f{film.x, film.y, -float(film_distance_mm)});
+        const Vec3f direction = normalize(Vec3f{film.x, film.y, -float(numbers.film_distance_mm)});
         const float cosine = -direction.z;
         rays[i].ray = Ray{.origin = {}, .direction = direction, .time = samples[i].time};
         const float opening = samples[i].iris_opening;
@@ -16,8 +16,9 @@ void Pinhole::generate(std::span<const CameraSample> samples,
     }
 }
 
-void Pinhole::reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
-    const float distance = float(film_distance_mm);
+void Pinhole::reproject(const Numbers& numbers, std::span<const CameraRay> rays,
+                        std::span<Reprojection> out) const {
+    const float distance = float(numbers.film_distance_mm);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Vec3f d = rays[i].ray.direction;
         const float opening = rays[i].iris_opening, cosine = -d.z;

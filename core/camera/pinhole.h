@@ -11,9 +11,30 @@ struct Pinhole {
     double film_distance_mm = 50;
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
 
-    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+    /// Numbers that change evenly while it is on its way.
+    struct Numbers {
+        double film_distance_mm;
+    };
+    Numbers numbers() const { return {film_distance_mm}; }
+
+    void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
+        generate(numbers(), samples, rays);
+    }
+    /// With other numbers than its own.
+    void generate(const Numbers& numbers, std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
+
     /// Reprojects rays through the hole, whose measure across the ray is 1: etendue is in sr.
-    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
+    void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
+        reproject(numbers(), rays, out);
+    }
+    void reproject(const Numbers& numbers, std::span<const CameraRay> rays, std::span<Reprojection> out) const;
+
+    /// Unit, camera frame.
+    Vec3d chief_direction(Vec2d film_mm) const { return normalize(Vec3d{film_mm.x, film_mm.y, -film_distance_mm}); }
 };
+
+inline Pinhole::Numbers blend(const Pinhole::Numbers& a, const Pinhole::Numbers& b, double share) {
+    return {a.film_distance_mm + share * (b.film_distance_mm - a.film_distance_mm)};
+}
 
 }  // namespace dg

@@ -10,7 +10,7 @@
 
 #include "camera/camera_sample.h"
 #include "camera/projection_model.h"
-#include "optics/stop.h"
+#include "optics/lens/stop.h"
 
 namespace dg {
 
@@ -27,6 +27,9 @@ struct Projection {
         Vec2d focal_mm, principal_mm;
         double aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
         double exposure = 1;                        // factor on weights
+
+        /// Square of iris over image distance, like ThinLens::Numbers::light_cone.
+        double light_cone() const { return aperture_radius_mm * aperture_radius_mm / (focal_mm.x * focal_mm.y); }
     };
     Numbers numbers() const { return {focal_mm, principal_mm, aperture_radius_mm, 1 / focus_distance_m}; }
     void set(const Numbers& numbers);

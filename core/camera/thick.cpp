@@ -5,7 +5,7 @@
 #include "camera/tilt.h"
 #include "math/error.h"
 #include "math/warp.h"
-#include "optics/trace.h"
+#include "optics/trace/trace.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {

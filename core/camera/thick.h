@@ -13,8 +13,8 @@
 
 #include "camera/camera_sample.h"
 #include "math/transform.h"
-#include "optics/paraxial.h"
-#include "optics/stop.h"
+#include "optics/first_order/paraxial.h"
+#include "optics/lens/stop.h"
 
 namespace dg {
 

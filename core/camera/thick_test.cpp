@@ -9,7 +9,7 @@
 #include "camera/tilt.h"
 #include "math/error.h"
 #include "math/hash.h"
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 
 namespace dg {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "camera/camera_sample.h"
 #include "camera/tilt.h"
-#include "optics/stop.h"
+#include "optics/lens/stop.h"
 
 namespace dg {
 
@@ -28,6 +28,12 @@ struct ThinLens {
         double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
         double exposure = 1;                                          // factor on weights
         Vec2d tilt_deg{0, 0};
+
+        /// Measure that exposure is proportional to: the square of iris over image distance.
+        double light_cone() const {
+            const double slope = aperture_radius_mm / film_distance_mm;
+            return slope * slope;
+        }
     };
     Numbers numbers() const {
         return {film_distance_mm, aperture_radius_mm, 1 / focus_distance_m, 1, tilt_deg};
@@ -46,6 +52,9 @@ struct ThinLens {
     }
     void reproject(const Numbers& numbers, std::span<const CameraRay> rays,
                    std::span<Reprojection> out) const;
+
+    /// Through the centre, which does not bend a ray, tilted or not; unit, camera frame.
+    Vec3d chief_direction(Vec2d film_mm) const { return normalize(Vec3d{film_mm.x, film_mm.y, -film_distance_mm}); }
 
   private:
     Vec2f iris_point(Vec2f u, double covered, float& weight) const;

@@ -4,7 +4,7 @@
 
 #include "camera/exact.h"
 #include "math/statistics.h"
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 
 using namespace dg;
 

@@ -15,9 +15,12 @@ Vec3f float_transform(const std::array<Vec3f, 3>& rows, Vec3f v) {
     return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
 }
 
-std::array<float, 11> aov_values(const AovSample& s) {
-    return {s.depth,    s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y,
-            s.normal.z, s.albedo.x,   s.albedo.y,   s.albedo.z,   s.alpha};
+/// Values of a sample for the channels, in their order; 0 where it has none.
+std::array<float, kAovChannels.size()> aov_values(const AovSample& s) {
+    std::array<float, kAovChannels.size()> values{};
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (s.hit || !kAovChannels[k].of_hits) values[k] = kAovChannels[k].value(s);
+    return values;
 }
 
 /// Holds a pixel, or a row, that several threads may write.
@@ -211,15 +214,14 @@ void Film::count(int x, int y) {
 void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
     const std::int64_t i = find(x, y);
     if (i < 0 || aovs_.empty()) return;
-    const std::array<float, 11> values = aov_values(aov);
-    const auto first = values.begin() + (aov.hit ? 0 : kHitAovs);
-    if (!std::all_of(first, values.end(), fits_film)) {
+    const auto values = aov_values(aov);
+    if (!std::ranges::all_of(values, fits_film)) {
         const Lock lock(pixels_[i].lock);
         mark_bad(pixels_[i], sample);
         return;
     }
     AovPixel& pixel = aovs_[i];
-    for (int k = aov.hit ? 0 : kHitAovs; k < 11; ++k) pixel.sums[k].add(values[k]);
+    for (std::size_t k = 0; k < values.size(); ++k) pixel.sums[k].add(values[k]);
     ++pixel.passed;
     if (!aov.hit) return;
     ++pixel.hits;
@@ -264,7 +266,7 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         AovPixel& a = aovs_[i];
         const AovPixel& b = other.aovs_[i];
-        for (int k = 0; k < 11; ++k) a.sums[k].add(b.sums[k]);
+        for (std::size_t k = 0; k < a.sums.size(); ++k) a.sums[k].add(b.sums[k]);
         a.passed += b.passed;
         a.hits += b.hits;
         if (b.object_sample < a.object_sample) {

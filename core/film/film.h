@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "film/aov.h"
 #include "film/fixed_sum.h"
 #include "math/vec.h"
 #include "spectrum/responses.h"
@@ -20,16 +21,6 @@ namespace dg {
 struct BadSample {
     int x, y;
     std::uint32_t sample;
-};
-
-/// Auxiliary values of one camera sample's first hit; only samples that passed the lens
-/// bring them.
-struct AovSample {
-    bool hit = false;
-    float depth = 0;  // m, along the camera's -z
-    Vec3f position, normal, albedo;
-    std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
-    float alpha = 1;              // 1 where something was hit
 };
 
 struct FilmLayout {
@@ -119,14 +110,11 @@ class Film {
     /// of the mean over (mean^2 + dark), the mean of R, G and B.
     std::vector<float> relative_variance(float dark) const;
     std::vector<std::uint32_t> sample_counts() const;
-    /// Mean over the samples that brought one, 0 where none did. Names: aov_names(); else
+    /// Mean over the samples that brought one, 0 where none did. Names: those of kAovChannels; else
     /// Error.
     std::vector<float> aov(const std::string& name) const;
     /// Object of the lowest sample index that hit something.
     std::vector<std::uint32_t> object_ids() const;
-    /// depth.Z, P.X/Y/Z, N.X/Y/Z (over samples that hit), albedo.R/G/B, alpha (over all
-    /// that passed).
-    static const std::vector<std::string>& aov_names();
 
     /// The first bad sample of each of the first 100 pixels that have one, rows from the
     /// top; full-frame coordinates. Kept per pixel, so it depends on no order and
@@ -137,7 +125,8 @@ class Film {
     /// The whole state as it lies in memory, which is what pass files store and read back:
     /// "sums", and "aovs", "splats", "flare", "bands", "channels" and "channel_splats" if there are any, so many
     /// bytes per pixel (per band or channel).
-    static constexpr std::size_t kSumBytes = 112, kAovBytes = 192, kSplatBytes = 96, kBandBytes = 16;
+    static constexpr std::size_t kSumBytes = 112, kSplatBytes = 96, kBandBytes = 16;
+    static constexpr std::size_t kAovBytes = 16 * (kAovChannels.size() + 1);
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
     std::span<const std::byte> state(const std::string& part) const;
@@ -146,8 +135,6 @@ class Film {
 
   private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
-    /// Depth, position, normal come from samples that hit; the rest from all that passed.
-    static constexpr int kHitAovs = 7;
     struct Sums {
         ValueSum xyz[3];
         SquareSum rgb_squares[3];
@@ -158,7 +145,7 @@ class Film {
         std::uint32_t lock = 0;   // of add_shared; 0 at rest
     };
     struct AovPixel {
-        ValueSum sums[11];  // in the order of aov_names()
+        std::array<ValueSum, kAovChannels.size()> sums;   // in their order
         std::uint32_t passed = 0, hits = 0, object_sample = kNone, object_id = 0;
     };
 

@@ -122,26 +122,18 @@ const std::vector<Film::AovPixel>& Film::require_aovs() const {
     return aovs_;
 }
 
-const std::vector<std::string>& Film::aov_names() {
-    static const std::vector<std::string> names{
-        "depth.Z", "P.X",      "P.Y",      "P.Z",      "N.X",  "N.Y",
-        "N.Z",     "albedo.R", "albedo.G", "albedo.B", "alpha"};
-    return names;
-}
-
 std::vector<float> Film::aov(const std::string& name) const {
-    const auto& names = aov_names();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
+    const auto found = std::ranges::find(kAovChannels, name, &AovChannel::name);
+    if (found == kAovChannels.end()) {
         std::string known;
-        for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+        for (const AovChannel& c : kAovChannels) known += (known.empty() ? "" : ", ") + std::string(c.name);
         throw input_error("film", "aov", "one of " + known, name);
     }
-    const auto k = found - names.begin();
+    const auto k = std::size_t(found - kAovChannels.begin());
     std::vector<float> mean;
     mean.reserve(pixels_.size());
     for (const AovPixel& p : require_aovs()) {
-        const std::uint32_t n = k < kHitAovs ? p.hits : p.passed;
+        const std::uint32_t n = found->of_hits ? p.hits : p.passed;
         mean.push_back(n ? float(p.sums[k].value() / n) : 0.f);
     }
     return mean;

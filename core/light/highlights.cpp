@@ -21,12 +21,12 @@ bool HighlightSpot::holds(const Ray& ray) const {
 }
 
 /// On its plane; at infinity a direction.
-FlarePoint HighlightSpot::sample(Vec2f u, float time) const {
+EmitterPoint HighlightSpot::sample(Vec2f u, float time) const {
     const Sample2D s = weights.sample(u);
     const Vec2f t = Vec2f{low.x + size.x * s.x, low.y + size.y * s.y} + velocity * (time - 0.5f);
     const Vec3f way = frame.to_world({t.x, t.y, 1});
     const float pdf = s.pdf / (size.x * size.y), far = length(way);
-    FlarePoint from;
+    EmitterPoint from;
     from.at_infinity = nearness == 0;
     from.point = {.position = from.at_infinity ? way * (1 / far) : anchor + way * (1 / nearness),
                   .normal = frame.z * -1.f,
@@ -35,9 +35,9 @@ FlarePoint HighlightSpot::sample(Vec2f u, float time) const {
     return from;
 }
 
-FlarePoint HighlightTile::sample(Vec2f u) const {
+EmitterPoint HighlightTile::sample(Vec2f u) const {
     const Sample2D s = weights.sample(u);
-    FlarePoint from;
+    EmitterPoint from;
     from.at_infinity = true;
     from.point = {.position = tile.at({s.x, s.y}), .pdf = s.pdf / tile.solid_angle()};
     from.reflected = float(luminance * s.pdf);
@@ -50,7 +50,7 @@ double Highlights::illuminance(int part) const {
     return tile.luminance * tile.tile.solid_angle();
 }
 
-FlarePoint Highlights::sample(int part, Vec2f u, float time) const {
+EmitterPoint Highlights::sample(int part, Vec2f u, float time) const {
     return part < spots() ? spots_[part].sample(u, time) : tiles_[part - spots()].sample(u);
 }
 

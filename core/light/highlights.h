@@ -11,7 +11,7 @@
 
 #include "geometry/ray.h"
 #include "light/direction_tile.h"
-#include "light/flare_point.h"
+#include "light/emitter_point.h"
 #include "math/distribution.h"
 
 namespace dg {
@@ -30,7 +30,7 @@ struct HighlightSpot {
     std::optional<Vec2f> meet(const Ray& ray) const;
     bool holds(const Ray& ray) const;
     double solid_angle() const { return double(size.x) * size.y; }   // nearly
-    FlarePoint sample(Vec2f u, float time) const;
+    EmitterPoint sample(Vec2f u, float time) const;
 };
 
 /// Directions that are not bright spots.
@@ -39,7 +39,7 @@ struct HighlightTile {
     Distribution2D weights;
     double luminance = 0;    // cd/m2: mean
 
-    FlarePoint sample(Vec2f u) const;
+    EmitterPoint sample(Vec2f u) const;
 };
 
 class Highlights {
@@ -53,7 +53,7 @@ class Highlights {
     int spots() const { return int(spots_.size()); }
     /// lux, on a surface that faces it.
     double illuminance(int part) const;
-    FlarePoint sample(int part, Vec2f u, float time) const;
+    EmitterPoint sample(int part, Vec2f u, float time) const;
     /// A ray to the world is drawn by the first spot that holds it alone, and by a tile if none does.
     bool owns(int part, const Ray& ray) const;
 

@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// Input that cannot be used. The message is one sentence a user can act on; Python sees ValueError.
+/// Input that cannot be used. The message is one sentence a user can act on; Python sees daguerre._core.Error.
 struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 #include "render/render.h"
 
 namespace dg {

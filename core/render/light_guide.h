@@ -2,12 +2,12 @@
 #pragma once
 #include <memory>
 
-#include "camera/pupil_view.h"
+#include "camera/inverse/pupil_view.h"
 #include "camera/sensor.h"
 #include "light/emission.h"
 #include "light/emission_ray.h"
-#include "render/light_plan.h"
 #include "scene/scene.h"
+#include "transport/light_plan.h"
 
 namespace dg {
 

@@ -7,13 +7,11 @@
 namespace dg {
 namespace {
 
-constexpr int kBatchSize = 256;   // light paths per call of the lens: their wavelengths fill the SIMD lanes
 constexpr int kSequence = -1;     // where pixels have their row, in the sampler's scramble
 
 }  // namespace
 
-std::array<std::uint64_t, 2> light_path_range(double begin, double end, double per_sample,
-                                              std::uint64_t seed) {
+IndexRange light_path_range(double begin, double end, double per_sample, std::uint64_t seed) {
     const double offset = hash_uniform(seed, 0x11947);   // so that parts of a path are right on average
     const auto until = [&](double sample) {
         return std::uint64_t(std::floor(sample * per_sample + offset));
@@ -21,47 +19,32 @@ std::array<std::uint64_t, 2> light_path_range(double begin, double end, double p
     return {until(begin), until(end)};
 }
 
-LightPass::LightPass(const Scene& scene, const Camera& camera, Film& film,
-                     const RenderSettings& settings, const FilmDensity& density,
-                     const LightWeight& weight, const PixelCone& cone)
-    : scene_(scene),
-      camera_(camera),
-      film_(film),
-      settings_(settings),
-      density_(density),
-      weight_(weight),
-      cone_(cone),
-      bounced_(scene, camera, settings, weight) {
-    const bool exact = std::holds_alternative<ExactLens>(camera.lens);
-    end_secondary_ = exact && settings.dispersion == Dispersion::end_secondary;
+LightPass::LightPass(const Picture& picture, const LightWeight& weight, const PixelCone& cone)
+    : picture_(picture), weight_(weight), cone_(cone) {
+    const bool exact = std::holds_alternative<ExactLens>(picture.camera.lens);
+    end_secondary_ = exact && picture.settings.dispersion == Dispersion::end_secondary;
     landings_ = exact && !end_secondary_ ? kWavelengths : 1;
 }
 
-void LightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
-    for (std::uint64_t i = first; i < last; ++i) {
+void StraightLightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+    draw_each(work, first, last, [&](std::uint64_t i) {
         if (auto path = begin(i)) work.paths.push_back(*path);
-        if (work.paths.size() == kBatchSize) trace(work);
-    }
-    trace(work);
-    work.counters.light_paths += last - first;
+    });
 }
 
-void LightPass::draw_bounced(Workspace& work, std::uint64_t first, std::uint64_t last) const {
-    for (std::uint64_t i = first; i < last; ++i) {
-        bounced_.follow(i, work.paths, work.counters.rays);
-        if (work.paths.size() >= kBatchSize) trace(work);
-    }
-    trace(work);
-    work.counters.light_paths += last - first;
+void BouncedLightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
+    draw_each(work, first, last,
+              [&](std::uint64_t i) { paths_.follow(i, work.paths, work.counters.rays); });
 }
 
 /// Nothing for a path that cannot bring light. Order of drawing: time and wavelengths, the emitter, the point
 /// of the lens; then the point on the emitter. Lens and emitter are stratified together.
-std::optional<LightArrival> LightPass::begin(std::uint64_t index) const {
+std::optional<LightArrival> StraightLightPass::begin(std::uint64_t index) const {
+    const auto& [scene, camera, film, settings, density] = picture_;
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index),
-                        settings_.seed);
+                        settings.seed);
     const CameraRandom u = sampler.camera();
-    const Moment moment = settings_.shutter.draw_any(u.time);
+    const Moment moment = settings.shutter.draw_any(u.time);
     const auto point = weight_.emission().sample(u.film.x, sampler.next_2d(), moment.time,
                                                  weight_.viewpoint(moment.time));
     if (!point) return std::nullopt;
@@ -73,23 +56,23 @@ std::optional<LightArrival> LightPass::begin(std::uint64_t index) const {
     if (!lens || !(lens->pdf > 0)) return std::nullopt;
     LightArrival path;
     path.lens.ray = Ray{.origin = lens->origin, .direction = lens->direction, .time = moment.time};
-    path.lens.iris_opening = moment.iris_opening * setting_at(camera_, moment.time).iris_opening;
-    const Ray world = to_world(camera_, path.lens.ray);
+    path.lens.iris_opening = moment.iris_opening * setting_at(camera, moment.time).iris_opening;
+    const Ray world = to_world(camera, path.lens.ray);
     const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
     path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
     path.wavelengths = Wavelengths::sample(u.lambda);
     if (end_secondary_) path.wavelengths.end_secondary();
-    if (scene_.is_uneven(*point)) {
+    if (scene.is_uneven(*point)) {
         path.source = *point;
     } else {
-        const Rgb luminance = scene_.emission(*point, -world.direction, moment.time);
+        const Rgb luminance = scene.emission(*point, -world.direction, moment.time);
         if (!(max_component(luminance) > 0)) return std::nullopt;
         path.radiance = path.wavelengths.emission(luminance);
     }
     path.shadow = sky ? world : shadow_ray(point->position, cosine, world);
     path.u_pixel = sampler.next_2d();
-    path.sample = std::uint32_t(double(index) / settings_.light.m1);
+    path.sample = std::uint32_t(double(index) / settings.light.m1);
     return path;
 }
 
@@ -102,14 +85,11 @@ void LightPass::trace(Workspace& work) const {
             work.nm.push_back(path.wavelengths.nm[k]);
         }
     work.landings.assign(work.rays.size(), Reprojection{});
-    if (!work.rays.empty()) reproject(camera_, work.rays, work.nm, work.landings);
+    if (!work.rays.empty()) reproject(picture_.camera, work.rays, work.nm, work.landings);
     for (std::size_t i = 0; i < work.paths.size(); ++i) {
         const std::span<Reprojection> own(work.landings.data() + i * landings_, std::size_t(landings_));
         if (work.paths[i].source) look(work.paths[i], own);
-        if (!camera_.setting.values.empty()) {
-            const Vec2f shift = setting_at(camera_, work.paths[i].lens.ray.time).film_shift_mm;
-            for (Reprojection& l : own) l.film_mm = l.film_mm - shift;
-        }
+        undo_film_shift(picture_.camera, std::span(work.rays).subspan(i * std::size_t(landings_), own.size()), own);
         finish(work, work.paths[i], own);
     }
     work.paths.clear();
@@ -120,24 +100,24 @@ void LightPass::look(LightArrival& path, std::span<const Reprojection> landings)
     const auto hero = std::ranges::find_if(landings, [](const auto& l) { return l.etendue > 0; });
     if (hero == landings.end()) return;
     const RayCone cone = cone_.at(hero->film_mm, path.lens.ray);
-    const Rgb luminance = scene_.emission(*path.source, path.shadow.direction, path.shadow.time,
+    const Rgb luminance = picture_.scene.emission(*path.source, path.shadow.direction, path.shadow.time,
                                           cone.after(path.shadow.t_max).width);
     path.radiance = path.wavelengths.emission(luminance);
 }
 
 void LightPass::finish(Workspace& work, const LightArrival& path,
                        std::span<const Reprojection> landings) const {
-    const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
+    const RayOnFilm film_ray(picture_.density, picture_.settings.sensor, landings, path.lens.ray.time);
     work.counters.splats_off_film += film_ray.off_frame();
     if (!film_ray.in_reach() || path.radiance.is_black()) return;
     ++work.counters.rays;
     if (!is_traceable(path.shadow)) return;
-    const Spectrum visible = scene_.visibility_along(path.shadow, path.wavelengths);
+    const Spectrum visible = picture_.scene.visibility_along(path.shadow, path.wavelengths);
     if (visible.is_black()) return;
     const double light = path.density, camera = film_ray.camera_density();
     const Spectrum radiance = path.radiance * visible;
     if (!work.log) {
-        film_ray.splat(film_, radiance * float(1 / weight_.divisor(light, camera)), path.wavelengths,
+        film_ray.splat(picture_.film, radiance * float(1 / weight_.divisor(light, camera)), path.wavelengths,
                        path.u_pixel, path.sample);
         return;
     }

@@ -1,11 +1,5 @@
-// light_path.h -- light that is followed from an emitter, from one surface to the next; at each of them some
-// goes to the lens (light tracing: Arvo 1986, Backward Ray Tracing; Veach 1997, 10.3). So caustics converge
-// that a path from the camera meets by chance.
-//
-// Each path finds what the camera's find by next-event estimation and by meeting emitters, and no more, and
-// not what comes straight to the first surface that the lens sees (bounce_share.h):
-// light of a delta light begins at the first surface that scatters it, and none of it passes the boundary
-// of a volume before.
+// light_path.h -- light paths with bounces (transport/light_walk.h), and what they send to the lens from each
+// surface. So caustics converge that a path from the camera meets by chance.
 #pragma once
 #include <optional>
 #include <vector>
@@ -13,8 +7,7 @@
 #include "render/light_arrival.h"
 #include "render/light_weight.h"
 #include "render/render.h"
-#include "render/two_way.h"
-#include "render/volume_walk.h"
+#include "transport/light_walk.h"
 
 namespace dg {
 
@@ -27,15 +20,10 @@ class LightPaths {
     void follow(std::uint64_t index, std::vector<LightArrival>& arrivals, std::uint64_t& rays) const;
 
   private:
-    struct Walk;
-    std::optional<Walk> begin(std::uint64_t index) const;
-    bool bounce(Walk& walk, std::vector<LightArrival>& arrivals) const;
-    void connect(const Walk& walk, TwoWay& both, const SurfaceHit& hit, Vec2f u_lens, Vec2f u_pixel,
-                 std::vector<LightArrival>& arrivals) const;
-    bool advance(Walk& walk, TwoWay& both, const SurfaceHit& hit, const LightStep& step) const;
-    std::optional<Spectrum> enter(const Walk& walk, VolumeWalk& volume, const Bsdf& bsdf,
-                                  const SurfaceHit& hit, Vec3f w) const;
-    double camera_density(const Walk& walk, const SurfaceHit& hit, float bsdf_pdf) const;
+    struct Flight;
+    std::optional<Flight> begin(std::uint64_t index) const;
+    std::optional<LightArrival> connect(const Flight& flight, LightVertex& vertex,
+                                        const LightWalk::Random& u) const;
 
     const Scene& scene_;
     const Camera& camera_;

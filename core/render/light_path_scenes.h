@@ -7,7 +7,7 @@
 #include <string>
 
 #include "math/statistics.h"
-#include "optics/test_lenses.h"
+#include "optics/lens/test_lenses.h"
 #include "render/render.h"
 #include "scene/test_scenes.h"
 

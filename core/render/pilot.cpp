@@ -78,10 +78,10 @@ class Pilot {
         if (weight.emission().empty() && !weight.bounces()) return {};
         const double lens = price_of(camera_.lens);
         double rays = 0;
-        const std::vector<PilotArrival> straight = fly(weight, &LightPass::draw, rays);
+        const std::vector<PilotArrival> straight = fly<StraightLightPass>(weight, rays);
         costs_.straight = kPath + lens + rays * (1 + kSplat);
         std::vector<PilotArrival> bounced;
-        if (weight.bounces()) bounced = fly(weight, &LightPass::draw_bounced, rays);
+        if (weight.bounces()) bounced = fly<BouncedLightPass>(weight, rays);
         costs_.bounced = kPath + rays * (1 + kConnected * lens);
         if (straight.empty() && bounced.empty()) return {};
         const std::vector<PilotBlock> blocks = look();
@@ -115,10 +115,10 @@ class Pilot {
     }
 
     /// Light paths of one kind, and the rays of one of them.
-    template <typename Draw>
-    std::vector<PilotArrival> fly(const LightWeight& weight, Draw draw, double& rays_per_path) const {
+    template <typename LightPassKind>
+    std::vector<PilotArrival> fly(const LightWeight& weight, double& rays_per_path) const {
         Film nowhere(FilmLayout{1, 1});   // all is logged
-        const LightPass pass(scene_, camera_, nowhere, settings_, density_, weight, cone_);
+        const LightPassKind pass({scene_, camera_, nowhere, settings_, density_}, weight, cone_);
         const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
         std::vector<std::vector<LoggedSplat>> found(tasks);
         std::vector<std::uint64_t> rays(tasks);
@@ -126,7 +126,7 @@ class Pilot {
             LightPass::Workspace work;
             work.log = &found[task];
             const std::uint64_t first = std::uint64_t(task) * kPathsPerTask;
-            (pass.*draw)(work, first, std::min(first + kPathsPerTask, paths()));
+            pass.draw(work, first, std::min(first + kPathsPerTask, paths()));
             rays[task] = work.counters.rays;
         });
         std::vector<PilotArrival> all;   // in the order of the paths, whatever thread drew them

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "render/light_plan.h"
+#include "transport/light_plan.h"
 
 namespace dg {
 

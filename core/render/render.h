@@ -11,9 +11,10 @@
 #include "camera/shutter.h"
 #include "film/film.h"
 #include "film/filter.h"
-#include "render/light_plan.h"
-#include "render/path.h"
+#include "render/render_counters.h"
 #include "scene/scene.h"
+#include "transport/light_plan.h"
+#include "transport/path.h"
 
 namespace dg {
 
@@ -76,15 +77,6 @@ struct RenderSettings {
     std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
     FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
     ScatterPlan scatter;                        // the same; it is in the layer of flare
-};
-
-struct RenderCounters {
-    std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
-    std::uint64_t light_paths = 0;
-    std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
-    std::uint64_t flare_paths = 0;
-    std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
-    std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: with some wavelength
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

@@ -1,6 +1,6 @@
 // scene_lights.cpp -- the lights of a scene: those it was given, and those that its meshes are.
-#include "scene/emission.h"
 #include "scene/emission_motion.h"
+#include "scene/emissive_mesh.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -59,7 +59,7 @@ Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward,
     const Vec3f winding = cross(light.b - light.a, light.c - light.a);
     const bool front = (dot(winding, toward) > 0) != light.mirrored;
     const MaterialAt material = material_at(record.material, time);
-    return emission_at(record, material, description_.textures, light.primitive, barycentric, front, time,
+    return emission_at(record, material, description_.textures, {light.primitive, barycentric, front, time},
                        toward, width);
 }
 

@@ -3,7 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+from ._core import Error as CoreError
+
+__all__ = [
+    "CoreError",
+    "DaguerreError",
+    "InputError",
+    "MismatchError",
+    "OutputError",
+    "UsageError",
+    "core_errors",
+    "suggest",
+]
 
 
 class DaguerreError(ValueError):
@@ -34,6 +48,18 @@ class OutputError(DaguerreError):
     """An output that cannot be written (exit code 5)."""
 
     exit_code = 5
+
+
+@contextmanager
+def core_errors(raised: type[DaguerreError], where: str = "") -> Iterator[None]:
+    """Raises what the core refuses inside as an error of ``raised``, ``where`` ahead of its words.
+
+    Works as a decorator, too. Other errors pass: a ``ValueError`` of our own code is a fault.
+    """
+    try:
+        yield
+    except CoreError as error:
+        raise raised(f"{where}: {error}" if where else str(error)) from None
 
 
 def suggest(name: object, known: Iterable[str]) -> str:

@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         film.variance_rgb();
         film.bad_samples();
         film.object_ids();
-        for (const std::string& name : Film::aov_names()) film.aov(name);
+        for (const AovChannel& channel : kAovChannels) film.aov(channel.name);
     } catch (const Error&) {
     }
     return 0;

@@ -5,7 +5,7 @@
 
 #include "input.h"
 #include "math/error.h"
-#include "render/path.h"
+#include "transport/path.h"
 
 namespace dg {
 namespace {

@@ -15,7 +15,7 @@ constexpr double kFurthestBack = 0.45;    // cosine: no lens sees what lies furt
 
 }  // namespace
 
-Ray flare_shadow(const FlarePoint& from, const Ray& from_lens) {
+Ray flare_shadow(const EmitterPoint& from, const Ray& from_lens) {
     if (from.at_infinity) return from_lens;
     const float cosine = from.delta ? 1 : std::abs(dot(from.point.normal, from_lens.direction));
     return shadow_ray(from.point.position, cosine, from_lens);
@@ -58,7 +58,7 @@ FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSetting
         const ExactLens::Ball ball = state.lens.front_ball();
         radius_ = std::max(radius_, ball.radius + length(ball.center - center_));
     }
-    sources_ = FlareSources(scene.lights(), views());
+    sources_ = EmitterPoints(scene.lights(), views());
     if (settings.flare.highlights && (!mirrors_.empty() || camera.scatter.scatters())) look_for_highlights(settings);
 }
 
@@ -79,7 +79,7 @@ std::vector<ViewCone> FlareAim::views() const {
 }
 
 void FlareAim::look_for_highlights(const RenderSettings& settings) {
-    const auto ray = [&](const FlarePoint& to, Vec2f at, float time) -> std::optional<Ray> {
+    const auto ray = [&](const EmitterPoint& to, Vec2f at, float time) -> std::optional<Ray> {
         const auto way = this->way(to, at, time);
         if (!way || way->direction.z > kFurthestBack) return std::nullopt;
         return way->ray();
@@ -102,9 +102,7 @@ void FlareAim::trace(std::size_t state, int ghost, std::span<const CameraRay> ra
                        std::span<const float> nm, std::span<Reprojection> out) const {
     const State& s = states_[state];
     s.lens.reproject(rays, nm, s.ghosts, s.steps[ghost], out);
-    if (camera_.setting.values.empty()) return;
-    for (std::size_t i = 0; i < out.size(); ++i)   // the film lay elsewhere then
-        out[i].film_mm = out[i].film_mm - setting_at(camera_, rays[i].ray.time).film_shift_mm;
+    undo_film_shift(camera_, rays, out);
 }
 
 std::optional<Vec2f> FlareAim::on_frame(const Reprojection& landing, float time) const {
@@ -137,7 +135,7 @@ double FlareAim::reflectance(int ghost) const {
     return r;
 }
 
-std::optional<FlareAim::Way> FlareAim::way(const FlarePoint& from, Vec2f at, float time) const {
+std::optional<FlareAim::Way> FlareAim::way(const EmitterPoint& from, Vec2f at, float time) const {
     const Affine3d pose = camera_.world_from_camera.at(time), to_camera = inverse(pose);
     const Vec3d position = to_double(from.point.position);
     const Vec3d p = from.at_infinity ? to_camera.vector(position) : to_camera.point(position);
@@ -181,7 +179,7 @@ std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, doubl
     return path;
 }
 
-Rgb FlareAim::value_of(const FlarePoint& from, const Way& way) const {
+Rgb FlareAim::value_of(const EmitterPoint& from, const Way& way) const {
     if (from.reflected) return Rgb{1, 1, 1} * *from.reflected;
     if (from.delta) return sources_.delta_value(from, to_float(way.pose.point(way.start)), way.time);
     return scene_.emission(from.point, -way.world, way.time);

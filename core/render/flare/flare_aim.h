@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "light/flare_sources.h"
+#include "light/emitter_points.h"
 #include "render/flare/flare_lambda.h"
 #include "render/render.h"
 #include "spectrum/wavelengths.h"
@@ -21,11 +21,11 @@ struct FlareArrival {
     Spectrum radiance{0.f};   // or what stands for it of lights without size
     double density = 0;       // of such paths, per m2 sr
     Vec2f at{};               // where it was aimed at, [-1, 1)^2
-    FlarePoint from{};
+    EmitterPoint from{};
 };
 
 /// From where it comes to where rays of the lens start; world.
-Ray flare_shadow(const FlarePoint& from, const Ray& from_lens);
+Ray flare_shadow(const EmitterPoint& from, const Ray& from_lens);
 
 /// Light from the world along the way of a path, as its wavelengths may reach the film each in its place.
 /// `sampler`: for paths through the scene, which light that other things reflect needs; `rays` counts them all.
@@ -42,7 +42,7 @@ class FlareAim {
         return &scene == &scene_ && &camera == &camera_;
     }
     int ghosts() const { return int(mirrors_.size()); }
-    const FlareSources& sources() const { return sources_; }
+    const EmitterPoints& sources() const { return sources_; }
     /// Bright spots among what other things send to the lens, and how many rays it took to find them.
     int spots() const { return spots_; }
     std::uint64_t survey_rays() const { return survey_rays_; }
@@ -97,8 +97,8 @@ class FlareAim {
     void add_state(const Camera& camera, const ExactLens& lens);
     std::vector<ViewCone> views() const;
     void look_for_highlights(const RenderSettings& settings);
-    std::optional<Way> way(const FlarePoint& from, Vec2f at, float time) const;
-    Rgb value_of(const FlarePoint& from, const Way& way) const;
+    std::optional<Way> way(const EmitterPoint& from, Vec2f at, float time) const;
+    Rgb value_of(const EmitterPoint& from, const Way& way) const;
 
     const Scene& scene_;
     const Camera& camera_;
@@ -112,7 +112,7 @@ class FlareAim {
     double radius_ = 0;
     int spots_ = 0;
     std::uint64_t survey_rays_ = 0;
-    FlareSources sources_;
+    EmitterPoints sources_;
 };
 
 }  // namespace dg

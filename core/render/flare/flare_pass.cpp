@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "render/flare/flare_splat.h"
+
 namespace dg {
 namespace {
 
@@ -15,16 +17,11 @@ constexpr std::size_t kChunk = kLensBatch / kWavelengths;   // paths per call of
 
 }  // namespace
 
-FlarePass::FlarePass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
-                     const FilmDensity& density, double per_sample, const FlareGuide& guide)
-    : scene_(scene),
-      camera_(camera),
-      film_(film),
-      settings_(settings),
-      density_(density),
-      guide_(guide),
+FlarePass::FlarePass(const Picture& picture, double per_sample, std::shared_ptr<const FlareGuide> guide)
+    : picture_(picture),
       per_sample_(per_sample),
-      scale_(density.integral_of_any_time()) {}
+      scale_(picture.density.integral_of_any_time()),
+      guide_(std::move(guide)) {}
 
 /// All paths first, then one ghost after the other: rays by the same surfaces share the lanes.
 void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
@@ -34,7 +31,7 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
     std::iota(work.order.begin(), work.order.end(), 0u);
     const auto kind = [&](std::uint32_t i) {
         const FlareArrival& p = work.paths[i];
-        return std::tuple(guide_.aim().state_at(p.lens.ray.time), p.ghost);
+        return std::tuple(guide_->aim().state_at(p.lens.ray.time), p.ghost);
     };
     std::ranges::stable_sort(work.order, {}, kind);
     for (std::size_t from = 0; from < work.order.size();) {
@@ -50,16 +47,16 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
 
 /// Order of drawing: pair, point of the front, time and wavelengths are stratified together.
 void FlarePass::begin(Workspace& work, std::uint64_t index) const {
-    PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), settings_.seed);
+    PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), picture_.settings.seed);
     const CameraRandom u = sampler.camera();
-    auto path = guide_.draw({u.film.x, u.film.y, u.lambda, u.lens, sampler.next_2d(),
-                             settings_.shutter.draw_any(u.time)});
+    auto path = guide_->draw({u.film.x, u.film.y, u.lambda, u.lens, sampler.next_2d(),
+                             picture_.settings.shutter.draw_any(u.time)});
     if (!path) return;
     path->density *= per_sample_ * scale_;
     work.paths.push_back(*path);
     work.u_pixel.push_back(sampler.next_2d());
     work.samplers.push_back(sampler);
-    work.sample.push_back(std::uint32_t(double(index) / settings_.flare.per_sample));
+    work.sample.push_back(std::uint32_t(double(index) / picture_.settings.flare.per_sample));
 }
 
 /// Paths of one ghost to the film, each wavelength by its own way.
@@ -72,12 +69,12 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
     }
     work.landings.assign(work.rays.size(), Reprojection{});
     const FlareArrival& any = work.paths[work.order[first]];
-    guide_.aim().trace(guide_.aim().state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
+    guide_->aim().trace(guide_->aim().state_at(any.lens.ray.time), any.ghost, work.rays, work.nm, work.landings);
     for (std::size_t i = first; i < last; ++i) {
         if (i + 1 < last) prefetch(work, i + 1 - first);
         const std::span own(work.landings.data() + (i - first) * kWavelengths, std::size_t(kWavelengths));
         const float time = work.paths[work.order[i]].lens.ray.time;
-        const int arrived = guide_.aim().mark_arrived(own, time);
+        const int arrived = guide_->aim().mark_arrived(own, time);
         work.counters.flare_hits += std::uint64_t(arrived);
         if (arrived > 0) finish(work, work.order[i], own);
     }
@@ -85,26 +82,21 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
 
 /// For a path of those that were traced last.
 void FlarePass::prefetch(const Workspace& work, std::size_t path) const {
-    const float reach = settings_.filter.radius();
+    const float reach = picture_.settings.filter.radius();
     if (reach > kMostReach) return;
     for (std::size_t k = path * kWavelengths; k < (path + 1) * kWavelengths; ++k) {
         if (!(work.landings[k].transmittance > 0)) continue;
-        const Vec2f px = settings_.sensor.px_from_mm(work.landings[k].film_mm);
+        const Vec2f px = picture_.settings.sensor.px_from_mm(work.landings[k].film_mm);
         if (!(std::abs(px.x) < kFarthestPx && std::abs(px.y) < kFarthestPx)) continue;
-        film_.prefetch(int(std::floor(px.x - reach)), int(std::ceil(px.x + reach)), int(std::floor(px.y - reach)),
+        picture_.film.prefetch(int(std::floor(px.x - reach)), int(std::ceil(px.x + reach)), int(std::floor(px.y - reach)),
                        int(std::ceil(px.y + reach)), Film::Layer::flare);
     }
 }
 
 void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Reprojection> landings) const {
     const FlareArrival& path = work.paths[index];
-    const RayOnFilm film_ray(density_, settings_.sensor, landings, path.lens.ray.time);
-    if (!film_ray.in_reach()) return;
-    const Spectrum light =
-        flare_light(scene_, camera_, settings_.path, path, work.samplers[index], work.counters.rays);
-    if (light.is_black()) return;
-    film_ray.splat(film_, light * float(1 / path.density), path.wavelengths, work.u_pixel[index],
-                   work.sample[index], Film::Layer::flare);
+    splat_flare(picture_, path, path.density, landings, work.u_pixel[index], work.samplers[index],
+                work.sample[index], work.counters.rays);
 }
 
 }  // namespace dg

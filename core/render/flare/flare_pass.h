@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "render/flare/flare_guide.h"
-#include "render/ray_on_film.h"
+#include "render/pass.h"
 
 namespace dg {
 
 class FlarePass {
   public:
-    /// `per_sample`: paths per unit of the density's counts. All outlives this.
-    FlarePass(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
-              const FilmDensity& density, double per_sample, const FlareGuide& guide);
+    static constexpr std::uint64_t kBlock = 16384;   // enough of one ghost to fill the SIMD lanes
+    /// `per_sample`: paths per unit of the density's counts.
+    FlarePass(const Picture& picture, double per_sample, std::shared_ptr<const FlareGuide> guide);
 
     /// Buffers of one thread.
     struct Workspace {
@@ -40,13 +40,9 @@ class FlarePass {
     void prefetch(const Workspace& work, std::size_t path) const;
     void finish(Workspace& work, std::size_t path, std::span<const Reprojection> landings) const;
 
-    const Scene& scene_;
-    const Camera& camera_;
-    Film& film_;
-    const RenderSettings& settings_;
-    const FilmDensity& density_;
-    const FlareGuide& guide_;
+    Picture picture_;
     double per_sample_, scale_;
+    std::shared_ptr<const FlareGuide> guide_;
 };
 
 }  // namespace dg

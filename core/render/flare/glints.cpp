@@ -12,7 +12,7 @@ constexpr float kNarrow = 4;   // per sr: lobes of this density show lamps, as m
 
 }  // namespace
 
-Glints::Glints(const Scene& scene, const FlareSources& sources) : scene_(scene), all_(sources) {
+Glints::Glints(const Scene& scene, const EmitterPoints& sources) : scene_(scene), all_(sources) {
     for (int i = 0; i < sources.count(); ++i)
         if (sources.has_size(i)) sources_.push_back(i);
     std::ranges::stable_sort(sources_, std::ranges::greater{}, [&](int i) { return sources.strength(i); });

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "light/flare_sources.h"
+#include "light/emitter_points.h"
 #include "math/sampler.h"
 #include "scene/scene.h"
 
@@ -12,7 +12,7 @@ namespace dg {
 class Glints {
   public:
     /// The strongest of the sources that have a size. Scene and sources outlive this.
-    Glints(const Scene& scene, const FlareSources& sources);
+    Glints(const Scene& scene, const EmitterPoints& sources);
 
     bool empty() const { return sources_.empty(); }
     /// Luminance along a ray to the world by way of mirrors, glass and narrow lobes, were each lamp's light spread
@@ -25,7 +25,7 @@ class Glints {
              std::uint64_t& rays) const;
 
     const Scene& scene_;
-    const FlareSources& all_;
+    const EmitterPoints& all_;
     std::vector<int> sources_;
 };
 

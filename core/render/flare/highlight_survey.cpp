@@ -66,7 +66,7 @@ std::vector<float> raised(std::vector<float> weights, int cells, float mean) {
 
 class Surveyor {
   public:
-    Surveyor(const Scene& scene, const FlareSources& lamps, const SurveyView& view)
+    Surveyor(const Scene& scene, const EmitterPoints& lamps, const SurveyView& view)
         : scene_(scene), view_(view), glints_(scene, lamps) {
         view_.path.straight = view_.path.caustics = false;
         tiles_ = direction_tiles(kAcross, kDown);
@@ -130,7 +130,7 @@ void Surveyor::look_around() {
             int cell = 0;
             const auto toward = [&](Vec2f u, float) {
                 cell = int(u.y * kCells) * kCells + int(u.x * kCells);
-                return FlarePoint{{.position = tiles_[t].at(u)}, true};
+                return EmitterPoint{{.position = tiles_[t].at(u)}, true};
             };
             if (auto found = look(toward, sampler, kSpread, rays)) {
                 found->cell = cell;
@@ -323,7 +323,7 @@ std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const Hi
 
 }  // namespace
 
-Survey survey_highlights(const Scene& scene, const FlareSources& lamps, const SurveyView& view) {
+Survey survey_highlights(const Scene& scene, const EmitterPoints& lamps, const SurveyView& view) {
     if (scene.triangle_count() == 0) return {};
     return Surveyor(scene, lamps, view).run();
 }

@@ -8,14 +8,14 @@
 #include <functional>
 
 #include "camera/shutter.h"
-#include "light/flare_sources.h"
-#include "render/path.h"
+#include "light/emitter_points.h"
+#include "transport/path.h"
 
 namespace dg {
 
 /// A ray of the lens to a point or direction of the world, from a place [-1, 1)^2 of its front; world. Nothing
 /// where no light enters.
-using FrontRay = std::function<std::optional<Ray>(const FlarePoint& to, Vec2f at, float time)>;
+using FrontRay = std::function<std::optional<Ray>(const EmitterPoint& to, Vec2f at, float time)>;
 
 struct SurveyView {
     Vec3f anchor;        // m: middle of the front, at mid-exposure
@@ -32,6 +32,6 @@ struct Survey {
 };
 
 /// `lamps`: what may be seen in mirrors. The same for any number of threads. Empty if no path found anything.
-Survey survey_highlights(const Scene& scene, const FlareSources& lamps, const SurveyView& view);
+Survey survey_highlights(const Scene& scene, const EmitterPoints& lamps, const SurveyView& view);
 
 }  // namespace dg

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre.errors import InputError
+from daguerre.errors import InputError, core_errors
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench
@@ -81,7 +81,7 @@ class Ghosts:
         self.film = film or (6 * half, 4 * half)
         self.stack = stack or _core.SensorStack()
         half_film = (self.film[0] / 2, self.film[1] / 2)
-        try:
+        with core_errors(InputError):
             self.core = _core.GhostLens(
                 bench.lens.prescription,
                 bench.film_z,
@@ -93,8 +93,6 @@ class Ghosts:
             found = self.core.spots(
                 math.radians(angle_deg), half_film, list(NM), list(WEIGHTS), rays, True
             )
-        except ValueError as error:
-            raise InputError(str(error)) from None
         self.all = [
             Ghost(tuple(surfaces), light, everywhere, center, radius, points)
             for surfaces, light, everywhere, center, radius, points in found

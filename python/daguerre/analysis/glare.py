@@ -13,7 +13,7 @@ import numpy as np
 
 import daguerre._core as _core
 from daguerre.camera.lens_scatter import core_parts
-from daguerre.errors import InputError
+from daguerre.errors import InputError, core_errors
 
 from .ghosts import NM, WEIGHTS
 
@@ -65,7 +65,7 @@ class VeilingGlare:
         seed: int = 0,
     ) -> None:
         self.patch_mm = patch_mm or 0.2 * bench.field_mm
-        try:
+        with core_errors(InputError):
             lens = _core.ScatterLens(
                 bench.lens.prescription,
                 bench.film_z,
@@ -75,8 +75,6 @@ class VeilingGlare:
                 bench.field_mm,
                 core_parts(scatter),
             )
-        except ValueError as error:
-            raise InputError(str(error)) from None
         edge = math.cos(math.atan(0.5 * self.patch_mm / abs(bench.order.efl)))
         each = max(1, walks // (_BATCHES * len(NM)))
         sums = np.array(

@@ -1,7 +1,7 @@
 """The opening of an iris as a picture: blades, arcs, a picture of it, and dust that lies on it.
 
-One unit is the radius of the circle of equal area, as in ``core/optics/stop.h``; x to the right and
-y up, seen along the view.
+One unit is the radius of the circle of equal area, as in ``core/optics/lens/stop.h``; x to the
+right and y up, seen along the view.
 """
 
 from __future__ import annotations

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from daguerre.errors import InputError
+
 from .bench import Bench, FloatArray
 from .diffraction import Pupil
 from .iris import Floats, Iris
@@ -172,7 +174,7 @@ def zone_pupils(
     if not lit:  # corners alone, beyond the image circle
         lit = [p for p in [lens_pupil(bench, center_mm, iris, wavelengths_nm)] if p is not None]
     if not lit:
-        raise ValueError(f"{bench.lens.name}: no light arrives at the film")
+        raise InputError(f"{bench.lens.name}: no light arrives at the film")
     spare = found[zones // 2][zones // 2] or lit[0]
     return [[p or spare for p in row] for row in found]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.errors import InputError
+from daguerre.errors import InputError, core_errors
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -52,10 +52,8 @@ def seidel_sums(bench: Bench, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> Se
     if not bench.lens.prescription.is_axially_symmetric or math.isinf(order.entrance_pupil.z):
         return None
     slope = min(bench.field_mm / abs(order.efl), math.tan(math.radians(WIDEST_FIELD_DEG)))
-    try:
+    with core_errors(InputError):
         rows, _, _ = bench.lens.prescription.seidel(
             wavelength_nm, 0.5 * bench.pupil_diameter, slope, bench.focus_mm
         )
-    except ValueError as error:
-        raise InputError(str(error)) from None
     return SeidelSums(rows, math.degrees(math.atan(slope)))

@@ -17,6 +17,11 @@ from numpy.typing import NDArray
 from daguerre.errors import UsageError, suggest
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
+from .parameters import CAMERA, FULL_FRAME
+from .parameters import LIMITS as LIMITS
+from .parameters import MOVABLE as MOVABLE
+from .parameters.needs import OPENING
+
 if TYPE_CHECKING:
     from daguerre.files.source import Source
     from daguerre.lenses import Lens
@@ -29,40 +34,11 @@ if TYPE_CHECKING:
 
 #: lenses without a prescription
 IDEAL = ("thin", "pinhole")
-
-
-#: smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
-#: precision would overflow on the way
-LIMITS = {
-    "focal_length": (1e-3, 1e6),  # mm
-    "zoom": (1e-3, 1e6),  # mm
-    "f_stop": (1e-2, 1e9),
-    "t_stop": (1e-2, 1e9),
-    "aperture_diameter": (1e-9, 1e6),  # mm
-    "sensor_size": (1e-3, 1e5),  # mm
-    "focus_distance": (1e-6, 1e12),  # m, or infinite
-    "shift": (-1e5, 1e5),  # mm
-    "tilt": (-45, 45),  # degrees
-}
-#: what may change while the shutter is open
-MOVABLE = (
-    *("transform", "focal_length", "sensor_size", "f_stop", "aperture_diameter", "focus_distance"),
-    *("blades", "blade_rotation", "blade_curvature", "shift", "tilt", "zoom", "projection"),
-)
+_default = CAMERA.default
 
 
 #: (first, last), (x, y), (about x, about y): surfaces of a lens, moved by mm and turned by degrees
 Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
-
-
-#: mm; of a camera for which no other is said
-FULL_FRAME = (36.0, 24.0)
-#: ways to say the same, of which one may be given
-RIVALS = (
-    ("f_stop", "aperture_diameter", "t_stop"),
-    ("focus_distance", "focus_at", "focus_on"),
-    ("shutter_time", "shutter_angle"),
-)
 
 
 @dataclass(frozen=True)
@@ -75,73 +51,82 @@ class Camera:
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; default: thin.
-        lens_model: exact, polynomial, thick, thin or pinhole; default: exact for a prescription,
-            else by ``lens``.
+        lens_model: How the lens is computed: exact, polynomial, thick, thin or pinhole; default:
+            exact if ``lens`` names one.
         projection: A calibration, or the formula of a fisheye or a panorama, instead of a lens. It
-            takes f_stop (None: all is sharp) and focus; the width of ``sensor_size`` counts. Keys
-            must share model and size.
+            takes ``f_stop`` (None: all is sharp) and focus; the width of ``sensor_size`` counts.
+            Keys must share model and size.
         degree: Degree of a polynomial lens, odd, 1 to 13; default: 7.
-        fit_tolerance: RMS error of a polynomial lens on the film, px, above which the exact lens
-            replaces it; default: 0.5.
+        fit_tolerance: RMS error, px, above which the exact lens replaces a polynomial one; default:
+            0.5.
         focal_length: Focal length of an ideal lens, mm; default: 50. A prescription has its own and
             takes no other.
-        zoom: Focal length at which a zoom stands, mm; default: that of its file.
-        decenter: Elements of a prescription off their axis, as in lenses that were dropped:
-            for each the indices of its first and last surface, shift along x and y in mm, and tilt
+        zoom: Focal length at which a zoom lens stands, mm. Without it the lens stands as its file
+            says; ``daguerre lenses`` shows its range.
+        decenter: Elements of a prescription off their axis, as in lenses that were dropped: for
+            each the indices of its first and last surface, shift along x and y in mm, and tilt
             about x and y in degrees.
         sensor: ``Sensor``, library name, or file. The frame then also holds its channels, and the
             sensor's size is used unless ``sensor_size`` is given.
-        sensor_size: Width and height of the sensor, mm.
-        sensor_fit: Side of the sensor that the picture spans: horizontal, vertical, auto or fill.
-        f_stop: Focal length / entrance pupil diameter; default: the file's, else 5.6, or the lens's
-            widest if that is slower.
-        aperture_diameter: Entrance pupil diameter, mm, instead of ``f_stop`` (thin lens only).
-        t_stop: F-number of a lens without losses that would be as bright on the axis, instead of
-            ``f_stop``.
-        focus_distance: Distance in focus from the entrance pupil, m; default: autofocus.
+        sensor_size: Width and height of the sensor, mm; default: 36 x 24.
+        sensor_fit: Side of the sensor that the picture spans: horizontal, vertical, auto or fill;
+            default: horizontal.
+        f_stop: Focal length / entrance pupil diameter. Without it the file's, else 5.6, or the
+            lens's widest if that is slower.
+        aperture_diameter: Entrance pupil diameter, mm, instead of ``f_stop``. Thin lens only.
+        t_stop: F-number corrected for light lost in the glass, instead of ``f_stop``. F-stop /
+            sqrt(transmittance): the f-number of a lens without losses that is as bright on the
+            axis.
+        focus_distance: Focus distance, m, or inf; default: the file's, else autofocus. It starts
+            where ``focus_from`` says; autofocus is on the center of the picture.
         focus_at: Pixel (x, y) to focus on: the surface that it shows becomes sharp.
         focus_on: Name of a node to focus on: its nearest surface point becomes sharp.
-        focus_from: Where ``focus_distance`` starts: pupil or sensor.
-        focus_by: paraxial: focus where rays near the axis meet; best: where a point on the axis
-            makes the smallest spot.
-        focus_breathing: Thin lens: keep the focal length, so that the field narrows in close focus,
-            like a real lens that moves as a whole; False keeps the field.
-        blades: Number of iris blades; 0: round.
-        blade_rotation: Rotation of the iris, degrees.
-        blade_curvature: Curvature of the blades' edges, -1 .. 1; 1 is round, 0 straight.
+        focus_from: Where the focus distance starts: pupil or sensor; default: pupil.
+        focus_by: Focus of rays near the axis, or smallest spot on the axis: paraxial or best;
+            default: paraxial.
+        focus_breathing: Thin lens: narrow the field in close focus. The focal length stays, as in a
+            real lens that moves as a whole; without it the field stays.
+        blades: Number of iris blades; 0 is round.
+        blade_rotation: Rotation of the iris blades, degrees.
+        blade_curvature: Curvature of the iris blades, -1 to 1; 1 is round. 0 is straight.
         aperture_image: Grey picture (H, W) of the iris opening, instead of blades.
-        front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens, as
-            wide as it is clear: 1 lets all light through.
-        iris_mask: The same at the iris, as wide as it opens.
+        front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens, as wide
+            as it is clear: 1 lets all light through.
+        iris_mask: Grey picture (H, W) of dust and scratches at the iris, as wide as it opens.
         ripple: Grooves left by grinding in the aspheric surfaces of an exact lens, which show as
             onion rings: RMS height (nm), period (um), and optionally a seed.
         cover_glass: Glass of the body before its sensor: thickness and gap to the sensor, mm, and
             optionally its index [1.5168]. It adds ghosts (``flare``) and nothing else.
-        sensor_reflectance: Share of the light that the sensor sends back into the lens, 0 .. 1.
+        sensor_reflectance: Share of light that the sensor sends back into the lens, 0 to 1;
+            default: 0.
         scatter: How barrel, blades and surfaces of an exact lens scatter, where scatter is drawn
             (``docs/scatter.md``); default: a well-made lens.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Shift of the film, right and up, mm.
-        tilt: Turn of the lens about its entrance pupil: degrees about the camera's x (up is
-            positive), then about its y (left). The film stays across the camera's axis and keeps
-            what is straight ahead in its middle; the focus distance runs along the lens's axis.
+        tilt: Turn of the lens about x (up) and y (left), degrees. The lens turns about its entrance
+            pupil. The film stays across the camera's axis and keeps what is straight ahead in its
+            middle; the focus distance runs along the lens's axis.
         shutter_time: Time for which a point of the film is exposed, s; 0 freezes. Default:
             ``shutter_angle``.
-        shutter_angle: The same in degrees of a frame, 360 fps shutter_time. Default, if neither is
-            given: the file's, else 180 degrees.
-        fps: Frames per second, for angles, offsets and sequences.
+        shutter_angle: Exposure time in degrees of a frame. It is 360 ``fps`` ``shutter_time``.
+            Without either the file's, else 180 degrees.
+        fps: Frames per second, such as 24000/1001; default: 24. Angles, offsets and sequences count
+            by it.
         shutter_offset: Time at which the shutter opens, in frames from the scene's time; default:
             the exposure is centred on that time.
-        shutter_type: box, leaf, focal_plane, rotary or electronic; default: electronic with a
-            rolling shutter, else box.
-        shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction
-            of the time, opening); for a leaf the radius of the iris.
+        shutter_type: Kind of shutter: box, leaf, focal_plane, rotary or electronic; default: box;
+            electronic with ``rolling_shutter``.
+        shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction of
+            the time, opening); for a leaf the radius of the iris.
         rolling_shutter: Lines of pixels exposed in turn; default: that of the type.
-        iso: Sensitivity of developed pictures. This and the next five never change ``frame.rgb``.
-        exposure_compensation: Exposure compensation of developed pictures, EV.
-        exposure_time: Exposure time that sets brightness, s; default: the shutter time.
-        exposure_f_stop: F-stop that sets brightness; default: ``f_stop``; 8 for a pinhole.
-        responsivity: Factor on the exposure.
+        iso: Sensitivity of developed pictures; default: 100. Neither it nor any other parameter of
+            exposure changes the linear picture.
+        exposure_compensation: Exposure compensation of developed pictures, EV; default: 0.
+        exposure_time: Exposure time that sets brightness, s; motion blur keeps ``shutter_time``;
+            default: ``shutter_time``.
+        exposure_f_stop: F-stop that sets brightness; blur keeps ``f_stop``; default: ``f_stop``; of
+            a pinhole 8.
+        responsivity: Factor on the exposure; default: 1.
         white_balance: White for development: colour temperature, K, or chromaticity (x, y).
         motion: Parameters that change over time, by name.
     """
@@ -154,44 +139,44 @@ class Camera:
     fit_tolerance: float | None = None
     focal_length: float | None = None
     zoom: float | None = None
-    decenter: tuple[Decenter, ...] = ()
+    decenter: tuple[Decenter, ...] = _default("decenter")
     sensor: str | Path | Sensor | None = None
-    sensor_size: tuple[float, float] = FULL_FRAME
-    sensor_fit: str = "horizontal"
+    sensor_size: tuple[float, float] = _default("sensor_size")
+    sensor_fit: str = _default("sensor_fit")
     f_stop: float | None = None
     aperture_diameter: float | None = None
     t_stop: float | None = None
     focus_distance: float | None = None
     focus_at: tuple[float, float] | None = None
     focus_on: str | None = None
-    focus_from: str = "pupil"
-    focus_by: str = "paraxial"
-    focus_breathing: bool = False
-    blades: int = 0
-    blade_rotation: float = 0.0
-    blade_curvature: float = 0.0
+    focus_from: str = _default("focus_from")
+    focus_by: str = _default("focus_by")
+    focus_breathing: bool = _default("focus_breathing")
+    blades: int = _default("blades")
+    blade_rotation: float = _default("blade_rotation")
+    blade_curvature: float = _default("blade_curvature")
     aperture_image: NDArray[np.float32] | None = None
     front_mask: NDArray[np.float32] | None = None
     iris_mask: NDArray[np.float32] | None = None
     ripple: tuple[float, ...] | None = None
     cover_glass: tuple[float, ...] | None = None
-    sensor_reflectance: float = 0.0
+    sensor_reflectance: float = _default("sensor_reflectance")
     scatter: LensScatter | None = None
-    natural_vignetting: bool = False
-    shift: tuple[float, float] = (0.0, 0.0)
-    tilt: tuple[float, float] = (0.0, 0.0)
+    natural_vignetting: bool = _default("natural_vignetting")
+    shift: tuple[float, float] = _default("shift")
+    tilt: tuple[float, float] = _default("tilt")
     shutter_time: float | None = None
     shutter_angle: float | None = None
-    fps: float = 24.0
+    fps: float = _default("fps")
     shutter_offset: float | None = None
     shutter_type: str | None = None
     shutter_curve: ShutterCurve | None = None
     rolling_shutter: RollingShutter | None = None
-    iso: float = 100.0
-    exposure_compensation: float = 0.0
+    iso: float = _default("iso")
+    exposure_compensation: float = _default("exposure_compensation")
     exposure_time: float | None = None
     exposure_f_stop: float | None = None
-    responsivity: float = 1.0
+    responsivity: float = _default("responsivity")
     white_balance: float | tuple[float, float] | None = None
     motion: dict[str, Dynamic] = field(default_factory=dict)
 
@@ -356,21 +341,19 @@ class Camera:
                 )
         given = {name for name, value in changes.items() if value is not None}
         if "pinhole" in (changes.get("lens"), changes.get("lens_model")):
-            odd = sorted(given & {"f_stop", "t_stop", "aperture_diameter", "aperture_image"})
+            odd = sorted(name for name in given if OPENING in CAMERA[name].needs)
             if odd:
                 raise UsageError(f"camera: a pinhole has no {odd[0]}")
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
-            replaced |= {"zoom": None, "decenter": (), "ripple": None}
+            replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}
         if changes.get("lens_model") not in (None, "polynomial"):
             replaced |= {"degree": None, "fit_tolerance": None}
         if changes.get("sensor") is not None:
             replaced["sensor_size"] = FULL_FRAME  # until the new one says
-        for rivals in RIVALS:
-            both = sorted(given & set(rivals))
-            if len(both) > 1:
-                raise UsageError(f"camera: wanted either {both[0]} or {both[1]}, got both")
-            replaced |= dict.fromkeys(rivals) if both else {}
+        CAMERA.refuse_rivals(given, "camera")
+        for rivals in CAMERA.rivals():
+            replaced |= dict.fromkeys(rivals) if given & set(rivals) else {}
         if changes.get("lens") not in (None, *IDEAL):
             replaced |= {"focal_length": None, "aperture_diameter": None}
         values: dict[str, Any] = replaced | changes

@@ -6,15 +6,15 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from daguerre.checks import number
 from daguerre.color.illuminants import white_xy
+
+from .parameters import LIGHT
 
 if TYPE_CHECKING:
     from .camera import Camera
 
 
-#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
-PINHOLE_F_STOP = 8.0
+PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
 #: Facts of a camera about exposure; h0 follows from the others, of a pinhole from its stop.
@@ -103,11 +103,6 @@ def check_exposure(camera: Camera) -> None:
     Raises:
         UsageError: The message names the parameter.
     """
-    for name in ("exposure_time", "exposure_f_stop"):
-        value = getattr(camera, name)
-        if value is not None:
-            number(value, f"camera: {name}", above=0)
-    number(camera.responsivity, "camera: responsivity", above=0)
-    number(camera.exposure_compensation, "camera: exposure_compensation", -64, 64)
+    LIGHT.check(camera, "camera")
     if camera.white_balance is not None:
         white_xy(camera.white_balance, "camera: white_balance")

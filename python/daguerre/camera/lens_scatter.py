@@ -10,7 +10,7 @@ from typing import Any
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short
-from daguerre.errors import UsageError
+from daguerre.errors import UsageError, core_errors
 
 
 @dataclass(frozen=True)
@@ -59,12 +59,10 @@ def core_parts(given: Any) -> _core.LensScatter:
             for name in ("gloss_lobe", "surface_lobe")
         )
     ]
-    try:
+    with core_errors(UsageError, "camera"):
         return _core.LensScatter(
             (float(parts.barrel), float(parts.barrel_gloss), lobes[0]),
             (float(parts.blades), float(parts.blades_gloss), lobes[0]),
             float(parts.surface_rms_nm),
             lobes[1],
         )
-    except ValueError as error:
-        raise UsageError(f"camera: {error}") from None

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short, to_numbers, whole
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import UsageError, core_errors, suggest
 
 FloatArray = NDArray[np.float64]
 
@@ -92,10 +92,8 @@ class Projection:
         object.__setattr__(self, "size", (int(width), int(height)))
         object.__setattr__(self, "focal", tuple(float(f) for f in self.focal))
         object.__setattr__(self, "parameters", tuple(float(k) for k in given))
-        try:
+        with core_errors(UsageError):
             _ = self.core
-        except ValueError as error:
-            raise UsageError(str(error)) from None
 
     @classmethod
     def of_field(

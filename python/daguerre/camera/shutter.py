@@ -14,16 +14,15 @@ import numpy as np
 
 import daguerre._core as _core
 from daguerre.checks import number, short
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import UsageError, core_errors, suggest
 
+from .parameters import CAMERA, SHUTTER
 from .rolling_shutter import RollingShutter
 
 if TYPE_CHECKING:
     from .camera import Camera
 
-TYPES = ("box", "leaf", "focal_plane", "rotary", "electronic")
 SCAN_ORDERS = ("top", "bottom", "left", "right")
-DEFAULT_ANGLE = 180.0
 #: Travel of the curtains: the flash synchronisation time of a fast camera is little more.
 CURTAIN_S = 1 / 300
 #: Reading a full-frame sensor of a video camera.
@@ -32,11 +31,6 @@ READOUT_S = 1 / 60
 GATE_ANGLE = 60.0
 #: A leaf shutter is on its way for as long as it rests wide open (radius).
 LEAF_EFFICIENCY = 0.75
-#: Far beyond any shutter: what lies outside is a mistake.
-MAX_TIME = 1e6
-MAX_ANGLE = 360e6
-FPS_RANGE = (1e-6, 1e9)
-MAX_OFFSET = 1e9
 MAX_POINTS = 4096
 
 
@@ -44,7 +38,7 @@ def shutter_time(camera: Camera) -> float:
     """How long a point of the film is exposed, s."""
     if camera.shutter_time is not None:
         return float(camera.shutter_time)
-    angle = DEFAULT_ANGLE if camera.shutter_angle is None else camera.shutter_angle
+    angle = CAMERA["shutter_angle"].usual if camera.shutter_angle is None else camera.shutter_angle
     return float(angle / 360 / camera.fps)
 
 
@@ -56,12 +50,10 @@ def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
     """
     check(camera)
     order, line_time = scan(camera, resolution)
-    try:
+    with core_errors(UsageError, "camera"):
         return _core.Shutter(
             shutter_time(camera), _curve(camera), order, line_time, _is_leaf(camera), resolution
         )
-    except ValueError as error:
-        raise UsageError(f"camera: {error}") from None
 
 
 def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[float, float]:
@@ -119,21 +111,10 @@ def type_of(camera: Camera) -> str:
 
 def check(camera: Camera) -> None:
     """Refuses what is no shutter, and rivals."""
-    if camera.shutter_time is not None:
-        number(camera.shutter_time, "camera: shutter_time", 0, MAX_TIME)
-    if camera.shutter_angle is not None:
-        number(camera.shutter_angle, "camera: shutter_angle", 0, MAX_ANGLE)
-    number(camera.fps, "camera: fps", *FPS_RANGE)
-    if camera.shutter_offset is not None:
-        number(camera.shutter_offset, "camera: shutter_offset", -MAX_OFFSET, MAX_OFFSET)
-    if camera.shutter_time is not None and camera.shutter_angle is not None:
-        raise UsageError("camera: wanted either shutter_time or shutter_angle, got both")
+    SHUTTER.check(camera, "camera")
+    given = {row.name for row in SHUTTER if getattr(camera, row.name) is not None}
+    SHUTTER.refuse_rivals(given, "camera")
     kind = camera.shutter_type
-    if kind is not None and kind not in TYPES:
-        raise UsageError(
-            f"camera: shutter_type: wanted {', '.join(TYPES)}, got {kind!r}"
-            f"{suggest(str(kind), TYPES)}"
-        )
     if kind == "rotary" and shutter_time(camera) > 1 / camera.fps:
         raise UsageError(
             f"camera: shutter_type rotary: a disc is open for {1 / camera.fps:g} s at most "
@@ -167,7 +148,7 @@ def _check_rolling(camera: Camera) -> None:
     for name in ("line_time", "readout_time"):
         value = getattr(rolling, name)
         if value is not None:
-            number(value, f"{where}: {name}", 0, MAX_TIME)
+            CAMERA["shutter_time"].check(value, f"{where}: {name}")
 
 
 def scan(camera: Camera, resolution: tuple[int, int]) -> tuple[str, float]:
@@ -219,12 +200,10 @@ def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
         raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}") from None
     if points.ndim != 2 or points.shape[1] != 2:
         raise UsageError(f"{where}: wanted {wanted}, got {short(curve)}")
-    try:
+    with core_errors(UsageError, "camera"):
         return _core.OpeningCurve.points(
             np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
         )
-    except ValueError as error:
-        raise UsageError(f"camera: {error}") from None
 
 
 def describe(camera: Camera, resolution: tuple[int, int]) -> str:

@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from daguerre import units as q
+from daguerre.camera.parameters import CAMERA
 from daguerre.errors import UsageError, suggest
+from daguerre.parameters.table import Table
 
 from . import console
 from .drawings import check_drawing
+from .flags.from_table import made_of
 from .flags.groups import option, with_flags
 from .flags.map import MapFlags
+from .flags.setting import F_STOP, FOCUS, ZOOM, BenchFlags, focus_by
 
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit
@@ -25,9 +29,28 @@ ALL = "all"
 WELL = 1.0  # px: what is worse is told
 
 
-@with_flags(map_flags=MapFlags)
+_SETTING = Table(
+    *(FOCUS, F_STOP, ZOOM),
+    focus_by("Focus where rays near the axis meet, or where the spot is smallest", "paraxial"),
+)
+
+
+@made_of(_SETTING)
+class SettingFlags(BenchFlags):
+    """How the lens is set; without flags wide open and focused at infinity."""
+
+    def options(self) -> dict[str, Any]:
+        """Those of ``dg.calibrate`` that were given."""
+        given = self.given()
+        if "zoom" in given:
+            given["focal_length"] = given.pop("zoom")
+        return given
+
+
+@with_flags(map_flags=MapFlags, setting=SettingFlags)
 def calibrate(
     name: Annotated[str, typer.Argument(metavar="LENS", help="Library name or lens file.")],
+    *,
     map_flags: MapFlags,
     model: Annotated[
         str,
@@ -46,23 +69,7 @@ def calibrate(
             help="Number of parameters to fit [5 of opencv, else all; for Kalibr 4].",
         ),
     ] = None,
-    focus: Annotated[
-        str | None, option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].")
-    ] = None,
-    f_stop: Annotated[
-        str | None, option("--f-stop", metavar="N", help="F-stop as engraved [wide open].")
-    ] = None,
-    zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.")
-    ] = None,
-    focus_by: Annotated[
-        str,
-        option(
-            "--focus-by",
-            metavar="paraxial|best",
-            help="Focus where rays near the axis meet, or where the spot is smallest [paraxial].",
-        ),
-    ] = "paraxial",
+    setting: SettingFlags,
     sensor: Annotated[
         str,
         option(
@@ -105,8 +112,7 @@ def calibrate(
     from daguerre.analysis.calibrate import calibrate_all
     from daguerre.files.atomic import check_writable
 
-    if focus_by not in ("paraxial", "best"):
-        raise UsageError(f"--focus-by: wanted paraxial or best, got {focus_by!r}")
+    setting.check()
     _check_files(output, file_format, residuals)
     map_flags.check()
     for path in map_flags.files:
@@ -119,11 +125,8 @@ def calibrate(
     use: dict[str, Any] = {
         "resolution": q.resolution("--res", resolution, (1920, 1280)),
         "sensor_size": q.sensor_mm("--sensor", sensor),
-        "f_stop": None if f_stop is None else q.f_number("--f-stop", f_stop),
-        "focus_distance": math.inf if focus is None else q.distance_m("--focus", focus),
-        "focal_length": None if zoom is None else q.length_mm("--zoom", zoom),
-        "focus_by": focus_by,
-        "shift": (0.0, 0.0) if shift is None else q.numbers("--shift", shift, 2, "0,8.5"),
+        "shift": CAMERA["shift"].default if shift is None else CAMERA["shift"].from_text(shift),
+        **setting.options(),
         "wavelength_nm": wavelength,
     }
     if model == ALL:

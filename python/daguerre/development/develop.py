@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre._core import develop_picture
+from daguerre._core import Development, develop_picture
 from daguerre._core import sharpen as sharpen_picture
 from daguerre.checks import number, whole
 from daguerre.color import illuminants, spaces
@@ -199,9 +199,16 @@ def _pass(
     encode: list[float] | None,
 ) -> NDArray[np.float32]:
     out = np.empty(source.pixels.shape, np.float32)
-    luminance = _luminance(recipe.colour_space)
-    numbers = (balance.tolist(), source.full.tolist(), recipe.highlights, matrix.ravel().tolist())
-    develop_picture(source.pixels, out, *numbers, luminance.tolist(), tone, encode)
+    how = Development(
+        balance=balance.tolist(),
+        full=source.full.tolist(),
+        highlights=recipe.highlights,
+        rgb_from_balanced=matrix.ravel().tolist(),
+        luminance=_luminance(recipe.colour_space).tolist(),
+        tone=tone,
+        encode=encode,
+    )
+    develop_picture(source.pixels, out, how)
     return out
 
 

@@ -15,7 +15,7 @@ import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
 
@@ -54,7 +54,8 @@ class Sight:
         facts = self.setup.facts
         self._center = np.array(facts["shift_mm"])
         self._pitch = np.array(self.setup.frame_size) / resolution
-        self._chief = self.setup.core.chief_rays()
+        with core_errors(InputError, "render"):
+            self._chief = self.setup.core.chief_rays()
         model = facts.get("projection")
         if model is None:
             f = self.setup.pinhole_focal_length

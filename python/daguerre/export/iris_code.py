@@ -1,4 +1,4 @@
-"""Whether the iris stops a ray: a circle, or each edge in turn (core/optics/stop.h)."""
+"""Whether the iris stops a ray: a circle, or each edge in turn (core/optics/lens/stop.h)."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Blades:
-    """An iris with edges, straight or arcs, in units of the iris radius (core/optics/stop.h).
+    """An iris with edges, straight or arcs, in units of the iris radius (core/optics/lens/stop.h).
 
     Attributes:
         edges: Unit vectors to their middles.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.checks import short
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.session import Session
 from daguerre.rendering.truth import GroundTruth, Moment
 from daguerre.scene.scene import Scene
@@ -113,6 +113,7 @@ def annotate(
     return annotations_of(session, categories)
 
 
+@core_errors(InputError, "render")
 def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
     """Annotates what a session's camera sees, at ``gt_time``, or at mid without one."""
     chosen = categories or Categories()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from daguerre.errors import InputError
+import daguerre._core as _core
+from daguerre.errors import CoreError, InputError
 
 #: Every code, and what it says.
 CODES = {
@@ -27,47 +27,50 @@ CODES = {
     "lens-zoom": "the lens does not have that focal length",
 }
 
-_CODE = re.compile(r" \[(lens-[a-z-]+)\]$")
-_SURFACE = re.compile(r"\bsurfaces?[ \[](\d+)")
-
 
 class LensError(InputError):
     """A lens that cannot be used.
 
     Attributes:
-        code: One of ``CODES``; the message ends in it, in brackets.
+        message: Complaint, without the code.
+        code: One of ``CODES``; the text of the error ends in it, in brackets.
         surface: Index of the surface, as the message counts; None: the lens as a whole.
     """
 
     def __init__(self, message: str, code: str, surface: int | None = None) -> None:
-        super().__init__(message if _CODE.search(message) else f"{message} [{code}]")
+        ending = f" [{code}]"
+        self.message = message.removesuffix(ending)
+        super().__init__(self.message + ending)
         self.code = code
         self.surface = surface
 
+    def __reduce__(self) -> tuple[type[LensError], tuple[str, str, int | None]]:
+        return type(self), (self.message, self.code, self.surface)
 
-def from_core(error: ValueError, source: str, code: str | None = None) -> InputError:
+
+def from_core(
+    error: CoreError | InputError, source: str, code: str | None = None, surface: int | None = None
+) -> InputError:
     """Names the file in the core's complaint about a lens.
 
     Args:
         error: Error that was raised; an ``InputError`` names its file already.
         source: The lens's file.
         code: Code for errors that have none of their own; None: such errors stay as they are.
+        surface: Index of the surface that is read, for such errors.
     """
+    if isinstance(error, _core.LensError):
+        return LensError(f"{source}: {error.message}", error.code, error.surface)
     if isinstance(error, LensError) or (isinstance(error, InputError) and code is None):
         return error
-    text = str(error)
-    message = text if isinstance(error, InputError) else f"{source}: {text}"
-    own = _CODE.search(text)
-    if own is None and code is None:
-        return InputError(message)
-    surface = _SURFACE.search(text[len(source) :] if text.startswith(source) else text)
-    return LensError(message, own[1] if own else str(code), int(surface[1]) if surface else None)
+    message = str(error) if isinstance(error, InputError) else f"{source}: {error}"
+    return InputError(message) if code is None else LensError(message, code, surface)
 
 
 @contextmanager
-def reported(source: str, code: str | None = None) -> Iterator[None]:
+def reported(source: str, code: str | None = None, surface: int | None = None) -> Iterator[None]:
     """Raises complaints about a lens with the name of its file, and a code."""
     try:
         yield
-    except ValueError as error:
-        raise from_core(error, source, code) from None
+    except (CoreError, InputError) as error:
+        raise from_core(error, source, code, surface) from None

@@ -6,6 +6,7 @@ import itertools
 import math
 
 import daguerre._core as _core
+from daguerre.errors import CoreError
 from daguerre.files.json_item import Item
 
 #: Members that give the index by themselves.
@@ -28,9 +29,7 @@ def formula_of(item: Item) -> tuple[_core.Glass, str] | None:
                 if vacuum is not None and vacuum.flag():
                     glass = glass.against_vacuum()
                 return glass, kind
-            except ValueError as error:
-                if hasattr(error, "exit_code"):
-                    raise
+            except CoreError as error:
                 member.fail(str(error))  # the core's words: an index that is no index
     return None
 

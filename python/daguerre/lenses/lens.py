@@ -15,6 +15,7 @@ import daguerre._core as _core
 from daguerre.errors import InputError
 
 from .configurations import Configuration
+from .errors import reported
 from .groups import Group, placed
 from .surface import LensSurface
 
@@ -131,10 +132,8 @@ class Lens:
             InputError: The lens is afocal.
         """
         check_wavelength(np.asarray(wavelength_nm, np.float64))
-        try:
+        with reported(self.source):
             f = self.prescription.first_order(float(wavelength_nm), section)
-        except ValueError as error:
-            raise InputError(f"{self.source}: {error}") from None
         return FirstOrder(
             wavelength_nm=f.wavelength_nm,
             efl=f.efl,

@@ -6,7 +6,7 @@ from typing import NoReturn
 
 from daguerre.files.json_item import Item
 
-from .errors import LensError
+from .errors import LensError, reported
 from .glass_json import glass_from_json
 from .reading import member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
@@ -19,7 +19,11 @@ COATINGS = ("uncoated", "mgf2", "v-coat", "broadband", "perfect")
 def read_surfaces(items: list[Item], gaps: dict[int, float]) -> list[LensSurface]:
     """The surfaces with the gaps of one configuration."""
     last = len(items) - 1
-    return [_surface(item, gaps.get(i), i == last) for i, item in enumerate(items)]
+    surfaces = []
+    for i, item in enumerate(items):
+        with reported(item.file, "lens-format", i):
+            surfaces.append(_surface(item, gaps.get(i), i == last))
+    return surfaces
 
 
 def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:

@@ -19,7 +19,7 @@ from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import InputError, UsageError, core_errors, suggest
 from daguerre.rendering.parameters import TABLE
 from daguerre.rendering.truth import GT_TIMES, instants
 from daguerre.scene.scene import Scene
@@ -146,7 +146,8 @@ def rays_of(
     settings.sensor_center_mm = (right, up)
     settings.shutter = shutter.core_shutter(now, size)
     world = frame == "world"
-    origin, direction, time = _core.ray_map(setup.core, settings, overscan.region(size), world)
+    with core_errors(InputError, "render"):
+        origin, direction, time = _core.ray_map(setup.core, settings, overscan.region(size), world)
     if not world:
         origin, direction = origin * _OPENCV, direction * _OPENCV
     seconds = begin - scene.time + time * duration

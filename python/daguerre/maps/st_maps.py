@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
 from daguerre.distortion.rectified import Sight, built
+from daguerre.errors import DaguerreError
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -76,7 +77,7 @@ class StMaps:
         """
         try:
             undistort: Overscan | None = to_undistort(self.sight)
-        except ValueError:
+        except DaguerreError:
             undistort = None
         return {"undistort": undistort, "redistort": to_redistort(self.sight)}
 

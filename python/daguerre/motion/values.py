@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.checks import frozen, matrix, number, short, to_numbers
-from daguerre.errors import InputError, suggest
+from daguerre.errors import InputError, core_errors, suggest
 
 FloatArray = NDArray[np.float64]
 #: Ways between two matrices; the first is the default. Each is explained in docs/motion.md.
@@ -345,10 +345,8 @@ def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, floa
 
 def _in_core(made: Keys | Spin, where: str) -> None:
     """Refuses motions that the core cannot interpolate where they are written down."""
-    try:
+    with core_errors(InputError, where):
         _ = made.motion
-    except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
 
 
 def _lerp(a: Any, b: Any, s: float) -> Any:

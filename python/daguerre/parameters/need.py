@@ -15,6 +15,7 @@ class Need:
     Attributes:
         kinds: Traits of cameras of which one must be there, such as ``("exact", "polynomial")``.
         refusal: Words that tell a user what to do; ``{kind}`` is the model of the camera's lens.
+            Empty: another camera leaves the parameter aside.
     """
 
     kinds: tuple[str, ...]
@@ -31,5 +32,5 @@ class Need:
         Raises:
             UsageError: None of the traits is wanted.
         """
-        if not set(self.kinds) & set(traits):
+        if self.refusal and not set(self.kinds) & set(traits):
             raise UsageError(f"{where}: {self.refusal.replace('{kind}', kind)}")

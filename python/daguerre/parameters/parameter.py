@@ -47,18 +47,22 @@ class Parameter:
         high: The most.
         above: A number that must be exceeded, checked before ``low``.
         infinite: Whether a number may be infinite.
+        odd: Whether a whole number must be odd.
         count: Length of ``numbers``.
         wants: Wanted values in words, where kind and limits do not say all.
         hint: Advice that follows when 0 is refused.
         flags: Names on the command line, the usual one first; none: it has no flag.
-        metavar: Placeholder for its value in a help.
+        metavar: Placeholder for its value in a help; of a choice, default: the choices.
         parse: Reads the text of its flag: called with the flag's name and the text; default: by
             kind and unit.
         repeated: Whether the flag may be repeated, each with a part of the value.
         panel: Part of a help that shows it.
         default_words: The default in words, such as ``the file's, else 5.6``.
+        usual: Value that is used where none is given, if that is always the same.
+        tells_default: Whether texts show the default, or the usual value, itself.
         more: Sentences that follow the meaning in docstrings and pages.
-        explained: Page of the docs that tells more, ``flare.md#the-body``.
+        in_python: Text of a docstring, where a value of Python differs from that of the flag.
+        explained: Pages of the docs that tell more, such as ``flare.md#the-body``.
         needs: Conditions that a camera must meet to take it.
         rivals: Name of a group of parameters of which at most one may be given.
         movable: Whether it may change while the shutter is open (``dg.keys``).
@@ -75,6 +79,7 @@ class Parameter:
     _: KW_ONLY
     above: float | None = None
     infinite: bool = False
+    odd: bool = False
     count: int = 2
     wants: str = ""
     hint: str = ""
@@ -84,8 +89,11 @@ class Parameter:
     repeated: bool = False
     panel: str | None = None
     default_words: str = ""
+    usual: Any = None
+    tells_default: bool = False
     more: str = ""
-    explained: str = ""
+    in_python: str = ""
+    explained: tuple[str, ...] = ()
     needs: tuple[Need, ...] = ()
     rivals: str = ""
     movable: bool = False
@@ -98,13 +106,22 @@ class Parameter:
     @property
     def flag(self) -> str:
         """Name of its flag for messages; without one its own name."""
-        return self.flags[0] if self.flags else self.name
+        long = (name for name in self.flags if name.startswith("--"))
+        return next(long, self.name).partition("/")[0]
+
+    @property
+    def placeholder(self) -> str | None:
+        """Placeholder for its value in a help."""
+        return self.metavar or "|".join(self.choices) or None
 
     @property
     def field(self) -> str:
         """Name of the field that holds its flag's value."""
-        longest = next(f for f in self.flags if f.startswith("--"))
-        return longest.partition("/")[0].removeprefix("--").replace("-", "_")
+        return self.flag.removeprefix("--").replace("-", "_")
+
+    def takes(self, kind: str) -> bool:
+        """Whether cameras of a kind make use of it."""
+        return all(kind in need.kinds for need in self.needs)
 
     @property
     def parser(self) -> Callable[[str, str], Any] | None:
@@ -112,6 +129,14 @@ class Parameter:
         if self.parse is None and self.kind == "number":
             return _PARSERS.get(self.unit)
         return units.sensor_mm if self.parse is None and self.kind == "size" else self.parse
+
+    def from_text(self, text: str) -> Any:
+        """The value that the text of its flag stands for.
+
+        Raises:
+            UsageError: The message names the flag.
+        """
+        return self.parser(self.flag, text) if self.parser else text
 
     @property
     def wanted(self) -> str:
@@ -139,8 +164,17 @@ class Parameter:
         Args:
             shown: How to show another parameter, by its name.
         """
-        default = f" [{self.default_words}]" if self.default_words else ""
+        default = f" [{self.default_shown}]" if self.default_shown else ""
         return fill(self.meaning + default, shown) + "."
+
+    @property
+    def default_shown(self) -> str:
+        """The default for readers; empty: no text tells it."""
+        if not self.tells_default:
+            return self.default_words
+        value = self.default if self.usual is None else self.usual
+        parts = value if isinstance(value, tuple) else (value,)
+        return " x ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in parts)
 
     def read(self, value: Any, where: str, error: type[InputError | UsageError]) -> Any:
         """The value that a text, or a value of JSON, stands for.
@@ -171,8 +205,7 @@ class Parameter:
             case "number":
                 self._check_number(value, where)
             case "whole":
-                low, high = (int(v) for v in (self.low, self.high))
-                checks.whole(value, where, low, high, self.wants or None)
+                self._check_whole(value, where)
             case "choice" if value not in self.choices:
                 words = (" or " if len(self.choices) == 2 else ", ").join(self.choices)
                 raise UsageError(
@@ -182,7 +215,18 @@ class Parameter:
                 for part in checks.numbers(value, where, self.count, self.wanted):
                     self._check_number(part, where)
 
+    def _check_whole(self, value: Any, where: str) -> None:
+        low, high = int(self.low), int(self.high)
+        result = checks.whole(value, where, low, high, self.wants or None)
+        if self.odd and result % 2 == 0:
+            raise UsageError(f"{where}: wanted {self.wanted}, got {result}")
+
     def _check_number(self, value: Any, where: str) -> None:
+        if self.kind == "number" and self.wants:
+            result = checks.number(value, where)
+            if not self.low <= result <= self.high:
+                raise UsageError(f"{where}: wanted {self.wants}, got {result:g}")
+            return
         try:
             if self.above is not None:
                 checks.number(value, where, above=self.above, infinite=self.infinite)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from daguerre.errors import InputError, UsageError, suggest
 
-from .parameter import Parameter, fill
+from .parameter import Parameter
 
 
 class Table:
@@ -73,6 +73,10 @@ class Table:
                 values[name] = row.default
         return values
 
+    def default(self, name: str) -> Any:
+        """Default of a parameter; None: not given."""
+        return self[name].default
+
     def defaults(self) -> dict[str, Any]:
         """Default by name; None: not given."""
         return {row.name: row.default for row in self.rows}
@@ -114,14 +118,6 @@ class Table:
         for row in self.rows:
             row.check(getattr(values, row.name), f"{where}: {row.name}")
 
-    def help(self, name: str) -> str:
-        """The phrase of a command's help, with flags for the parameters that it names."""
-        return self[name].help(self.flag)
-
     def flag(self, name: str) -> str:
         """Flag of a parameter; a name of another table stands as it is."""
         return self[name].flag if name in self else "--" + name.replace("_", "-")
-
-    def text(self, text: str, shown: Callable[[Parameter], str]) -> str:
-        """A text with the parameters that it names in braces shown."""
-        return fill(text, lambda name: shown(self[name]))

@@ -7,15 +7,12 @@ vertex of its surface, where the next one begins.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 import daguerre._core as _core
 from daguerre.checks import doubles, number, numbers, short, whole
-from daguerre.errors import DaguerreError, UsageError
+from daguerre.errors import UsageError, core_errors
 
 from .forms import Form
 from .system import System
@@ -35,7 +32,7 @@ def propagate(distance: float, *, degree: int = 5, about: ArrayLike = AXIS) -> S
     """
     nodes, rays = _about(about, [])
     length = number(distance, "propagate: distance in mm")
-    with _said():
+    with core_errors(UsageError):
         return System(_core.polynomial_propagation(length, checked(degree), nodes, rays))
 
 
@@ -65,7 +62,7 @@ def refract(
     nodes, rays = _about(about, with_glass(nodes_of(wavelength), n1, n2))
     first, second = index_at(n1, nodes), index_at(n2, nodes)
     surface = _surface(form)
-    with _said(form):
+    with core_errors(UsageError, str(form)):
         return System(
             _core.polynomial_refraction(surface, first, second, checked(degree), nodes, rays)
         )
@@ -81,7 +78,7 @@ def reflect(form: Form, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
     """
     nodes, rays = _about(about, [])
     surface = _surface(form)
-    with _said(form):
+    with core_errors(UsageError, str(form)):
         return System(_core.polynomial_reflection(surface, checked(degree), nodes, rays))
 
 
@@ -112,7 +109,7 @@ def place(
     shift = numbers(decenter, "place: decenter", 3, "three finite numbers, mm")
     turn = numbers(tilt, "place: tilt", 3, "three finite numbers, degrees")
     nodes, rays = _about(about, [])
-    with _said():
+    with core_errors(UsageError):
         return System(
             _core.polynomial_placement(list(shift), list(turn), back, checked(degree), nodes, rays)
         )
@@ -142,14 +139,3 @@ def _surface(form: Form) -> _core.Surface:
     if not isinstance(form, Form):
         raise UsageError(f"form: wanted one of sphere(50), plane() ..., got {short(form)}")
     return form.surface
-
-
-@contextmanager
-def _said(form: Form | None = None) -> Iterator[None]:
-    """The core's complaint as a wrong parameter, with the form that it is about."""
-    try:
-        yield
-    except DaguerreError:
-        raise
-    except ValueError as error:
-        raise UsageError(f"{form}: {error}" if form else str(error)) from None

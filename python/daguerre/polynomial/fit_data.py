@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 import daguerre._core as _core
-from daguerre.errors import InputError
+from daguerre.errors import CoreError, InputError
 
 FORMAT = "daguerre-lens-fit/0.1"
 _PAIRS = ("direction", "film", "iris", "mount", "transmittance")
@@ -97,6 +97,8 @@ def from_dict(data: Any) -> _core.LensFit:
         raise InputError(f"lens fit: format: wanted {FORMAT!r}, got {form!r}")
     try:
         return _read(data)
+    except CoreError as error:
+        raise InputError(f"lens fit: wanted data of the form {FORMAT}, got {error}") from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         text = f"{type(error).__name__}: {error}"
         raise InputError(f"lens fit: wanted data of the form {FORMAT}, got {text}") from None

@@ -8,7 +8,7 @@ import daguerre._core as _core
 from daguerre import lenses
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
-from daguerre.lenses.errors import from_core
+from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import By
 
 from .lens_fit import LensFit
@@ -68,20 +68,17 @@ def fit(
     if f_stop is not None:
         number(f_stop, "lens fit: f_stop", 0.1, 1000)
     sharp = lens.focused(focus, zoom_mm=zoom, f_stop=f_stop, by=focus_by)
-    try:
-        core = _core.LensFit.fit(
-            sharp.lens.prescription,
-            f_stop or 0.0,
-            iris or _core.Iris(),
-            sharp.film_z_mm,
-            FILM_MARGIN * math.hypot(width, height) / 2,
-            (FILM_MARGIN * width / 2, FILM_MARGIN * height / 2),
-            degree,
-            segments,
-            terms or 0,
-        )
-    except ValueError as error:
-        raise from_core(error, lens.source) from None
+    request = _core.LensFitRequest(
+        film_z_mm=sharp.film_z_mm,
+        film_radius_mm=FILM_MARGIN * math.hypot(width, height) / 2,
+        film_half_mm=(FILM_MARGIN * width / 2, FILM_MARGIN * height / 2),
+        iris=iris or _core.Iris(),
+        degree=degree,
+        segments=segments,
+        terms=terms or 0,
+    )
+    with reported(lens.source):
+        core = _core.LensFit.fit(sharp.lens.prescription, f_stop or 0.0, request)
     setting = FitSetting(
         f_stop=f_stop or sharp.lens.first_order().f_number,
         focus_m=focus,

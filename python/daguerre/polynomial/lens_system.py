@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 import daguerre._core as _core
 from daguerre.checks import doubles, number, short, whole
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import Focused
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens, check_wavelength
@@ -89,7 +89,7 @@ def _pupil_ahead(lens: Lens, object_z: float) -> float | None:
     """Distance of the entrance pupil ahead of a plane, mm; None: at infinity, or afocal."""
     try:
         z = lens.first_order().entrance_pupil.z - float(object_z)
-    except ValueError:
+    except InputError:
         return None
     return z if math.isfinite(z) else None
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.checks import doubles, number, whole
-from daguerre.errors import DaguerreError, UsageError
+from daguerre.errors import UsageError, core_errors
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .terms import SeidelTerms, seidel_terms
@@ -222,12 +222,8 @@ class System:
 
 def _said(call: Callable[..., Any], *arguments: object) -> Any:
     """Calls the core; raises its complaint as a wrong parameter."""
-    try:
+    with core_errors(UsageError):
         return call(*arguments)
-    except DaguerreError:
-        raise
-    except ValueError as error:
-        raise UsageError(str(error)) from None
 
 
 def _ray(ray: FloatArray) -> str:

@@ -82,7 +82,7 @@ class WarpStep(Step):
         warps = self.warps(rows)
         maps, middle = [warp.core for warp in warps], warps[len(warps) // 2]
         image, undefined = remap(
-            band.image, band.rows.begin, self._height, maps, self._map_of, *rows,
+            band.image, band.rows.begin, self._height, maps, self._map_of, rows,
             self._filter, self._antialias,
         )  # fmt: skip
         self._undefined += undefined

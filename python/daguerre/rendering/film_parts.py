@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import daguerre._core as _core
 from daguerre.camera.overscan import Overscan
 
-from .counters import RenderCounters
 from .pixels import Box
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ class FilmPart:
         corner: tuple[int, int],
         which: tuple[Any, ...],
         progress: Any,
-    ) -> tuple[bool, RenderCounters]:
+    ) -> tuple[bool, _core.RenderCounters]:
         """Draws samples; returns whether all of them were drawn, and the counts.
 
         Args:
@@ -63,10 +62,10 @@ class FilmPart:
         """
         film.place(corner[0] + self.before[0], corner[1] + self.before[1])
         try:
-            complete, *counts = draw(scene, self.camera, film, self.settings, *which, progress)
+            complete, counters = draw(scene, self.camera, film, self.settings, *which, progress)
         finally:
             film.place(*corner)
-        return bool(complete), RenderCounters.of(counts)
+        return bool(complete), counters
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:

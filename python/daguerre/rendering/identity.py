@@ -5,7 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import platform
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.exposure import without_exposure
@@ -13,14 +16,36 @@ from daguerre.frame.seen_by import sensor_metadata
 from daguerre.setup.body import scatter_facts
 from daguerre.setup.metadata import camera_metadata
 
+from .adaptive import Round
 from .light_paths import show_plan
+from .light_plan import LightPlan
 from .pixels import parse_filter
+from .prepare import Prepared
+from .settings import RenderSettings
 
-if TYPE_CHECKING:
-    from .session import Session
+
+class Drawn(Protocol):
+    """A picture that is drawn, as a session knows it."""
+
+    prepared: Prepared
+    light_plan: LightPlan
+    settings: RenderSettings
+    ranges: list[tuple[int, int]]
+    round: Round | None
+
+    @property
+    def key(self) -> dict[str, str]:
+        """Facts that passes must share."""
+
+    @property
+    def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
+        """Number of dropped samples, and the first of them."""
+
+    def sample_counts(self) -> NDArray[np.uint32]:
+        """Samples drawn of each pixel, shape (H, W)."""
 
 
-def key(session: Session) -> dict[str, str]:
+def key(session: Drawn) -> dict[str, str]:
     """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
     one = session.prepared
     return {
@@ -32,7 +57,7 @@ def key(session: Session) -> dict[str, str]:
     }
 
 
-def metadata(session: Session) -> dict[str, Any]:
+def metadata(session: Drawn) -> dict[str, Any]:
     """Camera and picture facts, in the names and units of the EXR attributes."""
     one, plan, (bad, places) = session.prepared, session.light_plan, session.bad_samples
     settings, truth = session.settings, session.settings.truth
@@ -65,7 +90,7 @@ def metadata(session: Session) -> dict[str, Any]:
     return {name: value for name, value in out.items() if value is not None}
 
 
-def _settings_facts(session: Session) -> dict[str, Any]:
+def _settings_facts(session: Drawn) -> dict[str, Any]:
     """Settings that pictures must share; what is off is left out, so that hashes stay."""
     one, plan, settings = session.prepared, session.light_plan, session.settings
     light, reference = settings.light, settings.reference
@@ -100,7 +125,7 @@ def _settings_facts(session: Session) -> dict[str, Any]:
     return out
 
 
-def _sample_facts(session: Session) -> dict[str, Any]:
+def _sample_facts(session: Drawn) -> dict[str, Any]:
     """Samples per pixel; of adaptive sampling mean and bounds, and the noise reached."""
     if session.round is None:
         return {"samples": sum(b - a for a, b in session.ranges)}

@@ -11,7 +11,6 @@ from daguerre.camera.camera import Camera
 from daguerre.scene.scene import Scene
 
 from .checkpoint import INTERVAL_S, Checkpoint
-from .core_errors import core_errors
 from .loop import Loop
 from .picture import Picture
 from .reporter import Control, Finished, Reporter, Stopped
@@ -120,8 +119,7 @@ class Job:
         which = f"camera {name}: " if "camera" in picture.facts else ""
         for warning in camera_warnings(camera) if new else ():
             self.reporter.warning(which + warning)
-        with core_errors("render"):
-            session = Session(scene, camera, settings=picture.settings, built=self._built)
+        session = Session(scene, camera, settings=picture.settings, built=self._built)
         self._built = session.built
         picture.output.check(session.metadata, self.reporter)
         if first and not lit(scene):
@@ -145,7 +143,7 @@ class Job:
         session = self.open(picture)
         self.opened(picture, session)
         setup_s = time.monotonic() - began
-        with self.control.watching(), self.reporter.drawing(picture.facts), core_errors("render"):
+        with self.control.watching(), self.reporter.drawing(picture.facts):
             drawn = Drawing(self, picture, session, setup_s).run(resume=resume)
         if drawn:
             self.written(picture, session)

@@ -114,7 +114,8 @@ def described(name: str) -> str:
     row = TABLE[name]
     unit = f", {row.unit}" if row.unit else ""
     default = f"; default: {row.default_words}" if row.default_words else ""
-    page = f" See ``docs/{row.explained}``." if row.explained else ""
+    pages = " and ".join(f"``docs/{page}``" for page in row.explained)
+    page = f" See {pages}." if pages else ""
     more = f" {row.more}" if row.more else ""
     return fill(f"{row.meaning}{unit}{default}.{more}{page}", "``{}``".format)
 

@@ -8,7 +8,7 @@ from typing import Any
 import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
-from daguerre.errors import InputError, UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.sensors.bands import responses
 from daguerre.setup.camera import CameraSetup, set_up
 from daguerre.setup.checks import check_surfaces
@@ -22,7 +22,7 @@ from .settings import RenderSettings
 #: Why paths that are asked for are not followed.
 DARK = {
     "flare": "no light of this scene makes a ghost in this lens",
-    "scatter": "nothing shines in this scene, or the lens scatters nothing",
+    "scatter": "the scene has no lights, or the lens scatters nothing",
 }
 
 
@@ -54,10 +54,8 @@ class LightPlan:
 
 def plan_light(one: Prepared) -> LightPlan:
     """Decides it for a picture, by the pilot where that is left to it."""
-    try:
+    with core_errors(UsageError):
         core = _settings(one, one.setup, NONE)
-    except ValueError as error:
-        raise UsageError(str(error)) from None
     wanted = check_light_paths(one.settings.light.light_paths)
     plan = pilot(one, core) if wanted is None else wanted
     # The pilot judges by the frame; a crop gets the share that it has of its pixels.
@@ -82,14 +80,21 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
     """The film, with the layers that the picture needs."""
     x0, y0, x1, y1 = one.crop
     film, waves = one.settings.film, one.settings.diffraction
-    region = (x1 - x0, y1 - y0, x0, y0)
-    layers = (film.aovs, plan.followed, plan.flare > 0 or plan.scatter > 0)
-    bands = film.bands if waves is None else waves.bands
-    if one.sensor is None:
-        return _core.Film(*region, *layers, bands=bands)
-    curves = responses(one.sensor)
-    made = _core.Film(*region, *layers, bands=bands, channels=len(curves))
-    made.set_responses(curves)
+    curves = None if one.sensor is None else responses(one.sensor)
+    layout = _core.FilmLayout(
+        width=x1 - x0,
+        height=y1 - y0,
+        offset_x=x0,
+        offset_y=y0,
+        aovs=film.aovs,
+        splats=plan.followed,
+        flare=plan.flare > 0 or plan.scatter > 0,
+        bands=film.bands if waves is None else waves.bands,
+        channels=0 if curves is None else len(curves),
+    )
+    made = _core.Film(layout)
+    if curves is not None:
+        made.set_responses(curves)
     return made
 
 
@@ -119,10 +124,8 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
     if paths == 0:
         return 0.0
     check_surfaces(one.setup.facts["lens_model"], name)
-    try:
+    with core_errors(InputError, name):
         shines = getattr(core, f"prepare_{name}")(one.core_scene, one.setup.core)
-    except ValueError as error:
-        raise InputError(f"{name}: {error}") from None
     if not shines:
         notes.append(f"{name}: {DARK[name]}")
         return 0.0

@@ -82,19 +82,20 @@ def _truth_facts(one: Pass) -> dict[str, Any]:
 
 def film_of(one: Pass) -> Any:
     """The core's film with the sums of a pass."""
-    from daguerre._core import Film
+    from daguerre._core import Film, FilmLayout
 
     if not one.state:
         raise InputError(f"{one.path}: damaged pass file: it has no sums")
     height, width = next(iter(one.state.values())).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
-    parts: dict[str, Any] = {part: part in one.state for part in ("splats", "flare")}
-    parts["aovs"] = _has_aovs(one.state)
+    layout = FilmLayout(width=width, height=height, offset_x=int(x0), offset_y=int(y0))
+    layout.aovs = _has_aovs(one.state)
+    layout.splats, layout.flare = "splats" in one.state, "flare" in one.state
     if "bands" in one.state:
-        parts["bands"] = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
+        layout.bands = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
     if "channels" in one.state:
-        parts["channels"] = min(one.state["channels"].shape[2] // BAND_WORDS, MOST_CHANNELS)
-    film = Film(width, height, int(x0), int(y0), **parts)
+        layout.channels = min(one.state["channels"].shape[2] // BAND_WORDS, MOST_CHANNELS)
+    film = Film(layout)
     set_film_state(film, one.state, str(one.path))
     return film
 

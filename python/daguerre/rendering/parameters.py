@@ -116,8 +116,8 @@ SAMPLING_ROWS = (
 )
 FILM_ROWS = (
     Setting(
-        "resolution", "Width and height of the picture", "px", default=DEFAULT_RESOLUTION, kind="value",
-        normal=check_resolution,
+        "resolution", "Width and height of the picture", "px", default=DEFAULT_RESOLUTION,
+        kind="value", normal=check_resolution,
     ),
     Setting(
         "crop", "Draw only these pixels", "px", kind="value", normal=check_crop, parse=_crop_text,
@@ -129,7 +129,7 @@ FILM_ROWS = (
         "left, top, right and bottom, or as many as undistorting needs", "px", kind="value",
         flags=("--overscan",), metavar="PX|10%|L,T,R,B|undistort", panel=OUTPUT,
         more="A number, ``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``. The picture "
-        "keeps its bits.", explained="plates.md",
+        "keeps its bits.", explained=("plates.md",),
     ),
     Setting(
         "aovs", "Whether to keep depth, normal, position, albedo and object id", default=False,
@@ -152,13 +152,13 @@ LIGHT_ROWS = (
         "to the lens, and with bounces", default="auto", kind="value", normal=_light_paths,
         flags=("--light-paths",), metavar="auto|off|M1[,M2]", panel=SAMPLING, default_words="auto",
         more="It comes beside the paths from the lens: auto, off, or (M1, M2).",
-        explained="light-paths.md",
+        explained=("light-paths.md",),
     ),
     Setting(
         "flare", "Draw ghosts of an exact lens; N paths per sample index", default="off",
         kind="value", normal=_paths,
         flags=("--flare",), metavar="auto|off|N", panel=SAMPLING, default_words="off",
-        explained="flare.md",
+        explained=("flare.md",),
     ),
     Setting(
         "flare_order", "Number of reflections of ghosts; 4 draws those of 2 and of 4", default=2,
@@ -174,12 +174,12 @@ LIGHT_ROWS = (
         "scatter", "Draw light that barrel, iris and surfaces of an exact lens scatter; N paths "
         "per sample index", default="off", kind="value", normal=_paths,
         flags=("--scatter",), metavar="auto|off|N", panel=SAMPLING, default_words="off",
-        explained="scatter.md",
+        explained=("scatter.md",),
     ),
     Setting(
         "diffraction", "Treat light as a wave at the iris: stars, discs, softness at narrow stops",
         default=False, kind="flag", normal=lambda value, where: check_diffraction(value) or False,
-        flags=("--diffraction",), panel=SAMPLING, explained="diffraction.md",
+        flags=("--diffraction",), panel=SAMPLING, explained=("diffraction.md",),
         more="True, or a ``Diffraction`` with the number of bands and zones.",
     ),
 )
@@ -188,7 +188,7 @@ TRUTH_ROWS = (
         "gt_time", "Exact depth, P, N and ids at that moment of the exposure, instead of means",
         kind="choice", choices=tuple(GT_TIMES),
         flags=("--gt-time",), metavar="open|mid|close", panel=OUTPUT,
-        default_words="mid with motion", explained="ground-truth.md",
+        default_words="mid with motion", explained=("ground-truth.md",),
         more="So are distance, object_id and material_id.",
     ),
     Setting(

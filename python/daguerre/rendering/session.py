@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.checks import MAX_SAMPLES, whole
-from daguerre.errors import MismatchError, UsageError
+from daguerre.errors import InputError, MismatchError, UsageError, core_errors
 from daguerre.frame.frame import Frame
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 
 from . import identity
 from .adaptive import Round
-from .counters import RenderCounters
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of, takes
@@ -54,6 +53,7 @@ class Session:
         InputError: The scene or the lens cannot be used.
     """
 
+    @core_errors(InputError, "render")
     def __init__(
         self,
         scene: Scene,
@@ -74,7 +74,7 @@ class Session:
         self.light_paths = self.light_plan.light_paths
         self.flare, self.scatter = self.light_plan.flare, self.light_plan.scatter
         self.flare_spots, self.survey_rays = self.light_plan.core.flare_survey
-        self.counters = RenderCounters()
+        self.counters = _core.RenderCounters()
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self._film = new_film(one, self.light_plan)
@@ -129,12 +129,14 @@ class Session:
         if self.round is None:
             raise UsageError("draw_round: wanted a planned round, got none")
         begin, count, drawn = self.round.begin, self.round.count, self.round.drawn
-        if not self._add(_core.render_round, (begin, count, drawn, until), progress):
+        round = _core.SampleRound(begin, count, drawn, until)
+        if not self._add(_core.render_round, (round,), progress):
             return False
         self.round = replace(self.round, drawn=until)
         self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
         return True
 
+    @core_errors(InputError, "render")
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
         film = self._whole_film()
         self._torn = True  # until the pass is complete; a second film would take as much memory
@@ -150,8 +152,9 @@ class Session:
         self._torn, self.counters = False, counters
         return True
 
+    @core_errors(InputError, "render")
     def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
-        """The picture of the samples drawn so far, with all that was asked for.
+        """Returns the picture of the samples drawn so far, with all channels asked for.
 
         Args:
             truth: Whether to add ground truth.

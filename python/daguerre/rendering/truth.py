@@ -17,6 +17,7 @@ import daguerre._core as _core
 from daguerre.camera import rolling_shutter, shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
+from daguerre.errors import InputError, core_errors
 from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import CameraSetup, set_up
@@ -75,6 +76,7 @@ class GroundTruth:
     core_scene: _core.Scene | None = None
     overscan: Overscan = NONE
 
+    @core_errors(InputError, "render")
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
         """Channels (H, W) by name; with ``motion`` also ``motion.U`` and so on, px.
 
@@ -103,6 +105,7 @@ class GroundTruth:
             planes |= _by_channel(row, moved)
         return planes
 
+    @core_errors(InputError, "render")
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """That plane alone, (H, W), of ``moment(0)``."""
         if self.gt_lens == "mean":

@@ -1,11 +1,12 @@
 """Sensors: the library, files of the schema ``daguerre-sensor/0.1``, one sensor in numbers."""
 
 from .curve import Curve
+from .data import DarkCurrent, DualGain, HotPixels
 from .ideal import ideal
 from .library import load, names
 from .mosaic import PATTERNS, Mosaic
 from .reader import read
-from .sensor import DarkCurrent, DualGain, HotPixels, Sensor
+from .sensor import Sensor
 
 __all__ = [
     "PATTERNS",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,16 +12,14 @@ from daguerre.color import illuminants
 from daguerre.errors import InputError
 
 from .curve import FloatArray, rising, table
-
-if TYPE_CHECKING:
-    from .sensor import Sensor
+from .data import SensorData
 
 MOST_SIDE, MOST_BITS = 65536, 16
 #: Condition of curves of size 1; the bodies of the library have 1.2 to 3.
 _MOST_ALIKE = 1e4
 
 
-def check(sensor: Sensor) -> None:
+def check(sensor: SensorData) -> None:
     """Raises ``InputError`` for the first value that cannot be."""
     where = f"sensor {sensor.name}"
     _light(sensor, where)
@@ -47,7 +45,7 @@ def check(sensor: Sensor) -> None:
     _iso(sensor, where)
 
 
-def _light(sensor: Sensor, where: str) -> None:
+def _light(sensor: SensorData, where: str) -> None:
     if not sensor.channels or len(set(sensor.channels)) != len(sensor.channels):
         raise InputError(f"{where}: channels: wanted names that differ, got {sensor.channels}")
     nm = rising(f"{where}: wavelengths", sensor.wavelengths)
@@ -88,7 +86,7 @@ def tells_colours(curves: FloatArray, nm: FloatArray) -> bool:
     return bool((sizes > 0).all() and np.linalg.cond(fine / sizes) < _MOST_ALIKE)
 
 
-def _iso(sensor: Sensor, where: str) -> None:
+def _iso(sensor: SensorData, where: str) -> None:
     low, high = sensor.iso_range
     _within(where, "iso_range: lowest", low, 0.01, 1e7)
     _within(where, "iso_range: highest", high, low, 1e7)

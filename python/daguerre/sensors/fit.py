@@ -9,7 +9,7 @@ over wavelength (Jakob and Hanika 2019). White is kept exactly.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,8 +18,7 @@ from daguerre.color import illuminants
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
 
-if TYPE_CHECKING:
-    from .sensor import Sensor
+from .response import Response
 
 FloatArray = NDArray[np.float64]
 
@@ -81,13 +80,13 @@ def channels_from_xyz(sensor: Seeing) -> FloatArray:
     return _fitted(curves, illuminants.d65())
 
 
-def _raw_curves(sensor: Sensor) -> FloatArray:
+def _raw_curves(sensor: Response) -> FloatArray:
     """Raw response with crosstalk; the strongest of D65 of Y = 1 is 1, as sums."""
     curves = sensor.mixing @ (sensor.efficiency(illuminants.NM) * illuminants.NM)
     return np.asarray(curves / (curves @ illuminants.d65()).max())
 
 
-def colour_matrix(sensor: Sensor, xy: tuple[float, float]) -> FloatArray:
+def colour_matrix(sensor: Response, xy: tuple[float, float]) -> FloatArray:
     """Raw values from XYZ for a white."""
     curves = _raw_curves(sensor)
     day = _fitted(curves, illuminants.d65())
@@ -99,7 +98,7 @@ def colour_matrix(sensor: Sensor, xy: tuple[float, float]) -> FloatArray:
     return np.asarray((1 - part) * day + part * lamp)
 
 
-def rgb_from_channels(sensor: Sensor, xy: tuple[float, float]) -> FloatArray:
+def rgb_from_channels(sensor: Response, xy: tuple[float, float]) -> FloatArray:
     """Linear Rec.709 from frame channels, balanced for a white."""
     if len(sensor.channels) == 1:
         return np.ones((3, 1))

@@ -9,8 +9,9 @@ from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item
 
 from .curve import Curve
+from .data import DarkCurrent, DualGain, HotPixels
 from .mosaic import Mosaic
-from .sensor import DarkCurrent, DualGain, HotPixels, Sensor
+from .sensor import Sensor
 
 SCHEMA = "daguerre-sensor/0.1"
 MEMBERS = (

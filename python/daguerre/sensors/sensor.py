@@ -6,7 +6,6 @@ import dataclasses
 import hashlib
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,8 +16,8 @@ from daguerre.errors import UsageError
 
 from . import fit
 from .checking import check
-from .curve import Curve
 from .mosaic import Mosaic
+from .response import Response
 
 FloatArray = NDArray[np.float64]
 #: ISO 12232: the luminance exposure that just saturates is 78 / S lux s, half a stop above that of
@@ -26,56 +25,8 @@ FloatArray = NDArray[np.float64]
 SATURATION_LX_S, GREY_LX_S = 78.0, 10.0
 
 
-@dataclass(frozen=True)
-class DarkCurrent:
-    """Electrons that heat makes in a photosite without light.
-
-    Attributes:
-        rate: e-/s at that temperature.
-        temperature: deg C.
-        doubling: Kelvin in which the rate doubles.
-    """
-
-    rate: float = 0.0
-    temperature: float = 20.0
-    doubling: float = 6.0
-
-    def factor(self, temperature: float | None) -> float:
-        """How much faster it is at a temperature (deg C; None: as stated)."""
-        if temperature is None:
-            return 1.0
-        return float(2.0 ** ((temperature - self.temperature) / self.doubling))
-
-
-@dataclass(frozen=True)
-class HotPixels:
-    """Photosites with much dark current.
-
-    Attributes:
-        share: Share of all photosites.
-        rate: Mean of theirs, e-/s at the temperature of the dark current; exponentially
-            distributed.
-    """
-
-    share: float = 0.0
-    rate: float = 0.0
-
-
-@dataclass(frozen=True)
-class DualGain:
-    """The second, higher conversion gain of a photosite.
-
-    Attributes:
-        iso: Lowest ISO at which it is used; the table of read noise may step there.
-        full_well: Full well with this gain, e-.
-    """
-
-    iso: float
-    full_well: float
-
-
 @dataclass(frozen=True, eq=False)
-class Sensor:
+class Sensor(Response):
     """An image sensor, with the numbers of its maker or of a laboratory.
 
     Attributes:
@@ -115,38 +66,6 @@ class Sensor:
         note: A remark.
     """
 
-    name: str
-    make: str
-    model: str
-    source: str
-    licence: str
-    pixel_pitch: float
-    resolution: tuple[int, int]
-    pattern: Mosaic
-    channels: tuple[str, ...]
-    wavelengths: FloatArray
-    quantum_efficiency: FloatArray
-    full_well: float
-    bit_depth: int
-    base_iso: float
-    iso_range: tuple[float, float]
-    size: tuple[float, float] = (0.0, 0.0)
-    fill_factor: float = 1.0
-    infrared_cut: Curve | None = None
-    cover_glass: Curve | None = None
-    read_noise: tuple[tuple[float, float], ...] = ((100.0, 0.0),)
-    dual_gain: DualGain | None = None
-    dark_current: DarkCurrent = DarkCurrent()
-    prnu: float = 0.0
-    dsnu: float = 0.0
-    hot_pixels: HotPixels = HotPixels()
-    black_level: int = 0
-    crosstalk: float = 0.0
-    low_pass: float = 0.0
-    serial: int = 0
-    assumed: tuple[str, ...] = ()
-    note: str = ""
-
     def __post_init__(self) -> None:
         if self.size == (0.0, 0.0):
             columns, rows = self.resolution
@@ -179,61 +98,6 @@ class Sensor:
         if {"resolution", "pixel_pitch"} & set(changes) and "size" not in changes:
             changes["size"] = (0.0, 0.0)
         return dataclasses.replace(self, **changes)
-
-    @property
-    def where(self) -> str:
-        """For messages."""
-        return f"sensor {self.name}"
-
-    @property
-    def photosite_area(self) -> float:
-        """Area of a photosite, without fill factor, um2."""
-        return self.pixel_pitch**2
-
-    # Light to electrons ---------------------------------------------------------------------
-
-    def efficiency(self, nm: ArrayLike) -> FloatArray:
-        """Electrons per photon on the photosite's whole area, with all filters, (C, L).
-
-        Args:
-            nm: Wavelengths, shape (L,).
-        """
-        at = np.asarray(nm, np.float64)
-        curves = [
-            np.interp(at, self.wavelengths, row, left=0, right=0) for row in self.quantum_efficiency
-        ]
-        out = np.stack(curves) * self.fill_factor
-        for curve in (self.infrared_cut, self.cover_glass):
-            if curve is not None:
-                out = out * curve.at(at)
-        return out
-
-    def electrons_per_lux_s(self, white: FloatArray | None = None) -> FloatArray:
-        """Electrons that 1 lux s of a light makes in each channel's photosites, shape (C,).
-
-        Args:
-            white: Radiance at ``illuminants.NM``, of any scale; None is D65.
-        """
-        return self._of_d65.copy() if white is None else self._electrons_of(white)
-
-    @cached_property
-    def _of_d65(self) -> FloatArray:
-        return self._electrons_of(illuminants.d65())
-
-    def _electrons_of(self, light: FloatArray) -> FloatArray:
-        photons = illuminants.photons_per_lux_s(light) * self.photosite_area
-        curves = self.efficiency(illuminants.NM)
-        return np.array([illuminants.integral(curve * photons) for curve in curves])
-
-    @property
-    def mixing(self) -> FloatArray:
-        """Crosstalk of even light: channels from channels, shape (C, C)."""
-        unmixed = np.eye(len(self.channels))
-        return (1 - self.crosstalk) * unmixed + self.crosstalk * self.pattern.neighbours()
-
-    def white_electrons(self, white: FloatArray | None = None) -> FloatArray:
-        """Electrons per lux s with crosstalk; see :meth:`electrons_per_lux_s`."""
-        return self.mixing @ self.electrons_per_lux_s(white)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
         """Weights by which a frame's channels sum light: efficiency times wavelength, shape (C, L).

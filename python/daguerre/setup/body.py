@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.camera.lens_scatter import LensScatter, core_parts
+from daguerre.camera.parameters import CAMERA
 from daguerre.checks import number, numbers, short
 from daguerre.errors import UsageError
 
@@ -24,13 +25,8 @@ def stack_of(camera: Camera) -> _core.SensorStack:
     Raises:
         UsageError: Glass or a sensor that cannot be.
     """
-    where = "camera: sensor_reflectance"
-    reflectance = number(camera.sensor_reflectance, where)
-    if not 0 <= reflectance <= 1:
-        raise UsageError(
-            f"{where}: wanted 0 .. 1 (no surface can send back more light than arrives), "
-            f"got {reflectance:g}"
-        )
+    CAMERA["sensor_reflectance"].check(camera.sensor_reflectance, "camera: sensor_reflectance")
+    reflectance = float(camera.sensor_reflectance)
     given: Any = camera.cover_glass
     if given is None:
         return _core.SensorStack(reflectance=reflectance)

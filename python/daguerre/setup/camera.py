@@ -19,6 +19,8 @@ from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import exposure_facts, exposure_notes, lens_h0
 from daguerre.camera.overscan import NONE, Overscan
+from daguerre.camera.parameters import CAMERA
+from daguerre.camera.parameters.needs import TRACED
 from daguerre.camera.projection import Projection, check_resolution
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError
@@ -26,7 +28,7 @@ from daguerre.scene.scene import Scene
 
 from . import lens as camera_prescription
 from . import tilt
-from .checks import TRACED, check, lens_and_model
+from .checks import check, lens_and_model
 from .film import frame_size
 from .focus import Focus, ideal_direction
 from .iris import iris_facts, iris_of
@@ -34,7 +36,7 @@ from .lens_motion import LensMotion
 from .pose import motion_facts
 from .pose import pose as pose_over
 
-DEFAULT_FOCAL_LENGTH = 50.0
+DEFAULT_FOCAL_LENGTH: float = CAMERA["focal_length"].usual
 
 
 @dataclass

@@ -7,9 +7,10 @@ from typing import Any
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
+from daguerre.camera.parameters import CAMERA
 
-DEFAULT_DEGREE = 7
-DEFAULT_TOLERANCE = 0.5  # px
+DEFAULT_DEGREE: int = CAMERA["degree"].usual
+DEFAULT_TOLERANCE: float = CAMERA["fit_tolerance"].usual
 
 
 def judged(

@@ -10,25 +10,23 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
-from daguerre.errors import UsageError
+from daguerre.errors import UsageError, core_errors
 
 
 def iris_of(camera: Camera) -> _core.Iris:
     """The shape of the iris: round, blades, or a picture."""
-    try:
-        if camera.aperture_image is not None:
+    if camera.aperture_image is not None:
+        try:
             picture = np.asarray(camera.aperture_image, np.float32)
-            if picture.ndim != 2:
-                raise UsageError(
-                    f"camera: aperture_image: wanted shape (H, W), got {picture.shape}"
-                )
+        except (TypeError, ValueError) as error:
+            raise UsageError(f"camera: {error}") from None
+        if picture.ndim != 2:
+            raise UsageError(f"camera: aperture_image: wanted shape (H, W), got {picture.shape}")
+        with core_errors(UsageError, "camera"):
             return _core.Iris.image(np.ascontiguousarray(picture))
-        if camera.blades:
+    if camera.blades:
+        with core_errors(UsageError, "camera"):
             return _core.Iris.polygon(camera.blades, camera.blade_rotation, camera.blade_curvature)
-    except UsageError:
-        raise
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"camera: {error}") from None
     return _core.Iris()
 
 

@@ -18,20 +18,21 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.camera import Camera, Decenter
+from daguerre.camera.parameters import CAMERA
+from daguerre.camera.parameters.needs import TRACED
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.checking import frame_notes
-from daguerre.lenses.errors import LensError, from_core
+from daguerre.lenses.errors import LensError, reported
 
 from . import fit as camera_fit
 from . import tilt
 from .aim_cache import exact_lens
 from .body import parts_of, stack_facts, stack_of
-from .checks import TRACED
 from .focus import Focus, ideal_direction
 from .iris import dirt_facts, iris_facts, iris_of, mask_of
 
-DEFAULT_F_STOP = 5.6
+DEFAULT_F_STOP: float = CAMERA["f_stop"].usual
 
 
 Directions = Callable[[float, float], NDArray[np.float64]]
@@ -206,10 +207,8 @@ def _rippled(lens: lenses.Lens, ripple: tuple[float, float, int]) -> lenses.Lens
 def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
     """On the axis, of light as bright as a D65 world, at any f-stop."""
     f_stop = order.f_number or DEFAULT_F_STOP  # 0: a stop whose size nobody knows
-    try:
+    with reported(lens.source):
         thick = _core.ThickLens(lens.prescription, f_stop, _core.Iris(), math.inf)
-    except ValueError as error:
-        raise from_core(error, lens.source) from None
     return float(thick.transmittance)
 
 
@@ -276,7 +275,7 @@ def _core_camera(
     camera: Camera, model: str, sharp: _InFocus, pose: _core.Motion, film: float
 ) -> tuple[_core.Camera, float]:
     """Makes the camera of a model without surfaces; returns it with its H0."""
-    try:
+    with reported(sharp.lens.source):
         thick = _core.ThickLens(
             sharp.lens.prescription,
             sharp.f_stop,
@@ -285,8 +284,6 @@ def _core_camera(
             film_z_mm=sharp.film_z,
             tilt_deg=camera.tilt,
         )
-    except ValueError as error:
-        raise from_core(error, sharp.lens.source) from None
     radius = sharp.order.efl / sharp.f_stop / 2
     vignetting = camera.natural_vignetting
     if model == "thick":
@@ -349,22 +346,20 @@ def _exact_lens(
     camera: Camera, sharp: _InFocus, frame: tuple[float, float], fit_degree: int | None = None
 ) -> _core.ExactLens:
     half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
-    try:
-        return exact_lens(
-            sharp.lens.prescription,
-            sharp.f_stop,
-            iris_of(camera),
-            sharp.distance,
-            # The reconstruction filter reaches over the frame's edge.
-            1.02 * math.hypot(*half),
-            film_z_mm=sharp.film_z,
-            tilt_deg=camera.tilt,
-            film_center_mm=camera.shift,
-            film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
-            fit_degree=fit_degree,
-        )
-    except ValueError as error:
-        raise from_core(error, sharp.lens.source) from None
+    settings = _core.ExactLensSettings(
+        f_stop=sharp.f_stop,
+        iris=iris_of(camera),
+        focus_distance_m=sharp.distance,
+        # The reconstruction filter reaches over the frame's edge.
+        half_diagonal_mm=1.02 * math.hypot(*half),
+        film_z_mm=sharp.film_z,
+        tilt_deg=camera.tilt,
+        film_center_mm=camera.shift,
+        film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
+        fit_degree=fit_degree,
+    )
+    with reported(sharp.lens.source):
+        return exact_lens(sharp.lens.prescription, settings)
 
 
 def _hash_lens(lens: lenses.Lens) -> str:

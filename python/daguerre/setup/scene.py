@@ -10,7 +10,7 @@ import numpy as np
 
 import daguerre._core as _core
 from daguerre.checks import frozen, short
-from daguerre.errors import DaguerreError, InputError, UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.motion.subdivision import samples
 from daguerre.scene.scene import Scene
 
@@ -35,7 +35,7 @@ def build(
     """
     if not isinstance(scene, Scene):
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
-    try:
+    with core_errors(InputError, str(scene.path or "scene")):
         builder = _core.SceneBuilder()
         seen = interval or (scene.time, scene.time)
         builder.set_interval(*seen)
@@ -43,10 +43,6 @@ def build(
         _add_all(builder, scene, moving)
         moving.finish()
         return builder.build()
-    except ValueError as error:
-        if isinstance(error, DaguerreError):
-            raise
-        raise InputError(f"{scene.path or 'scene'}: {error}") from None
 
 
 def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: Moving) -> None:

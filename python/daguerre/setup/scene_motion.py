@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.checks import given_matrix, given_up
-from daguerre.errors import InputError
+from daguerre.errors import InputError, core_errors
 from daguerre.motion.resample import resample_shown, resample_transform
 from daguerre.motion.subdivision import MAX_BREAKS, MAX_KEYS
 from daguerre.motion.values import Dynamic, Keys, Spin
@@ -88,11 +88,10 @@ class Moving:
         box, where = self._corners[instance.mesh], _where(instance, index)
         try:
             self._count(dynamic, where, self._most)
-            return resample_transform(dynamic, *self.interval, box, self._most, where)
-        except (TypeError, ValueError) as error:
-            if isinstance(error, InputError):
-                raise
+        except TypeError as error:  # its breaks are no list
             raise InputError(f"{where}: transform: {error}") from None
+        with core_errors(InputError, f"{where}: transform"):
+            return resample_transform(dynamic, *self.interval, box, self._most, where)
 
     def _count(self, dynamic: Dynamic, where: str, most: int) -> None:
         many = len(dynamic.breaks(*self.interval))

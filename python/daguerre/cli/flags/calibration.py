@@ -9,20 +9,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
 
 from .groups import Text, option
 
 _CAMERA = "Camera"
-#: Parameters of lenses, and their flags.
-_OF_LENSES = {
-    **{name: "--" + name.replace("_", "-") for name in ("lens", "lens_model", "degree", "zoom")},
-    **{name: "--" + name.replace("_", "-") for name in ("fit_tolerance", "focal_length", "t_stop")},
-    **{name: "--" + name.replace("_", "-") for name in ("aperture_diameter", "decenter", "tilt")},
-    **{name: "--" + name.replace("_", "-") for name in ("natural_vignetting", "ripple", "shift")},
-    **{name: "--" + name.replace("_", "-") for name in ("focus_breathing", "focus_by")},
-    "sensor_fit": "--fit",
-}
 
 
 @dataclass(frozen=True)
@@ -148,7 +140,11 @@ class CalibrationFlags:
 
         if not self.found:
             return
-        both = [flag for name, flag in _OF_LENSES.items() if name in changes]
+        both = [
+            row.flag
+            for row in CAMERA.flagged
+            if row.name in changes and not row.takes("projection")
+        ]
         if changes.get("lens") == "pinhole":  # no iris: all is sharp
             both.remove("--lens")
             if "f_stop" in changes:

@@ -1,7 +1,7 @@
 """Flags made from tables of parameters: a row is a flag of every command that takes its table."""
 
 from collections.abc import Callable
-from dataclasses import fields, make_dataclass
+from dataclasses import make_dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
@@ -28,27 +28,36 @@ class TableFlags:
 Flags = TypeVar("Flags", bound=TableFlags)
 
 
-def made_of(table: Table) -> Callable[[type[Flags]], type[Flags]]:
-    """Makes a data class of flags: the decorated class with a field for each row with a flag."""
+def made_of(
+    table: Table, names: Table | None = None, panel: str | None = None
+) -> Callable[[type[Flags]], type[Flags]]:
+    """Makes a data class of flags: the decorated class with a field for each row with a flag.
+
+    Args:
+        table: Rows of the flags, in the order of a help.
+        names: Table of the parameters that helps name; None: the same.
+        panel: Part of a help that shows them; None: that of each row.
+    """
 
     def make(base: type[Flags]) -> type[Flags]:
         made = make_dataclass(
             base.__name__,
-            [(row.field, field_type(row, table), None) for row in table.flagged],
+            [(row.field, field_type(row, names or table, panel), None) for row in table.flagged],
             bases=(base,),
             namespace={"table": table, "__doc__": base.__doc__, "__module__": base.__module__},
             frozen=True,
         )
-        assert len(fields(made)) == len(table.flagged)
         return made
 
     return make
 
 
-def field_type(row: Parameter, table: Table) -> Any:
+def field_type(row: Parameter, names: Table, panel: str | None) -> Any:
     """Type of a flag for Typer, with its names and its help."""
     kind = list[str] if row.repeated else str if row.parser else _TYPES.get(row.kind, str)
-    shown = option(*row.flags, metavar=row.metavar, help=table.help(row.name), panel=row.panel)
+    shown = option(
+        *row.flags, metavar=row.placeholder, help=row.help(names.flag), panel=panel or row.panel
+    )
     return Annotated[kind | None, shown]
 
 
@@ -57,8 +66,8 @@ def _is_given(value: Any) -> bool:
 
 
 def _read(row: Parameter, value: Any) -> Any:
-    if row.parser is None:
-        return value
-    if row.repeated:
-        return tuple(row.parser(row.flag, text) for text in value)
-    return row.parser(row.flag, value)
+    if row.kind == "picture":
+        from daguerre.io.iris import read_grey
+
+        return read_grey(value)
+    return tuple(map(row.from_text, value)) if row.repeated else row.from_text(value)

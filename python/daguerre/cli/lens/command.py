@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,25 +11,49 @@ import typer
 
 from daguerre.cli.console import note
 from daguerre.cli.drawings import check_drawing
-from daguerre.cli.flags.groups import option
+from daguerre.cli.flags.from_table import made_of
+from daguerre.cli.flags.groups import option, with_flags
+from daguerre.cli.flags.setting import F_STOP, FOCUS, ZOOM, BenchFlags, focus_by
 from daguerre.errors import InputError, UsageError
-from daguerre.units import SENSORS, angle_deg, distance_m, f_number, length_mm
+from daguerre.parameters.table import Table
+from daguerre.units import angle_deg, distance_m, length_mm
 
-from .export import Export
+from .export import FILES, Export
 from .flare import Flare
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
     from daguerre.lenses import Lens
+    from daguerre.lenses.focus import By
 
 #: the wavelength of the helium d line, at which lenses are specified, nm
 DESIGN_NM = 587.56
-FOCUS_BY = ("best", "paraxial")
-BENCH, FILES = "On the bench", "Files written"
+BENCH = "On the bench"
+_SETTING = Table(
+    *(ZOOM, FOCUS, F_STOP),
+    focus_by("Focus at the smallest spot on the axis, or of rays close to it", "best"),
+)
 
 
+@made_of(_SETTING, panel=BENCH)
+class SettingFlags(BenchFlags):
+    """How the lens is set; without flags wide open and focused at infinity."""
+
+    @property
+    def by(self) -> By:
+        """How it is focused."""
+        return self.focus_by or "best"
+
+    def given_mm(self) -> dict[str, Any]:
+        """Zoom, focus and stop that were given, by the names of the bench."""
+        names = {"zoom": "zoom_mm", "focus_distance": "focus_m", "f_stop": "f_stop"}
+        return {names[name]: value for name, value in self.given().items() if name in names}
+
+
+@with_flags(polynomials=Export, setting=SettingFlags)
 def lens(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
+    *,
     json: Annotated[
         bool, option("--json", help="Print all numbers as one JSON object, mm.")
     ] = False,
@@ -61,51 +85,7 @@ def lens(
             panel=FILES,
         ),
     ] = None,
-    degree: Annotated[
-        int | None,
-        option(
-            "--degree",
-            metavar="N",
-            help="Degree of the exported polynomials, odd, 1 to 13 [7].",
-            panel=FILES,
-        ),
-    ] = None,
-    sensor: Annotated[
-        str | None,
-        option(
-            "--sensor",
-            metavar="WxH|" + "|".join(SENSORS),
-            help="Size of the film for --export and --flare, mm [the lens's format].",
-            panel=FILES,
-        ),
-    ] = None,
-    blades: Annotated[
-        int | None,
-        option(
-            "--blades",
-            metavar="N",
-            help="Blades of the exported lens's iris; 0 is round [0].",
-            panel=FILES,
-        ),
-    ] = None,
-    blade_rotation: Annotated[
-        str | None,
-        option(
-            "--blade-rotation",
-            metavar="DEG",
-            help="Rotation of the exported lens's iris blades, degrees [0].",
-            panel=FILES,
-        ),
-    ] = None,
-    blade_curvature: Annotated[
-        float | None,
-        option(
-            "--blade-curvature",
-            metavar="C",
-            help="Curvature of its iris blades, -1 to 1; 1 is round [0].",
-            panel=FILES,
-        ),
-    ] = None,
+    polynomials: Export,
     psf: Annotated[
         str | None,
         option(
@@ -164,26 +144,7 @@ def lens(
             panel=BENCH,
         ),
     ] = False,
-    zoom: Annotated[
-        str | None, option("--zoom", metavar="MM", help="Focal length of a zoom, mm.", panel=BENCH)
-    ] = None,
-    focus: Annotated[
-        str | None,
-        option("--focus", metavar="M", help="Focus distance, m from the pupil [inf].", panel=BENCH),
-    ] = None,
-    f_stop: Annotated[
-        str | None,
-        option("--f-stop", metavar="N", help="F-stop as engraved [wide open].", panel=BENCH),
-    ] = None,
-    focus_by: Annotated[
-        str,
-        option(
-            "--focus-by",
-            metavar="best|paraxial",
-            help="Focus at the smallest spot on the axis, or of rays close to it [best].",
-            panel=BENCH,
-        ),
-    ] = "best",
+    setting: SettingFlags,
     wavelength: Annotated[
         float,
         option(
@@ -197,24 +158,21 @@ def lens(
 
     for flag, path in (("--plot", plot), ("--drawing", drawing)):
         check_drawing(flag, path, plotted=flag == "--plot")
-    polynomials = Export(degree, sensor, blades, blade_rotation, blade_curvature)
-    (polynomials if flare is None else replace(polynomials, sensor=None)).check(export)
-    ghosts = Flare(flare, ghost, cover_glass, sensor_reflectance, sensor)
-    if focus_by not in FOCUS_BY:
-        raise UsageError(f"--focus-by: wanted {' or '.join(FOCUS_BY)}, got {focus_by!r}")
+    polynomials.check(export, film_serves=flare is not None)
+    ghosts = Flare(flare, ghost, cover_glass, sensor_reflectance, polynomials.film)
+    setting.check()
     if through_focus and psf is None:
         raise UsageError("--through-focus: needs --psf FIELD,DISTANCE")
     point = None if psf is None else _point(psf)
     item = library.load(name)
     for text in item.notes:
         note(text)
-    setting = _setting(zoom, focus, f_stop)
     if export is not None:
-        polynomials.write(item, export, {**setting, "by": focus_by})
+        polynomials.write(item, export, {**setting.given_mm(), "by": setting.by})
         return 0
 
     def bench() -> Bench:
-        return set_up(item, by="best" if focus_by == "best" else "paraxial", **setting)
+        return set_up(item, by=setting.by, **setting.given_mm())
 
     if ghosts.wanted:
         return ghosts.show(bench(), plot=plot, drawing=drawing, json=json)
@@ -231,19 +189,8 @@ def lens(
     if plot is not None or json:
         _write_figures(item, bench(), plot, wavelength, json=json)
     if not json:
-        _print(item if not setting else bench().lens, wavelength)
+        _print(bench().lens if setting.given_mm() else item, wavelength)
     return 0
-
-
-def _setting(zoom: str | None, focus: str | None, f_stop: str | None) -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    if zoom is not None:
-        out["zoom_mm"] = length_mm("--zoom", zoom)
-    if focus is not None:
-        out["focus_m"] = distance_m("--focus", focus)
-    if f_stop is not None:
-        out["f_stop"] = f_number("--f-stop", f_stop)
-    return out
 
 
 def _point(text: str) -> tuple[float, bool, float]:
@@ -299,7 +246,7 @@ def _finite(value: Any) -> Any:
 def _print(item: Lens, wavelength: float) -> None:
     try:
         order = asdict(item.first_order(wavelength))
-    except ValueError as error:
+    except InputError as error:
         raise InputError(f"{item.source}: {error}") from None
     print(item)
     print(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")

@@ -4,40 +4,73 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.camera.parameters import CAMERA
+from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.errors import UsageError
-from daguerre.units import angle_deg, sensor_mm
+from daguerre.parameters.table import Table
+from daguerre.units import SENSORS
 
 if TYPE_CHECKING:
     from daguerre._core import Iris
     from daguerre.lenses import Lens
     from daguerre.polynomial import LensFit
 
-DEFAULT_DEGREE = 7
 #: RMS error on the film that is worth a sentence, um: half a pixel of 960 over 36 mm.
 WORTH_TELLING = 20.0
 #: Parts of the film by radius: as few as keep the error below that.
 SEGMENTS = (1, 2, 4)
 
 
-@dataclass(frozen=True)
-class Export:
+FILES = "Files written"
+_BLADES = ("blades", "blade_rotation", "blade_curvature")
+_EXPORT = Table(
+    replace(CAMERA["degree"], meaning="Degree of the exported polynomials, odd, 1 to 13"),
+    replace(
+        CAMERA["sensor_size"],
+        meaning="Size of the film for --export and --flare, mm",
+        flags=("--sensor",),
+        metavar="WxH|" + "|".join(SENSORS),
+        tells_default=False,
+        default_words="the lens's format",
+    ),
+    replace(
+        CAMERA["blades"],
+        meaning="Blades of the exported lens's iris; 0 is round",
+        tells_default=True,
+    ),
+    replace(
+        CAMERA["blade_rotation"],
+        meaning="Rotation of the exported lens's iris blades, degrees",
+        tells_default=True,
+    ),
+    replace(
+        CAMERA["blade_curvature"],
+        meaning="Curvature of its iris blades, -1 to 1; 1 is round",
+        tells_default=True,
+    ),
+)
+
+
+@made_of(_EXPORT, panel=FILES)
+class Export(TableFlags):
     """The flags that say what is fitted; None: not given."""
 
-    degree: int | None
     sensor: str | None
-    blades: int | None
-    blade_rotation: str | None
-    blade_curvature: float | None
 
-    def check(self, path: Path | None) -> None:
-        """Says what is wrong before anything is computed."""
+    def check(self, path: Path | None, *, film_serves: bool) -> None:
+        """Says what is wrong before anything is computed.
+
+        Args:
+            path: File of ``--export``, if any.
+            film_serves: Whether ``--sensor`` serves another flag.
+        """
         if path is None:
             for name, given in vars(self).items():
-                if given is not None:
+                if given is not None and not (film_serves and name == "sensor"):
                     raise UsageError(f"--{name.replace('_', '-')}: needs --export FILE")
             return
         from daguerre.export import check_suffix
@@ -65,30 +98,30 @@ class Export:
     def _fitted(self, item: Lens, setting: dict[str, Any], segments: int) -> LensFit:
         from daguerre.polynomial import fit
 
+        given = self.given()
         return fit(
             item,
-            DEFAULT_DEGREE if self.degree is None else self.degree,
-            film=None if self.sensor is None else sensor_mm("--sensor", self.sensor),
+            given.get("degree", CAMERA["degree"].usual),
+            film=self.film,
             f_stop=setting.get("f_stop"),
             focus=setting.get("focus_m", math.inf),
             focus_by=setting["by"],
             zoom=setting.get("zoom_mm"),
             segments=segments,
-            iris=self._iris(),
+            iris=_iris(given),
         )
 
-    def _iris(self) -> Iris:
-        from daguerre.camera.camera import Camera
-        from daguerre.setup.iris import iris_of
+    @property
+    def film(self) -> tuple[float, float] | None:
+        """Width and height of the film, mm; None: not given."""
+        return self.given().get("sensor_size")
 
-        turn = self.blade_rotation
-        return iris_of(
-            Camera(
-                blades=self.blades or 0,
-                blade_rotation=0.0 if turn is None else angle_deg("--blade-rotation", turn),
-                blade_curvature=self.blade_curvature or 0.0,
-            )
-        )
+
+def _iris(given: dict[str, Any]) -> Iris:
+    from daguerre.camera.camera import Camera
+    from daguerre.setup.iris import iris_of
+
+    return iris_of(Camera(**{name: given[name] for name in _BLADES if name in given}))
 
 
 def weak_region(fitted: LensFit) -> str | None:

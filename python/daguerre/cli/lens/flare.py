@@ -6,8 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.camera.parameters import CAMERA
 from daguerre.errors import UsageError
-from daguerre.units import angle_deg, numbers, sensor_mm
+from daguerre.units import angle_deg, numbers
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
@@ -29,7 +30,7 @@ class Flare:
         ghost: str | None,
         cover_glass: str | None,
         reflectance: float | None,
-        sensor: str | None,
+        film: tuple[float, float] | None,
     ) -> None:
         self.wanted = angle is not None
         others = {
@@ -45,12 +46,11 @@ class Flare:
         self.angle = angle_deg("--flare", angle)
         if not (math.isfinite(self.angle) and abs(self.angle) < 90):
             raise UsageError(f"--flare: wanted an angle below 90 degrees, got {angle!r}")
-        self.film = None if sensor is None else sensor_mm("--sensor", sensor)
+        self.film = film
         self.ghost = None if ghost is None else _surfaces(ghost)
         self.glass = None
         if cover_glass is not None:
-            count = 3 if cover_glass.count(",") > 1 else 2
-            self.glass = numbers("--cover-glass", cover_glass, count, "2,1")
+            self.glass = CAMERA["cover_glass"].from_text(cover_glass)
         self.reflectance = reflectance or 0.0
 
     def show(self, bench: Bench, *, plot: Path | None, drawing: Path | None, json: bool) -> int:

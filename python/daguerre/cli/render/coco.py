@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from daguerre.cli import console
 from daguerre.errors import UsageError
-from daguerre.rendering.core_errors import core_errors
 from daguerre.rendering.picture import Picture
 from daguerre.scene.scene import Scene
 
@@ -43,8 +42,7 @@ class Labels:
             return
         from daguerre.labels.annotations import annotations_of
 
-        with core_errors("render"):
-            seen = annotations_of(session, self.categories)
+        seen = annotations_of(session, self.categories)
         # Readers of data sets want files that image libraries open.
         files = picture.output.files
         plain = (f for f in files if f.suffix.lower() not in (".exr", ".dng"))

@@ -30,19 +30,17 @@ def _write(plan: Plan, job: Job, picture: Picture) -> None:
     from daguerre.camera.shutter import interval
     from daguerre.distortion.overscan import note, to_undistort
     from daguerre.distortion.rectified import Sight
-    from daguerre.rendering.core_errors import core_errors
     from daguerre.rendering.truth import focused
     from daguerre.setup.camera import set_up
     from daguerre.setup.scene import build
 
     scene, camera = job.scene_of(picture), job.camera_of(picture)
     size = picture.settings.film.resolution
-    with core_errors("render"):
-        setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
-        camera = focused(camera, setup.facts)
-        overscan = check_overscan(picture.settings.film.overscan, size, "--overscan")
-        if overscan is None:
-            overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
-            console.note(note(overscan))
-        moment = picture.settings.truth.moment
-        plan.maps_of(picture).write(scene, camera, size, overscan, moment)
+    setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
+    camera = focused(camera, setup.facts)
+    overscan = check_overscan(picture.settings.film.overscan, size, "--overscan")
+    if overscan is None:
+        overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+        console.note(note(overscan))
+    moment = picture.settings.truth.moment
+    plan.maps_of(picture).write(scene, camera, size, overscan, moment)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre.errors import InputError
+from daguerre.errors import InputError, core_errors
 from daguerre.files.json_item import Item, short
 
 NAMES = ("KHR_meshopt_compression", "EXT_meshopt_compression")
@@ -73,10 +73,8 @@ def unpack(data: memoryview, view: Item, extension: Item) -> memoryview:
         InputError: The stream is broken, or does not fit what the file says of it.
     """
     mode, filter_name, count, stride = check(view, extension)
-    try:
+    with core_errors(InputError, f"{view.file}: {extension.path}"):
         raw = _core.unpack_meshopt(np.frombuffer(data, np.uint8), mode, count, stride)
-    except ValueError as error:
-        raise InputError(f"{view.file}: {extension.path}: {error}") from None
     if filter_name != "NONE":
         with np.errstate(all="ignore"):  # what the filters leave unspecified is any number
             raw = _FILTERS[filter_name](raw, stride)

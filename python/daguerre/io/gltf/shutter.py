@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daguerre.camera import rolling_shutter, shutter
+from daguerre.camera.parameters import CAMERA, LIMITS
 from daguerre.files.json_item import Item
 
 
@@ -33,7 +34,7 @@ def _rolling(item: Item) -> rolling_shutter.RollingShutter:
     """``{"scanOrder": side, "lineTime" or "readoutTime": s}``."""
     order = item.get("scanOrder")
     times = {
-        name: None if member is None else member.number(0, shutter.MAX_TIME)
+        name: None if member is None else member.number(*LIMITS["shutter_time"])
         for name in ("lineTime", "readoutTime")
         for member in (item.get(name),)
     }
@@ -47,11 +48,11 @@ def _rolling(item: Item) -> rolling_shutter.RollingShutter:
 
 
 SHUTTER: dict[str, Callable[[Item], Any]] = {
-    "shutterTime": lambda item: item.number(0, shutter.MAX_TIME),
-    "shutterAngle": lambda item: item.number(0, shutter.MAX_ANGLE),
-    "fps": lambda item: item.number(*shutter.FPS_RANGE),
-    "shutterOffset": lambda item: item.number(-shutter.MAX_OFFSET, shutter.MAX_OFFSET),
-    "shutterType": lambda item: item.choice(shutter.TYPES),
+    "shutterTime": lambda item: item.number(*LIMITS["shutter_time"]),
+    "shutterAngle": lambda item: item.number(*LIMITS["shutter_angle"]),
+    "fps": lambda item: item.number(*LIMITS["fps"]),
+    "shutterOffset": lambda item: item.number(*LIMITS["shutter_offset"]),
+    "shutterType": lambda item: item.choice(CAMERA["shutter_type"].choices),
     "shutterCurve": _curve,
     "rollingShutter": _rolling,
 }

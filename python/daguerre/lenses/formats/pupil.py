@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from daguerre.lenses.errors import LensError, reported
+from daguerre.lenses.json_lens import lens_of
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,6 @@ def _semi_diameter(
     configuration: dict[str, Any],
     pupil: Pupil,
 ) -> float:
-    from daguerre.lenses.reader import lens_of
-
     probe = 1e-3
     stop_free = {**stop, "semi_diameter": probe}
     surfaces = [stop_free if s is stop else s for s in data["surfaces"]]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre._core import ShutterTime
 from daguerre._core import motion_blur as spread_along
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError
@@ -96,11 +97,11 @@ class _MotionBlur(Step):
         ahead, back = (np.ascontiguousarray(flow, np.float32) for flow in self._motion(band))
         nearness, step = self._nearness(band, ahead, back)
         inside = (rows.begin - band.rows.begin, rows.end - band.rows.begin)
-        shutter = (self._open, self._close, self._arrived)
+        shutter = ShutterTime(self._open, self._close, self._arrived)
 
         def spread(four: Image) -> Image:
             out: Image = spread_along(
-                four, ahead, back, np.ascontiguousarray(nearness), step, *shutter, inside
+                four, ahead, back, np.ascontiguousarray(nearness), step, shutter, inside
             )
             return out
 

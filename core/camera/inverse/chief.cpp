@@ -1,0 +1,219 @@
+#include "camera/inverse/chief.h"
+
+#include <cmath>
+
+#include "camera/mean_ray.h"
+#include "math/error.h"
+
+namespace dg {
+namespace {
+
+constexpr int kSteps = 64;  // film radii of the table
+constexpr int kTurns = 16;  // directions on the film over which a ray is averaged
+constexpr int kSide = 24;   // lens samples a side
+constexpr double kBeyond =
+    3;  // film radii past the table's end at which points are still found
+
+/// Rays that pass, from film points at one radius all round, turned to +x.
+std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
+    std::vector<CameraSample> samples;
+    for (int turn = 0; turn < kTurns; ++turn) {
+        const double a = 2 * kPiD * turn / kTurns;
+        const Vec2f film{float(radius_mm * std::cos(a)), float(radius_mm * std::sin(a))};
+        const std::vector<CameraSample> cells = lens_cells(film, kSide);
+        samples.insert(samples.end(), cells.begin(), cells.end());
+    }
+    std::vector<CameraRay> rays(samples.size());
+    lens.generate(samples, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const double a = 2 * kPiD * double(i / (kSide * kSide)) / kTurns;
+        const float c = float(std::cos(a)), s = float(std::sin(a));
+        const auto turned = [&](Vec3f v) {
+            return Vec3f{c * v.x + s * v.y, c * v.y - s * v.x, v.z};
+        };
+        rays[i].ray.origin = turned(rays[i].ray.origin);
+        rays[i].ray.direction = turned(rays[i].ray.direction);
+    }
+    std::erase_if(rays, [](const CameraRay& r) { return !(r.weight > 0); });
+    return rays;
+}
+
+/// Mean ray, in the meridional plane, of rays turned to +x.
+std::optional<ChiefRays::Meridional> mean_ray(const std::vector<CameraRay>& rays) {
+    Vec3d axis = summed_direction(rays);
+    axis.y = 0;  // what is left of it is the grid's
+    if (!(length(axis) > 0)) return std::nullopt;
+    const RayMeans mean = means_across(normalize(axis), rays);
+    const Vec3d o = mean.crossing, d = normalize(Vec3d{mean.slope.x, 0, mean.slope.z});
+    const double angle = std::atan2(d.x, -d.z);
+    return ChiefRays::Meridional{angle, o.x * std::cos(angle) + o.z * std::sin(angle),
+                                 mean.start};
+}
+
+using Meridional = ChiefRays::Meridional;
+
+Meridional sum(const Meridional& a, double s, const Meridional& b) {
+    return {a.angle + s * b.angle, a.offset + s * b.offset, a.start + s * b.start};
+}
+
+/// At -r the same ray is seen from the other side.
+Meridional mirrored(const Meridional& m) {
+    return {-m.angle, -m.offset, m.start};
+}
+
+}  // namespace
+
+ChiefRays::ChiefRays(const LensKind& kind)
+    : ChiefRays(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
+
+ChiefRays ChiefRays::of(const Pinhole& lens) { return ChiefRays(lens.film_distance_mm); }
+
+ChiefRays ChiefRays::of(const ThinLens& lens) { return ChiefRays(lens.film_distance_mm); }
+
+ChiefRays ChiefRays::of(const ThickLens& lens) {
+    ChiefRays rays(0);
+    rays.thick_ = lens;
+    return rays;
+}
+
+ChiefRays ChiefRays::of(const Projection& lens) {
+    ChiefRays rays(0);
+    rays.projection_ = lens;
+    rays.projection_->iris = {};   // chief rays need none
+    return rays;
+}
+
+ChiefRays ChiefRays::of(const ExactLens& lens) {
+    ChiefRays rays(0);
+    if (lens.is_axial())
+        rays.tabulate(lens);
+    else
+        rays.grid_.emplace(lens);
+    return rays;
+}
+
+void ChiefRays::tabulate(const ExactLens& lens) {
+    step_mm_ = lens.half_diagonal_mm() / kSteps;
+    for (int i = 0; i <= kSteps; ++i) {
+        const auto ray = mean_ray(passing(lens, i * step_mm_));
+        ends_ = !ray || (i > 0 && ray->angle <= table_.back().angle);
+        if (ends_) break;  // beyond the image circle
+        table_.push_back(*ray);
+    }
+    if (table_.size() < 4)
+        throw Error("chief rays: no light passes the lens near its axis");
+    table_[0].angle = table_[0].offset = 0;
+}
+
+ChiefRays ChiefRays::between(const ChiefRays& a, const ChiefRays& b, double share) {
+    if (!a.projection_)
+        return ChiefRays(a.film_distance_mm_ + share * (b.film_distance_mm_ - a.film_distance_mm_));
+    ChiefRays now = share < 0.5 ? a : b;
+    now.projection_->set(blend(a.projection_->numbers(), b.projection_->numbers(), share));
+    return now;
+}
+
+ChiefRaysOverTime::ChiefRaysOverTime(const Camera& camera)
+    : times_(camera.lens_motion.times) {
+    if (times_.empty()) states_.emplace_back(camera.lens);
+    for (const LensKind& lens : camera.lens_motion.lenses) states_.emplace_back(lens);
+}
+
+/// Cubic between radii (Catmull and Rom), linear past the last one.
+ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
+    if (film_distance_mm_ > 0) return {std::atan2(mm, film_distance_mm_), 0, 0};
+    const int last = int(table_.size()) - 1;
+    const auto node = [&](int i) {
+        return i < 0      ? mirrored(table_[-i])
+               : i > last ? sum(sum(table_[last], i - last, table_[last]), last - i,
+                                table_[last - 1])
+                          : table_[i];
+    };
+    const double x = mm / step_mm_;
+    const int i = std::min(int(x), last - 1);
+    const double t = x - i;
+    if (t >= 1)
+        return sum(sum(table_[last], t - 1, table_[last]), 1 - t, table_[last - 1]);
+    const double t2 = t * t, t3 = t2 * t;
+    Meridional m = sum({}, 0.5 * (2 * t2 - t3 - t), node(i - 1));
+    m = sum(m, 0.5 * (3 * t3 - 5 * t2 + 2), node(i));
+    m = sum(m, 0.5 * (4 * t2 - 3 * t3 + t), node(i + 1));
+    return sum(m, 0.5 * (t3 - t2), node(i + 2));
+}
+
+ChiefRay ChiefRays::at(Vec2d film_mm) const {
+    if (thick_) return {{0, 0, thick_->pupil_offset_m()}, thick_->chief_direction(film_mm)};
+    if (projection_) return {{}, projection_->chief_direction(film_mm).value_or(Vec3d{0, 0, 0})};
+    if (grid_) {
+        const ChiefGrid::Line line = grid_->at(film_mm);
+        return {line.foot + line.direction * line.start, line.direction};
+    }
+    const double radius = length(film_mm);
+    const Meridional m = at_radius(radius);
+    const Vec2d out = radius > 0 ? film_mm * (1 / radius) : Vec2d{1, 0};
+    const auto turned = [&](double outward, double z) {
+        return Vec3d{out.x * outward, out.y * outward, z};
+    };
+    const double c = std::cos(m.angle), s = std::sin(m.angle);
+    return {turned(m.offset * c + m.start * s, m.offset * s - m.start * c),
+            turned(s, -c)};
+}
+
+ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
+    if (projection_) return projection_->chief_direction(film_mm) ? Lit::yes : Lit::no;
+    if (grid_) return grid_->lit(film_mm);
+    if (!ends_) return Lit::yes;
+    const double last = step_mm_ * (table_.size() - 1), radius = length(film_mm);
+    return radius <= last ? Lit::yes : radius < last + step_mm_ ? Lit::unknown : Lit::no;
+}
+
+/// The film radius whose ray meets the point: bisection until the bracket is short, since
+/// a ray of radius 0 passes inside of every point ahead and that of a large one outside.
+std::optional<double> ChiefRays::solve(double outward, double z, double w) const {
+    const double size = std::hypot(outward, z);
+    const auto past = [&](double mm) {  // < 0: the ray passes outside of the point
+        const Meridional m = at_radius(mm);
+        return outward * std::cos(m.angle) + z * std::sin(m.angle) - w * m.offset;
+    };
+    double low = 0, high = step_mm_ * (table_.size() - 1);
+    double at_low = past(low), at_high = past(high);
+    const double farthest = kBeyond * high;
+    while (at_high > 0 && high < farthest && at_radius(high).angle < kPiD / 2) {
+        low = high, at_low = at_high;
+        high = std::min(farthest, high + 8 * step_mm_);
+        at_high = past(high);
+    }
+    if (!(at_high <= 0)) return std::nullopt;
+    // Regula falsi, with the end that stays taken at half (Illinois).
+    for (int i = 0; i < 100 && high - low > 1e-10 * farthest; ++i) {
+        const double middle = (low * at_high - high * at_low) / (at_high - at_low);
+        const double here = past(middle);
+        if (std::abs(here) <= 1e-15 * size) return middle;
+        if (here > 0) {
+            low = middle, at_low = here, at_high *= 0.5;
+        } else {
+            high = middle, at_high = here, at_low *= 0.5;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
+    if (thick_) return thick_->film_point({p.x, p.y, p.z - w * thick_->pupil_offset_m()});
+    if (projection_) return projection_->film_point(p);
+    if (grid_) return grid_->film_point(p, w);
+    if (film_distance_mm_ > 0) {
+        if (!(p.z < 0)) return std::nullopt;
+        return Vec2d{p.x, p.y} * (film_distance_mm_ / -p.z);
+    }
+    const double outward = std::hypot(p.x, p.y);
+    if (outward == 0) return p.z < 0 ? std::optional(Vec2d{}) : std::nullopt;
+    const auto radius = solve(outward, p.z, w);
+    if (!radius) return std::nullopt;
+    const Meridional m = at_radius(*radius);
+    if (!(outward * std::sin(m.angle) - p.z * std::cos(m.angle) > w * m.start))
+        return std::nullopt;
+    return Vec2d{p.x, p.y} * (*radius / outward);
+}
+
+}  // namespace dg

@@ -1,0 +1,23 @@
+// inverse_kind.h -- what a kind of camera must say of itself as the scene sees it: its chief rays, the cone of a
+// pixel, and where light must aim to come through.
+#pragma once
+#include "camera/inverse/chief.h"
+#include "camera/inverse/pixel_cone.h"
+#include "camera/inverse/pupil_view.h"
+
+namespace dg {
+
+template <typename L>
+concept InverseKind = requires(const L& lens, const Sensor& sensor) {
+    { ChiefRays::of(lens) } -> std::same_as<ChiefRays>;
+    { PixelCone::of(lens, sensor) } -> std::same_as<PixelCone>;
+    { PupilView::of(lens) } -> std::same_as<PupilView>;
+};
+
+template <typename Kinds>
+inline constexpr bool kInverseKinds = false;
+template <typename... L>
+inline constexpr bool kInverseKinds<std::variant<L...>> = (InverseKind<L> && ...);
+static_assert(kInverseKinds<LensKind>);
+
+}  // namespace dg

@@ -1,0 +1,195 @@
+#include "camera/inverse/pupil_view.h"
+
+#include <cmath>
+
+#include "camera/inverse/inverse_kind.h"
+#include "camera/inverse/pupil_shape.h"
+#include "camera/tilt.h"
+#include "math/across.h"
+#include "math/warp.h"
+
+namespace dg {
+namespace {
+
+// Rays at the very rim stay inside when they are rounded to float.
+constexpr double kRim = 1 + 1e-5;
+
+using Sample = PupilView::Sample;
+
+/// The line through a point of the scene and one of the lens, with the density of the
+/// second per m2 of a plane with the given normal.
+struct Line {
+    Vec3d direction;  // unit, from the lens to the point, whichever of both lies in front
+    double pdf;
+};
+
+std::optional<Line> line_through(Vec3d p, double w, Vec3d q, Vec3d axis, double per_m2) {
+    const Vec3d way = p - w * q;
+    const double d2 = length_squared(way), along = dot(way, axis);
+    if (!(d2 > 0) || along == 0) return std::nullopt;
+    const double cosine = std::abs(along) / std::sqrt(d2);
+    const Vec3d direction = way * ((along > 0 ? 1 : -1) / std::sqrt(d2));
+    return Line{direction, per_m2 / cosine * (w == 0 ? 1 : d2)};
+}
+
+/// Points so near, in radii of the iris, see no lens: they lie within it.
+constexpr double kNear = 4;
+
+/// The radius of the disc across the way to a point through which all its rays come that pass an iris of
+/// that radius: the iris is turned a little against it, by angles of about radius / distance.
+double bound_of(double radius, Vec3d p, double w) {
+    const double angle = w == 0 ? 0 : radius / length(p);
+    return kRim * radius * (1 + 4 * angle * angle);
+}
+
+std::optional<Sample> sample_hole(Vec3d p, double w, bool all_around) {
+    const double d2 = length_squared(p);
+    if (!(all_around ? d2 > 0 : p.z < 0)) return std::nullopt;
+    return Sample{{}, to_float(p * (1 / std::sqrt(d2))), w == 0 ? 1.f : float(d2)};
+}
+
+}  // namespace
+
+PupilView::Disc PupilView::disc_of(const ThinLens::Numbers& numbers,
+                                   std::shared_ptr<const Iris> iris) {
+    return {lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0,
+            std::move(iris)};
+}
+
+PupilView::Turning PupilView::turning(const Projection::Numbers& numbers, const Projection& shape) {
+    return {1e-3 * numbers.aperture_radius_mm * shape.iris.outer_radius(), shape.model.is_wide()};
+}
+
+PupilView PupilView::of(const Pinhole&) { return PupilView(Hole{}); }
+
+PupilView PupilView::of(const ThinLens& lens) {
+    return PupilView(disc_of(lens.numbers(), std::make_shared<const Iris>(lens.iris)));
+}
+
+PupilView PupilView::of(const ThickLens& lens) {
+    const FirstOrder& order = lens.first_order();
+    Affine3d frame = lens.turn();
+    frame.origin = {0, 0, lens.pupil_offset_m()};
+    return PupilView(Disc{frame, 1e-3 * order.entrance_magnification * lens.iris_radius_mm(),
+                          -1e-3 * order.entrance_pupil_z, std::make_shared<const Iris>(lens.iris())});
+}
+
+PupilView PupilView::of(const ExactLens& lens) { return PupilView(std::make_shared<const PupilShape>(lens)); }
+
+PupilView PupilView::of(const Projection& lens) {
+    if (!(lens.aperture_radius_mm > 0)) return PupilView(Hole{lens.model.is_wide()});
+    return PupilView(turning(lens.numbers(), lens));
+}
+
+PupilView::PupilView(const LensKind& kind)
+    : PupilView(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
+
+std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
+    if (const auto* hole = std::get_if<Hole>(&kind_)) return sample_hole(p, w, hole->all_around);
+    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+        const double far = length(p);
+        if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return std::nullopt;
+        const Vec3d axis = p / far;
+        const Across across(axis);
+        const double radius = bound_of(iris->radius, p, w);
+        const Vec2f disk = warp_disk(u);
+        const Vec3d q = radius * (disk.x * across.x + disk.y * across.y);
+        const auto line = line_through(p, w, q, axis, 1 / (kPiD * radius * radius));
+        if (!line) return std::nullopt;
+        return Sample{to_float(q), to_float(line->direction), float(line->pdf)};
+    }
+    if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
+        return (*shape)->sample(p, w, u);
+    const Disc& disc = std::get<Disc>(kind_);
+    const Vec3d axis = -disc.frame.z;
+    // Rays start at the depth -start along the axis, and the point lies before that.
+    if (!(dot(p - w * disc.frame.origin, axis) > w * -disc.start)) return std::nullopt;
+    const Vec2d at = disc.iris->sample({u.x, u.y}, kRim) * disc.radius;
+    const Vec3d q = disc.frame.point({at.x, at.y, 0});
+    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
+    const auto line = line_through(p, w, q, axis, 1 / area);
+    if (!line) return std::nullopt;
+    const Vec3d origin = q - line->direction * (disc.start / dot(line->direction, axis));
+    return Sample{to_float(origin), to_float(line->direction), float(line->pdf)};
+}
+
+float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
+    if (const auto* hole = std::get_if<Hole>(&kind_)) {
+        const auto drawn = sample_hole(p, w, hole->all_around);
+        return drawn ? drawn->pdf : 0;
+    }
+    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+        const double far = length(p);
+        if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return 0;
+        const Vec3d axis = p / far, d = to_double(ray.direction), from = to_double(ray.origin);
+        if (!(dot(d, axis) > 0)) return 0;
+        const Vec3d q = from - d * (dot(from, axis) / dot(d, axis));
+        const double radius = bound_of(iris->radius, p, w);
+        if (!(length(q) <= radius)) return 0;
+        const auto line = line_through(p, w, q, axis, 1 / (kPiD * radius * radius));
+        return line ? float(line->pdf) : 0;
+    }
+    if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
+        return (*shape)->pdf(p, w, ray);
+    const Disc& disc = std::get<Disc>(kind_);
+    const Vec3d axis = -disc.frame.z, d = to_double(ray.direction);
+    const Vec3d from = to_double(ray.origin) - disc.frame.origin;
+    if (!(dot(d, axis) > 0) || !(dot(p - w * disc.frame.origin, axis) > w * -disc.start))
+        return 0;
+    const Vec3d at = from - d * (dot(from, axis) / dot(d, axis));
+    const Vec2d in{dot(at, disc.frame.x), dot(at, disc.frame.y)};
+    if (!disc.iris->in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
+    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
+    const auto line = line_through(p, w, at + disc.frame.origin, axis, 1 / area);
+    return line ? float(line->pdf) : 0;
+}
+
+PupilViewOverTime::PupilViewOverTime(const Camera& camera)
+    : times_(camera.lens_motion.times),
+      evenly_(std::holds_alternative<ThinLens>(camera.lens) ||
+              std::holds_alternative<Projection>(camera.lens)) {
+    const auto add = [&](const LensKind& lens) {
+        states_.push_back(std::make_unique<State>());
+        states_.back()->lens = lens;
+    };
+    if (times_.empty()) add(camera.lens);
+    for (const LensKind& lens : camera.lens_motion.lenses) add(lens);
+}
+
+const PupilView& PupilViewOverTime::view(std::size_t state) const {
+    State& s = *states_[state];
+    std::call_once(s.once, [&] { s.view.emplace(s.lens); });
+    return *s.view;
+}
+
+template <typename Use>
+decltype(auto) PupilViewOverTime::with_lens(float time, const Use& use) const {
+    if (times_.empty()) return use(view(0));
+    const KeyPlace p = place_among(times_, time);
+    const PupilView& nearest = view(p.share < 0.5 ? p.left : p.right);
+    if (!evenly_) return use(nearest);
+    if (const auto* from = std::get_if<Projection>(&states_[p.left]->lens)) {
+        if (!std::holds_alternative<PupilView::Turning>(nearest.kind_)) return use(nearest);
+        const auto& to = std::get<Projection>(states_[p.right]->lens);
+        const Projection& shape = p.share < 0.5 ? *from : to;
+        const auto now = blend(from->numbers(), to.numbers(), p.share);
+        return use(PupilView(PupilView::turning(now, shape)));
+    }
+    const ThinLens &a = std::get<ThinLens>(states_[p.left]->lens),
+                   &b = std::get<ThinLens>(states_[p.right]->lens);
+    return use(
+        PupilView(PupilView::disc_of(blend(a.numbers(), b.numbers(), p.share),
+                                     std::get<PupilView::Disc>(nearest.kind_).iris)));
+}
+
+std::optional<Sample> PupilViewOverTime::sample(Vec3d p, double w, Vec2f u,
+                                                float time) const {
+    return with_lens(time, [&](const PupilView& view) { return view.sample(p, w, u); });
+}
+
+float PupilViewOverTime::pdf(Vec3d p, double w, const Ray& ray) const {
+    return with_lens(ray.time,
+                     [&](const PupilView& view) { return view.pdf(p, w, ray); });
+}
+
+}  // namespace dg

@@ -1,0 +1,51 @@
+// lens_motion.h -- the lens as it is at the time of each ray: for the functions of camera.h.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "camera/camera.h"
+
+namespace dg {
+
+/// Calls each(lens, indices of what takes it) for the states that are taken, so that a lens sees full batches.
+template <typename Each>
+void by_state(const LensMotion& motion, std::size_t count, const auto& time_of, const Each& each) {
+    thread_local std::vector<std::uint32_t> state, members;
+    state.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const KeyPlace p = place_among(motion.times, float(time_of(i)));
+        state[i] = std::uint32_t(p.share < 0.5 ? p.left : p.right);
+    }
+    for (std::uint32_t k = 0; k < motion.lenses.size(); ++k) {
+        members.clear();
+        for (std::size_t i = 0; i < count; ++i)
+            if (state[i] == k) members.push_back(std::uint32_t(i));
+        if (!members.empty()) each(motion.lenses[k], members);
+    }
+}
+
+template <typename T>
+std::vector<T> taken(std::span<const T> from, std::span<const std::uint32_t> members) {
+    std::vector<T> some;
+    some.reserve(members.size());
+    for (const std::uint32_t i : members) some.push_back(from[i]);
+    return some;
+}
+
+/// Calls use(lens, numbers) with the numbers of a time, between those of the neighbouring keys; what is no number (an
+/// iris) is that of the nearer key. Exposure follows the light: `middle` is the lens that H0 is measured with.
+template <ChangesEvenly Lens, typename Use>
+void with_numbers(const LensMotion& motion, const Lens& middle, float time, const Use& use) {
+    const KeyPlace p = place_among(motion.times, time);
+    const Lens &first = std::get<Lens>(motion.lenses[p.left]), &second = std::get<Lens>(motion.lenses[p.right]);
+    auto now = blend(first.numbers(), second.numbers(), p.share);
+    if constexpr (requires { now.light_cone(); }) {
+        const double cone = now.light_cone(), usual = middle.numbers().light_cone();
+        now.exposure = usual > 0 ? cone / usual : 1;
+    }
+    use(p.share < 0.5 ? first : second, now);
+}
+
+}  // namespace dg

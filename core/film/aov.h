@@ -1,0 +1,41 @@
+// aov.h -- auxiliary values of a camera sample, and the one list of their channels: film, files and
+// Python take names and order from it. One row adds a channel (and changes the size of pass files).
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace dg {
+
+/// Auxiliary values of one camera sample's first hit; only samples that passed the lens
+/// bring them.
+struct AovSample {
+    bool hit = false;
+    float depth = 0;  // m, along the camera's -z
+    Vec3f position, normal, albedo;
+    std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
+    float alpha = 1;              // 1 where something was hit
+};
+
+struct AovChannel {
+    const char* name;   // as in files
+    bool of_hits;       // its mean is over the samples that hit something, else over all that passed
+    float (*value)(const AovSample&);
+};
+
+inline constexpr std::array kAovChannels{
+    AovChannel{"depth.Z", true, [](const AovSample& s) { return s.depth; }},
+    AovChannel{"P.X", true, [](const AovSample& s) { return s.position.x; }},
+    AovChannel{"P.Y", true, [](const AovSample& s) { return s.position.y; }},
+    AovChannel{"P.Z", true, [](const AovSample& s) { return s.position.z; }},
+    AovChannel{"N.X", true, [](const AovSample& s) { return s.normal.x; }},
+    AovChannel{"N.Y", true, [](const AovSample& s) { return s.normal.y; }},
+    AovChannel{"N.Z", true, [](const AovSample& s) { return s.normal.z; }},
+    AovChannel{"albedo.R", false, [](const AovSample& s) { return s.albedo.x; }},
+    AovChannel{"albedo.G", false, [](const AovSample& s) { return s.albedo.y; }},
+    AovChannel{"albedo.B", false, [](const AovSample& s) { return s.albedo.z; }},
+    AovChannel{"alpha", false, [](const AovSample& s) { return s.alpha; }},
+};
+
+}  // namespace dg

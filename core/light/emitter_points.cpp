@@ -1,0 +1,159 @@
+#include "light/emitter_points.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "light/emitter.h"
+
+namespace dg {
+namespace {
+
+constexpr double kOwnShare = 0.01;    // lights that bring more than this are sources by themselves
+constexpr double kLeastShare = 0.02;  // of the mean: no light is chosen less often within its source
+constexpr int kMostHot = 48;          // parts of the bright sky
+constexpr int kAcross = 16, kDown = 8;   // tiles of the rest
+
+/// Where a direction lies on a cube, 4 x 4 squares on each side.
+int square_of(Vec3f d) {
+    const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
+    const int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
+    const float main = d[axis], u = d[(axis + 1) % 3] / std::abs(main), v = d[(axis + 2) % 3] / std::abs(main);
+    const auto step = [](float x) { return std::clamp(int((x + 1) * 2), 0, 3); };
+    return ((axis * 2 + (main > 0)) * 4 + step(u)) * 4 + step(v);
+}
+
+}  // namespace
+
+EmitterPoints::EmitterPoints(const LightSet& lights, std::span<const ViewCone> views) : lights_(&lights) {
+    add_lights(views);
+    add_sky(views);
+}
+
+void EmitterPoints::add(Highlights highlights) {
+    highlights_ = std::move(highlights);
+    for (int i = 0; i < highlights_.count(); ++i)
+        sources_.push_back({.strength = highlights_.illuminance(i), .highlight = i});
+}
+
+void EmitterPoints::add_lights(std::span<const ViewCone> views) {
+    const std::size_t count = lights_->lights().size();
+    std::vector<double> strength(count);
+    std::map<int, std::vector<std::int32_t>> groups;
+    for (std::size_t i = 0; i < count; ++i) {
+        const LightBounds b = lights_->bounds_of(i);
+        strength[i] = lights_->infinite_weight(i);
+        for (const ViewCone& view : views)
+            strength[i] += illuminance_estimate(b, lights_->moves(i), view) / double(views.size());
+    }
+    const double all = std::accumulate(strength.begin(), strength.end(), 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!(strength[i] > 0)) continue;
+        const LightBounds b = lights_->bounds_of(i);
+        if (strength[i] > kOwnShare * all || lights_->infinite_weight(i) > 0)
+            add_source({std::int32_t(i)}, strength);
+        else
+            groups[square_of((b.min + b.max) * 0.5f - views.front().from.eye)].push_back(std::int32_t(i));
+    }
+    for (auto& [square, members] : groups) add_source(std::move(members), strength);
+}
+
+void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength) {
+    Source source;
+    std::vector<double> weights;
+    for (const std::int32_t i : lights) weights.push_back(strength[i]), source.strength += strength[i];
+    for (double& w : weights) w = std::max(w, kLeastShare * source.strength / double(weights.size()));
+    source.choice = DiscreteDistribution(std::span<const double>(weights));
+    source.lights = std::move(lights);
+    sources_.push_back(std::move(source));
+}
+
+/// Bright spots by their luminance; the rest, and a sky of one colour, by tiles, evenly.
+void EmitterPoints::add_sky(std::span<const ViewCone> views) {
+    if (!lights_->has_environment()) return;
+    const Environment& sky = *lights_->environment();
+    hot_ = HotSky(sky, views);
+    hot_parts_ = hot_.parts(kMostHot);
+    for (std::size_t i = 0; i < hot_parts_.size(); ++i)
+        sources_.push_back({.strength = hot_parts_[i].illuminance(), .hot = int(i)});
+    for (const DirectionTile& tile : direction_tiles(kAcross, kDown)) {
+        double sum = 0;
+        for (int i = 0; i < 16; ++i) {
+            const Vec2f u{(float(i % 4) + 0.5f) / 4, (float(i / 4) + 0.5f) / 4};
+            if (const auto p = sample_tile(tile, u, views.front().time))
+                sum += luminance(sky.luminance(p->point.position, views.front().time));
+        }
+        // A tile that is dark where it was looked at may shine elsewhere.
+        const double mean = std::max(sum / 16, 1e-3 * sky.mean_luminance());
+        if (mean > 0) sources_.push_back({.strength = mean * tile.solid_angle(), .tile = tile});
+    }
+}
+
+bool EmitterPoints::has_size(int source) const {
+    const Source& s = sources_[source];
+    if (s.hot >= 0) return true;
+    return !s.lights.empty() && std::ranges::all_of(s.lights, [&](std::int32_t i) {
+        const Light& light = lights_->lights()[i];
+        return std::holds_alternative<TriangleLight>(light) || std::holds_alternative<SphereLight>(light);
+    });
+}
+
+std::optional<EmitterPoint> EmitterPoints::sample(int which, float u_select, Vec2f u, float time,
+                                               const Viewpoint& view) const {
+    const Source& source = sources_[which];
+    if (source.highlight >= 0) return highlights_.sample(source.highlight, u, time);
+    if (source.tile) return sample_tile(*source.tile, u, time);
+    if (source.hot >= 0) {
+        const Environment::Sample s = hot_parts_[source.hot].sample(u, time);
+        if (!(s.pdf > 0)) return std::nullopt;
+        return EmitterPoint{{.position = s.direction, .pdf = s.pdf}, true};
+    }
+    const DiscreteSample choice = source.choice.sample(u_select);
+    auto point = sample_light(source.lights[choice.index], u, time, view);
+    if (!point || !(point->point.pdf > 0)) return std::nullopt;
+    point->point.pdf *= choice.pmf;
+    return point;
+}
+
+std::optional<EmitterPoint> EmitterPoints::sample_light(std::int32_t light, Vec2f u, float time,
+                                                     const Viewpoint& view) const {
+    const Light& kind = lights_->lights()[light];
+    std::optional<EmissionPoint> point;
+    EmitterPoint from;
+    if (std::holds_alternative<TriangleLight>(kind)) {
+        if (const auto now = lights_->triangle_at(light, time)) point = point_on(TriangleSampler(*now), u);
+    } else if (std::holds_alternative<SphereLight>(kind)) {
+        point = point_on(lights_->sphere_light_at(light, time).shape, u, view);
+    } else {
+        point = EmissionPoint{.pdf = 1};
+        from.delta = true;
+        const Light now = lights_->light_at(light, time);
+        if (const auto* sun = std::get_if<DirectionalLight>(&now))
+            point->position = -sun->direction, from.at_infinity = true;
+        else if (const auto* spot = std::get_if<SpotLight>(&now))
+            point->position = spot->position;
+        else
+            point->position = std::get<PointLight>(now).position;
+    }
+    if (!point) return std::nullopt;
+    from.point = *point;
+    from.point.light = light;
+    return from;
+}
+
+/// Directions evenly, but for those of bright spots, which have sources of their own.
+std::optional<EmitterPoint> EmitterPoints::sample_tile(const DirectionTile& tile, Vec2f u, float time) const {
+    const Vec3f d = tile.at(u);
+    if (!hot_.empty() && hot_.pdf(d, time) > 0) return std::nullopt;
+    return EmitterPoint{{.position = d, .pdf = 1 / tile.solid_angle()}, true};
+}
+
+Rgb EmitterPoints::delta_value(const EmitterPoint& from, Vec3f to, float time) const {
+    const Light light = lights_->light_at(from.point.light, time);
+    const auto at = std::visit(
+        [&](const auto& kind) { return sample_emitter(kind, Vec2f{}, to); }, light);
+    if (!at) return {0, 0, 0};
+    return from.at_infinity ? at->value : at->value * (at->distance * at->distance);
+}
+
+}  // namespace dg

@@ -1,0 +1,143 @@
+// ghost_simd.cpp -- light on its way by mirrors, in lanes: trace_ghost (ghost_lens.h).
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "optics/stray/ghost_simd.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "optics/trace/film_landing-inl.h"
+#include "optics/stray/reflection-inl.h"
+#include "optics/trace/trace-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dg {
+namespace HWY_NAMESPACE {
+
+/// Tracer::cross of a step that reflects, after the meeting.
+template <int kSign>
+HWY_INLINE void reflect_at(const GhostLens& ghosts, int i, const LaneHit& hit, LaneRays& r) {
+    const LensTables& lens = ghosts.tables();
+    M ok = stop_at_surface<kSign>(lens, i, hit, r);
+    const V n2 = index_of(lens, kSign > 0 ? i + 1 : i, r.l);
+    const V mu = hn::Div(r.n, n2), one = constant(1);
+    const V squared = hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, hit.cos1_squared), one);
+    const V cos2 = hn::Sqrt(hn::Max(squared, hn::Zero(D())));
+    const MirrorTables& mirror = ghosts.mirrors()[i];
+    const LaneCrossing at{r.n, hit.cos1, n2, cos2, r.l};
+    r.transmittance = hn::Mul(r.transmittance, reflectance_lanes(lens, mirror, at, squared,
+                                                                 mirror.rarer_in_front == (kSign > 0)));
+    const V turn = signed_by<kSign>(hn::Add(hit.cos1, hit.cos1));
+    r.dx = hn::MulAdd(hn::Mul(turn, hit.bend_x), hit.point.x, r.dx);
+    r.dy = hn::MulAdd(hn::Mul(turn, hit.bend_y), hit.point.y, r.dy);
+    r.dz = hn::NegMulAdd(turn, hit.axial, r.dz);
+    r.alive = hn::And(r.alive, ok);
+}
+
+/// Where both vectors of rays meet a surface; rays are in its own frame then.
+template <int kSign>
+HWY_INLINE void meet_any(const LensTables& lens, int i, LaneRays& a, LaneRays& b, LaneHit (&hit)[2]) {
+    const LaneVec pa{a.x, a.y, a.z}, da{a.dx, a.dy, a.dz}, pb{b.x, b.y, b.z}, db{b.dx, b.dy, b.dz};
+    switch (lens.met[i]) {
+        case MetAs::plane:
+            hit[0] = meet_plane<kSign>(pa, da), hit[1] = meet_plane<kSign>(pb, db);
+            return;
+        case MetAs::sphere:
+            hit[0] = meet_sphere<kSign>(lens.curvature[i], pa, da);
+            hit[1] = meet_sphere<kSign>(lens.curvature[i], pb, db);
+            return;
+        default:
+            meet_other<kSign>(lens, i, a, b, hit);
+    }
+}
+
+constexpr float kOverlap = 0.01f;  // mm, as of Tracer::follow
+
+/// A mirror may be so steep that light never comes to the surface that is next.
+HWY_INLINE M onward(const LaneRays& r, const LaneHit& hit) {
+    const V way = hn::MulAdd(hn::Sub(hit.point.x, r.x), r.dx,
+                             hn::MulAdd(hn::Sub(hit.point.y, r.y), r.dy,
+                                        hn::Mul(hn::Sub(hit.point.z, r.z), r.dz)));
+    return hn::Ge(way, constant(-kOverlap));
+}
+
+template <int kSign>
+HWY_INLINE void take_step(const GhostLens& ghosts, const GhostStep& step, bool first, LaneRays& a,
+                          LaneRays& b) {
+    const LensTables& lens = ghosts.tables();
+    const int i = step.surface;
+    LaneHit hit[2];
+    meet_any<kSign>(lens, i, a, b, hit);
+    if (!first) {
+        hit[0].ok = hn::And(hit[0].ok, onward(a, hit[0]));
+        hit[1].ok = hn::And(hit[1].ok, onward(b, hit[1]));
+    }
+    if (step.reflects) {
+        reflect_at<kSign>(ghosts, i, hit[0], a), reflect_at<kSign>(ghosts, i, hit[1], b);
+    } else {
+        pass_surface<kSign>(lens, i, hit[0], a), pass_surface<kSign>(lens, i, hit[1], b);
+    }
+    if (lens.met[i] == MetAs::other && lens.shape[i].placed)
+        leave_frame(lens.shape[i], a), leave_frame(lens.shape[i], b);
+}
+
+/// A leaf shutter stands in the iris: nothing passes outside of what it leaves.
+HWY_INLINE void pass_leaf(const LensTables& lens, V opening, LaneRays& r) {
+    const V wide = hn::Div(constant(1), hn::Max(opening, constant(1e-6f)));
+    const V open = iris_transmission(lens.iris, hn::Mul(r.iris_x, wide), hn::Mul(r.iris_y, wide));
+    r.transmittance = hn::Mul(r.transmittance, hn::IfThenElse(hn::Ge(opening, constant(1)), constant(1), open));
+    r.alive = hn::And(r.alive, hn::Gt(r.transmittance, hn::Zero(D())));
+}
+
+/// False as soon as nothing is left.
+HWY_INLINE bool lanes_by_mirrors(const GhostLens& ghosts, const std::vector<GhostStep>& steps,
+                                 const float* opening, LaneRays& a, LaneRays& b) {
+    const LensTables& lens = ghosts.tables();
+    const D d;
+    a.n = index_of(lens, 0, a.l), b.n = index_of(lens, 0, b.l);
+    start_transmittance(a), start_transmittance(b);
+    for (const GhostStep& step : steps) {
+        const V gap = constant(step.gap);
+        a.z = hn::Sub(a.z, gap), b.z = hn::Sub(b.z, gap);
+        const bool first = &step == steps.data();
+        step.sign > 0 ? take_step<1>(ghosts, step, first, a, b) : take_step<-1>(ghosts, step, first, a, b);
+        if (opening && step.surface == lens.stop) {
+            pass_leaf(lens, hn::Load(d, opening), a);
+            pass_leaf(lens, hn::Load(d, opening + hn::Lanes(d)), b);
+        }
+        if (hn::AllFalse(d, hn::Or(a.alive, b.alive))) return false;
+    }
+    finish_transmittance(lens, a), finish_transmittance(lens, b);
+    return true;
+}
+
+void Ghost(const GhostLens& ghosts, const std::vector<GhostStep>& steps, SceneRays& in, FilmRays& out,
+           const float* opening, int count) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    for (int i = 0; i < count; i += 2 * lanes) {
+        LaneRays r[2];
+        for (int h = 0; h < 2; ++h) start_in_scene(ghosts.tables(), in, out, i + h * lanes, r[h]);
+        if (lanes_by_mirrors(ghosts, steps, opening ? opening + i : nullptr, r[0], r[1])) {
+            for (int h = 0; h < 2; ++h) land_on_film(ghosts.tables(), r[h], in, out, i + h * lanes);
+        } else {
+            for (int h = 0; h < 2; ++h) hn::Store(hn::Zero(d), d, in.pass + i + h * lanes);
+        }
+    }
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace dg
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dg {
+
+HWY_EXPORT(Ghost);
+
+void trace_ghost(const GhostLens& lens, const std::vector<GhostStep>& steps, SceneRays& in, FilmRays& out,
+                 const float* iris_opening, int count) {
+    HWY_DYNAMIC_DISPATCH(Ghost)(lens, steps, in, out, iris_opening, count);
+}
+
+}  // namespace dg
+#endif  // HWY_ONCE

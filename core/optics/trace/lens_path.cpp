@@ -1,0 +1,41 @@
+#include "optics/trace/lens_path.h"
+
+#include <algorithm>
+#include <array>
+
+namespace dg {
+namespace {
+
+/// The same way, gone from its other end: a mirror is met from the same side.
+LensPath turned(LensPath path) {
+    std::ranges::reverse(path);
+    for (PathStep& step : path)
+        if (!step.reflects) step.sign = -step.sign;
+    return path;
+}
+
+}  // namespace
+
+LensPath straight_path(int surfaces, bool toward_film) {
+    LensPath path;
+    for (int i = 0; i < surfaces; ++i) path.push_back({i});
+    return toward_film ? path : turned(std::move(path));
+}
+
+LensPath ghost_path(int surfaces, int near, int far, bool toward_film) {
+    return ghost_path(surfaces, std::array{far, near}, toward_film);
+}
+
+LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film) {
+    LensPath path;
+    int at = 0, sign = 1;
+    for (const int mirror : mirrors) {
+        for (; at != mirror; at += sign) path.push_back({at, sign});
+        path.push_back({mirror, sign, true});
+        sign = -sign, at = mirror + sign;
+    }
+    for (; at < surfaces; ++at) path.push_back({at});
+    return toward_film ? path : turned(std::move(path));
+}
+
+}  // namespace dg

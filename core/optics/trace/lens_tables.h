@@ -1,0 +1,97 @@
+// lens_tables.h -- flat float tables that the SIMD kernels read: the lens and its iris.
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "optics/lens/film_plane.h"
+#include "optics/lens/stop.h"
+#include "optics/trace/film_table.h"
+#include "optics/trace/trace.h"
+
+namespace dg {
+
+struct IrisTables {
+    Iris::Kind kind = Iris::Kind::round;
+    float radius = 0;  // mm, of the circle of equal area; 0: no iris (all passes)
+    // Blades, mm.
+    std::vector<float> edge_x, edge_y;
+    float apothem = 0, center = 0, arc_radius2 = 0;
+    int bend = 0;
+    std::vector<float> fan_x, fan_y;
+    // Image, mm.
+    int width = 0, height = 0;
+    float pixel = 0;
+    std::vector<float> values, support_x, support_y;
+};
+
+/// 1/lambda^2 mapped to [-1, 1] over the visible range: the variable of every fit in the
+/// wavelength.
+struct WavelengthScale {
+    float offset, scale;  // l = offset + scale / um^2
+    static WavelengthScale visible();
+    double operator()(double nm) const { return offset + scale * (1e6 / (nm * nm)); }
+    double wavelength(double l) const { return 1e3 / std::sqrt((l - offset) / scale); }
+};
+
+/// How a surface treats light in the kernel: lets all pass, by Fresnel's formulas, by the
+/// table of its films.
+enum class SurfaceLight : int { none, bare, film };
+
+/// By which formula rays meet a surface.
+enum class MetAs : int { plane, sphere, other };
+
+/// A form that is no centred plane or sphere (form.h), in float. The asphere is a
+/// polynomial in (r / scale)^2, so that its coefficients are lengths.
+struct ShapeTables {
+    Shape shape = Shape::conic;
+    bool quadric = true, has_asphere = false, placed = false;
+    float c = 0, wx = 1, wy = 1, wz = 1;  // c (wx x^2 + wy y^2 + wz z^2) = 2 z
+    float cx = 0, cy = 0;                 // both sections
+    float px = 0, py = 0;                 // (1 + k) c^2 of both
+    float inverse_scale2 = 1;             // 1/mm^2
+    std::vector<float> even, even_slope, odd, odd_slope;
+    float tolerance = 0, stride = 0;  // mm: of the last step of a search, of any
+    float shift[3] = {0, 0, 0};
+    float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    std::vector<float> ripple;  // RippleSlope
+    float ripple_steps_per_mm = 0;
+};
+
+/// Absorption of the media: coefficients (1/mm, base e) at equal steps of l from -1 to 1,
+/// [medium][node]; empty if all are clear.
+struct AbsorptionTables {
+    static constexpr int kNodes = 257;  // 0.6 nm apart at 380 nm, 5 nm at 780 nm
+    std::vector<float> per_mm;
+    std::vector<char> absorbs;  // by medium
+};
+
+struct LensTables {
+    int surfaces = 0, stop = 0;
+    float film_gap = 0;  // last vertex to film, mm; to its centre if it is tilted
+    FilmTables film;
+    std::vector<float> curvature, semi2, inner2, gap;
+    std::vector<MetAs> met;
+    std::vector<char> refracts;      // or rays go straight on
+    std::vector<ShapeTables> shape;  // of those met as other
+    std::vector<SurfaceLight> light;
+    std::vector<FilmTable> films;      // of coated surfaces
+    std::vector<char> rarer_in_front;  // for the cosine of those
+    int index_degree = 0;
+    std::vector<float> index;  // [medium][power of l]
+    AbsorptionTables absorption;
+    bool apertures = true;     // test clear apertures
+    IrisTables iris;
+    WavelengthScale scale = WavelengthScale::visible();
+};
+
+/// The table of one coated surface; empty if there are no films on it.
+FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
+                     const Glass& after, const WavelengthScale& scale);
+
+LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,
+                            const Iris* iris, double iris_radius);
+/// The same with the film in any place.
+LensTables make_lens_tables(const Tracer& tracer, const FilmPlane& film, bool clear_apertures,
+                            const Iris* iris, double iris_radius);
+
+}  // namespace dg

@@ -1,0 +1,89 @@
+// transmission-inl.h -- how much light a surface lets through, in SIMD lanes. Included
+// once per instruction set.
+#if defined(DG_OPTICS_TRANSMISSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef DG_OPTICS_TRANSMISSION_INL_H_
+#undef DG_OPTICS_TRANSMISSION_INL_H_
+#else
+#define DG_OPTICS_TRANSMISSION_INL_H_
+#endif
+
+#include "hwy/contrib/math/math-inl.h"
+#include "hwy/highway.h"
+#include "optics/trace/lens_tables.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dg {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+using DI = hn::RebindToSigned<D>;
+using VI = hn::Vec<DI>;
+
+HWY_INLINE V constant(float value) {
+    return hn::Set(D(), value);
+}
+
+/// Rays at a surface: indices and cosines of the side that they come from (1) and of the
+/// side that they go to (2), and their wavelength.
+struct LaneCrossing {
+    V n1, cos1;
+    V n2, cos2;
+    V l;
+};
+
+/// T of a coated surface, by its table (film_table.h).
+HWY_INLINE V film_lanes(const FilmTable& table, V cosine, V l) {
+    const V x = hn::MulAdd(cosine, constant(2), constant(-1));
+    const V root = hn::MulAdd(cosine, constant(table.pole), constant(1));
+    const float* c = table.coefficients.data();
+    V sum = hn::Zero(D());
+    for (const int terms : table.terms) {
+        V row = constant(c[0]);
+        for (int m = 1; m < terms; ++m) row = hn::MulAdd(row, l, constant(c[m]));
+        sum = hn::MulAdd(sum, x, row);
+        c += terms;
+    }
+    return hn::Div(hn::Mul(cosine, sum), hn::Mul(root, root));
+}
+
+/// Ts + Tp over 2 of bare glass: T = 4pr / (p+r)^2 with admittances p, r.
+HWY_INLINE V bare_lanes(V n1, V cos1, V n2, V cos2) {
+    const V s = hn::MulAdd(n1, cos1, hn::Mul(n2, cos2));
+    const V p = hn::MulAdd(n2, cos1, hn::Mul(n1, cos2));
+    const V sp = hn::Mul(s, p);
+    const V m = hn::Mul(hn::Mul(n1, n2), hn::Mul(cos1, cos2));
+    const V numerator = hn::Mul(m, hn::MulAdd(s, s, hn::Mul(p, p)));
+    return hn::Div(hn::Mul(constant(2), numerator), hn::Mul(sp, sp));
+}
+
+/// surface_transmittance() (coating.h) of surface i; kSign is +1 toward the film.
+template <int kSign>
+HWY_INLINE V transmission_lanes(const LensTables& lens, int i, const LaneCrossing& at) {
+    if (lens.light[i] == SurfaceLight::film) {
+        const bool rarer_first = bool(lens.rarer_in_front[i]) == (kSign > 0);
+        return film_lanes(lens.films[i], rarer_first ? at.cos1 : at.cos2, at.l);
+    }
+    return bare_lanes(at.n1, at.cos1, at.n2, at.cos2);
+}
+
+/// absorption_per_mm() (glass.h) of a medium, linear between the nodes of its table.
+HWY_INLINE V absorption_lanes(const AbsorptionTables& t, int medium, V l) {
+    const D d;
+    const V last = constant(float(t.kNodes - 1));
+    const V at = hn::Mul(hn::Mul(hn::Add(l, constant(1)), last), constant(0.5f));
+    const V node = hn::Floor(hn::Clamp(at, hn::Zero(d), hn::Sub(last, constant(1))));
+    const V u = hn::Clamp(hn::Sub(at, node), hn::Zero(d), constant(1));
+    const VI index = hn::ConvertTo(DI(), node);
+    const float* per_mm = t.per_mm.data() + medium * t.kNodes;
+    const V a = hn::GatherIndex(d, per_mm, index), b = hn::GatherIndex(d, per_mm + 1, index);
+    return hn::MulAdd(u, hn::Sub(b, a), a);
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace dg
+HWY_AFTER_NAMESPACE();
+#endif

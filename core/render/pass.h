@@ -1,0 +1,94 @@
+// pass.h -- one way in which light comes to the film: from the camera, or from emitters straight to the lens, over
+// surfaces, by ghosts, by what the lens scatters. A pass draws in blocks, in any order, by any thread; sums are
+// exact, so no bit depends on who drew which.
+//
+// Adding one: a class that Draws, and a line where passes are listed (render.cpp, emitter_passes.cpp).
+#pragma once
+#include <oneapi/tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "render/dispersion.h"
+#include "render/render.h"
+
+namespace dg {
+
+/// Scene, camera, film and settings that passes share; they outlive the passes.
+struct Picture {
+    const Scene& scene;
+    const Camera& camera;
+    Film& film;
+    const RenderSettings& settings;
+    const FilmDensity& density;
+};
+
+/// Tiles or paths [0], ..., [1] - 1.
+using IndexRange = std::array<std::uint64_t, 2>;
+
+/// Draws what has indices [first, last), with the buffers of one thread; kBlock of them are one task.
+template <typename D>
+concept Draws = requires(const D& drawer, typename D::Workspace& work, std::uint64_t index) {
+    { D::kBlock } -> std::convertible_to<std::uint64_t>;
+    drawer.draw(work, index, index);
+    { work.counters } -> std::convertible_to<const RenderCounters&>;
+};
+
+class Pass {
+  public:
+    virtual ~Pass() = default;
+    /// Number of its blocks.
+    virtual std::int64_t count() const = 0;
+    /// By any thread, each block once.
+    virtual void draw(std::int64_t block) = 0;
+    /// Sums over all threads, after the last block.
+    virtual RenderCounters counters() const = 0;
+};
+
+template <Draws D>
+class PassOf final : public Pass {
+  public:
+    template <typename... Args>
+    explicit PassOf(IndexRange range, Args&&... args) : range_(range), drawer_(std::forward<Args>(args)...) {}
+
+    std::int64_t count() const override {
+        return std::int64_t((range_[1] - range_[0] + D::kBlock - 1) / D::kBlock);
+    }
+    void draw(std::int64_t block) override {
+        const std::uint64_t first = range_[0] + std::uint64_t(block) * D::kBlock;
+        drawer_.draw(workspaces_.local(), first, std::min(first + D::kBlock, range_[1]));
+    }
+    RenderCounters counters() const override {
+        RenderCounters sum;
+        for (const typename D::Workspace& work : workspaces_) sum += work.counters;
+        return sum;
+    }
+
+  private:
+    IndexRange range_;
+    D drawer_;
+    oneapi::tbb::enumerable_thread_specific<typename D::Workspace> workspaces_;
+};
+
+/// All passes of a picture.
+class Passes {
+  public:
+    /// `args`: of the drawer, after the range of its indices.
+    template <Draws D, typename... Args>
+    void add(IndexRange range, Args&&... args) {
+        passes_.push_back(std::make_unique<PassOf<D>>(range, std::forward<Args>(args)...));
+    }
+    /// See render().
+    RenderCounters draw(int threads, const std::function<bool(double)>& progress);
+
+  private:
+    std::vector<std::unique_ptr<Pass>> passes_;
+};
+
+}  // namespace dg

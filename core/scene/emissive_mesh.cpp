@@ -1,0 +1,137 @@
+// emission.cpp -- emissive meshes become triangle lights.
+#include "scene/emissive_mesh.h"
+
+#include "scene/footprint.h"
+
+namespace dg {
+namespace {
+
+// Points per edge of the lattice that measures a textured triangle.
+constexpr int kLargestLattice = 32;
+// A textured triangle that the lattice could not resolve keeps this share of the largest
+// possible emission, so that no lit texel is out of reach of light sampling.
+constexpr float kUnseenShare = 1e-3f;
+
+/// Steps along an edge that make neighbouring lattice points at most one texel apart.
+int texel_steps(const InstanceRecord& r, const GltfMaterial& m,
+                const std::vector<Texture>& textures, std::uint32_t primitive) {
+    const TextureSlot& slot = emission_texture(m);
+    const Texture& texture = textures[slot.index];
+    const Vec2f* uv = r.uv[slot.uv_set];
+    if (!uv) return 1;
+    float longest = 0;
+    const auto& t = r.triangles[primitive];
+    for (int i = 0; i < 3; ++i) {
+        const Vec2f d = slot.transform(uv[t[i]]) - slot.transform(uv[t[(i + 1) % 3]]);
+        longest = std::max(longest, std::max(std::abs(d.x) * texture.width,
+                                             std::abs(d.y) * texture.height));
+    }
+    return longest < 1e6f ? std::max(1, static_cast<int>(std::ceil(longest))) : 1'000'000;
+}
+
+struct Measured {
+    Rgb mean{0, 0, 0};  // of the brighter side
+    bool front = false, back = false;
+    bool even = false;  // the mean is what a ray finds, wherever light sampling looks
+};
+
+/// Neither emission nor opacity change from point to point or with direction.
+bool same_everywhere(const InstanceRecord& record, const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m) return true;
+    const bool opaque = m->alpha_mode == GltfMaterial::AlphaMode::opaque;
+    if (m->unlit && record.colors) return false;
+    return !emission_texture(*m).used() && !emission_is_coated(material) &&
+           (opaque || (!m->base_color_texture.used() && !record.colors));
+}
+
+Measured measure(const InstanceRecord& record, const Material& material, bool changes,
+                 const std::vector<Texture>& textures, std::uint32_t primitive) {
+    if (!changes && same_everywhere(record, material)) {
+        const Vec2f anywhere{0, 0};
+        const Rgb front =
+            emission_at(record, material, textures, {primitive, anywhere, true});
+        const Rgb back =
+            emission_at(record, material, textures, {primitive, anywhere, false});
+        Measured m{front, max_component(front) > 0, max_component(back) > 0};
+        if (m.back && max_component(back) > max_component(front)) m.mean = back;
+        m.even = m.front && (!m.back || front == back);
+        return m;
+    }
+    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
+    const bool textured = gltf && emission_texture(*gltf).used();
+    const int wanted = textured ? texel_steps(record, *gltf, textures, primitive) : 2;
+    const int n = std::min(wanted, kLargestLattice);
+    Rgb sums[2]{};
+    int count = 0;
+    for (int i = 0; i <= n; ++i) {
+        for (int j = 0; j <= n - i; ++j, ++count) {
+            const Vec2f b{float(i) / float(n), float(j) / float(n)};
+            for (int side = 0; side < 2; ++side) {
+                sums[side] +=
+                    emission_at(record, material, textures, {primitive, b, side == 0});
+            }
+        }
+    }
+    Measured m;
+    m.front = max_component(sums[0]) > 0;
+    m.back = max_component(sums[1]) > 0;
+    if (wanted > n || changes) {
+        const Rgb factor = gltf ? emission_factor(*gltf) : Rgb{0, 0, 0};
+        const Rgb least = (material.emission + factor) * kUnseenShare;
+        for (Rgb& s : sums) {
+            s = {std::max(s.x, least.x * count), std::max(s.y, least.y * count),
+                 std::max(s.z, least.z * count)};
+        }
+        m.front = true;
+        m.back = m.back || material.two_sided_emission ||
+                 (gltf && (gltf->double_sided || gltf->unlit));
+    }
+    const bool brighter_back = m.back && max_component(sums[1]) > max_component(sums[0]);
+    m.mean = sums[brighter_back ? 1 : 0] / float(count);
+    return m;
+}
+
+}  // namespace
+
+Rgb emission_at(const InstanceRecord& record, const Material& material,
+                const std::vector<Texture>& textures, const TrianglePoint& point,
+                std::optional<Vec3f> toward, float width) {
+    const auto& [primitive, barycentric, front, time] = point;
+    SurfaceHit hit;
+    hit.time = time;
+    hit.front = front;
+    if (width != 0 || emission_is_coated(material)) {
+        PlacementRoom made;
+        const Placement& placement = record.placement(time, made);
+        surface_at(record, placement, primitive, barycentric.x, barycentric.y, hit);
+        hit.primitive = primitive;
+        hit.wo = toward.value_or(front ? hit.ng : -hit.ng);
+        if (width != 0) set_footprint(record, placement, width, hit);
+    } else {
+        interpolate_attributes(record, primitive, barycentric.x, barycentric.y, hit);
+    }
+    const Rgb full = emitted(material, textures, hit);
+    if (max_component(full) <= 0) return {0, 0, 0};
+    return full * opacity(material, textures, hit.uv, hit.color[3]);
+}
+
+void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
+                               std::size_t triangle_count, const Material& material,
+                               bool changes, const std::vector<Texture>& textures,
+                               std::vector<Light>& lights) {
+    if (!emits(material)) return;
+    for (std::uint32_t i = 0; i < triangle_count; ++i) {
+        const auto [a, b, c] = corners_at(record, record.still, i);
+        TriangleLight light{a, b, c, {}, instance, i, false, record.still.mirrored};
+        if (!record.changes() && !(length(cross(b - a, c - a)) > 0)) continue;
+        const Measured m = measure(record, material, changes, textures, i);
+        if (!m.front && !m.back) continue;
+        light.mean_luminance = m.mean;
+        light.two_sided = m.back;
+        light.even = m.even;
+        lights.push_back(light);
+    }
+}
+
+}  // namespace dg

@@ -1,0 +1,142 @@
+#include "transport/light_walk.h"
+
+#include <cmath>
+
+namespace dg {
+namespace {
+
+constexpr float kRouletteThreshold = 0.3f;   // of the flux at the start
+
+}  // namespace
+
+/// The choice of the light, the point on it and the direction.
+std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing& sharing,
+                                          const PathSettings& settings, const Start& start,
+                                          const PathSampler& sampler) {
+    const auto emitted =
+        sharing.emission_rays().sample(start.u_light, start.u_place, start.u_direction, start.time);
+    if (!emitted) return std::nullopt;
+    const auto leaving = scene.leave(*emitted, start.time);
+    if (!(max_component(leaving.value) > 0)) return std::nullopt;
+    LightWalk walk(scene, sharing, settings, *emitted, sampler);
+    walk.ray_ = leaving.ray;
+    if (emitted->light != LightSet::kEnvironment) {
+        walk.light_ = scene.lights().light_at(emitted->light, start.time);
+        walk.delta_ = !std::holds_alternative<TriangleLight>(walk.light_) &&
+                      !std::holds_alternative<SphereLight>(walk.light_);
+    }
+    walk.wavelengths_ = start.wavelengths;
+    walk.flux_ = walk.wavelengths_.emission(leaving.value) * (1 / emitted->pdf);
+    walk.start_ = walk.flux_;
+    walk.odds_ = sharing.of_bounced(emitted->pdf);
+    return walk;
+}
+
+bool LightWalk::meet(std::optional<LightVertex>& vertex) {
+    const auto found = scene_->intersect(ray_);
+    if (!found || found->sphere_light >= 0) return false;
+    const SurfaceHit& hit = found->surface;
+    if (is_last() && !scene_->has_clear()) return false;
+    if (volume_.where == VolumeWalk::Where::unknown) unknown_ += hit.t;
+    if (volume_.where == VolumeWalk::Where::inside) flux_ *= volume_.interior.transmittance(hit.t);
+    straight_ += hit.t;
+    vertex.emplace(*scene_, hit, wavelengths_);
+    return true;
+}
+
+bool LightWalk::sends(LightVertex& vertex) const {
+    return !is_last() && vertices_ > 0 && !is_specular(vertex.both().seen_from(vertex.hit().wo));
+}
+
+/// The way on from a surface into what lies beyond it along `w`: what was absorbed on the way there, if a
+/// light was within a volume and it is left only now. Empty: see volume_walk.h.
+std::optional<Spectrum> LightWalk::enter(VolumeWalk& volume, const Bsdf& bsdf, const SurfaceHit& hit,
+                                         Vec3f w) const {
+    const bool entering = dot(w, hit.ng) < 0;
+    if (entering != hit.front) return 1.f;   // reflected
+    return std::visit(
+        [&](const auto& b) -> std::optional<Spectrum> {
+            if (!b.bounds_volume()) return 1.f;
+            Spectrum left{1.f};
+            if (volume.where == VolumeWalk::Where::unknown && !entering) {
+                if (infinite()) return std::nullopt;
+                left = b.interior().transmittance(unknown_);
+            }
+            if (!volume.cross(b.interior(), entering)) return std::nullopt;
+            return left;
+        },
+        bsdf);
+}
+
+/// Density of the camera's techniques toward the light, per projected solid angle. A point light is found by
+/// its choice alone: what its rays have per sr, EmissionRays::pdf() has per m2 at the first vertex.
+double LightWalk::camera_density(const SurfaceHit& hit, float bsdf_pdf) const {
+    double pdf = bsdf_pdf;
+    if (vertices_ == 0) {
+        const float by_choice =
+            scene_->lights().pdf(emission_.light, hit.position, hit.wo, distance(), hit.time);
+        pdf = !delta_       ? pdf + by_choice
+              : infinite()  ? by_choice
+                            : double(by_choice) * straight_ * straight_;
+    }
+    return pdf / std::abs(double(dot(hit.ng, hit.wo)));
+}
+
+std::optional<LightWalk::Sent> LightWalk::send(LightVertex& vertex, Vec3f w, float lens_pdf) const {
+    const SurfaceHit& hit = vertex.hit();
+    const Scattering s = vertex.both().scattering(w, hit.wo);
+    if (s.f_cos.is_black() || s.hero_only) return std::nullopt;
+    VolumeWalk volume = volume_;
+    const auto left = enter(volume, vertex.both().seen_from(w), hit, w);
+    if (!left || volume.where == VolumeWalk::Where::inside) return std::nullopt;
+    const double cosine = std::abs(double(dot(hit.ng, w)));
+    Sent sent;
+    sent.density = odds_ * lens_pdf / (cosine * camera_density(hit, s.camera_pdf));
+    if (!(sent.density > 0) || !std::isfinite(sent.density)) return std::nullopt;
+    const double turned = cosine / std::abs(double(dot(hit.ng, hit.wo)));
+    sent.radiance = flux_ * s.f_cos * *left *
+                    float(reach() * turned / lens_pdf * sent.density / sharing_->of_bounced(1));
+    return sent;
+}
+
+bool LightWalk::go_on(LightVertex& vertex, const Random& u) {
+    const bool last = is_last();
+    const auto step = vertex.both().step(vertex.hit().wo, u.lobe, u.direction);
+    if (!step || !pass(vertex, *step)) return false;
+    if (last && straight_ == 0) return false;
+    return survives();
+}
+
+/// Beyond a vertex, or a window. False: the path ends.
+bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
+    const SurfaceHit& hit = vertex.hit();
+    const Bsdf& bsdf = vertex.both().seen_from(step.to_camera);
+    const bool bounds = std::visit([](const auto& b) { return b.bounds_volume(); }, bsdf);
+    const Vec3f w = step.to_camera;
+    if (!(step.specular && step.transmitted && !bounds)) {
+        // No path from the camera finds what a delta lobe does with the light of a delta light.
+        if (step.specular && delta_ && vertices_ == 0) return false;
+        const auto left = enter(volume_, bsdf, hit, w);
+        if (!left) return false;
+        flux_ *= *left * reach();
+        if (!step.specular)
+            odds_ *= step.pdf / (std::abs(double(dot(hit.ng, w))) * camera_density(hit, step.camera_pdf));
+        if (!(odds_ > 0) || !std::isfinite(odds_)) return false;
+        ++vertices_;
+        straight_ = 0;
+    }
+    flux_ *= step.weight;
+    ray_ = spawn_ray(hit, w, ray_.time);
+    return true;
+}
+
+/// Russian roulette: what survives is raised by what was ended.
+bool LightWalk::survives() {
+    const float survival = (flux_ / start_).max() / kRouletteThreshold, u = sampler_.next_1d();
+    if (survival >= 1) return true;
+    if (!(u < survival)) return false;
+    flux_ *= 1 / survival;
+    return true;
+}
+
+}  // namespace dg

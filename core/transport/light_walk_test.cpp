@@ -1,0 +1,113 @@
+// Light from emitters without camera and film: what it brings to a point is what paths from there find.
+#include "transport/light_walk.h"
+
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "math/statistics.h"
+#include "scene/test_scenes.h"
+
+namespace dg {
+namespace {
+
+constexpr int kPaths = 60000;
+const Vec3f kPoint{-0.3f, -0.2f, 0.5f};
+
+/// A closed cube of half side 1 with a lamp in it.
+std::shared_ptr<const Scene> room(Light lamp, Material wall) {
+    SceneDescription d;
+    Mesh cube;
+    cube.name = "cube";
+    std::vector<Vec3f> corners;
+    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
+    cube.positions = corners;
+    cube.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                      {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+    d.meshes.push_back(cube);
+    d.materials.push_back(std::move(wall));
+    d.instances.push_back({"cube", 0, 0, {}});
+    d.lights.push_back(std::move(lamp));
+    return Scene::build(std::move(d));
+}
+
+/// The integral over directions of the radiance at the point that two surfaces or more have sent on.
+SampleMoments by_paths(const Scene& scene, PathSettings settings) {
+    std::vector<double> values;
+    for (int i = 0; i < kPaths; ++i) {
+        PathSampler sampler(i % 256, i / 256, 0, 7);
+        Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
+        const Ray ray = test_ray(kPoint, test_direction(i));
+        PathSampler again = sampler;
+        PathSettings direct = settings;
+        direct.max_depth = 1;
+        const Spectrum all = radiance(scene, ray, wavelengths, sampler, settings, nullptr, nullptr).sum();
+        const Spectrum near = radiance(scene, ray, wavelengths, again, direct, nullptr, nullptr).sum();
+        values.push_back(4 * kPiD * (wavelengths.to_xyz(all).y - wavelengths.to_xyz(near).y));
+    }
+    return moments(values);
+}
+
+/// Light that walks send there. A point has no size: the density of its direction is distance squared per sr.
+SampleMoments by_walks(const Scene& scene, const PathSettings& settings) {
+    const EmissionSampler none;
+    const EmissionRays rays(scene.lights(), scene.emission_reach());
+    const LightSharing sharing({0, 1}, Technique::light, 1, &none, &rays);
+    CHECK(sharing.bounces());
+    std::vector<double> values;
+    for (int i = 0; i < kPaths; ++i) {
+        PathSampler sampler(i % 256, i / 256, 0, 11);
+        const CameraRandom u = sampler.camera();
+        LightWalk::Start start{u.film.x, sampler.next_2d(), u.lens, 0, Wavelengths::sample(u.lambda)};
+        auto walk = LightWalk::begin(scene, sharing, settings, start, sampler);
+        double sum = 0;
+        while (walk) {
+            const LightWalk::Random random = walk->draw();
+            std::optional<LightVertex> vertex;
+            if (!walk->meet(vertex)) break;
+            if (walk->sends(*vertex)) {
+                const Vec3f way = kPoint - vertex->hit().position, w = normalize(way);
+                Ray shadow = spawn_ray(vertex->hit(), w, 0);
+                shadow.t_max = length(way);
+                if (const auto sent = walk->send(*vertex, w, dot(way, way)))
+                    sum += walk->wavelengths()
+                               .to_xyz(sent->radiance * scene.visibility_along(shadow, walk->wavelengths()))
+                               .y / sharing.divisor(sent->density, 0);
+            }
+            if (!walk->go_on(*vertex, random)) break;
+        }
+        values.push_back(sum);
+    }
+    return moments(values);
+}
+
+}  // namespace
+
+TEST_CASE("walks bring to a point the light that paths find there after two surfaces") {
+    const Material wall{"wall", DiffuseMaterial{{0.6f, 0.6f, 0.6f}}};
+    const SphereLight ball{{{0.4f, 0.3f, -0.2f}, 0.1f}, {20, 20, 20}};
+    const PointLight point{{0.4f, 0.3f, -0.2f}, {0.7f, 0.7f, 0.7f}};
+    PathSettings shallow;
+    shallow.max_depth = 3;
+    for (const Light& lamp : {Light(ball), Light(point)})
+        for (const PathSettings& settings : {PathSettings{}, shallow}) {
+            const auto scene = room(lamp, wall);
+            SampleMoments a = by_paths(*scene, settings), b = by_walks(*scene, settings);
+            INFO("paths ", a.mean, " walks ", b.mean);
+            CHECK(a.mean > 0.1);
+            CHECK(welch_p_value(a, b) > 1e-3);
+            b.mean *= 1.05;   // the check sees 5 %
+            CHECK(welch_p_value(a, b) < 1e-3);
+        }
+}
+
+TEST_CASE("no light leaves where there is none, and a mirror alone sends none to a lens") {
+    const auto dark = room(SphereLight{{{0, 0, 0}, 0.1f}, {0, 0, 0}}, {"wall", DiffuseMaterial{{0.5f, 0.5f, 0.5f}}});
+    CHECK(EmissionRays(dark->lights(), dark->emission_reach()).empty());
+    GltfMaterial mirror;
+    mirror.metallic = 1, mirror.roughness = 0;
+    const auto shiny = room(SphereLight{{{0.4f, 0.3f, -0.2f}, 0.1f}, {20, 20, 20}}, {"wall", mirror});
+    CHECK(by_walks(*shiny, {}).mean == 0);
+}
+
+}  // namespace dg

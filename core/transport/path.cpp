@@ -1,0 +1,340 @@
+#include "transport/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "transport/path_mis.h"
+
+namespace dg {
+namespace {
+
+constexpr float kRouletteThreshold = 0.3f;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
+float power_heuristic(float pdf, float other) {
+    const float ratio = other / pdf;   // a ratio, as the square of a large pdf overflows
+    return 1.f / (1.f + ratio * ratio);
+}
+
+/// State of the path from vertex to vertex.
+struct Walk {
+    Ray ray;
+    Spectrum throughput{1.f};
+    Vec3f previous;              // where the ray left from, for the density of light sampling
+    float bsdf_pdf = 0;
+    bool from_delta = true;      // camera, or a mirror: light sampling cannot have found this
+    bool in_view = true;         // straight from the camera, or by way of mirrors and smooth glass alone
+    float straight = 0;          // m from there to the ray's origin, through clear sheets
+    float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
+    Interior medium;
+    const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
+    PathMis* bounces = nullptr;        // while light paths may find what comes next
+};
+
+/// The cone that leaves a hit. Curvature is asked for only where it matters.
+RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit, const BsdfSample& sample) {
+    if (cone.empty()) return cone;
+    const RayCone here = cone.after(hit.t);
+    if (!sample.specular) return here.scattered(sample.pdf);
+    if (!sample.transmitted) return here.reflected(scene.curvature(hit));
+    return sample.eta == 1 ? here : here.refracted(scene.curvature(hit), sample.eta);
+}
+
+/// The numbers of one vertex.
+struct VertexRandom {
+    float select = 0;      // which light
+    Vec2f light;           // where on it
+    float lobe = 0;        // which lobe of the BSDF
+    Vec2f direction;
+};
+
+/// Every vertex takes the same four dimensions, so that stratification stays; those that this BSDF has
+/// no use for are left out.
+template <typename BsdfKind>
+VertexRandom draw_vertex(const BsdfKind& bsdf, bool lit, PathSampler& sampler) {
+    VertexRandom u;
+    const bool specular = bsdf.is_specular();
+    if (lit && !specular) {
+        u.select = sampler.next_1d();
+        u.light = sampler.next_2d();
+    } else {
+        sampler.skip(2);
+    }
+    if constexpr (BsdfKind::kOneLobe)
+        sampler.skip(1);
+    else
+        u.lobe = sampler.next_1d();
+    if (specular)
+        sampler.skip(1);
+    else
+        u.direction = sampler.next_2d();
+    return u;
+}
+
+/// The medium of a ray that leaves along `wi`.
+template <typename BsdfKind>
+Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+                      Vec3f wi) {
+    const float side = dot(wi, hit.ng);
+    const bool transmitted = (side > 0) != hit.front;
+    if (!transmitted) return walk.medium;
+    return medium_beyond(walk.medium, bsdf.interior(), bsdf.bounds_volume(), side < 0);
+}
+
+/// Carries on from a vertex. What goes straight on through a clear sheet comes from where
+/// it came from: light sampling there sees through the sheet too.
+template <typename BsdfKind>
+void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+             const BsdfSample& sample, PathMis::Vertex* both) {
+    walk.throughput *= sample.weight;
+    if (sample.transmitted) {
+        walk.eta_squared *= sample.eta * sample.eta;
+        walk.medium = medium_after(walk, hit, bsdf, sample.wi);
+        if (sample.specular && !bsdf.bounds_volume()) {
+            walk.straight += hit.t;
+            return;
+        }
+    }
+    walk.first = nullptr;
+    if (both) {
+        walk.bounces->leave(*both, sample);
+        if (!walk.bounces->open()) walk.bounces = nullptr;
+    }
+    walk.bsdf_pdf = sample.pdf;
+    walk.from_delta = sample.specular;
+    walk.in_view = walk.in_view && sample.specular;
+    walk.previous = hit.position;
+    walk.straight = 0;
+}
+
+/// False: the path ends. Only paths that carry less than kRouletteThreshold are at stake (without the
+/// 1/eta^2 of radiance inside glass): ending stronger ones saves little and was measured to cost more
+/// noise than time. What survives is raised by what was ended, so that the mean does not change.
+bool survives_roulette(Walk& walk, float u) {
+    const float strength = walk.throughput.max() * walk.eta_squared;
+    if (strength >= kRouletteThreshold) return true;
+    const float survival = strength / kRouletteThreshold;
+    if (u >= survival) return false;
+    walk.throughput *= 1.f / survival;
+    return true;
+}
+
+/// One path: its state, what it has found, and the steps from vertex to vertex.
+class Path {
+  public:
+    Path(const Scene& scene, const PathSettings& settings, Wavelengths& wavelengths, PathSampler& sampler,
+         FirstHit* first_hit)
+        : scene_(scene), settings_(settings), wavelengths_(wavelengths), sampler_(sampler), first_hit_(first_hit) {}
+    Path(const Path&) = delete;
+    Path& operator=(const Path&) = delete;
+
+    void start(const Ray& ray, const FirstRay* first);
+    bool follow();
+    const Radiance& light() const { return light_; }
+    std::uint64_t rays() const { return rays_; }
+
+  private:
+    bool step(int vertex);
+    bool scatter(const Material& material, SurfaceHit& hit, bool last);
+    template <typename BsdfKind>
+    bool leave(const BsdfKind& bsdf, const SurfaceHit& hit, bool last, PathMis::Vertex* both);
+    template <typename BsdfKind>
+    Spectrum direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
+                          PathMis::Vertex* both, bool& hero_only);
+
+    Spectrum environment_emission() const;
+    Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;
+    Spectrum sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const;
+    float emission_weight(float light_pdf) const;
+    float bounced_share(std::int64_t light, float distance, float light_pdf) const;
+    void record_first_hit(const Material& material, const SurfaceHit& hit);
+
+    const Scene& scene_;
+    const PathSettings& settings_;
+    Wavelengths& wavelengths_;
+    PathSampler& sampler_;
+    FirstHit* first_hit_;
+    Walk walk_;
+    std::optional<PathMis> bounces_;
+    Radiance light_;
+    Spectrum* gathered_ = &light_.shared;
+    std::uint64_t rays_ = 0;
+};
+
+void Path::start(const Ray& ray, const FirstRay* first) {
+    walk_.ray = ray;
+    walk_.previous = ray.origin;
+    walk_.first = first;
+    if (first) bounces_.emplace(*first);
+    if (bounces_ && bounces_->open()) walk_.bounces = &*bounces_;
+}
+
+/// False: a ray that cannot be traced. The film counts the sample as bad; the ray tracer never sees it.
+bool Path::follow() {
+    for (int vertex = 0;; vertex += walk_.straight == 0) {  // a window is no vertex
+        if (!is_traceable(walk_.ray)) return false;
+        if (!step(vertex)) return true;
+        if (vertex + 1 >= settings_.roulette_depth && !survives_roulette(walk_, sampler_.next_1d())) return true;
+    }
+}
+
+/// To what the ray meets, and on from it. False: the path ends.
+bool Path::step(int vertex) {
+    ++rays_;
+    const bool caustic = walk_.from_delta && !walk_.in_view;
+    const bool counts = (settings_.straight || vertex > 0) && (settings_.caustics || !caustic);
+    auto found = scene_.intersect(walk_.ray);
+    if (!found) {
+        if (counts) *gathered_ += walk_.throughput * environment_emission();
+        return false;
+    }
+    SurfaceHit& hit = found->surface;
+    if (walk_.medium.present) walk_.throughput *= walk_.medium.transmittance(hit.t);
+    if (found->sphere_light >= 0) {
+        if (counts) *gathered_ += sphere_light(std::uint32_t(found->sphere_light), hit);
+        return false;
+    }
+    const MaterialAt material = scene_.material(hit);
+    if (counts) *gathered_ += walk_.throughput * surface_emission(material, hit);
+    const bool last = vertex == settings_.max_depth;  // behind it only windows count
+    if (last && !scene_.has_clear()) return false;
+    return scatter(material, hit, last);
+}
+
+/// At a surface: its BSDF, and the way on. False: the path ends.
+bool Path::scatter(const Material& material, SurfaceHit& hit, bool last) {
+    SurfaceHit bare;
+    if (walk_.bounces) bare = hit;
+    const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths_);
+    std::optional<PathMis::Vertex> both;
+    if (walk_.bounces) both.emplace(scene_, material, bare, wavelengths_, bsdf);
+    if (first_hit_ && !first_hit_->found) record_first_hit(material, hit);
+    return std::visit(
+        [&](const auto& kind) { return leave(kind, hit, last, both ? &*both : nullptr); }, bsdf);
+}
+
+/// Direct light, and a direction to go on in. False: the path ends.
+template <typename BsdfKind>
+bool Path::leave(const BsdfKind& bsdf, const SurfaceHit& hit, bool last, PathMis::Vertex* both) {
+    const VertexRandom u = draw_vertex(bsdf, !scene_.lights().empty(), sampler_);
+    if (!last && !bsdf.is_specular()) {
+        bool hero_only = false;
+        const Spectrum direct = walk_.throughput * direct_light(bsdf, hit, u, both, hero_only);
+        (hero_only ? light_.hero : *gathered_) += direct;
+    }
+    const auto sample = bsdf.sample(hit.wo, u.lobe, u.direction);
+    if (!sample || sample->weight.is_black()) return false;
+    advance(walk_, hit, bsdf, *sample, both);
+    if (last && walk_.straight == 0) return false;
+    if (sample->hero_only) {
+        // The throughput carries the hero's share from here on, so the weights of what was
+        // gathered before stay. A BSDF disperses no path whose wavelengths have ended.
+        wavelengths_.secondary_ended = true;
+        gathered_ = &light_.hero;
+    }
+    const RayCone cone = next_cone(scene_, walk_.ray.cone, hit, *sample);
+    walk_.ray = spawn_ray(hit, sample->wi, walk_.ray.time);
+    walk_.ray.cone = cone;
+    return true;
+}
+
+/// Next-event estimation at one vertex. hero_only: see Evaluation.
+template <typename BsdfKind>
+Spectrum Path::direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
+                            PathMis::Vertex* both, bool& hero_only) {
+    using Strategy = PathSettings::Strategy;
+    const auto light = scene_.sample_light(u.select, u.light, hit.position, hit.time, wavelengths_);
+    if (!light || light->pdf <= 0) return 0.f;
+    if (settings_.strategy == Strategy::bsdf && !light->delta) return 0.f;
+    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
+    if (f_cos.is_black()) return 0.f;
+    hero_only = alone_bent;
+    ++rays_;
+    const Spectrum visible =
+        scene_.visibility(spawn_ray(hit, light->wi, walk_.ray.time), light->distance, light->delta,
+                          medium_after(walk_, hit, bsdf, light->wi), wavelengths_);
+    if (visible.is_black()) return 0.f;
+    const bool alone = light->delta || settings_.strategy == Strategy::light;
+    float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
+    if (both) weight *= walk_.bounces->of_sample(scene_, *both, *light, wavelengths_);
+    return f_cos * light->radiance * visible * (weight / light->pdf);
+}
+
+/// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
+float Path::emission_weight(float light_pdf) const {
+    using Strategy = PathSettings::Strategy;
+    if (walk_.from_delta || light_pdf <= 0 || settings_.strategy == Strategy::bsdf) return 1;
+    if (settings_.strategy == Strategy::light) return 0;
+    return power_heuristic(walk_.bsdf_pdf, light_pdf);
+}
+
+/// Share of an emitter that the path has met, which light paths leave.
+float Path::bounced_share(std::int64_t light, float distance, float light_pdf) const {
+    if (!walk_.bounces) return 1;
+    const float ratio = walk_.from_delta ? 0 : light_pdf / walk_.bsdf_pdf;
+    return walk_.bounces->of_emitter(light, walk_.previous, walk_.ray.direction, distance, walk_.ray.time, ratio);
+}
+
+Spectrum Path::environment_emission() const {
+    const LightSet& lights = scene_.lights();
+    if (!lights.has_environment()) return 0.f;
+    const Vec3f direction = walk_.ray.direction;
+    const float pdf =
+        walk_.from_delta ? 0 : lights.pdf_environment(direction, walk_.previous, walk_.ray.time);
+    const float left = walk_.first ? walk_.first->share_of_sky(direction).value_or(1.f)
+                                   : bounced_share(LightSet::kEnvironment, kInfinity, pdf);
+    return lights.environment_radiance(direction, walk_.ray.time, wavelengths_) * (left * emission_weight(pdf));
+}
+
+/// With the path's throughput.
+Spectrum Path::sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const {
+    const LightSet& lights = scene_.lights();
+    const float pdf = walk_.from_delta ? 0 : lights.pdf_sphere(sphere, walk_.previous, hit.time);
+    const float left =
+        walk_.first ? walk_.first->share_of_sphere(lights, sphere, hit).value_or(1.f)
+                    : bounced_share(lights.sphere_index(sphere), walk_.straight + hit.t, pdf);
+    return walk_.throughput * lights.sphere_radiance(sphere, hit.time, wavelengths_) *
+           (left * emission_weight(pdf));
+}
+
+Spectrum Path::surface_emission(const Material& material, const SurfaceHit& hit) const {
+    if (!emits(material)) return 0.f;
+    SurfaceHit seen = hit;
+    // Light that light sampling and light paths could find too must be the same light: that of a point. Light paths
+    // straight to the lens know the cone of the camera's sample, and see what it covers.
+    if (!walk_.in_view) seen.footprint[0] = seen.footprint[1] = {};
+    const Rgb luminance = emitted(material, scene_.textures(), seen);
+    if (max_component(luminance) <= 0) return 0.f;
+    const LightSet& lights = scene_.lights();
+    const float distance = walk_.straight + hit.t;
+    const float pdf =
+        walk_.from_delta ? 0
+                         : lights.pdf_triangle(hit.instance, hit.primitive, distance,
+                                               std::abs(dot(hit.ng, hit.wo)), walk_.previous, hit.time);
+    float share = walk_.first ? walk_.first->share_of_triangle(hit).value_or(1.f) : 1.f;
+    if (walk_.bounces) {
+        const std::int64_t light = lights.triangle_index(hit.instance, hit.primitive);
+        if (light >= 0) share *= bounced_share(light, distance, pdf);
+    }
+    return wavelengths_.emission(luminance) * (share * emission_weight(pdf));
+}
+
+void Path::record_first_hit(const Material& material, const SurfaceHit& hit) {
+    *first_hit_ = {true, hit.position, hit.ns, albedo(material, scene_.textures(), hit), hit.instance};
+}
+
+}  // namespace
+
+Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
+                  const FirstRay* first) {
+    Path path(scene, settings, wavelengths, sampler, hit);
+    path.start(ray, first);
+    if (!path.follow()) return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
+    if (ray_count) *ray_count += path.rays();
+    return path.light();
+}
+
+}  // namespace dg

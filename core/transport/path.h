@@ -1,0 +1,41 @@
+// path.h -- radiance along a ray. Knows neither camera nor film, so it can be held against a furnace.
+#pragma once
+#include "geometry/ray.h"
+#include "math/sampler.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+struct PathSettings {
+    int max_depth = 16;      // surface vertices
+    int roulette_depth = 2;  // vertices before Russian roulette of weak paths
+    enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
+    bool caustics = true;    // with what mirrors and smooth glass throw on rough surfaces
+    bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
+};
+
+/// Light in two parts that add up: what any wavelength of the path could have found as its hero, and
+/// what was found behind a dispersive interface, where the path went the way of its hero alone (lane 0,
+/// with the share of all four already; see hero_alone()).
+struct Radiance {
+    Spectrum shared{0.f}, hero{0.f};
+    Spectrum sum() const { return shared + hero; }
+};
+
+/// The first surface on the way.
+struct FirstHit {
+    bool found = false;
+    Vec3f position, normal, albedo;   // m, world; unit
+    std::uint32_t instance = 0;
+};
+
+class FirstRay;   // first_ray.h
+
+/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
+/// sampling. `hit`, if given, receives the first surface; `first`, if given, says which share of what emitters
+/// send straight along the ray is left to this path.
+Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
+                  const FirstRay* first = nullptr);
+
+}  // namespace dg

@@ -1,0 +1,52 @@
+"""Parameters of a camera: one row each, from which flags, checks and pages are made.
+
+The rows stand in the order of helps and pages.
+"""
+
+from __future__ import annotations
+
+import math
+
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+
+from .body import FULL_FRAME, GHOSTS, PARTS, SENSOR, STANDING
+from .exposure import EXPOSURE
+from .iris import IRIS
+from .lens import CHOICE, LENS
+from .opening import FOCUS, STOP
+from .shutter import SHUTTER_ROWS
+
+__all__ = [
+    "CAMERA",
+    "CAMERA_FLAGS",
+    "FULL_FRAME",
+    "LIGHT",
+    "LIMITS",
+    "MOVABLE",
+    "OPTICS",
+    "SHUTTER",
+]
+
+_PLACE = Parameter(
+    "transform",
+    "World from camera, shape (4, 4), m; the camera looks along its -z, +y is up",
+    "m",
+    kind="value",
+    movable=True,
+)
+_MOTION = Parameter("motion", "Parameters that change over time, by name", kind="value")
+
+#: Rows of the fields of a ``Camera``: lens and body, brightness, shutter, and all.
+OPTICS = Table(_PLACE, LENS, STOP, FOCUS, IRIS, GHOSTS, SENSOR, STANDING, _MOTION)
+LIGHT = Table(EXPOSURE)
+SHUTTER = Table(SHUTTER_ROWS)
+CAMERA = Table(OPTICS, LIGHT, SHUTTER)
+#: Rows of the flags of a camera; a name such as ``scatter.barrel`` is a part of a field.
+CAMERA_FLAGS = Table(CHOICE, LENS, STOP, FOCUS, IRIS, GHOSTS, PARTS, SENSOR, STANDING, EXPOSURE)
+
+#: Names of those that may change while the shutter is open.
+MOVABLE = tuple(row.name for row in CAMERA if row.movable)
+#: Smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
+#: precision would overflow on the way.
+LIMITS = {row.name: (row.low, row.high) for row in CAMERA if math.isfinite(row.low)}

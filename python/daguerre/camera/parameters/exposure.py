@@ -1,0 +1,86 @@
+"""Parameters of brightness: exposure, white balance, vignetting."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from daguerre import units
+from daguerre.parameters.parameter import Parameter
+
+from . import needs
+
+#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
+_PINHOLE = 8.0
+_Row = partial(Parameter, panel="Camera")
+
+EXPOSURE = (
+    _Row(
+        "iso",
+        "Sensitivity of developed pictures",
+        default=100.0,
+        above=0,
+        flags=("--iso",),
+        metavar="N",
+        tells_default=True,
+        more="Neither it nor any other parameter of exposure changes the linear picture",
+    ),
+    _Row(
+        "exposure_compensation",
+        "Exposure compensation of developed pictures, EV",
+        "EV",
+        0.0,
+        low=-64,
+        high=64,
+        flags=("--ev",),
+        metavar="EV",
+        tells_default=True,
+    ),
+    _Row(
+        "exposure_time",
+        "Exposure time that sets brightness, s; motion blur keeps {shutter_time}",
+        "s",
+        above=0,
+        flags=("--exposure-time",),
+        metavar="S",
+        default_words="{shutter_time}",
+        explained=("exposure.md",),
+    ),
+    _Row(
+        "exposure_f_stop",
+        "F-stop that sets brightness; blur keeps {f_stop}",
+        above=0,
+        flags=("--exposure-f-stop",),
+        metavar="N",
+        parse=units.f_number,
+        usual=_PINHOLE,
+        default_words=f"{{f_stop}}; of a pinhole {_PINHOLE:g}",
+        explained=("exposure.md",),
+    ),
+    _Row(
+        "responsivity",
+        "Factor on the exposure",
+        default=1.0,
+        above=0,
+        flags=("--responsivity",),
+        metavar="X",
+        tells_default=True,
+    ),
+    _Row(
+        "white_balance",
+        "White balance for development: kelvins such as 5600, or a chromaticity",
+        "K or x,y",
+        kind="value",
+        flags=("--wb",),
+        metavar="K|X,Y",
+        parse=units.white,
+        in_python="White for development: colour temperature, K, or chromaticity (x, y).",
+    ),
+    _Row(
+        "natural_vignetting",
+        "Thin lens and pinhole: darken by cos^4 of the field angle",
+        default=False,
+        kind="flag",
+        flags=("--natural-vignetting/--no-natural-vignetting",),
+        needs=(needs.LENS_ITSELF, needs.EVEN),
+    ),
+)

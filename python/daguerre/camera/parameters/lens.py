@@ -1,0 +1,107 @@
+"""Parameters of the lens: which one, and how it is computed."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from daguerre.parameters.parameter import Parameter
+
+from . import needs
+
+LensRow = partial(Parameter, panel="Camera")
+
+#: Camera of a scene; no parameter of the camera itself.
+CHOICE = LensRow(
+    "camera",
+    "Camera of the scene, by name",
+    kind="text",
+    flags=("-c", "--camera"),
+    metavar="NAME",
+    more="`render` takes several, between commas",
+    explained=("cli.md#several-cameras",),
+)
+
+LENS = (
+    LensRow(
+        "lens",
+        "Lens of the library or a lens file; see `daguerre lenses`",
+        kind="text",
+        flags=("--lens",),
+        metavar="NAME|FILE|thin|pinhole",
+        in_python='Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; default: thin.',
+        explained=("lens-format.md", "lens-import.md"),
+        needs=(needs.LENS_ITSELF,),
+    ),
+    LensRow(
+        "lens_model",
+        "How the lens is computed",
+        kind="choice",
+        choices=needs.MODELS,
+        flags=("--lens-model",),
+        default_words="exact if {lens} names one",
+        explained=("lens-models.md",),
+        needs=(needs.LENS_ITSELF,),
+    ),
+    LensRow(
+        "projection",
+        "A calibration, or the formula of a fisheye or a panorama, instead of a lens",
+        kind="value",
+        more="It takes {f_stop} (None: all is sharp) and focus; the width of {sensor_size} counts. "
+        "Keys must share model and size",
+        movable=True,
+    ),
+    LensRow(
+        "degree",
+        "Degree of a polynomial lens, odd, 1 to 13",
+        kind="whole",
+        low=1,
+        high=13,
+        odd=True,
+        wants="an odd number from 1 to 13",
+        flags=("--degree",),
+        metavar="N",
+        usual=7,
+        tells_default=True,
+        explained=("polynomial.md",),
+        needs=(needs.OF_LENSES, needs.FITTED),
+    ),
+    LensRow(
+        "fit_tolerance",
+        "RMS error, px, above which the exact lens replaces a polynomial one",
+        "px",
+        above=0,
+        flags=("--fit-tolerance",),
+        metavar="PX",
+        usual=0.5,
+        tells_default=True,
+        needs=(needs.OF_LENSES, needs.FITTED),
+    ),
+    LensRow(
+        "focal_length",
+        "Focal length of an ideal lens, mm",
+        "mm",
+        low=1e-3,
+        high=1e6,
+        above=0,
+        flags=("--focal-length",),
+        metavar="MM",
+        usual=50.0,
+        tells_default=True,
+        more="A prescription has its own and takes no other",
+        needs=(needs.LENS_ITSELF, needs.WITHOUT_PRESCRIPTION),
+        movable=True,
+    ),
+    LensRow(
+        "zoom",
+        "Focal length at which a zoom lens stands, mm",
+        "mm",
+        low=1e-3,
+        high=1e6,
+        above=0,
+        flags=("--zoom",),
+        metavar="MM",
+        more="Without it the lens stands as its file says; `daguerre lenses` shows its range",
+        needs=(needs.OF_LENSES, needs.ZOOM),
+        movable=True,
+    ),
+)

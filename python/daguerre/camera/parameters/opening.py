@@ -1,0 +1,131 @@
+"""Parameters of stop and focus."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from daguerre import units
+from daguerre.parameters.parameter import Parameter
+
+from . import needs, typed
+
+_Row = partial(Parameter, panel="Camera")
+_F_STOP = 5.6
+_NO_PINHOLE = "; a pinhole is its own kind: lens='pinhole'"
+
+STOP = (
+    _Row(
+        "f_stop",
+        "Focal length / entrance pupil diameter",
+        low=1e-2,
+        high=1e9,
+        above=0,
+        hint=_NO_PINHOLE,
+        flags=("--f-stop", "--fstop", "--aperture"),
+        metavar="N",
+        parse=units.f_number,
+        usual=_F_STOP,
+        more=f"Without it the file's, else {_F_STOP:g}, or the lens's widest if that is slower",
+        needs=(needs.OPENING,),
+        rivals="stop",
+        movable=True,
+    ),
+    _Row(
+        "t_stop",
+        "F-number corrected for light lost in the glass, instead of {f_stop}",
+        low=1e-2,
+        high=1e9,
+        above=0,
+        hint=_NO_PINHOLE,
+        flags=("--t-stop",),
+        metavar="N",
+        parse=units.t_number,
+        more="F-stop / sqrt(transmittance): the f-number of a lens without losses that is as "
+        "bright on the axis",
+        needs=(needs.LENS_ITSELF, needs.OPENING, needs.T_STOP),
+        rivals="stop",
+    ),
+    _Row(
+        "aperture_diameter",
+        "Entrance pupil diameter, mm, instead of {f_stop}",
+        "mm",
+        low=1e-9,
+        high=1e6,
+        above=0,
+        hint=_NO_PINHOLE,
+        flags=("--aperture-diameter",),
+        metavar="MM",
+        more="Thin lens only",
+        needs=(needs.LENS_ITSELF, needs.OPENING, needs.THIN, needs.IDEAL),
+        rivals="stop",
+        movable=True,
+    ),
+)
+
+FOCUS = (
+    _Row(
+        "focus_distance",
+        "Focus distance, m, or inf",
+        "m",
+        low=1e-6,
+        high=1e12,
+        above=0,
+        infinite=True,
+        flags=("--focus",),
+        metavar="M",
+        default_words="the file's, else autofocus",
+        more="It starts where {focus_from} says; autofocus is on the center of the picture",
+        rivals="focus",
+        movable=True,
+    ),
+    _Row(
+        "focus_at",
+        "Focus on the surface that this pixel shows",
+        "px",
+        kind="numbers",
+        wants="a pixel (x, y)",
+        flags=("--focus-at",),
+        metavar="X,Y",
+        parse=typed.pair("480,270"),
+        in_python="Pixel (x, y) to focus on: the surface that it shows becomes sharp.",
+        rivals="focus",
+    ),
+    _Row(
+        "focus_on",
+        "Focus on the nearest surface point of this node",
+        kind="text",
+        flags=("--focus-on",),
+        metavar="NODE",
+        in_python="Name of a node to focus on: its nearest surface point becomes sharp.",
+        rivals="focus",
+    ),
+    _Row(
+        "focus_from",
+        "Where the focus distance starts",
+        default="pupil",
+        kind="choice",
+        choices=("pupil", "sensor"),
+        flags=("--focus-from",),
+        tells_default=True,
+    ),
+    _Row(
+        "focus_by",
+        "Focus of rays near the axis, or smallest spot on the axis",
+        default="paraxial",
+        kind="choice",
+        choices=("paraxial", "best"),
+        flags=("--focus-by",),
+        tells_default=True,
+        needs=(needs.OF_LENSES,),
+    ),
+    _Row(
+        "focus_breathing",
+        "Thin lens: narrow the field in close focus",
+        default=False,
+        kind="flag",
+        flags=("--focus-breathing/--no-focus-breathing",),
+        more="The focal length stays, as in a real lens that moves as a whole; without it the "
+        "field stays",
+        needs=(needs.OF_LENSES,),
+    ),
+)

@@ -1,0 +1,59 @@
+"""Texts that are made from tables of parameters: tables of flags, and docstrings of records.
+
+``script/docs/make-cli-reference`` writes them; a test fails where one is stale.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from daguerre.camera.camera import Camera
+from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
+from daguerre.parameters.table import Table
+from daguerre.parameters.texts import attributes, page_table, put_between_marks
+
+PAGE = Path("docs", "cli.md")
+_BEGIN, _END = "    Attributes:\n", '    """\n'
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table of flags on the page of the command line.
+
+    Attributes:
+        name: Name in the marks around it.
+        table: Rows of the flags.
+        names: Table of the parameters that their texts name.
+    """
+
+    name: str
+    table: Table
+    names: Table
+
+
+SECTIONS = (
+    Section("flags of the camera", CAMERA_FLAGS, CAMERA),
+    Section("flags of the shutter", SHUTTER, CAMERA),
+)
+#: Files with the docstring of a record: the record's class, its fields and their table.
+RECORDS = {Path("python", "daguerre", "camera", "camera.py"): (Camera, CAMERA)}
+
+
+def texts(root: Path) -> dict[Path, str]:
+    """Text of every such file, made anew, by its path below ``root``."""
+    page = (root / PAGE).read_text("utf-8")
+    for section in SECTIONS:
+        page = put_between_marks(page, section.name, page_table(section.table, section.names))
+    made = {PAGE: page}
+    for path, (record, table) in RECORDS.items():
+        text = (root / path).read_text("utf-8")
+        made[path] = with_attributes(text, record.__name__, table, record.__dataclass_fields__)
+    return made
+
+
+def with_attributes(text: str, record: str, table: Table, names: Iterable[str]) -> str:
+    """Source with the attributes in the docstring of a class made anew."""
+    before, start, rest = text.partition(f"\nclass {record}")
+    head, begin, rest = rest.partition(_BEGIN)
+    _, end, after = rest.partition(_END)
+    return "".join([before, start, head, begin, attributes(table, names), end, after])

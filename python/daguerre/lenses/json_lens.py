@@ -1,0 +1,135 @@
+"""Lens files of the schema ``daguerre-lens/0.1`` (mm): a JSON value becomes a lens."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from daguerre.files.json_item import Item, clean
+
+from .configurations import Configuration, chosen, read_configurations
+from .diameters import with_derived_diameters
+from .errors import LensError, reported
+from .glass_json import glass_from_json
+from .groups import Group, placed
+from .lens import Lens, Nominal, core_prescription
+from .reading import member, number, text, triple
+from .surface import LensSurface
+from .surface_reader import COATINGS, read_surfaces
+from .zoom import standing_mm
+
+SCHEMA = "daguerre-lens/0.1"
+
+
+def lens_of(data: dict[str, Any], source: str, configuration: str | None = None) -> Lens:
+    """The lens of a lens file's value, parsed or made by a program.
+
+    Raises:
+        InputError: With JSON path of what cannot be used.
+    """
+    with reported(source, "lens-format"):
+        return lens_from(Item(data, source), Path(source), configuration)
+
+
+def lens_from(root: Item, path: Path, name: str | None) -> Lens:
+    """Makes a lens of a file's value, standing at a configuration by name, or the first."""
+    schema = root.need("schema")
+    if schema.text() != SCHEMA:
+        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
+    items = root.list_of("surfaces")
+    if not items:
+        root.need("surfaces")
+        root.fail("surfaces: wanted at least one surface, got none")
+    configurations = read_configurations(root, len(items))
+    configuration = chosen(root, configurations, name)
+    surfaces = read_surfaces(items, configuration.gaps)
+    stops = [i for i, surface in enumerate(surfaces) if surface.stop]
+    if len(stops) != 1:
+        where = f" (surfaces {', '.join(map(str, stops[:8]))})" if stops else ""
+        raise LensError(
+            f"{path}: surfaces: wanted exactly one stop, got {len(stops)}{where}",
+            "lens-two-stops" if stops else "lens-no-stop",
+            stops[1] if stops else None,
+        )
+    if configuration.stop_semi_diameter is not None:
+        surfaces[stops[0]] = surfaces[stops[0]].replaced(
+            semi_diameter=configuration.stop_semi_diameter
+        )
+    for group in _groups(root, len(items), configurations):
+        surfaces = placed(surfaces, group)
+    lens = _assembled(root, path, surfaces, configurations, configuration)
+    lens = dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
+    return with_derived_diameters(lens)
+
+
+def _assembled(
+    root: Item,
+    path: Path,
+    surfaces: list[LensSurface],
+    configurations: tuple[Configuration, ...],
+    configuration: Configuration,
+) -> Lens:
+    coating = member(root, "coating")
+    coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
+    name = clean(text(root, "name") or path.stem)
+    nominal = _nominal(root, configuration)
+    if configuration is not configurations[0]:  # the field is that of the first
+        nominal = dataclasses.replace(nominal, full_field_deg=None)
+    medium, _ = glass_from_json(member(root, "object_medium"))
+    return Lens(
+        name=name,
+        source=str(path),
+        patent=text(root, "patent"),
+        note=text(root, "note"),
+        nominal=nominal,
+        surfaces=tuple(surfaces),
+        coating=coating_name,
+        prescription=core_prescription(name, surfaces, medium, coating_name, nominal.f_number),
+        data=root.value,
+        configurations=configurations,
+        object_medium=medium,
+    )
+
+
+def _groups(root: Item, count: int, configurations: Sequence[Configuration]) -> list[Group]:
+    groups = member(root, "groups")
+    return [_group(item, count, configurations) for item in groups or ()]
+
+
+def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> Group:
+    span = item.need("surfaces")
+    first, last = (int(v) for v in span.numbers(2, 0, count - 1))
+    if last < first:
+        span.fail(f"wanted [first, last], got [{first}, {last}]")
+    inside = range(first, last)
+    for i in inside:
+        if len({c.gaps.get(i) for c in configurations}) > 1:
+            span.fail(f"wanted surfaces that keep their distances; the gap after {i} changes")
+    return Group(
+        first,
+        last,
+        triple(item, "decenter", 1e4),
+        triple(item, "tilt", 90),
+        number(item, "pivot_mm") or 0.0,
+    )
+
+
+def _nominal(root: Item, configuration: Configuration) -> Nominal:
+    nominal = member(root, "nominal")
+
+    def value(key: str) -> float | None:
+        found = None if nominal is None else number(nominal, key)
+        if found is not None and found < 0:
+            root.need("nominal").need(key).fail(f"out of range: wanted at least 0, got {found:g}")
+        return found or None
+
+    return Nominal(
+        efl_mm=configuration.efl_mm or value("efl_mm"),
+        f_number=configuration.f_number or value("f_number"),
+        full_field_deg=value("full_field_deg"),
+        image_circle_mm=value("image_circle_mm"),
+        projection=None if nominal is None else text(nominal, "projection"),
+        efl_x_mm=value("efl_x_mm"),
+    )

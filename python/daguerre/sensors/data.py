@@ -1,0 +1,108 @@
+"""Values of a sensor as its file has them, checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .curve import Curve
+from .mosaic import Mosaic
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DarkCurrent:
+    """Electrons that heat makes in a photosite without light.
+
+    Attributes:
+        rate: e-/s at that temperature.
+        temperature: deg C.
+        doubling: Kelvin in which the rate doubles.
+    """
+
+    rate: float = 0.0
+    temperature: float = 20.0
+    doubling: float = 6.0
+
+    def factor(self, temperature: float | None) -> float:
+        """How much faster it is at a temperature (deg C; None: as stated)."""
+        if temperature is None:
+            return 1.0
+        return float(2.0 ** ((temperature - self.temperature) / self.doubling))
+
+
+@dataclass(frozen=True)
+class HotPixels:
+    """Photosites with much dark current.
+
+    Attributes:
+        share: Share of all photosites.
+        rate: Mean of theirs, e-/s at the temperature of the dark current; exponentially
+            distributed.
+    """
+
+    share: float = 0.0
+    rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class DualGain:
+    """The second, higher conversion gain of a photosite.
+
+    Attributes:
+        iso: Lowest ISO at which it is used; the table of read noise may step there.
+        full_well: Full well with this gain, e-.
+    """
+
+    iso: float
+    full_well: float
+
+
+@dataclass(frozen=True, eq=False)
+class SensorData:
+    """Values of a sensor; :class:`~daguerre.sensors.sensor.Sensor` names each with its unit."""
+
+    name: str
+    make: str
+    model: str
+    source: str
+    licence: str
+    pixel_pitch: float
+    resolution: tuple[int, int]
+    pattern: Mosaic
+    channels: tuple[str, ...]
+    wavelengths: FloatArray
+    quantum_efficiency: FloatArray
+    full_well: float
+    bit_depth: int
+    base_iso: float
+    iso_range: tuple[float, float]
+    size: tuple[float, float] = (0.0, 0.0)
+    fill_factor: float = 1.0
+    infrared_cut: Curve | None = None
+    cover_glass: Curve | None = None
+    read_noise: tuple[tuple[float, float], ...] = ((100.0, 0.0),)
+    dual_gain: DualGain | None = None
+    dark_current: DarkCurrent = DarkCurrent()
+    prnu: float = 0.0
+    dsnu: float = 0.0
+    hot_pixels: HotPixels = HotPixels()
+    black_level: int = 0
+    crosstalk: float = 0.0
+    low_pass: float = 0.0
+    serial: int = 0
+    assumed: tuple[str, ...] = ()
+    note: str = ""
+
+    @property
+    def where(self) -> str:
+        """For messages."""
+        return f"sensor {self.name}"
+
+    @property
+    def photosite_area(self) -> float:
+        """Area of a photosite, without fill factor, um2."""
+        return self.pixel_pitch**2

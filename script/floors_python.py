@@ -1,0 +1,252 @@
+"""Floors of python/daguerre: an import that points up, or a circle of files, is an error.
+
+Every import counts: at the top of a file, for types alone, and inside functions. A value may hand
+itself up (``frame.save(path)``) only in a method that is listed in ``HAND_OVERS`` and whose body is
+one import and one call, so that nothing is decided there. ``script/check-floors`` runs this.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+# Lowest first. Rooms are folders, or files at the root; on one floor they do not see each other.
+FLOORS = [
+    {"errors"},
+    {"checks"},
+    {"units", "files"},
+    {"parameters"},
+    {"color", "motion", "convolution"},
+    {"lenses", "sensors"},
+    {"camera"},
+    {"scene", "frame"},
+    {"io"},
+    {"setup"},
+    {"analysis"},
+    {"plots"},
+    {"distortion"},
+    {"polynomial"},
+    {"export"},
+    {"calibration"},
+    {"post"},
+    {"exposure"},
+    {"development"},
+    {"stocks"},
+    {"rendering"},
+    {"maps", "labels", "charts"},
+    {"__init__"},
+    {"cli"},
+    {"__main__"},
+]
+#: Compiled module below all rooms.
+FREE = {"_core"}
+#: (file, method, module above, or a higher one of its room): a value that hands itself up.
+HAND_OVERS = {
+    ("lenses/lens.py", "_repr_svg_", "plots.lens_section"),
+    ("lenses/lens.py", "at_zoom", "lenses.zoom"),
+    ("lenses/lens.py", "focused", "lenses.focus"),
+    ("lenses/lens.py", "zoom_range_mm", "lenses.zoom"),
+    ("polynomial/lens_fit.py", "save", "export"),
+    ("stocks/stock.py", "expose", "stocks.negative"),
+}
+#: Files whose imports are still to be put in order.
+PENDING = (
+    *("camera/camera.py", "frame/frame.py", "frame/picture.py", "frame/raw.py"),
+    *("rendering/loop.py", "rendering/progress.py", "scene/scene.py"),
+)
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+
+
+@dataclass(frozen=True)
+class Import:
+    """One import statement: where it stands, the room it names, and the module, if a file."""
+
+    line: int
+    room: str
+    module: str  # empty: no file of the package
+    method: str = ""  # of one import and one call, if it stands in such a one
+    typed: bool = False  # for types alone
+
+
+def targets(node: ast.AST, package: list[str]) -> Iterator[list[str]]:
+    """Dotted names inside daguerre that an import statement of a file in `package` may mean."""
+    if isinstance(node, ast.Import):
+        for alias in node.names:
+            name = alias.name.split(".")
+            if name[0] == "daguerre":
+                yield name[1:] or ["__init__"]
+    elif isinstance(node, ast.ImportFrom):
+        base = (node.module or "").split(".") if node.module else []
+        if node.level:
+            base = package[: len(package) - (node.level - 1)] + base
+        if base[:1] == ["daguerre"]:
+            for alias in node.names:
+                yield [*base[1:], alias.name]
+
+
+def hand_over(function: ast.AST) -> ast.stmt | None:
+    """The import of a method that is one import and one call; None: it is something else."""
+    if not isinstance(function, ast.FunctionDef):
+        return None
+    body = function.body
+    if isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
+        body = body[1:]
+    if len(body) != 2 or not isinstance(body[0], ast.ImportFrom):
+        return None
+    last = body[1].value if isinstance(body[1], ast.Return | ast.Expr) else None
+    return body[0] if isinstance(last, ast.Call) else None
+
+
+def for_types(node: ast.AST) -> bool:
+    """Whether a statement is ``if TYPE_CHECKING``."""
+    return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
+
+
+class Package:
+    """Imports of all files of a package folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.files = {
+            self._module(path, folder): path.relative_to(folder).as_posix()
+            for path in sorted(folder.rglob("*.py"))
+        }
+        self.imports = {
+            module: list(self._imports(folder / file, module))
+            for module, file in self.files.items()
+        }
+
+    @staticmethod
+    def _module(path: Path, folder: Path) -> str:
+        parts = path.relative_to(folder).with_suffix("").parts
+        return ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 1 else parts)
+
+    def _imports(self, path: Path, module: str) -> Iterator[Import]:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        within = module.split(".") if path.stem == "__init__" else module.split(".")[:-1]
+        package = ["daguerre", *(part for part in within if part != "__init__")]
+        nodes = list(ast.walk(tree))
+        plain = {id(hand_over(node)): getattr(node, "name", "") for node in nodes}
+        typed = {id(line) for node in nodes if for_types(node) for line in ast.walk(node)}
+        for node in nodes:
+            for name in targets(node, package):
+                method = plain.get(id(node), "")
+                yield Import(
+                    getattr(node, "lineno", 0),
+                    self._room(name),
+                    self._module_of(name),
+                    method,
+                    id(node) in typed,
+                )
+
+    def _room(self, name: list[str]) -> str:
+        """Room of a dotted name; a name of the face itself is the face."""
+        return name[0] if name[0] in FLOOR or name[0] in FREE or len(name) > 1 else "__init__"
+
+    def _module_of(self, name: list[str]) -> str:
+        """Module that a dotted name loads: the longest beginning of it that is a file."""
+        beginnings = (".".join(name[:end]) for end in range(len(name), 0, -1))
+        return next((module for module in beginnings if module in self.files), "")
+
+
+def upward(package: Package) -> list[str]:
+    """Imports against the order of floors, as file:line: message."""
+    errors = []
+    for module, imports in package.imports.items():
+        file = package.files[module]
+        room = file.split("/")[0].removesuffix(".py")
+        if room not in FLOOR:
+            errors.append(f"{file}:1: room {room} is not in the table of floors")
+            continue
+        for found in imports:
+            problem = judge(file, room, found)
+            if problem:
+                errors.append(f"{file}:{found.line}: {problem}")
+    return errors
+
+
+def handed_over(file: str, found: Import) -> bool:
+    """Whether a listed method hands over by an import, or names the type that comes back."""
+    methods = {
+        method for listed, method, above in HAND_OVERS if (listed, above) == (file, found.module)
+    }
+    return bool(methods) if found.typed else found.method in methods
+
+
+def judge(file: str, room: str, found: Import) -> str | None:
+    """Why a file must not have an import, or None."""
+    other = found.room
+    if other == room or other in FREE or handed_over(file, found):
+        return None
+    if other not in FLOOR:
+        return f"{other} is not a room"
+    if FLOOR[other] < FLOOR[room]:
+        return None
+    if any((file, found.module) == (listed, above) for listed, _, above in HAND_OVERS):
+        return (
+            f"hands over to {found.module}, but not in a listed method of one import and one call"
+        )
+    side = "is a neighbor of" if FLOOR[other] == FLOOR[room] else "stands above"
+    return f"points up: {other} {side} {room}"
+
+
+def circles(package: Package) -> list[str]:
+    """Files that import each other in a loop, hand-overs left out; one line a loop."""
+    arrows = {
+        module: sorted(
+            {
+                found.module
+                for found in imports
+                if found.module
+                and not handed_over(package.files[module], found)
+                and not holds(found.module, module)
+            }
+        )
+        for module, imports in package.imports.items()
+    }
+    errors = []
+    for group in strong_components(arrows):
+        if len(group) > 1:
+            names = ", ".join(sorted(package.files[module] for module in group))
+            errors.append(f"circle of {len(group)} files: {names}")
+    return errors
+
+
+def holds(folder: str, module: str) -> bool:
+    """Whether a module is another itself, or the face of its folder."""
+    return folder in ("__init__", module) or module.startswith(folder + ".")
+
+
+def strong_components(arrows: dict[str, list[str]]) -> list[list[str]]:
+    """Strongly connected components; Tarjan, SIAM J. Comput. 1 (1972) 146."""
+    number: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(node: str) -> None:
+        number[node] = low[node] = len(number)
+        stack.append(node)
+        for other in arrows.get(node, []):
+            if other not in number:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], number[other])
+        if low[node] == number[node]:
+            start = stack.index(node)
+            found.append(stack[start:])
+            del stack[start:]
+
+    for node in arrows:
+        if node not in number:
+            visit(node)
+    return found
+
+
+def check(folder: Path) -> tuple[int, list[str]]:
+    """Number of files of a package folder, and all its faults."""
+    package = Package(folder)
+    faults = upward(package) + circles(package)
+    return len(package.files), [f for f in faults if not any(file in f for file in PENDING)]
