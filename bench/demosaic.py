@@ -98,7 +98,7 @@ def judged(got: NDArray[np.float64], truth: NDArray[np.float64]) -> tuple[float,
 
 def lab(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     """CIE L*a*b* of linear sRGB."""
-    matrix = spaces.xyz_from_rgb(spaces.COLOUR_SPACES["srgb"])
+    matrix = spaces.xyz_from_rgb(spaces.COLOR_SPACES["srgb"])
     t = rgb @ matrix.T / matrix.sum(axis=1)
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t / (3 * (6 / 29) ** 2) + 4 / 29)
     x, y, z = np.moveaxis(f, -1, 0)

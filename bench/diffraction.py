@@ -23,7 +23,7 @@ from daguerre import analysis, lenses
 from daguerre.analysis.diffraction import PlainPupil, window_of
 from daguerre.analysis.iris import Iris
 from daguerre.analysis.lens_pupil import zone_pupils
-from daguerre.color.spectra import band_colours
+from daguerre.color.spectra import band_colors
 from daguerre.convolution.convolve import convolve
 from daguerre.post.starburst import starburst
 from daguerre.rendering import diffraction as waves
@@ -83,7 +83,7 @@ class Film:
 
     def mean_xyz(self) -> NDArray[np.float32]:
         """Shape (H, W, 3)."""
-        colours = band_colours(self._bands.shape[2]).astype(np.float32)
+        colours = band_colors(self._bands.shape[2]).astype(np.float32)
         out = np.empty((*self._bands.shape[:2], 3), np.float32)
         for y, row in enumerate(self._bands):
             out[y] = row @ colours

@@ -71,7 +71,7 @@ def case(
     """
 
     def still(t: float) -> tuple[dg.Scene, dg.Camera]:
-        return without_motion(scene.at(t)), camera.at(t).with_(shutter_time=0.0)
+        return without_motion(scene.at(t)), camera.frozen_at(t).with_(shutter_time=0.0)
 
     half = 0.5 * shutter_time
     interval = scene.time - half, scene.time + half

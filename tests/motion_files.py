@@ -283,6 +283,6 @@ def file_case(name: str, folder: Path) -> Case:
 
     def still(t: float) -> tuple[dg.Scene, dg.Camera]:
         scene, camera = read(t)
-        return without_motion(scene), camera.at(t).with_(shutter_time=0.0)
+        return without_motion(scene), camera.frozen_at(t).with_(shutter_time=0.0)
 
     return replace(case(*read(TIME), OPEN), still=still)

@@ -323,8 +323,8 @@ def _seen(camera: dg.Camera, exposure: Callable[[dg.Camera], float] = lambda cam
     scene = sky()
     for z, x, y in ((-2, -0.4, 0.2), (-3, 0.5, -0.3), (-5, 0.2, 0.8)):
         card(scene, move(x, y, z), size=0.12 * -z)
-    middle = exposure(camera.at(TIME))
-    return case(scene, camera, OPEN, lambda t: exposure(camera.at(t)) / middle)
+    middle = exposure(camera.frozen_at(TIME))
+    return case(scene, camera, OPEN, lambda t: exposure(camera.frozen_at(t)) / middle)
 
 
 def pan() -> Case:

@@ -249,7 +249,7 @@ def test_what_moves_is_where_it_is_at_the_moment(moment: str, seconds: float) ->
     np.testing.assert_allclose(found.camera_box3.center, (5 * seconds, 2 * seconds, 4), atol=1e-6)
     plain = dg.Scene(time=seconds)
     cube(plain, way_at(way, seconds))
-    still = camera.at(seconds).with_(shutter_time=0.0)
+    still = camera.frozen_at(seconds).with_(shutter_time=0.0)
     np.testing.assert_allclose(
         found.full_box, only(dg.annotate(plain, still, resolution=SIZE)).full_box, atol=1e-3
     )

@@ -249,18 +249,18 @@ def test_samples_of_opentrackio_make_keys() -> None:
     del last["static"]
     camera = dg.Camera.from_opentrackio([first, last])
     assert set(camera.motion) == {"projection", "f_stop"}
-    now = camera.at(0.01)
+    now = camera.frozen_at(0.01)
     alone = dg.Camera.from_opentrackio(first).projection
     assert now.f_stop == pytest.approx(3.1, abs=1e-4)
     assert now.projection is not None
     assert alone is not None
     assert now.projection.focal[0] == pytest.approx(alone.focal[0] * 3.5 / 3.0, rel=1e-4)
-    assert camera.at(-1).projection == alone
+    assert camera.frozen_at(-1).projection == alone
     rated = [{**first, "timing": {"sampleRate": {"num": 25}}}, last | {"timing": {}}]
     with pytest.raises(InputError, match=r"samples\[1\].*sampleTimestamp or timing.sampleRate"):
         dg.Camera.from_opentrackio(rated)
     rated[1]["timing"] = rated[0]["timing"]
-    assert dg.Camera.from_opentrackio(rated).at(0.02).f_stop == pytest.approx(3.4)
+    assert dg.Camera.from_opentrackio(rated).frozen_at(0.02).f_stop == pytest.approx(3.4)
     with pytest.raises(InputError, match="times that rise"):
         dg.Camera.from_opentrackio([last | {"static": first["static"]}, first])
     with pytest.raises(InputError, match="at least one"):

@@ -15,7 +15,7 @@ from daguerre.analysis import set_up
 from daguerre.analysis.chief import chief_rays
 from daguerre.cli import main
 from daguerre.distortion.lens import LensDistortion
-from daguerre.distortion.rectified import Sight
+from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import UsageError
 from daguerre.io.exr.rows import ExrReader
 
@@ -169,18 +169,18 @@ def white() -> dg.Scene:
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_both_ways_are_the_identity(name):
-    sight = Sight(CAMERAS[name], SIZE)
+    view = RectifiedView(CAMERAS[name], SIZE)
     x, y = np.meshgrid(np.linspace(0, SIZE[0], 41), np.linspace(0, SIZE[1], 31))
     points = np.stack([x.ravel(), y.ravel()], axis=1)
-    bent = sight.bent_from_straight(points)
-    back = sight.straight_from_bent(bent)
+    bent = view.bent_from_straight(points)
+    back = view.straight_from_bent(bent)
     known = np.isfinite(back).all(axis=1)
     assert known.mean() > 0.8
     np.testing.assert_allclose(back[known], points[known], atol=1e-4)
-    straight = sight.straight_from_bent(points)
+    straight = view.straight_from_bent(points)
     known = np.isfinite(straight).all(axis=1)
     assert known.mean() > 0.4
-    np.testing.assert_allclose(sight.bent_from_straight(straight[known]), points[known], atol=1e-4)
+    np.testing.assert_allclose(view.bent_from_straight(straight[known]), points[known], atol=1e-4)
 
 
 @pytest.mark.parametrize("name", ["barrel", "exact", "anamorphic", "decentred"])
@@ -235,7 +235,9 @@ def test_the_map_of_a_lens_is_that_of_the_darkroom():
     made = dg.stmaps(dg.Camera(lens="canon-ef-11-24mm-f4", f_stop=16.0, focus_distance=1.0), size)
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"), f_stop=16.0, focus_m=1.0)
     model = LensDistortion(bench, 22.0)
-    assert model.focal_length_mm == pytest.approx(made.sight.setup.pinhole_focal_length, rel=2e-4)
+    assert made.sight is made.view  # its former name
+    ours = made.view.setup.lens.pinhole_focal_length_mm
+    assert model.focal_length_mm == pytest.approx(ours, rel=2e-4)
     focal = model.focal_length_mm / (36 / 192)
     other = dg.post.stmap(model, size, focal_px=focal, inverse=True)
     assert np.nanmax(np.abs(made.undistort - other)) * 192 < 0.05

@@ -15,6 +15,7 @@ from daguerre import lenses
 from daguerre.analysis.camera_facts import camera_facts
 from daguerre.cli.info import camera_rows
 from daguerre.setup.camera import set_up
+from daguerre.setup.metadata import facts_of
 
 from . import scenes
 from .test_lens_models import LENS
@@ -24,7 +25,7 @@ GROUPS = "telephoto-200mm-f1.8"
 
 
 def facts(camera: dg.Camera) -> dict[str, Any]:
-    return set_up(dg.Scene(), camera, (36, 24), None).facts
+    return facts_of(set_up(dg.Scene(), camera, (36, 24), None))
 
 
 def thick(**given: Any) -> dg.Camera:
@@ -34,9 +35,9 @@ def thick(**given: Any) -> dg.Camera:
 @pytest.mark.parametrize("zoom", [26.0, 35.0, 48.0])
 def test_a_zoom_stands_where_it_is_told(zoom: float) -> None:
     setup = set_up(dg.Scene(), thick(zoom=zoom, focus_distance=math.inf), (36, 24), None)
-    assert setup.facts["effective_focal_length_mm"] == pytest.approx(zoom, rel=1e-3)
-    assert setup.pinhole_focal_length == pytest.approx(zoom, rel=1e-3)
-    assert setup.facts["zoom_mm"] == zoom
+    assert setup.lens.effective_focal_length_mm == pytest.approx(zoom, rel=1e-3)
+    assert setup.lens.pinhole_focal_length_mm == pytest.approx(zoom, rel=1e-3)
+    assert facts_of(setup)["zoom_mm"] == zoom
 
 
 def test_focal_lengths_that_a_lens_does_not_have_are_refused() -> None:

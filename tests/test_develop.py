@@ -160,7 +160,7 @@ def test_edges_of_overexposed_lamps_have_no_colour():
 def test_colours_that_a_screen_lacks_keep_luminance_and_hue():
     laser = np.array([-0.3, 0.6, -0.05])  # a green that no screen has
     got = develop(frame(laser)).linear()[0, 0]
-    luminance = spaces.xyz_from_rgb(spaces.COLOUR_SPACES["srgb"])[1]
+    luminance = spaces.xyz_from_rgb(spaces.COLOR_SPACES["srgb"])[1]
     assert luminance @ got == pytest.approx(luminance @ laser, abs=1e-3)
     assert got.min() == pytest.approx(0, abs=1e-6)
     wide = develop(frame(laser), colour_space="rec2020").linear()[0, 0]
@@ -172,12 +172,12 @@ def test_colours_that_a_screen_lacks_keep_luminance_and_hue():
     assert rim[1] > rim[2] > 0.05
 
 
-@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOR_SPACES)
 def test_spaces_have_the_same_colours(space):
     colours = [[0.2, 0.5, 0.1], [0.18, 0.18, 0.18], [0.9, 0.1, 0.3]]
     picture = develop(frame(colours), colour_space=space)
-    xyz = picture.linear() @ spaces.xyz_from_rgb(spaces.COLOUR_SPACES[space]).T
-    wanted = np.array(colours) @ spaces.xyz_from_rgb(spaces.COLOUR_SPACES["srgb"]).T
+    xyz = picture.linear() @ spaces.xyz_from_rgb(spaces.COLOR_SPACES[space]).T
+    wanted = np.array(colours) @ spaces.xyz_from_rgb(spaces.COLOR_SPACES["srgb"]).T
     np.testing.assert_allclose(xyz[0], wanted, atol=2e-4)
 
 

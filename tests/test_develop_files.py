@@ -39,7 +39,7 @@ def picture(space="srgb"):
     return Picture(np.concatenate([pixels, blue], axis=2), space, dict(FACTS))
 
 
-@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOR_SPACES)
 @pytest.mark.parametrize("ending", ["jpg", "png", "tif"])
 def test_files_say_colours_and_exposure(tmp_path, space, ending):
     path = tmp_path / f"x.{ending}"
@@ -56,18 +56,18 @@ def test_files_say_colours_and_exposure(tmp_path, space, ending):
     with Image.open(path) as image:
         profile = ImageCms.ImageCmsProfile(io.BytesIO(image.info["icc_profile"]))
         title = ImageCms.getProfileDescription(profile).strip()
-        assert title == spaces.COLOUR_SPACES[space].title
+        assert title == spaces.COLOR_SPACES[space].title
         if ending != "tif":  # Pillow reads no 16 bits of three colours
             got = np.asarray(image).astype(int)
             assert np.abs(got - picture(space).bytes8()).max() <= (4 if ending == "jpg" else 0)
             assert image.getexif().get_ifd(0x8769)[0x829A] == Fraction(1, 48)
 
 
-@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOR_SPACES)
 def test_profiles_mean_the_colours_that_we_encode(space):
     """lcms, through Pillow, turns numbers of a space into sRGB as our own matrices do."""
     light = np.array([[0.2, 0.5, 0.3], [0.18, 0.18, 0.18], [0.6, 0.4, 0.35], [1, 1, 1]])
-    of, srgb = spaces.COLOUR_SPACES[space], spaces.COLOUR_SPACES["srgb"]
+    of, srgb = spaces.COLOR_SPACES[space], spaces.COLOR_SPACES["srgb"]
     inside = light @ np.linalg.solve(spaces.xyz_from_rgb(of), spaces.xyz_from_rgb(srgb)).T
     numbers = np.rint(spaces.encoded(inside, space) * 255).astype(np.uint8)
     transform = ImageCms.buildTransform(
@@ -82,7 +82,7 @@ def test_profiles_mean_the_colours_that_we_encode(space):
     assert np.abs(shown - wanted).max() <= 2
 
 
-@pytest.mark.parametrize("space", spaces.COLOUR_SPACES)
+@pytest.mark.parametrize("space", spaces.COLOR_SPACES)
 def test_curves_turn_around(space):
     light = np.geomspace(1e-5, 1, 300)
     encoded = spaces.encoded(light, space)

@@ -245,7 +245,7 @@ def test_band_colours_make_rgb_emitters_exact() -> None:
     seen, emitted = colour._tables(nm)
     for bands in (8, 16, 32):
         means = emitted.reshape(bands, -1, 3).mean(axis=1)
-        xyz = colour.band_colours(bands).T @ means
+        xyz = colour.band_colors(bands).T @ means
         wanted = seen.T @ emitted * (400 / 16000)
         np.testing.assert_allclose(xyz, wanted, atol=2e-5)
         np.testing.assert_allclose(colour.rgb_from_xyz() @ xyz.sum(axis=1), 1, atol=3e-5)

@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from daguerre.checks import frozen
+from daguerre.checks import as_readonly
 from daguerre.errors import InputError, UsageError
 from daguerre.io.gltf import reader as gltf
 
@@ -41,7 +41,7 @@ def test_triangle_in_every_container(tmp_path):
 def test_arrays_are_ready_for_the_core_to_read_in_place(tmp_path):
     scene = gltf.read(triangle().glb(tmp_path / "a.glb"))
     for values in (scene.meshes[0].positions, scene.meshes[0].indices):
-        assert frozen(values) is values
+        assert as_readonly(values) is values
 
 
 def test_percent_encoded_name_and_query_free_data_uri(tmp_path):

@@ -188,7 +188,7 @@ def test_focus_on_one_of_many_instances_and_on_a_skin(tmp_path, monkeypatch):
     for name, depth in (("tri", 3), ("skin", 6)):
         camera = daguerre.Camera(focus_on=name)
         setup = camera_setup.set_up(scene, camera, (30, 20), None)
-        assert setup.facts["focus_distance_m"] == pytest.approx(depth)
+        assert setup.lens.focus_distance_m == pytest.approx(depth)
 
 
 # Visibility ------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import pytest
 import daguerre as dg
 from daguerre import lenses
 from daguerre.setup.camera import set_up
+from daguerre.setup.metadata import facts_of
 
 from . import scenes
 from .test_lens_models import LENS, rays
@@ -83,7 +84,7 @@ def test_grinding_marks_make_rings_and_move_no_light() -> None:
         lean = np.linalg.norm(bent[i, ok] - plain[i, ok], axis=1)
         assert 1e-6 < lean.mean() < 3e-4
         assert both[i].mean() == pytest.approx(passed[i].mean(), rel=0.01)
-    facts = set_up(dg.Scene(), marked, (36, 24), None).facts
+    facts = facts_of(set_up(dg.Scene(), marked, (36, 24), None))
     assert facts["ripple"] == [2.0, 100.0, 3]
 
 

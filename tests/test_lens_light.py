@@ -66,7 +66,7 @@ def test_elements_off_the_axis_darken_one_side():
     lens = lenses.load(LENS).decentered(*moved)
     bench = set_up(lens, f_stop=2.8, focus_m=3.0, by="paraxial")
     canvas, film = Canvas(*SIZE), Plane((30.0, 20.0), 36 / 60)
-    light = lens_light.lens_light(canvas, film, bench, colour=True)(Rows(0, 40))
+    light = lens_light.lens_light(canvas, film, bench, color=True)(Rows(0, 40))
     camera = dg.Camera(lens=lens, f_stop=2.8, focus_distance=3.0)
     agree(white_world(camera, 192), light)
     assert abs(light[20, 0, 1] / light[20, -1, 1] - 1) > 0.03

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 import daguerre as dg
-from daguerre.checks import frozen, given_up
+from daguerre.checks import as_readonly, freeze_in_place
 from daguerre.rendering.session import Session
 from daguerre.setup.scene import build
 
@@ -87,8 +87,8 @@ def test_a_scene_keeps_no_array_that_its_maker_can_change() -> None:
         assert not kept.flags.writeable
         assert not np.shares_memory(kept, mine[name])
     assert not np.shares_memory(scene.textures[0].pixels, mine["picture"])
-    once = given_up(mine["positions"].copy())
-    assert frozen(once) is once
+    once = freeze_in_place(mine["positions"].copy())
+    assert as_readonly(once) is once
     view = mine["positions"][:]
     view.flags.writeable = False
-    assert frozen(view) is not view  # its base may still change
+    assert as_readonly(view) is not view  # its base may still change

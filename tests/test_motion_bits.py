@@ -90,7 +90,7 @@ def test_a_frozen_shutter_is_a_still_frame():
     still = dg.Scene(**(vars(scene.at(0.3)) | {"motion": SceneMotion()}))
     frozen = {"shutter_time": 0.0, "rolling_shutter": None}
     a = picture(scene.at(0.3), camera.with_(**frozen), (0, 16))
-    b = picture(still, camera.at(0.3).with_(**frozen), (0, 16))
+    b = picture(still, camera.frozen_at(0.3).with_(**frozen), (0, 16))
     assert np.array_equal(a, b)
 
 

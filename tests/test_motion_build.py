@@ -11,7 +11,7 @@ import daguerre as dg
 from daguerre.errors import InputError
 from daguerre.io.gltf import reader as gltf
 from daguerre.setup.scene import build, content_hash
-from daguerre.setup.scene_motion import Moving
+from daguerre.setup.scene_motion import MovingParts
 
 from . import scenes
 from .make_gltf import triangle
@@ -83,7 +83,7 @@ def test_spins_and_keys_go_to_the_core_as_they_are():
     mesh = scene.add_mesh(SQUARE, FACES)
     wheel = dg.spin((0, 0, 1), 1000)
     scene.add_instance(mesh, transform=wheel)
-    moving = Moving(scene, (0, 1), [])
+    moving = MovingParts(scene, (0, 1), [])
     assert moving.transform(0) is wheel.motion
     core = build(scene, (0, 1))
     assert core.bounds[1][0] == pytest.approx(math.sqrt(2), rel=0.05)

@@ -14,17 +14,18 @@ def test_a_parameter_over_time_is_kept_beside_its_value():
     camera = dg.Camera(focus_distance=pull, f_stop=2.8, blades=dg.keys([(0, 5), (1, 7)], "step"))
     assert camera.motion["focus_distance"] is pull
     assert (camera.focus_distance, camera.f_stop, camera.blades) == (2.0, 2.8, 5)
-    later = camera.at(1.5)
+    later = camera.frozen_at(1.5)
     assert (later.focus_distance, later.blades, later.motion) == (3.0, 7, {})
     assert isinstance(later.blades, int)
-    moved = camera.moved_to(1.5)
+    moved = camera.evaluated_at(1.5)
     assert moved.focus_distance == 3.0
     assert moved.motion == camera.motion
+    assert (camera.at(1.5), camera.moved_to(1.5)) == (later, moved)  # their former names
 
 
 def test_a_camera_that_stays_is_itself():
     camera = dg.Camera()
-    assert camera.at(3.0) is camera
+    assert camera.frozen_at(3.0) is camera
 
 
 def test_transform_and_one_of_two_numbers():
@@ -33,8 +34,8 @@ def test_transform_and_one_of_two_numbers():
     camera = dg.Camera(
         transform=dg.keys([(0, np.eye(4)), (1, end)]), shift=(0.0, dg.keys([(0, 0), (1, 8)]))
     )
-    assert camera.at(0.25).shift == (0.0, 2.0)
-    assert camera.at(0.25).transform[0, 3] == 0.5
+    assert camera.frozen_at(0.25).shift == (0.0, 2.0)
+    assert camera.frozen_at(0.25).transform[0, 3] == 0.5
     assert np.array_equal(camera.transform, np.eye(4))
 
 

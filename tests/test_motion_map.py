@@ -36,7 +36,7 @@ def mapped(
     motion: np.ndarray, place, forward, *, names: tuple[str, ...] = NAMES, **values: float
 ) -> np.ndarray:
     """Motion (H, W, 2) after a map; NaN where nothing of the source is seen."""
-    canvas = Canvas(WIDTH, HEIGHT, colours=("Y",), planes=names)
+    canvas = Canvas(WIDTH, HEIGHT, colors=("Y",), planes=names)
     step = WarpStep(
         canvas, [Warp.of(canvas, place)], filter="cubic", antialias=True, forward=forward,
         motion=values,
@@ -118,7 +118,7 @@ def test_motion_that_counts_upward_or_from_the_last_frame():
 
 
 def test_ends_that_a_lens_does_not_show_are_unknown_and_counted():
-    canvas = Canvas(WIDTH, HEIGHT, colours=("Y",), planes=NAMES)
+    canvas = Canvas(WIDTH, HEIGHT, colors=("Y",), planes=NAMES)
     place, forward = both(BrownConrady(k1=-0.4))
     motion = MotionMap(canvas, forward)
     planes = {"motion.U": np.full((HEIGHT, WIDTH), 900.0), "motion.V": np.zeros((HEIGHT, WIDTH))}

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.errors import UsageError
-from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.camera import set_up
+from daguerre.setup.fit import FitQuality
+from daguerre.setup.resolved import ResolvedCamera
 
 from . import scenes
 
@@ -30,7 +32,7 @@ class Case:
     name: str
     camera: dict[str, Any] = field(default_factory=dict)
 
-    def both(self) -> tuple[CameraSetup, CameraSetup]:
+    def both(self) -> tuple[ResolvedCamera, ResolvedCamera]:
         """Polynomial and exact."""
         camera = dg.Camera(**({"focus_distance": 3.0} | self.camera), lens_model="polynomial")
         made = [
@@ -49,7 +51,14 @@ CASES = [
 ]
 
 
-def draw(setup: CameraSetup, film: Array, u: Array, nm: Array) -> tuple[Array, Array, Array]:
+def quality(setup: ResolvedCamera) -> FitQuality:
+    glass = setup.lens.glass
+    assert glass is not None
+    assert glass.fit is not None
+    return glass.fit
+
+
+def draw(setup: ResolvedCamera, film: Array, u: Array, nm: Array) -> tuple[Array, Array, Array]:
     core: Any = setup.core
     o, d, w = core.rays(*(np.ascontiguousarray(v, np.float32) for v in (film, u, nm)))
     return np.asarray(o, float), np.asarray(d, float), np.asarray(w, float)
@@ -58,20 +67,20 @@ def draw(setup: CameraSetup, film: Array, u: Array, nm: Array) -> tuple[Array, A
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_rays_are_those_of_the_exact_lens_within_the_stated_error(case: Case) -> None:
     fitted, exact = case.both()
-    assert fitted.facts["lens_model"] == "polynomial", fitted.notes
+    assert fitted.lens.model == "polynomial", fitted.notes
     random = np.random.default_rng(2)
-    film = (random.random((6000, 2)) - 0.5) * fitted.frame_size
+    film = (random.random((6000, 2)) - 0.5) * fitted.frame_size_mm
     u, nm = random.random((6000, 2)), 390 + 380 * random.random(6000)
     (o1, d1, w1), (o2, d2, w2) = draw(fitted, film, u, nm), draw(exact, film, u, nm)
     lit = (w1 > 0) & (w2 > 0)
     assert lit.sum() > 0.3 * len(film)
     assert ((w1 > 0) != (w2 > 0)).sum() < 5e-3 * lit.sum()
     # where the rays cross the sphere of focus: as far apart as the film error is there
-    if fitted.facts["fit_error_um"] < 5:
-        f = fitted.facts["effective_focal_length_mm"]
+    if quality(fitted).rms_um < 5:
+        f = fitted.lens.effective_focal_length_mm
         away = [o[lit] + 3 * d[lit] for o, d in ((o1, d1), (o2, d2))]
         apart = np.linalg.norm(away[0] - away[1], axis=1) / 3 * f * 1e3  # um on the film
-        assert math.sqrt((apart**2).mean()) < 3 * fitted.facts["fit_error_um"] + 0.1
+        assert math.sqrt((apart**2).mean()) < 3 * quality(fitted).rms_um + 0.1
     bright = np.abs(w1 - w2)[lit] / w2[lit].mean()
     assert math.sqrt((bright**2).mean()) < 0.01
 
@@ -79,8 +88,8 @@ def test_rays_are_those_of_the_exact_lens_within_the_stated_error(case: Case) ->
 def test_the_default_degree_and_its_error_are_said() -> None:
     camera = dg.Camera(lens=GAUSS, lens_model="polynomial", focus_distance=3.0)
     setup = set_up(dg.Scene(), camera, RESOLUTION, None)
-    assert setup.facts["fit_degree"] == 7
-    assert setup.facts["fit_error_px"] == pytest.approx(setup.facts["fit_error_um"] / 60)
+    assert quality(setup).degree == 7
+    assert quality(setup).rms_px == pytest.approx(quality(setup).rms_um / 60)
     assert any("degree 7 is off by" in note for note in setup.notes)
 
 
@@ -88,7 +97,7 @@ def test_a_fit_that_is_not_good_enough_is_named_and_replaced() -> None:
     camera = dg.Camera(lens=GAUSS, lens_model="polynomial", degree=1, focus_distance=3.0)
     setup = set_up(dg.Scene(), camera, RESOLUTION, None)
     exact = set_up(dg.Scene(), camera.with_(lens_model="exact"), RESOLUTION, None)
-    assert setup.facts["lens_model"] == "exact"
+    assert setup.lens.model == "exact"
     (note,) = [n for n in setup.notes if "degree 1" in n]
     assert "mm from the middle" in note
     assert "degrees off the axis" in note
@@ -98,7 +107,7 @@ def test_a_fit_that_is_not_good_enough_is_named_and_replaced() -> None:
     for a, b in zip(draw(setup, 20 * u - 10, u, nm), draw(exact, 20 * u - 10, u, nm), strict=True):
         np.testing.assert_array_equal(a, b)
     lenient = set_up(dg.Scene(), camera.with_(fit_tolerance=1e3), RESOLUTION, None)
-    assert lenient.facts["lens_model"] == "polynomial"
+    assert lenient.lens.model == "polynomial"
 
 
 def test_the_region_is_named_by_what_its_edge_still_sees() -> None:
@@ -162,7 +171,7 @@ def test_states_of_a_lens_that_changes_are_what_its_middle_is() -> None:
     )
     setup = set_up(dg.Scene(), camera, RESOLUTION, None)
     exact = set_up(dg.Scene(), camera.with_(lens_model="exact"), RESOLUTION, None)
-    assert setup.facts["lens_model"] == "exact"
+    assert setup.lens.model == "exact"
     u, nm = np.random.default_rng(3).random((200, 2)), np.full(200, 550.0)
     for a, b in zip(draw(setup, 9 * u, u, nm), draw(exact, 9 * u, u, nm), strict=True):
         np.testing.assert_array_equal(a, b)

@@ -218,9 +218,9 @@ def test_unknown_motion_stands_still_and_wild_motion_is_refused() -> None:
 def write(path: Path, **planes: np.ndarray) -> Path:
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     image = spots()
-    colours = {name: np.ascontiguousarray(image[:, :, k]) for k, name in enumerate("RGB")}
+    colors = {name: np.ascontiguousarray(image[:, :, k]) for k, name in enumerate("RGB")}
     channels = {name.replace("_", "."): np.ascontiguousarray(p) for name, p in planes.items()}
-    with OpenEXR.File(header, {**colours, **channels}) as file:
+    with OpenEXR.File(header, {**colors, **channels}) as file:
         file.write(str(path))
     return path
 

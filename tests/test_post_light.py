@@ -26,12 +26,12 @@ def radius(height: int, width: int) -> np.ndarray:
     return np.hypot(x - width / 2, y - height / 2) / math.hypot(width / 2, height / 2)
 
 
-def colours(height: int = 60, width: int = 90) -> np.ndarray:
+def colors(height: int = 60, width: int = 90) -> np.ndarray:
     return np.random.default_rng(5).exponential(1, (height, width, 4)).astype(np.float32)
 
 
 def test_natural_vignetting_is_cos4():
-    image = colours()
+    image = colors()
     dark = dg.post.vignette(image, focal_length=24, sensor=(36, 24))
     angle = np.arctan(radius(60, 90) * math.hypot(18, 12) / 24)
     assert dark[:, :, :3] == pytest.approx(image[:, :, :3] * np.cos(angle)[:, :, None] ** 4)
@@ -73,7 +73,7 @@ def test_where_no_light_is_left_nothing_comes_back(tmp_path, capsys):
 
 
 def test_saturation_fades_and_luminance_stays():
-    image = colours()
+    image = colors()
     pale = dg.post.vignette_saturation(image, k1=-0.8)
     weights = [0.2126, 0.7152, 0.0722]
     assert pale[:, :, :3] @ weights == pytest.approx(image[:, :, :3] @ weights, rel=1e-5)

@@ -45,7 +45,7 @@ def middle_and_width(light: np.ndarray) -> tuple[np.ndarray, float]:
 
 def places(camera: dg.Camera, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the lamp is at times, px, and how large: its light on the film."""
-    seen = [camera.at(float(t)).projection for t in times]
+    seen = [camera.frozen_at(float(t)).projection for t in times]
     x, y, z = POINT
     near = [POINT, (x + 1e-4, y, z), (x, y + 1e-4, z)]
     at = np.array([p.project(near) for p in seen if p is not None])
@@ -106,13 +106,13 @@ def test_each_row_has_the_projection_of_its_own_time() -> None:
 
 def test_a_projection_between_two_keys_has_the_numbers_between() -> None:
     camera = dg.Camera(projection=dg.keys([(0.0, WIDE), (1.0, LONG)]))
-    now = camera.at(0.25).projection
+    now = camera.frozen_at(0.25).projection
     assert now is not None
     assert now.focal == pytest.approx((167.5, 168.75))
     assert now.center == pytest.approx((0.75 * 99.5 + 0.25 * 110, 0.75 * 74.5 + 0.25 * 70))
     assert now.parameters == pytest.approx((-0.15, 0.04, 0.00025))
-    assert camera.at(-1).projection is WIDE
-    assert camera.at(2).projection is LONG
+    assert camera.frozen_at(-1).projection is WIDE
+    assert camera.frozen_at(2).projection is LONG
 
 
 def test_what_changes_is_in_the_metadata() -> None:

@@ -67,9 +67,9 @@ def test_a_white_surface_balances_to_grey(white: object) -> None:
 
 def test_crosstalk_mixes_what_stands_side_by_side() -> None:
     bayer = Mosaic.of("bayer-rggb", ("R", "G", "B"))
-    np.testing.assert_allclose(bayer.neighbours(), [[0, 1, 0], [0.5, 0, 0.5], [0, 1, 0]])
+    np.testing.assert_allclose(bayer.neighbors(), [[0, 1, 0], [0.5, 0, 0.5], [0, 1, 0]])
     quad = Mosaic.of("quad-bayer-rggb", ("R", "G", "B"))
-    np.testing.assert_allclose(quad.neighbours()[0], [0.5, 0.5, 0])
+    np.testing.assert_allclose(quad.neighbors()[0], [0.5, 0.5, 0])
 
 
 def test_patterns_have_the_shares_of_their_makers() -> None:

@@ -77,9 +77,9 @@ def test_sags_of_conics_and_aspheres() -> None:
 
 
 def test_the_drawing_needs_no_package_and_has_three_fields() -> None:
-    from daguerre.plots.lens_section import COLOURS, draw
+    from daguerre.plots.lens_section import COLORS, draw
 
     root = ElementTree.fromstring(draw(lenses.load("heliar-100mm-f4")))
     strokes = [line.get("stroke") for line in root.iter(f"{SVG}polyline")]
-    assert all(strokes.count(colour) >= 3 for colour in COLOURS)
+    assert all(strokes.count(colour) >= 3 for colour in COLORS)
     assert len(list(root.iter(f"{SVG}polygon"))) == 5

@@ -121,14 +121,14 @@ def test_tilt_over_time_is_each_lens_in_turn(kind: str) -> None:
     swing = dg.keys([(0.0, (0.0, 0.0)), (1.0, (8.0, 0.0))])
     camera = KINDS[kind].with_(focus_distance=2.0, shutter_time=1.0, shutter_offset=0.0, fps=1.0)
     setup = set_up(dg.Scene(), camera.with_(tilt=swing), (36, 24), None)
-    assert setup.facts["motion"]["tilt"]["close"] == [8.0, 0.0]
+    assert setup.changes["tilt"].close == [8.0, 0.0]
 
 
 @pytest.mark.parametrize("kind", ["thick", "exact"])
 def test_metadata_say_how_far_the_film_is_along_the_axis_of_the_camera(kind: str) -> None:
     camera = (KINDS | {"exact": EXACT})[kind].with_(focus_distance=4.0)
-    on_axis = set_up(dg.Scene(), camera, (36, 24), None).facts["entrance_pupil_offset_mm"]
+    on_axis = set_up(dg.Scene(), camera, (36, 24), None).lens.entrance_pupil_offset_mm
     angles = (7.0, -4.0)
-    turned = set_up(dg.Scene(), camera.with_(tilt=angles), (36, 24), None).facts
+    turned = set_up(dg.Scene(), camera.with_(tilt=angles), (36, 24), None).lens
     expected = (tilt.turn(angles) @ [0, 0, on_axis])[2]
-    assert turned["entrance_pupil_offset_mm"] == pytest.approx(expected)
+    assert turned.entrance_pupil_offset_mm == pytest.approx(expected)

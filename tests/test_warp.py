@@ -128,7 +128,7 @@ def test_bands_are_the_whole_picture_bit_for_bit(tmp_path, monkeypatch, name, bl
 
 def test_only_what_is_needed_is_read():
     canvas = Canvas(640, 4000)
-    warp = Warp.of(canvas, point_map(BrownConrady(-0.1), (4000, 4000), canvas.centre))
+    warp = Warp.of(canvas, point_map(BrownConrady(-0.1), (4000, 4000), canvas.center))
     begin, end = warp.reads(Rows(1024, 1280))
     assert end - begin < 256 + 120
 
@@ -136,7 +136,7 @@ def test_only_what_is_needed_is_read():
 def test_a_window_inside_a_picture_is_a_part_of_it():
     full = Canvas(*SIZE)
     part = Canvas(200, 100, corner=(50, 70), full_size=SIZE)
-    place = point_map(BrownConrady(-0.2), FOCAL, full.centre)
+    place = point_map(BrownConrady(-0.2), FOCAL, full.center)
     whole, cut = places(place, full), places(place, part)
     assert np.abs(cut + np.array([50, 70]) - whole[70:170, 50:250]).max() < 2e-4
 

@@ -253,7 +253,7 @@ def test_a_spectrum_steep_within_its_band_keeps_light_and_colour(nm: float) -> N
     spectra[20, 30, b] = 5.0
     xyz = np.zeros((41, 61, 3))
     xyz[20, 30] = 5.0 * 25 * colour._tables([nm])[0][0]
-    assert np.abs(5 * colour.band_colours(bands)[b] - xyz[20, 30]).max() > 0.02 * xyz.max()
+    assert np.abs(5 * colour.band_colors(bands)[b] - xyz[20, 30]).max() > 0.02 * xyz.max()
     facts = planned([[PlainPupil(8)]], bands)
     out = waves.developed(Film(spectra, xyz), facts).xyz
     light, wanted = out.sum(axis=(0, 1)), xyz.sum(axis=(0, 1))
@@ -273,7 +273,7 @@ def test_each_corner_of_the_frame_has_its_own_kernel() -> None:
         corners = [(r, c) for r in (0, 1) for c in (0, 1)]
         for r, c in corners:
             spectra[6 + 47 * r, 6 + 67 * c] = 1
-        xyz = spectra @ colour.band_colours(4)
+        xyz = spectra @ colour.band_colors(4)
         out = waves.developed(Film(spectra, xyz), planned(pupils, 4)).xyz[:, :, 1]
         peaks = {(r, c): out[6 + 47 * r, 6 + 67 * c] for r, c in corners}
         assert min(peaks, key=lambda corner: peaks[corner]) == (y, x)

@@ -25,7 +25,7 @@ def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.
     if numbers.ndim != 2 or numbers.shape[1] != columns:
         raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {numbers.shape}")
     with np.errstate(over="ignore"):
-        single = frozen(numbers, np.float32)
+        single = as_readonly(numbers, np.float32)
     bad = np.flatnonzero(~np.isfinite(single).all(axis=1))
     if bad.size:
         raise InputError(
@@ -66,7 +66,7 @@ def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float
     return np.asarray(numbers, np.float64, order="C")
 
 
-def frozen(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
+def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     """The array itself if nobody can change it, else a read-only copy: the core reads in place."""
     base: Any = values
     while isinstance(base, np.ndarray) and not base.flags.writeable:
@@ -79,8 +79,8 @@ def frozen(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]
     return copy
 
 
-def given_up(values: NDArray[Any]) -> NDArray[Any]:
-    """The array, from now on read-only, so that :func:`frozen` need not copy it."""
+def freeze_in_place(values: NDArray[Any]) -> NDArray[Any]:
+    """The array, from now on read-only, so that :func:`as_readonly` need not copy it."""
     base: Any = values
     while isinstance(base, np.ndarray):
         base.flags.writeable = False

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from daguerre.lenses import FirstOrder, Lens
 from daguerre.lenses.errors import LensError
-from daguerre.lenses.focus import By
+from daguerre.lenses.focus import focused
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.lenses.setting import By, LensSetting
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -155,19 +156,24 @@ def set_up(
     Raises:
         InputError: A focus, zoom or f-stop that the lens does not have.
     """
-    if zoom_mm is not None:
-        lens = lens.at_zoom(zoom_mm)
+    return on_bench(lens, LensSetting(f_stop, focus_m, zoom_mm, by), field_mm)
+
+
+def on_bench(lens: Lens, setting: LensSetting, field_mm: float | None = None) -> Bench:
+    """Puts a lens on the bench at one setting; see :func:`set_up`."""
+    if setting.zoom_mm is not None:
+        lens = lens.at_zoom(setting.zoom_mm)
     far = lens.first_order()
-    stop = far.f_number if f_stop is None else f_stop
+    stop = far.f_number if setting.f_stop is None else setting.f_stop
     radius = _iris_radius(lens, far, stop)
-    focused = lens.focused(focus_m, f_stop=stop, by=by)
-    order = focused.lens.first_order()
+    found = focused(lens, replace(setting, f_stop=stop, zoom_mm=None))
+    order = found.lens.first_order()
     return Bench(
-        lens=focused.lens,
+        lens=found.lens,
         f_stop=stop,
         iris_radius=radius,
-        film_z=focused.film_z_mm,
-        focus_mm=1e3 * focus_m,
+        film_z=found.film_z_mm,
+        focus_mm=1e3 * setting.focus_m,
         field_mm=field_mm or half_image(lens, order),
         order=order,
     )

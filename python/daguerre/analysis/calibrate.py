@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -14,10 +13,10 @@ from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.lenses import Lens, load
-from daguerre.lenses.focus import By
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.lenses.setting import By, LensSetting
 
-from .bench import Bench, FloatArray, set_up
+from .bench import Bench, FloatArray, on_bench
 from .chief import ChiefRays, chief_rays
 from .least_squares import least_squares
 
@@ -114,17 +113,8 @@ def calibrate(
     """
     model = OTHER_NAMES.get(model, model)
     count = _count(model, terms)
-    seen = _see(
-        lens,
-        resolution,
-        sensor_size,
-        shift,
-        wavelength_nm,
-        f_stop=f_stop,
-        focus_m=focus_distance,
-        zoom_mm=focal_length,
-        by=focus_by,
-    )
+    picture = _Picture(resolution, sensor_size, shift, wavelength_nm)
+    seen = _see(lens, picture, LensSetting(f_stop, focus_distance, focal_length, focus_by))
     return seen.fitted(model, count)
 
 
@@ -148,23 +138,57 @@ def calibrate_all(
         UsageError: Numbers that are no picture's.
         InputError: The lens sees nothing.
     """
-    seen = _see(
-        lens,
-        resolution,
-        sensor_size,
-        shift,
-        wavelength_nm,
-        f_stop=f_stop,
-        focus_m=focus_distance,
-        zoom_mm=focal_length,
-        by=focus_by,
-    )
+    picture = _Picture(resolution, sensor_size, shift, wavelength_nm)
+    seen = _see(lens, picture, LensSetting(f_stop, focus_distance, focal_length, focus_by))
     found = []
     for model in MODELS:
         for count in COUNTS.get(model, (len(MODELS[model]),)) if model not in UNFIT else ():
             with contextlib.suppress(InputError):  # too small a field
                 found.append(seen.fitted(model, count))
     return sorted(found, key=lambda fit: fit.rms)
+
+
+@dataclass(frozen=True)
+class _Picture:
+    """Picture for which a lens is calibrated, and the light in which.
+
+    Attributes:
+        resolution: Width and height, px.
+        sensor_mm: Width and height; the picture's width is the sensor's.
+        shift_mm: Shift of the sensor, right and up.
+        wavelength_nm: nm.
+    """
+
+    resolution: tuple[int, int]
+    sensor_mm: tuple[float, float]
+    shift_mm: tuple[float, float]
+    wavelength_nm: float
+
+    def __post_init__(self) -> None:
+        where = "calibrate: resolution"
+        for side in numbers(self.resolution, where, 2, "two whole numbers of pixels"):
+            whole(int(side) if side == int(side) else side, where, 2, 65536)
+        for side in numbers(self.sensor_mm, "calibrate: sensor_size", 2, "width and height, mm"):
+            number(side, "calibrate: sensor_size", 0, 1e5, above=0)
+        for side in numbers(self.shift_mm, "calibrate: shift", 2, "right and up, mm"):
+            number(side, "calibrate: shift", -1e5, 1e5)
+        number(self.wavelength_nm, "calibrate: wavelength_nm", *WAVELENGTHS_NM)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, px."""
+        return int(self.resolution[0]), int(self.resolution[1])
+
+    @property
+    def pitch_mm(self) -> float:
+        """Pixel pitch."""
+        return self.sensor_mm[0] / self.size[0]
+
+    @property
+    def axis(self) -> FloatArray:
+        """Where the lens's axis meets it, px."""
+        middle = (np.array(self.size) - 1) / 2
+        return np.asarray(middle + np.array(self.shift_mm) / self.pitch_mm * (-1, 1))
 
 
 @dataclass(frozen=True)
@@ -190,43 +214,28 @@ class _Seen:
         )
 
 
-def _see(
-    lens: Lens | str,
-    resolution: tuple[int, int],
-    sensor_size: tuple[float, float],
-    shift: tuple[float, float],
-    wavelength_nm: float,
-    **use: Any,
-) -> _Seen:
-    width, height = numbers(resolution, "calibrate: resolution", 2, "two whole numbers of pixels")
-    for side in (width, height):
-        whole(int(side) if side == int(side) else side, "calibrate: resolution", 2, 65536)
-    for side in numbers(sensor_size, "calibrate: sensor_size", 2, "width and height, mm"):
-        number(side, "calibrate: sensor_size", 0, 1e5, above=0)
-    for side in numbers(shift, "calibrate: shift", 2, "right and up, mm"):
-        number(side, "calibrate: shift", -1e5, 1e5)
-    number(wavelength_nm, "calibrate: wavelength_nm", *WAVELENGTHS_NM)
+def _see(lens: Lens | str, picture: _Picture, setting: LensSetting) -> _Seen:
     item = load(lens) if isinstance(lens, str) else lens
-    bench = set_up(item, **use)
-    size, pitch = (int(width), int(height)), sensor_size[0] / width
-    axis = (np.array(size) - 1) / 2 + np.array(shift) / pitch * (-1, 1)
+    bench = on_bench(item, setting)
+    size, pitch, axis = picture.size, picture.pitch_mm, picture.axis
     pixels, film = _grid(bench, size, pitch, axis)
-    directions = directions_seen(bench, chief_rays(bench, film, wavelength_nm))
+    directions = directions_seen(bench, chief_rays(bench, film, picture.wavelength_nm))
     known = np.isfinite(directions).all(axis=1)
     if known.sum() < LEAST:
+        width, height = picture.sensor_mm
         raise InputError(
             f"{bench.lens.name}: calibrate: wanted {LEAST} chief rays or more, got {known.sum()} "
-            f"at {known.size} points of a sensor of {sensor_size[0]:g} x {sensor_size[1]:g} mm: is "
+            f"at {known.size} points of a sensor of {width:g} x {height:g} mm: is "
             "it much larger than the image circle?"
         )
     camera = Camera(
         lens=item,
         f_stop=bench.f_stop,
-        focus_distance=use["focus_m"],
-        focus_by=use["by"],
-        zoom=use["zoom_mm"],
-        sensor_size=(width * pitch, height * pitch),
-        shift=(float(shift[0]), float(shift[1])),
+        focus_distance=setting.focus_m,
+        focus_by=setting.focus_by,
+        zoom=setting.zoom_mm,
+        sensor_size=(size[0] * pitch, size[1] * pitch),
+        shift=(float(picture.shift_mm[0]), float(picture.shift_mm[1])),
     )
     unseen = int((~known).sum())
     return _Seen(bench, size, pixels[known], directions[known], unseen, axis, camera)

@@ -101,9 +101,9 @@ def camera_facts(
     from daguerre.setup.camera import set_up
 
     setup = set_up(scene, camera, resolution, core_scene)
-    facts = setup.facts
-    focal, stop = float(facts["focal_length_mm"]), facts.get("f_stop")
-    focus, squeeze = float(facts.get("focus_distance_m", math.inf)), facts.get("squeeze", 1.0)
+    lens, glass = setup.lens, setup.lens.glass
+    focal, stop, squeeze = float(lens.focal_length_mm), lens.f_stop, lens.squeeze
+    focus = math.inf if lens.focus_distance_m is None else float(lens.focus_distance_m)
     coc = math.hypot(*camera.sensor_size) * COC_PER_DIAGONAL
     hyperfocal = near = far = None
     if stop is not None:
@@ -113,32 +113,32 @@ def camera_facts(
     ev100 = None
     if stop is not None and shutter > 0:
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
-    full = field_of_view_deg(setup.pinhole_focal_length, camera.sensor_size, squeeze)
-    shown = field_of_view_deg(setup.pinhole_focal_length, setup.frame_size, squeeze)
-    projection = camera.at(scene.time).projection
+    full = field_of_view_deg(lens.pinhole_focal_length_mm, camera.sensor_size, squeeze)
+    shown = field_of_view_deg(lens.pinhole_focal_length_mm, setup.frame_size_mm, squeeze)
+    projection = camera.frozen_at(scene.time).projection
     if projection is not None:
         full = shown = projection.field_of_view()
     return Facts(
-        str(facts.get("lens", "thin")),
+        lens.name,
         focal,
         stop,
-        facts.get("t_stop"),
-        facts.get("zoom_mm"),
-        facts.get("zoom_range_mm"),
+        lens.t_stop,
+        glass.lens.zoom_mm if glass else None,
+        glass.lens.zoom_range_mm if glass else None,
         squeeze,
-        facts["tilt_deg"],
-        len(facts.get("decenter", ())),
+        setup.camera.tilt,
+        len(setup.camera.decenter),
         camera.sensor_size,
-        setup.frame_size,
+        setup.frame_size_mm,
         full,
         shown,
         focus,
-        setup.notes,
+        [*setup.notes],
         coc,
         hyperfocal,
         near,
         far,
-        setup.frame_size[0] / resolution[0] * 1000,
+        setup.frame_size_mm[0] / resolution[0] * 1000,
         None if stop is None else focal / stop,
         shutter,
         describe(camera, resolution),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .bench import FDC_NM
-from .figures import COLOURS_NM, CURVE, MTF_FIELDS, PUPIL_SHARES, FieldPoint, Figures
+from .figures import COLORS_NM, CURVE, MTF_FIELDS, PUPIL_SHARES, FieldPoint, Figures
 from .seidel import NAMES
 
 
@@ -51,7 +51,7 @@ def facts(made: Figures) -> dict[str, Any]:
             "cos4_film": _rounded(light.cos4_film),
         },
         "axis": {
-            "wavelength_nm": _rounded(COLOURS_NM),
+            "wavelength_nm": _rounded(COLORS_NM),
             "axial_colour": _rounded(made.axial),
             "pupil_share": _rounded(PUPIL_SHARES),
             "spherical_aberration": _rounded(made.spherical),

@@ -34,7 +34,7 @@ CURVE = np.linspace(0, 1, 21)
 #: of the MTF; those of FIELDS are among them
 MTF_FIELDS = (0.0, 0.15, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 PUPIL_SHARES = np.linspace(0, 1, 33)
-COLOURS_NM = np.linspace(400, 700, 31)
+COLORS_NM = np.linspace(400, 700, 31)
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Figures:
             tangential.
         curves: F, d, C.
         lateral: Shape (21, 3), mm: F, d, C.
-        axial: At COLOURS_NM, mm.
+        axial: At COLORS_NM, mm.
         spherical: Spherical aberration of F, d and C at PUPIL_SHARES, shape (3, 33), mm.
         on_axis: The wave of 587.56 nm on the axis.
     """
@@ -114,7 +114,7 @@ def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
         curves=tuple(field_curvature(bench, along, nm) for nm in FDC_NM),
         distortion=distortion(bench, along),
         lateral=lateral_colour(bench, along),
-        axial=axial_colour(bench, COLOURS_NM),
+        axial=axial_colour(bench, COLORS_NM),
         spherical=np.array([spherical_aberration(bench, PUPIL_SHARES, nm) for nm in FDC_NM]),
         illumination=relative_illumination(bench, along, grid=ILLUMINATION_GRID),
         seidel=seidel_sums(bench),

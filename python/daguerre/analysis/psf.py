@@ -177,7 +177,7 @@ def strehl_ratio(wave: Wavefront) -> float:
     reach = 0.6e-6 * wave.wavelength_nm / (0.5 * wave.step * len(wave.amplitude))
     x = np.linspace(-reach, reach, 21)
     pixel = x[1] - x[0]
-    perfect = wave.amplitude.sum() ** 2 * _normalisation(wave) * pixel**2
+    perfect = wave.amplitude.sum() ** 2 * _normalization(wave) * pixel**2
     return float(_intensity(wave, x).max() / perfect)
 
 
@@ -188,7 +188,7 @@ def grid_for(light: Pencil, nm: float, reach_mm: float) -> int:
     return max(72, 24 * int(np.ceil(wanted / 24)))
 
 
-def _normalisation(wave: Wavefront) -> float:
+def _normalization(wave: Wavefront) -> float:
     # Parseval: the intensity's integral over the film is the light of the pupil.
     return float((wave.step / (1e-6 * wave.wavelength_nm)) ** 2 / (wave.amplitude**2).sum())
 
@@ -200,7 +200,7 @@ def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
     along = np.exp(1j * k * np.outer(wave.cosines[:, 0, 1], x))
     field = along.T @ wave.pupil_function @ across
     pixel = x[1] - x[0]
-    return np.asarray(np.abs(field) ** 2 * _normalisation(wave) * pixel**2)
+    return np.asarray(np.abs(field) ** 2 * _normalization(wave) * pixel**2)
 
 
 def point_spread(light: Pencil, *, max_grid: int = MAX_GRID, **options: object) -> Psf:

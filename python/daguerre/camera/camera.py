@@ -46,7 +46,8 @@ class Camera:
     """A camera in a photographer's terms; ``with_`` makes changed copies.
 
     Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
-    kept in ``motion``, and the parameter itself has the value of one moment; ``at`` chooses it.
+    kept in ``motion``, and the parameter itself has the value of one moment; ``evaluated_at``
+    chooses it.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
@@ -314,15 +315,23 @@ class Camera:
             return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
         return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
 
-    def at(self, time: float) -> Camera:
+    def frozen_at(self, time: float) -> Camera:
         """Returns the camera frozen at a time, s; nothing in it moves."""
-        return replace(self.moved_to(time), motion={}) if self.motion else self
+        return replace(self.evaluated_at(time), motion={}) if self.motion else self
 
-    def moved_to(self, time: float) -> Camera:
+    def evaluated_at(self, time: float) -> Camera:
         """Returns the camera evaluated at another time, s; its motion stays."""
         if not self.motion:
             return self
         return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
+
+    def at(self, time: float) -> Camera:
+        """Former name of :meth:`frozen_at`."""
+        return self.frozen_at(time)
+
+    def moved_to(self, time: float) -> Camera:
+        """Former name of :meth:`evaluated_at`."""
+        return self.evaluated_at(time)
 
     def with_(self, **changes: Any) -> Camera:
         """Returns a copy with some parameters changed.

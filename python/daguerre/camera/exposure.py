@@ -34,18 +34,16 @@ def ideal_h0(f_number: float) -> float:
     return math.pi * min(1.0, 0.5 / f_number) ** 2
 
 
-def lens_h0(camera: Camera, facts: Mapping[str, Any], film_mm: float) -> float:
-    """``h0`` of the camera's lens as it is at mid-shutter, lux per cd/m2.
+def lens_h0(camera: Camera, film_mm: float, diameter_mm: float | None) -> float:
+    """``h0`` of an ideal lens as it is at mid-shutter, lux per cd/m2.
 
     Args:
         camera: Camera, for a pinhole's ``exposure_f_stop``.
-        facts: Resolved facts; a real lens brings its own h0.
-        film_mm: Film distance of an ideal lens.
+        film_mm: Film distance.
+        diameter_mm: Diameter of its opening; None: a pinhole.
     """
-    if "h0" in facts:
-        return float(facts["h0"])
-    if "aperture_diameter_mm" in facts:
-        return ideal_h0(film_mm / facts["aperture_diameter_mm"])
+    if diameter_mm is not None:
+        return ideal_h0(film_mm / diameter_mm)
     return ideal_h0(camera.exposure_f_stop or PINHOLE_F_STOP)
 
 
@@ -61,10 +59,10 @@ def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
 
 
-def exposure_notes(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -> list[str]:
+def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> list[str]:
     """Where light and blur are not those of the same shutter and stop."""
     notes = []
-    time, stop, own = camera.exposure_time, camera.exposure_f_stop, facts.get("f_stop")
+    time, stop, own = camera.exposure_time, camera.exposure_f_stop, f_stop
     if time is not None and not math.isclose(time, shutter_s):
         notes.append(f"light is that of {time:g} s (exposure_time), blur that of the shutter")
     if stop is not None and own is not None and not math.isclose(stop, own):
@@ -72,24 +70,27 @@ def exposure_notes(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -
     return notes
 
 
-def exposure_metadata(camera: Camera, facts: Mapping[str, Any], shutter_s: float) -> dict[str, Any]:
+def exposure_metadata(
+    camera: Camera, f_stop: float | None, h0: float, shutter_s: float
+) -> dict[str, Any]:
     """``expTime``, ``aperture``, ``h0`` and ``luminance_exposure`` of a frame; None: unknown.
 
     Args:
         camera: Camera as given.
-        facts: Resolved facts, with ``h0``.
+        f_stop: Resolved f-stop; None: a pinhole.
+        h0: Illuminance on the axis by a world of 1 cd/m2, lux.
         shutter_s: How long a point of the film is exposed, s.
     """
     time = shutter_s if camera.exposure_time is None else camera.exposure_time
-    own, asked = facts.get("f_stop"), camera.exposure_f_stop
+    own, asked = f_stop, camera.exposure_f_stop
     white = camera.white_balance
-    light = facts["h0"] * time * camera.responsivity
+    light = h0 * time * camera.responsivity
     if own is not None and asked is not None:
         light *= (own / asked) ** 2
     return {
         "expTime": time,
         "aperture": asked if asked is not None else own,
-        "h0": facts["h0"],
+        "h0": h0,
         "luminance_exposure": light if light > 0 else None,
         "exposure_compensation": camera.exposure_compensation or None,
         "white_balance": white,

@@ -12,7 +12,7 @@ from typing import Any
 from daguerre.checks import number
 from daguerre.errors import UsageError, suggest
 
-from . import boards, colour, dead_leaves, siemens_star, slanted_edge, step_wedge
+from . import boards, color, dead_leaves, siemens_star, slanted_edge, step_wedge
 from .boards import object_points
 from .chart import Chart, Patch
 from .measure import EdgeResponse, edge_response, means, places, star_modulation, texture_response
@@ -41,7 +41,7 @@ KINDS: dict[str, Callable[..., Chart]] = {
     "apriltag": boards.apriltag,
     "charuco": boards.charuco,
     "checkerboard": boards.checkerboard,
-    "colour": colour.make,
+    "colour": color.make,
     "dead-leaves": dead_leaves.make,
     "siemens-star": siemens_star.make,
     "slanted-edge": slanted_edge.make,

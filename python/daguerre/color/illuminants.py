@@ -33,7 +33,7 @@ NM.flags.writeable = False
 
 
 @cache
-def _colour_tables() -> FloatArray:
+def _color_tables() -> FloatArray:
     return np.asarray(_core.colour_tables(NM.tolist()))
 
 
@@ -42,18 +42,18 @@ def observer() -> FloatArray:
 
     The radiance is in units that make D65 of Y = 1 ``d65()``.
     """
-    return np.asarray(_colour_tables()[:, :3] * STEP)
+    return np.asarray(_color_tables()[:, :3] * STEP)
 
 
 def d65() -> FloatArray:
     """D65 at ``NM``, W/m2/nm of 1 lux times 683 (so that Y is 1), shape (L,)."""
-    table = _colour_tables()
+    table = _color_tables()
     return np.asarray(table[:, 3] / (table[:, 1] @ table[:, 3] * STEP))
 
 
 def rgb_reflectances() -> FloatArray:
     """Reflectances of upsampled red, green and blue at ``NM``, shape (L, 3)."""
-    return np.asarray(_colour_tables()[:, 4:])
+    return np.asarray(_color_tables()[:, 4:])
 
 
 def planck(kelvin: float) -> FloatArray:

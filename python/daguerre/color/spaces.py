@@ -16,7 +16,7 @@ D65 = (0.3127, 0.3290)
 
 
 @dataclass(frozen=True)
-class ColourSpace:
+class ColorSpace:
     """A color space of pictures.
 
     Attributes:
@@ -55,12 +55,12 @@ _P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white 
 _P2020 = ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))  # ITU-R BT.2020-2, table 3
 
 
-COLOUR_SPACES = {
+COLOR_SPACES = {
     space.name: space
     for space in (
-        ColourSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
-        ColourSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
-        ColourSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
+        ColorSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
+        ColorSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
+        ColorSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
     )
 }
 
@@ -71,7 +71,7 @@ def xyz_of(xy: tuple[float, float]) -> FloatArray:
     return np.array([x / y, 1.0, (1 - x - y) / y])
 
 
-def xyz_from_rgb(space: ColourSpace) -> FloatArray:
+def xyz_from_rgb(space: ColorSpace) -> FloatArray:
     """Matrix from linear light in the space to XYZ, shape (3, 3); D65 white has luminance 1."""
     columns = np.stack([xyz_of(primary) for primary in space.primaries], axis=1)
     return np.asarray(columns * np.linalg.solve(columns, xyz_of(D65)))
@@ -85,13 +85,13 @@ def adaptation(white: FloatArray, to: FloatArray) -> FloatArray:
 
 def decoded(values: NDArray[np.float32], name: str) -> NDArray[np.float32]:
     """Linear light of numbers encoded in a colour space."""
-    g, a, b, c, d = COLOUR_SPACES[name].curve
+    g, a, b, c, d = COLOR_SPACES[name].curve
     high = np.maximum(np.float32(a) * values + np.float32(b), 0) ** np.float32(g)
     return np.where(values >= d, high, np.float32(c) * values).astype(np.float32)
 
 
 def encoded(linear: NDArray[np.float64], name: str) -> NDArray[np.float64]:
     """The numbers that stand for linear light in a colour space; ``decoded`` turned around."""
-    g, a, b, c, d = COLOUR_SPACES[name].curve
+    g, a, b, c, d = COLOR_SPACES[name].curve
     high = (np.maximum(linear, 0) ** (1 / g) - b) / a
     return np.where(linear >= c * d, high, linear / c)

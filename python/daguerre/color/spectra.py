@@ -66,7 +66,7 @@ def rgb_mixes(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def band_colours(bands: int) -> FloatArray:
+def band_colors(bands: int) -> FloatArray:
     """XYZ of unit mean radiance in each band of a film, shape (bands, 3)."""
     return band_weights(bands, lambda nm: _tables(nm)[0])
 

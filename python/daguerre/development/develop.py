@@ -50,7 +50,7 @@ class Recipe:
 
     def __post_init__(self) -> None:
         for name, value, known in (
-            ("colour_space", self.colour_space, tuple(spaces.COLOUR_SPACES)),
+            ("colour_space", self.colour_space, tuple(spaces.COLOR_SPACES)),
             ("highlights", self.highlights, HIGHLIGHTS),
         ):
             if value not in known:
@@ -172,12 +172,12 @@ def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
 
 
 def _space_from_709(space: str) -> FloatArray:
-    to, of = spaces.COLOUR_SPACES[space], spaces.COLOUR_SPACES["srgb"]
+    to, of = spaces.COLOR_SPACES[space], spaces.COLOR_SPACES["srgb"]
     return np.asarray(np.linalg.solve(spaces.xyz_from_rgb(to), spaces.xyz_from_rgb(of)))
 
 
 def _luminance(space: str) -> FloatArray:
-    return np.asarray(spaces.xyz_from_rgb(spaces.COLOUR_SPACES[space])[1])
+    return np.asarray(spaces.xyz_from_rgb(spaces.COLOR_SPACES[space])[1])
 
 
 def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
@@ -185,7 +185,7 @@ def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
     space, look = recipe.colour_space, look_of(recipe.look)
     luminance, gain = _luminance(space), 2.0**recipe.exposure
     balance = _balance(source, white)
-    matrix = gain * saturation(look.colour, luminance) @ _rgb_from_balanced(source, white, space)
+    matrix = gain * saturation(look.color, luminance) @ _rgb_from_balanced(source, white, space)
     full = float((source.full * balance).min()) * gain
     return _pass(source, balance, matrix, recipe, tone_table(look, full), encode_table(space))
 
@@ -226,7 +226,7 @@ def _by_light(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32
         return view_of(light, recipe.view, recipe.colour_space)
     space, look = recipe.colour_space, look_of(recipe.look)
     full = float((source.full * balance).min()) * gain
-    matrix = saturation(look.colour, _luminance(space)) @ _space_from_709(space)
+    matrix = saturation(look.color, _luminance(space)) @ _space_from_709(space)
     grained = Channels(
         light, np.ones(3), np.full(3, math.inf), source.xyz_from, white, source.metadata
     )

@@ -30,13 +30,13 @@ class Look:
     Attributes:
         contrast: c of the sigmoid; None: light as it is, up to white.
         white: Light that becomes white, where the sensor is not saturated before.
-        colour: How far colours stand from grey, against the scene's.
+        color: How far colours stand from grey, against the scene's.
         black: Developed value of no light.
     """
 
     contrast: float | None = None
     white: float = 1.0
-    colour: float = 1.0
+    color: float = 1.0
     black: float = 0.0
 
     def curve(self, light: FloatArray, most: float) -> FloatArray:
@@ -54,7 +54,7 @@ class Look:
 LOOKS = {
     "neutral": Look(),
     "standard": Look(contrast=1.5, white=4.0),
-    "film": Look(contrast=1.6, white=8.0, colour=0.9, black=0.0015),
+    "film": Look(contrast=1.6, white=8.0, color=0.9, black=0.0015),
     "filmic": Look(contrast=1.2, white=16.0),
 }
 

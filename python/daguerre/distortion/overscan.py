@@ -14,7 +14,7 @@ from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
 
-from .rectified import Sight
+from .rectified import RectifiedView
 
 FloatArray = NDArray[np.float64]
 
@@ -27,13 +27,13 @@ FILTER_MARGIN = 4
 MOST = 2.0
 
 
-def to_undistort(sight: Sight, where: str = "overscan undistort") -> Overscan:
+def to_undistort(view: RectifiedView, where: str = "overscan undistort") -> Overscan:
     """Finds the overscan with which undistorting leaves no holes in a picture of the same size.
 
     Raises:
         UsageError: It would need what the camera does not show, or a picture many times as large.
     """
-    return _reach(sight, sight.bent_from_straight, where)
+    return _reach(view, view.bent_from_straight, where)
 
 
 def note(overscan: Overscan) -> str:
@@ -42,24 +42,24 @@ def note(overscan: Overscan) -> str:
     return f"overscan (left, top, right, bottom) to straighten the picture: {told}"
 
 
-def to_redistort(sight: Sight) -> Overscan | None:
+def to_redistort(view: RectifiedView) -> Overscan | None:
     """Finds the overscan with which an ideal picture redistorts without holes; None: no bounds."""
 
     def place(points: FloatArray) -> FloatArray:
-        found = sight.straight_from_bent(points)
-        dark = ~sight.sees(points)  # nothing is needed for what is dark
-        found[dark] = np.array(sight.resolution) / 2
+        found = view.straight_from_bent(points)
+        dark = ~view.sees(points)  # nothing is needed for what is dark
+        found[dark] = np.array(view.resolution) / 2
         return found
 
     try:
-        return _reach(sight, place, "")
+        return _reach(view, place, "")
     except UsageError:
         return None
 
 
-def _reach(sight: Sight, place: Any, where: str) -> Overscan:
+def _reach(view: RectifiedView, place: Any, where: str) -> Overscan:
     """How far the pixels of the display window, by a map, reach out of it."""
-    width, height = sight.resolution
+    width, height = view.resolution
     # The map is smooth: its corners and edges reach farthest, but for folds within.
     x, y = (np.linspace(0, n, min(n, 256) + 1) for n in (width, height))
     at = np.stack(np.meshgrid(x, y), axis=-1)
@@ -94,4 +94,4 @@ def overscan_of(
     found = check_overscan(wanted, resolution)
     if found is not None:
         return found
-    return to_undistort(Sight(camera, resolution, scene=scene, core_scene=core_scene))
+    return to_undistort(RectifiedView(camera, resolution, scene=scene, core_scene=core_scene))

@@ -22,8 +22,8 @@ from daguerre.setup.camera import set_up
 FloatArray = NDArray[np.float64]
 
 
-class Sight:
-    """A camera as it is in the middle of its exposure, and the ideal camera in its place.
+class RectifiedView:
+    """Maps pixels between a camera in the middle of its exposure and its rectified (ideal) twin.
 
     The ideal camera is the pinhole with the same focal length near the axis, principal point and
     squeeze: a rectilinear picture, in which straight things are straight. What both see lies on the
@@ -48,29 +48,29 @@ class Sight:
     ) -> None:
         scene = scene or Scene()
         begin, end = shutter.interval(camera, scene.time, resolution)
-        still = camera.at(0.5 * (begin + end))
+        still = camera.frozen_at(0.5 * (begin + end))
         self.resolution = resolution
         self.setup = set_up(scene, still, resolution, core_scene, overscan=overscan)
-        facts = self.setup.facts
-        self._center = np.array(facts["shift_mm"])
-        self._pitch = np.array(self.setup.frame_size) / resolution
+        lens = self.setup.lens
+        self._center = np.array(self.setup.shift_mm)
+        self._pitch = np.array(self.setup.frame_size_mm) / resolution
         with core_errors(InputError, "render"):
             self._chief = self.setup.core.chief_rays()
-        model = facts.get("projection")
-        if model is None:
-            f = self.setup.pinhole_focal_length
-            self._focal = np.array([f / facts.get("squeeze", 1.0), f])
+        if lens.projection is None:
+            f = lens.pinhole_focal_length_mm
+            self._focal = np.array([f / lens.squeeze, f])
             self._principal = np.zeros(2)
         else:
-            if model["model"] == "cube":
+            if lens.projection.model == "cube":
                 raise UsageError("stmap: a cube has no picture that could be straightened")
-            film = still.projection.film(self.setup.frame_size[0])  # type: ignore[union-attr]
+            film = lens.projection.film(self.setup.frame_size_mm[0])
             self._focal, self._principal = map(np.array, (film["focal_mm"], film["principal_mm"]))
 
     @cached_property
     def distance(self) -> float:
         """Distance of the plane on which both cameras are compared, m."""
-        return float(self.setup.facts.get("focus_distance_m", math.inf))
+        distance = self.setup.lens.focus_distance_m
+        return math.inf if distance is None else distance
 
     def bent_from_straight(self, pixels: FloatArray) -> FloatArray:
         """Where the camera has what the ideal camera has at points (N, 2), px; NaN: nowhere."""

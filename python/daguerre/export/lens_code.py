@@ -97,7 +97,7 @@ def evaluate_function(plan: LensPlan, name: str) -> list[Function]:
     inputs = ("film_x", "film_y", "slope_x", "slope_y", "nm", "f_stop")
     f = Function(f"{name}_evaluate", inputs, tuple(f"out_{o}" for o in RAY))
     film_x, film_y, slope_x, slope_y, nm, f_stop = (Name(i) for i in inputs)
-    fx, fy = normalised(f, plan, (film_x, film_y))
+    fx, fy = normalized(f, plan, (film_x, film_y))
     pupil = [plan.q_by_film, plan.q_by_slope, plan.q_shift]
     (ax, ay), (bx, by), (cx, cy) = pupil
     qx = f.let("qx", ax * fx + bx * slope_x + cx)
@@ -131,7 +131,7 @@ def enumerate_terms(coefficients: tuple[float, ...]) -> dict[tuple[int, ...], fl
     return {(power,): c for power, c in enumerate(coefficients)}
 
 
-def normalised(
+def normalized(
     f: Function, plan: LensPlan, film: tuple[Expression, Expression]
 ) -> tuple[Name, Name]:
     """The film point, at most 1."""
@@ -228,7 +228,7 @@ def draw_by_aim(
     reach = aim.enlargement * (plan.blades.outer if plan.blades else 1.0) * plan.iris_radius_mm
     grow = f.let("grow", open_share * (reach / aim.radius_mm))
     a = f.let("ax", disc[0] * grow), f.let("ay", disc[1] * grow)
-    at = coordinates(f, plan.symmetric, normalised(f, plan, film), a, wavelength(f, plan, nm))
+    at = coordinates(f, plan.symmetric, normalized(f, plan, film), a, wavelength(f, plan, nm))
     slope = vector(f, aim.slope, at)
     # Where the map folds back its sign changes; nothing is drawn there.
     jacobian = f.let("jacobian", slope_jacobian(f, aim.slope, at))
@@ -246,7 +246,7 @@ def draw_by_pupil(
 ) -> tuple[tuple[Expression, Expression], Expression]:
     """A point of the whole exit pupil, where no aim fits."""
     del nm
-    at = normalised(f, plan, film)
+    at = normalized(f, plan, film)
     a, b, c = plan.q_by_film, plan.q_by_slope, plan.q_shift
     mx, my = (f.temporary((disc[i] - a[i] * at[i] - c[i]) * (1 / b[i])) for i in (0, 1))
     area = math.pi / abs(b[0] * b[1])

@@ -30,7 +30,7 @@ K = 12.5
 #: Luminance exposure of middle grey at ISO 1, lux s (ISO 12232, standard output sensitivity).
 GREY_LUX_S = 10.0
 #: Centre: a circle of half the frame's height (12 mm of 36 x 24) has this share of the weight.
-CENTRE_SHARE, CENTRE_DIAMETER = 0.75, 0.5
+CENTER_SHARE, CENTER_DIAMETER = 0.75, 0.5
 #: Spot: a circle of this share of the frame's area.
 SPOT_AREA = 0.025
 #: Matrix: zones across and down; those at the place in focus count so many times.
@@ -102,7 +102,7 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
     if mode == "matrix":
         luminance = _matrix(frame, place)
     else:
-        weight = _centre_weight if mode == "centre" else _spot_weight
+        weight = _center_weight if mode == "centre" else _spot_weight
         total, light = 0.0, 0.0
         for rows, y in _luminances(frame):
             weights = weight(place, rows)
@@ -151,12 +151,12 @@ class _Place:
         return np.asarray(x[None, :] ** 2 + y[:, None] ** 2)
 
 
-def _centre_weight(place: _Place, rows: slice) -> FloatArray:
-    radius2 = (CENTRE_DIAMETER * place.height / 2) ** 2
+def _center_weight(place: _Place, rows: slice) -> FloatArray:
+    radius2 = (CENTER_DIAMETER * place.height / 2) ** 2
     inside = place.squared_distance(rows, (place.width / 2, place.height / 2)) < radius2
     area = math.pi * radius2
     outer = max(place.width * place.height - area, 1.0)
-    return np.where(inside, CENTRE_SHARE / area, (1 - CENTRE_SHARE) / outer)
+    return np.where(inside, CENTER_SHARE / area, (1 - CENTER_SHARE) / outer)
 
 
 def _spot_weight(place: _Place, rows: slice) -> FloatArray:

@@ -45,7 +45,7 @@ class Picture:
 
     def bytes8(self) -> NDArray[np.uint8]:
         """In 8 bits, shape (H, W, 3)."""
-        return quantised(self.pixels, 8)
+        return quantized(self.pixels, 8)
 
     def save(
         self, path: str | os.PathLike[str], *, quality: int = 95, bits: int | None = None
@@ -80,7 +80,7 @@ class Picture:
             return path.read_bytes()
 
 
-def quantised(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
+def quantized(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
     """0 .. 1 as whole numbers of 8 or 16 bits, rounded; in stripes, for little memory."""
     top = np.float32(2**bits - 1)
     out = np.empty(pixels.shape, np.uint8 if bits == 8 else np.uint16)

@@ -20,7 +20,7 @@ from daguerre.checks import whole
 from daguerre.color import spaces
 from daguerre.errors import OutputError, UsageError, suggest
 from daguerre.files.atomic import atomic_path
-from daguerre.frame.picture import quantised
+from daguerre.frame.picture import quantized
 
 from . import exif, icc
 from .tiff import TiffImage, write_tiff
@@ -60,7 +60,7 @@ def write_picture(
         path: Its ending chooses the format; JPEG has 8 bits, TIFF 16 or 8, PNG 8 or 16, EXR linear
             floats.
         pixels: Encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
-        space: Name of ``icc.COLOUR_SPACES``.
+        space: Name of ``icc.COLOR_SPACES``.
         metadata: Facts for EXIF, by the names of OpenEXR.
         quality: JPEG quality, 1 to 100.
         bits: Bits per channel; default: 8, for TIFF 16.
@@ -75,7 +75,7 @@ def write_picture(
         _write_linear(path, pixels, space, metadata)
         return
     bits = _bits(path, suffix, bits)
-    numbers = quantised(pixels, bits)
+    numbers = quantized(pixels, bits)
     with atomic_path(path) as temp:
         if suffix in (".tif", ".tiff"):
             _write_tiff(temp, numbers, space, metadata)
@@ -141,7 +141,7 @@ def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
     if not complete_png(data):
         raise OutputError("PNG: the file is not complete; is the disk full?")
-    cicp = bytes([*spaces.COLOUR_SPACES[space].cicp, 0, 1])
+    cicp = bytes([*spaces.COLOR_SPACES[space].cicp, 0, 1])
     kept = b"".join(
         chunk for kind, chunk in _png_chunks(data) if kind not in (b"eXIf", b"cICP", b"IHDR")
     )
@@ -202,8 +202,8 @@ def _write_linear(
     for row in range(0, len(pixels), 64):
         linear[row : row + 64] = spaces.decoded(pixels[row : row + 64], space)
     header = attributes(metadata)
-    corners = (*spaces.COLOUR_SPACES[space].primaries, spaces.D65)
+    corners = (*spaces.COLOR_SPACES[space].primaries, spaces.D65)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
-    header["colorInteropID"] = f"lin_{spaces.COLOUR_SPACES[space].interop}_scene"
+    header["colorInteropID"] = f"lin_{spaces.COLOR_SPACES[space].interop}_scene"
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
     write_parts(path, [("picture", header, {"RGB": linear})], frame)

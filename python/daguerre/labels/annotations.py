@@ -124,7 +124,7 @@ def annotations_of(session: Session, categories: Categories | None = None) -> An
     for i, thing in enumerate(things):
         groups[list(thing.instances)] = i
     seen = _Seen(truth, moment, groups, len(things), session.object_ids(moment))
-    world = np.asarray(moment.setup.facts["world_from_camera"], np.float64) @ FLIP
+    world = moment.setup.world_from_camera @ FLIP
     found, kept = [], np.zeros(len(things) + 1, np.int32)
     for i, thing in enumerate(things):
         made = seen.annotation(i, thing, moment.scene, world)
@@ -220,9 +220,9 @@ def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
 
 def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
     """Empty where the camera has none: of glass, tilted lenses, shifts that change."""
-    camera, setup = truth.camera.at(moment.scene.time), moment.setup
+    camera, setup = truth.camera.frozen_at(moment.scene.time), moment.setup
     width, height = truth.resolution
-    (x0, y0), model = truth.crop[:2], setup.facts["lens_model"]
+    (x0, y0), model = truth.crop[:2], setup.lens.model
     if camera.projection is not None:
         made = camera.projection
         scale = width / made.size[0]
@@ -231,9 +231,9 @@ def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
         center = [scale * (x + 0.5) - 0.5, scale * (y + 0.5 - rows / 2) + height / 2 - 0.5]
         named: dict[str, Any] = {"model": made.model, "parameters": list(made.parameters)}
     elif model in ("pinhole", "thin") and not any(camera.tilt):
-        right, up = setup.facts["shift_mm"]
-        across, down = width / setup.frame_size[0], height / setup.frame_size[1]
-        focal = [setup.pinhole_focal_length * across, setup.pinhole_focal_length * down]
+        right, up = setup.shift_mm
+        across, down = width / setup.frame_size_mm[0], height / setup.frame_size_mm[1]
+        focal = [setup.lens.pinhole_focal_length_mm * pixels for pixels in (across, down)]
         center = [width / 2 - 0.5 - right * across, height / 2 - 0.5 + up * down]
         named = {"model": "pinhole", "parameters": []}
     else:

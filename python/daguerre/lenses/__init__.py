@@ -6,6 +6,7 @@ from .focus import Focused
 from .lens import FirstOrder, Lens, Nominal, Pupil
 from .library import load, names
 from .reader import read
+from .setting import LensSetting
 from .surface import LensSurface
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "Focused",
     "Lens",
     "LensError",
+    "LensSetting",
     "LensSurface",
     "Nominal",
     "Pupil",

@@ -42,7 +42,7 @@ def checked(lens: Lens) -> Lens:
         raise LensError(f"{lens.source}: focal length: wanted some, got {order.efl}", "lens-afocal")
     beam = _beam(lens)
     surfaces, notes = list(lens.surfaces), list(lens.notes)
-    for i, j in _neighbours(surfaces):
+    for i, j in _neighbors(surfaces):
         crossing = _crossing(lens, i, j, beam)
         if crossing is None:
             continue
@@ -78,7 +78,7 @@ def _numbers(lens: Lens, *indices: int) -> str:
     return f" (of the file: {' and '.join(str(n) for n in numbers)})"
 
 
-def _neighbours(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
+def _neighbors(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
     """Pairs that bound one piece of glass or one gap of air; planes of air have no body."""
     solid = [
         i

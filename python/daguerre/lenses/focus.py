@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from .errors import LensError, reported
 from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .setting import LensSetting
 from .zoom import Position, at_zoom, bracket, positions
-
-By = Literal["paraxial", "best"]
-MeasuredFrom = Literal["pupil", "sensor"]
 
 #: Groups may go beyond infinity by this share of their way, as those of real lenses do.
 BEYOND = 0.2
@@ -57,33 +54,26 @@ class Path:
         return self.lens.with_gaps(gaps)
 
 
-def focused(
-    lens: Lens,
-    distance_m: float,
-    *,
-    zoom_mm: float | None = None,
-    f_stop: float | None = None,
-    by: By = "paraxial",
-    measured_from: MeasuredFrom = "pupil",
-) -> Focused:
-    """See ``Lens.focused``."""
-    if zoom_mm is not None:
-        lens = at_zoom(lens, zoom_mm)
-    if not distance_m > 0:
+def focused(lens: Lens, setting: LensSetting) -> Focused:
+    """Focuses a lens; see ``Lens.focused``."""
+    if setting.zoom_mm is not None:
+        lens = at_zoom(lens, setting.zoom_mm)
+    if not setting.focus_m > 0:
         raise LensError(
-            f"{lens.source}: focus distance: wanted a positive number of metres, got {distance_m}",
+            f"{lens.source}: focus distance: wanted a positive number of metres, "
+            f"got {setting.focus_m}",
             "lens-focus-near",
         )
     path = path_of(lens)
     # An f-stop is engraved for infinity: the iris stays, whatever groups do to the focal length.
     narrowed = 1.0
-    if f_stop is not None and path is not None:
-        narrowed = f_stop / lens.first_order().f_number
-    sharp = _sharp(distance_m, narrowed, by, measured_from)
+    if setting.f_stop is not None and path is not None:
+        narrowed = setting.f_stop / lens.first_order().f_number
+    sharp = _sharp(setting, narrowed)
     with reported(lens.source):
         if path is None:
-            return _done(lens, _whole(lens, distance_m, f_stop, by, measured_from))
-        moved = _solved(path, sharp, distance_m, measured_from)
+            return _done(lens, _whole(lens, setting))
+        moved = _solved(path, sharp, setting)
         return _done(moved, sharp(moved))
 
 
@@ -140,9 +130,7 @@ def image_z(lens: Lens, object_z: float) -> float:
     return float(np.mean(images))
 
 
-def _sharp(
-    distance_m: float, narrowed: float, by: By, measured_from: MeasuredFrom
-) -> Callable[[Lens], float]:
+def _sharp(setting: LensSetting, narrowed: float) -> Callable[[Lens], float]:
     """Where the film ought to be, for a lens whose film is where its table says.
 
     narrowed: f-stop over that of the open lens.
@@ -150,9 +138,9 @@ def _sharp(
 
     def film(lens: Lens) -> float:
         pupil = lens.first_order().entrance_pupil.z
-        start = pupil if measured_from == "pupil" else lens.image_z
-        object_z = start - 1e3 * distance_m
-        if by == "paraxial":
+        start = lens.image_z if setting.from_sensor else pupil
+        object_z = start - 1e3 * setting.focus_m
+        if setting.focus_by == "paraxial":
             return image_z(lens, object_z)
         stop = narrowed * lens.first_order().f_number
         best, _ = lens.prescription.best_focus(stop, (pupil - object_z) * 1e-3, False)
@@ -161,14 +149,12 @@ def _sharp(
     return film
 
 
-def _whole(
-    lens: Lens, distance_m: float, f_stop: float | None, by: By, measured_from: MeasuredFrom
-) -> float:
+def _whole(lens: Lens, setting: LensSetting) -> float:
     """The film's place when the whole lens moves."""
-    from_sensor = measured_from == "sensor"
+    distance_m, from_sensor = setting.focus_m, setting.from_sensor
     film = float(lens.prescription.film_position(distance_m, from_sensor))
-    if by == "best":
-        stop = f_stop or lens.first_order().f_number
+    if setting.focus_by == "best":
+        stop = setting.f_stop or lens.first_order().f_number
         return float(lens.prescription.best_focus(stop, distance_m, from_sensor)[0])
     if lens.prescription.is_axially_symmetric:
         return film
@@ -180,9 +166,7 @@ def _whole(
     return film
 
 
-def _solved(
-    path: Path, sharp: Callable[[Lens], float], distance_m: float, measured_from: MeasuredFrom
-) -> Lens:
+def _solved(path: Path, sharp: Callable[[Lens], float], setting: LensSetting) -> Lens:
     """The place on the way at which the image lies on the film."""
 
     def miss(way: float) -> float:
@@ -196,20 +180,20 @@ def _solved(
             return path.at(_root(miss, grid[k], grid[k + 1], values[k], values[k + 1]))
     if values[-1] < 0:  # beyond infinity, as the file's own film is a little off: the film moves
         return path.at(0.0)
-    nearest = _nearest(path.at(1.0), measured_from)
+    nearest = _nearest(path.at(1.0), from_sensor=setting.from_sensor)
     raise LensError(
         f"{path.lens.source}: focus distance: wanted {nearest:.4g} m or more (the nearest "
-        f"possible), got {distance_m:.4g} m",
+        f"possible), got {setting.focus_m:.4g} m",
         "lens-focus-near",
     )
 
 
-def _nearest(lens: Lens, measured_from: MeasuredFrom) -> float:
+def _nearest(lens: Lens, *, from_sensor: bool) -> float:
     """The distance, m, whose paraxial image lies on the film."""
     order = lens.first_order()
     focal2 = order.efl * (order.front_principal_point - order.front_focal_point)
     object_z = order.front_focal_point - focal2 / (lens.image_z - order.back_focal_point)
-    start = order.entrance_pupil.z if measured_from == "pupil" else lens.image_z
+    start = lens.image_z if from_sensor else order.entrance_pupil.z
     return (start - object_z) * 1e-3
 
 

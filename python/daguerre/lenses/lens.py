@@ -17,10 +17,11 @@ from daguerre.errors import InputError
 from .configurations import Configuration
 from .errors import reported
 from .groups import Group, placed
+from .setting import By, LensSetting, MeasuredFrom
 from .surface import LensSurface
 
 if TYPE_CHECKING:
-    from .focus import By, Focused, MeasuredFrom
+    from .focus import Focused
 
 DESIGN_WAVELENGTH_NM = 587.5618
 
@@ -261,19 +262,13 @@ class Lens:
             measured_from: Where the distance starts: centre of the entrance pupil, or film.
 
         Raises:
+            UsageError: Another ``by`` or ``measured_from``.
             LensError: Nearer than it can (the nearest is named, ``lens-focus-near``), or a focal
                 length that it does not have (``lens-zoom``).
         """
         from .focus import focused
 
-        return focused(
-            self,
-            distance_m,
-            zoom_mm=zoom_mm,
-            f_stop=f_stop,
-            by=by,
-            measured_from=measured_from,
-        )
+        return focused(self, LensSetting(f_stop, distance_m, zoom_mm, by, measured_from))
 
     def decentered(
         self,

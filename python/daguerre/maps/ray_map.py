@@ -141,8 +141,8 @@ def rays_of(
     setup = set_up(at, now, size, core_scene, overscan)
     settings = _core.RenderSettings()
     settings.resolution = size
-    settings.sensor_size_mm = setup.frame_size
-    right, up = setup.facts["shift_mm"]
+    settings.sensor_size_mm = setup.frame_size_mm
+    right, up = setup.shift_mm
     settings.sensor_center_mm = (right, up)
     settings.shutter = shutter.core_shutter(now, size)
     world = frame == "world"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
-from daguerre.distortion.rectified import Sight, built
+from daguerre.distortion.rectified import RectifiedView, built
 from daguerre.errors import DaguerreError
 
 if TYPE_CHECKING:
@@ -31,12 +31,17 @@ class StMaps:
     """The two maps of a camera.
 
     Attributes:
-        sight: The camera.
+        view: The camera and its ideal twin.
         overscan: Pixels beside the picture, which the maps also cover.
     """
 
-    sight: Sight
+    view: RectifiedView
     overscan: Overscan = NONE
+
+    @property
+    def sight(self) -> RectifiedView:
+        """Former name of ``view``."""
+        return self.view
 
     @cached_property
     def undistort(self) -> Image:
@@ -76,16 +81,16 @@ class StMaps:
         bounds, or parts that the camera does not show.
         """
         try:
-            undistort: Overscan | None = to_undistort(self.sight)
+            undistort: Overscan | None = to_undistort(self.view)
         except DaguerreError:
             undistort = None
-        return {"undistort": undistort, "redistort": to_redistort(self.sight)}
+        return {"undistort": undistort, "redistort": to_redistort(self.view)}
 
     @cached_property
     def _canvas(self) -> Any:
         from daguerre.post.picture import Canvas
 
-        size = self.sight.resolution
+        size = self.view.resolution
         corner = -self.overscan.left, -self.overscan.top
         return Canvas(*self.overscan.grown(size), corner=corner, full_size=size)
 
@@ -93,13 +98,13 @@ class StMaps:
     def _undistort(self) -> Warp:
         from daguerre.post.warp import Warp
 
-        return Warp.of(self._canvas, self.sight.bent_from_straight)
+        return Warp.of(self._canvas, self.view.bent_from_straight)
 
     @cached_property
     def _redistort(self) -> Warp:
         from daguerre.post.warp import Warp
 
-        return Warp.of(self._canvas, self.sight.straight_from_bent)
+        return Warp.of(self._canvas, self.view.straight_from_bent)
 
     def _values(self, warp: Warp) -> Image:
         from daguerre.convolution.rows import Rows
@@ -134,5 +139,5 @@ def stmaps(
     size = check_resolution(resolution)
     core_scene = built(scene, camera, size)
     wanted = overscan_of(overscan, camera, size, scene, core_scene)
-    sight = Sight(camera, size, scene=scene, core_scene=core_scene, overscan=wanted)
-    return StMaps(sight, wanted)
+    view = RectifiedView(camera, size, scene=scene, core_scene=core_scene, overscan=wanted)
+    return StMaps(view, wanted)

@@ -16,7 +16,7 @@ import daguerre._core as _core
 from daguerre.checks import given_matrix
 
 from .flat_values import Flat, changes, flat
-from .subdivision import MAX_BREAKS, MAX_KEYS, Check, Pieces, some_breaks
+from .subdivision import MAX_BREAKS, MAX_KEYS, Check, Subdivision, some_breaks
 from .values import Dynamic
 
 FloatArray = NDArray[np.float64]
@@ -41,8 +41,8 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     Returns:
         Times that do not fall, s, and the values there.
     """
-    pieces = Pieces(dynamic, flat, open_s, close_s)
-    first = pieces.first()
+    subdivision = Subdivision(dynamic, flat, open_s, close_s)
+    first = subdivision.first()
     limits = changes(first)
     if all(_near(v, first[0], first[0], 0.0, 1e-8 * limits) for v in first):
         return [open_s], [first[0].value]
@@ -50,7 +50,7 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     def fits(checks: list[Check[Flat]]) -> list[bool]:
         return [_near(value, a, b, s, BOUND * limits) for a, b, s, value in checks]
 
-    keys = pieces.keys(fits)
+    keys = subdivision.keys(fits)
     times, values = [keys[0][0]], [keys[0][1].value]
     for (_, a), (time, b) in itertools.pairwise(keys):
         if a.rest != b.rest and times[-1] != time:  # nothing lies between two names
@@ -90,8 +90,10 @@ def resample_transform(
         where: For complaints.
     """
     points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T
-    pieces = Pieces(dynamic, lambda m: given_matrix(m, where), open_s, close_s, most_breaks)
-    first = np.stack(pieces.first())
+    subdivision = Subdivision(
+        dynamic, lambda m: given_matrix(m, where), open_s, close_s, most_breaks
+    )
+    first = np.stack(subdivision.first())
     if (np.abs(first - first[0]) <= _STILL * np.abs(first).max()).all():
         return _core.Motion.still(first[0])
     placed = (first @ points)[:, :3]
@@ -111,7 +113,7 @@ def resample_transform(
         near = (gaps * gaps).sum(axis=1).max(axis=1) <= limit * limit
         return [bool(one) for one in near]
 
-    keys = pieces.keys(fits)
+    keys = subdivision.keys(fits)
     return _core.Motion.keys(np.array([t for t, _ in keys]), np.stack([m for _, m in keys]))
 
 

@@ -43,7 +43,7 @@ def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> l
     return [float(t) for t in inside[:: max(1, math.ceil(len(inside) / most))]]
 
 
-class Pieces(Generic[T]):
+class Subdivision(Generic[T]):
     """Samples a value until the interpolation error is within tolerance.
 
     A value with a method ``many`` (times (T,) to T values) is asked for many at once.

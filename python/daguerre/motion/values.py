@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-from daguerre.checks import frozen, matrix, number, short, to_numbers
+from daguerre.checks import as_readonly, matrix, number, short, to_numbers
 from daguerre.errors import InputError, core_errors, suggest
 
 FloatArray = NDArray[np.float64]
@@ -304,7 +304,7 @@ def _value(value: Any, where: str, interpolation: str | None) -> Any:
         return float(numbers)
     if isinstance(value, tuple | list) and numbers.ndim == 1:
         return tuple(numbers.tolist())
-    return matrix(value, where) if numbers.shape == (4, 4) else frozen(numbers)
+    return matrix(value, where) if numbers.shape == (4, 4) else as_readonly(numbers)
 
 
 def _time(value: Any, where: str) -> float:

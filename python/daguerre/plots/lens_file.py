@@ -80,6 +80,6 @@ def add_shape(axes: Axes, shape: Line | Polygon, scale: float = 0.8) -> None:
     axes.plot(z, y, color=shape.stroke, lw=scale * shape.width, ls=style)
 
 
-def _rgb(colour: str) -> tuple[float, float, float]:
-    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+def _rgb(color: str) -> tuple[float, float, float]:
+    r, g, b = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
     return r, g, b

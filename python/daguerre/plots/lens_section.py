@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 WIDTH = 760.0  # px
 RAYS = 5  # of each fan
 #: on the axis, at 0.7 of the field, at its edge
-COLOURS = ("#c0392b", "#1e8449", "#2471a3")
+COLORS = ("#c0392b", "#1e8449", "#2471a3")
 FIELDS = (0.0, 0.7, 1.0)
 #: Width of a ray's line.
 RAY_WIDTH = 0.7
@@ -140,18 +140,18 @@ def _rays(bench: Bench, left: float, top: float) -> list[Line]:
     from daguerre.analysis.pencils import pencil
 
     out = []
-    for share, colour in zip(FIELDS, COLOURS, strict=True):
+    for share, color in zip(FIELDS, COLORS, strict=True):
         light = pencil(bench, -share * bench.field_mm)
         if light is None:
             continue
         scan = np.linspace(light.low[1], light.high[1], 161)
         lit = scan[light.trace(np.column_stack([0 * scan, scan])).passed]
         for y in np.linspace(lit[0], lit[-1], RAYS) if len(lit) else []:
-            out.extend(_ray(light, float(y), left, top, colour))
+            out.extend(_ray(light, float(y), left, top, color))
     return out
 
 
-def _ray(light: Pencil, y: float, left: float, top: float, colour: str) -> list[Line]:
+def _ray(light: Pencil, y: float, left: float, top: float, color: str) -> list[Line]:
     through = light.center + y * light.tangential
     direction = light.direction if light.source is None else through - light.source
     direction = direction / np.linalg.norm(direction)
@@ -167,4 +167,4 @@ def _ray(light: Pencil, y: float, left: float, top: float, colour: str) -> list[
     to_side = (first[1] - side) / direction[1] if abs(direction[1]) > 1e-6 else math.inf
     begin = first - max(0.0, min(to_left, to_side)) * direction
     end = lens.trace(start, direction, image_z=film_z)[0]
-    return [Line([(float(p[2]), float(p[1])) for p in (begin, *path, end)], colour, RAY_WIDTH)]
+    return [Line([(float(p[2]), float(p[1])) for p in (begin, *path, end)], color, RAY_WIDTH)]

@@ -11,7 +11,7 @@ from daguerre.analysis.bench import FDC_NM
 from daguerre.analysis.figures import FIELDS, FREQUENCIES, MTF_FIELDS, Figures
 
 from .lens_file import add_shape
-from .lens_section import COLOURS as FIELD_COLOURS
+from .lens_section import COLORS as FIELD_COLORS
 from .lens_section import section
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.gridspec import SubplotSpec
 
 #: F, d, C
-LINE_COLOURS = ("#2b6cb0", "#2f855a", "#c53030")
+LINE_COLORS = ("#2b6cb0", "#2f855a", "#c53030")
 LINE_NAMES = ("F 486", "d 588", "C 656")
 INK = "#222222"
 
@@ -185,9 +185,9 @@ def spots(page: Figure, cell: SubplotSpec, made: Figures) -> None:
             caption(axes, point.height_mm, point.angle_deg, "")
             continue
         off = point.spot.points - point.spot.centroid
-        for nm, colour in zip(FDC_NM, LINE_COLOURS, strict=True):
+        for nm, color in zip(FDC_NM, LINE_COLORS, strict=True):
             of = point.spot.wavelength_nm == nm
-            axes.plot(*off[of].T, ".", ms=0.9, mew=0, color=colour, alpha=0.7, rasterized=True)
+            axes.plot(*off[of].T, ".", ms=0.9, mew=0, color=color, alpha=0.7, rasterized=True)
         caption(axes, point.height_mm, point.angle_deg, f"RMS {_um(point.spot.rms)}")
         if k == 0:
             axes.set_title(f"Spots in F, d, C; box {_um(2 * half)}")
@@ -238,10 +238,10 @@ def legend_above(axes: Axes) -> None:
 def mtf_over_field(axes: Axes, made: Figures) -> None:
     """MTF of waves over the image height."""
     heights = made.bench.field_mm * np.asarray(MTF_FIELDS)
-    for f, colour in zip(FREQUENCIES, ("#1a202c", "#2b6cb0", "#c53030"), strict=True):
+    for f, color in zip(FREQUENCIES, ("#1a202c", "#2b6cb0", "#c53030"), strict=True):
         values = made.mtf_over_field(f)
-        axes.plot(heights, values[:, 0], color=colour, label=f"{f:g}/mm sagittal")
-        axes.plot(heights, values[:, 1], color=colour, ls="--", label="tangential")
+        axes.plot(heights, values[:, 0], color=color, label=f"{f:g}/mm sagittal")
+        axes.plot(heights, values[:, 1], color=color, ls="--", label="tangential")
     axes.set_title("MTF over the field")
     axes.set_xlabel("image height, mm")
     axes.set_xlim(0, heights[-1])
@@ -251,12 +251,12 @@ def mtf_over_field(axes: Axes, made: Figures) -> None:
 
 def mtf_over_frequency(axes: Axes, made: Figures) -> None:
     """MTF of waves, and of rays, over frequency at three fields."""
-    for share, colour in zip((0.0, 0.7, 1.0), FIELD_COLOURS, strict=True):
+    for share, color in zip((0.0, 0.7, 1.0), FIELD_COLORS, strict=True):
         k = MTF_FIELDS.index(share)
         for j, style in enumerate(("-", "--")):
             name = f"{share * made.bench.field_mm:.1f} mm {'ST'[j]}"
-            axes.plot(made.frequency, made.mtf_waves[k, :, j], color=colour, ls=style, label=name)
-            axes.plot(made.frequency, made.mtf_rays[k, :, j], color=colour, ls=":", lw=0.6)
+            axes.plot(made.frequency, made.mtf_waves[k, :, j], color=color, ls=style, label=name)
+            axes.plot(made.frequency, made.mtf_rays[k, :, j], color=color, ls=":", lw=0.6)
     axes.set_title("MTF (dotted: rays alone)")
     axes.set_xlabel("cycles per mm")
     axes.set_xlim(0, made.frequency[-1])

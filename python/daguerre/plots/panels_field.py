@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from daguerre.analysis.figures import COLOURS_NM, CURVE, PUPIL_SHARES, Figures
+from daguerre.analysis.figures import COLORS_NM, CURVE, PUPIL_SHARES, Figures
 from daguerre.analysis.seidel import NAMES
 
-from .panels import LINE_COLOURS, LINE_NAMES
+from .panels import LINE_COLORS, LINE_NAMES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SURFACE_COLOURS = "tab20"
+SURFACE_COLORS = "tab20"
 
 
 def spherical(axes: Axes, made: Figures) -> None:
     """Longitudinal spherical aberration of three colours."""
-    for values, colour, name in zip(made.spherical, LINE_COLOURS, LINE_NAMES, strict=True):
-        axes.plot(values, PUPIL_SHARES, color=colour, label=name)
+    for values, color, name in zip(made.spherical, LINE_COLORS, LINE_NAMES, strict=True):
+        axes.plot(values, PUPIL_SHARES, color=color, label=name)
     axes.set_title("Spherical aberration")
     axes.set_xlabel("focus against the film, mm")
     axes.set_ylabel("height in the pupil")
@@ -31,9 +31,9 @@ def spherical(axes: Axes, made: Figures) -> None:
 
 def curvature(axes: Axes, made: Figures) -> None:
     """Sagittal and tangential focus over the field."""
-    for curve, colour in zip(made.curves, LINE_COLOURS, strict=True):
-        axes.plot(curve.sagittal, curve.height_mm, color=colour)
-        axes.plot(curve.tangential, curve.height_mm, color=colour, ls="--")
+    for curve, color in zip(made.curves, LINE_COLORS, strict=True):
+        axes.plot(curve.sagittal, curve.height_mm, color=color)
+        axes.plot(curve.tangential, curve.height_mm, color=color, ls="--")
     axes.set_title("Field curvature (- S, -- T)")
     axes.set_xlabel("focus against the film, mm")
     axes.set_ylabel("image height, mm")
@@ -57,7 +57,7 @@ def lateral(axes: Axes, made: Figures) -> None:
     """Lateral colour against d."""
     um = 1e3 * made.lateral
     for k in (0, 2):
-        axes.plot(um[:, k], made.bench.field_mm * CURVE, color=LINE_COLOURS[k], label=LINE_NAMES[k])
+        axes.plot(um[:, k], made.bench.field_mm * CURVE, color=LINE_COLORS[k], label=LINE_NAMES[k])
     axes.set_title("Lateral colour")
     axes.set_xlabel("against d, µm")
     axes.set_ylim(0, made.bench.field_mm)
@@ -104,11 +104,11 @@ def pupils(axes: Axes, made: Figures) -> None:
 
 def axial(axes: Axes, made: Figures) -> None:
     """Paraxial focus over the wavelength."""
-    axes.plot(COLOURS_NM, made.axial, color="#1a202c")
+    axes.plot(COLORS_NM, made.axial, color="#1a202c")
     axes.axhline(0, color="#999999", lw=0.5)
     axes.set_title("Axial colour, mm")
     axes.set_xlabel("wavelength, nm")
-    axes.set_xlim(COLOURS_NM[0], COLOURS_NM[-1])
+    axes.set_xlim(COLORS_NM[0], COLORS_NM[-1])
 
 
 def seidel(axes: Axes, made: Figures) -> None:
@@ -126,7 +126,7 @@ def seidel(axes: Axes, made: Figures) -> None:
         base = np.zeros(len(NAMES))
         for i, row in enumerate(rows):
             part = np.where(sign * row > 0, row, 0)
-            axes.bar(at, part, 0.75, base, color=_colour(i), lw=0)
+            axes.bar(at, part, 0.75, base, color=_color(i), lw=0)
             base = base + part
     axes.plot(at, made.seidel.total, "k_", ms=9, mew=1.4)
     axes.axhline(0, color="#444444", lw=0.5)
@@ -135,10 +135,10 @@ def seidel(axes: Axes, made: Figures) -> None:
     axes.grid(axis="x", visible=False)
 
 
-def _colour(i: int) -> tuple[float, float, float, float]:
+def _color(i: int) -> tuple[float, float, float, float]:
     from matplotlib import colormaps
 
-    r, g, b, a = colormaps[SURFACE_COLOURS](i % 20)
+    r, g, b, a = colormaps[SURFACE_COLORS](i % 20)
     return float(r), float(g), float(b), float(a)
 
 

@@ -12,7 +12,7 @@ from daguerre.sensors.sensor import GREY_LX_S, SATURATION_LX_S, Sensor
 
 from .sheet import saved
 
-COLOURS = {"R": "#c0392b", "G": "#27ae60", "B": "#2e5fa3", "Y": "#444444"}
+COLORS = {"R": "#c0392b", "G": "#27ae60", "B": "#2e5fa3", "Y": "#444444"}
 
 
 def page(sensor: Sensor, kind: str) -> bytes:
@@ -37,7 +37,7 @@ def page(sensor: Sensor, kind: str) -> bytes:
 
 def _efficiency(axes: Any, sensor: Sensor) -> None:
     for name, curve in zip(sensor.channels, sensor.efficiency(illuminants.NM), strict=True):
-        axes.plot(illuminants.NM, curve, color=COLOURS.get(name, "k"), label=name)
+        axes.plot(illuminants.NM, curve, color=COLORS.get(name, "k"), label=name)
     axes.set(xlabel="wavelength, nm", ylabel="electrons per photon", ylim=(0, 1), xlim=(380, 780))
     axes.legend()
     axes.set_title("Quantum efficiency")

@@ -9,7 +9,8 @@ from daguerre import lenses
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import reported
-from daguerre.lenses.focus import By
+from daguerre.lenses.focus import focused
+from daguerre.lenses.setting import By, LensSetting
 
 from .lens_fit import LensFit
 from .setting import FitSetting, iris_shape
@@ -67,7 +68,7 @@ def fit(
     width, height = _film(lens, film)
     if f_stop is not None:
         number(f_stop, "lens fit: f_stop", 0.1, 1000)
-    sharp = lens.focused(focus, zoom_mm=zoom, f_stop=f_stop, by=focus_by)
+    sharp = focused(lens, LensSetting(f_stop, focus, zoom, focus_by))
     request = _core.LensFitRequest(
         film_z_mm=sharp.film_z_mm,
         film_radius_mm=FILM_MARGIN * math.hypot(width, height) / 2,

@@ -13,7 +13,7 @@ from .effects.distortion import distort, undistort
 from .effects.fake_flare import fake_flare
 from .effects.glow import bloom, diffract, glare, halo, spread_by, star
 from .effects.grain import grain
-from .effects.lateral_colour import lateral_colour, remove_lateral_colour
+from .effects.lateral_color import lateral_colour, remove_lateral_colour
 from .effects.lens_psf import through_lens
 from .effects.motion_blur import motion_blur
 from .effects.saturation import unvignette_saturation, vignette_saturation

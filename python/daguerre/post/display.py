@@ -25,8 +25,8 @@ class Display:
 
     def write(self, image: Image) -> None:
         """The next rows, shape (rows, W, C); alpha is left out."""
-        colours = image[:, :, : image.shape[2] - self._alpha]
-        rgb = np.broadcast_to(colours, (*colours.shape[:2], 3))
+        colors = image[:, :, : image.shape[2] - self._alpha]
+        rgb = np.broadcast_to(colors, (*colors.shape[:2], 3))
         self._writer.write(Frame(np.ascontiguousarray(rgb)).display())
 
     def __enter__(self) -> Self:

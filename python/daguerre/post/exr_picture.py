@@ -27,15 +27,15 @@ class ExrPicture:
         check_linear(path)
         self.reader = ExrReader(path)
         reader = self.reader
-        colours = _colours(list(reader.channels), str(path))
+        colors = _colors(list(reader.channels), str(path))
         corner = tuple(a - b for a, b in zip(reader.corner, reader.full_corner, strict=True))
         self.canvas = Canvas(
             reader.width,
             reader.height,
             (corner[0], corner[1]),
             reader.full_size,
-            colours,
-            tuple(name for name in reader.channels if name not in colours),
+            colors,
+            tuple(name for name in reader.channels if name not in colors),
             reader.facts,
             str(path),
             roles,
@@ -46,7 +46,7 @@ class ExrPicture:
     def rows(self, rows: Rows) -> Band:
         """Reads rows."""
         found = self.reader.rows(rows.begin, rows.end)
-        image = np.stack([found[name] for name in self.canvas.colours], axis=2, dtype=np.float32)
+        image = np.stack([found[name] for name in self.canvas.colors], axis=2, dtype=np.float32)
         new = ~self._counted[rows.begin : rows.end]
         if new.any():
             self.bad_pixels += int((~np.isfinite(image[new])).any(axis=2).sum())
@@ -57,7 +57,7 @@ class ExrPicture:
         """A band as channels of the file, in its types; halves end at their largest value."""
         types = self.reader.channels
         out = dict(band.planes)
-        for k, name in enumerate(self.canvas.colours):
+        for k, name in enumerate(self.canvas.colors):
             out[name] = _typed(band.image[..., k], types[name])
         return {name: _typed(plane, types[name]) for name, plane in out.items()}
 
@@ -90,10 +90,10 @@ def check_target(path: str | os.PathLike[str]) -> None:
         )
 
 
-def _colours(names: list[str], where: str) -> tuple[str, ...]:
-    for colours in (("R", "G", "B"), ("Y",)):
-        if all(name in names for name in colours):
-            return (*colours, "A") if "A" in names else colours
+def _colors(names: list[str], where: str) -> tuple[str, ...]:
+    for colors in (("R", "G", "B"), ("Y",)):
+        if all(name in names for name in colors):
+            return (*colors, "A") if "A" in names else colors
     raise InputError(f"{where}: channels: wanted R, G, B or Y, got {', '.join(names[:24])}")
 
 

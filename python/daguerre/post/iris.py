@@ -65,9 +65,9 @@ def outline(blades: int, rotation_deg: float, curvature: float) -> NDArray[np.fl
         radius = 1 / abs(curvature)
         opening = math.asin(min(1.0, math.sin(half) / radius))
         sagitta = math.copysign(1, curvature) * radius
-        centre = math.cos(half) - sagitta * math.cos(opening)
+        center = math.cos(half) - sagitta * math.cos(opening)
         edge = np.stack(
-            [centre + sagitta * np.cos(along * opening), radius * np.sin(along * opening)], 1
+            [center + sagitta * np.cos(along * opening), radius * np.sin(along * opening)], 1
         )
     turns = math.radians(rotation_deg) + half * (2 * np.arange(blades) + 1)
     c, s = np.cos(turns)[:, None], np.sin(turns)[:, None]

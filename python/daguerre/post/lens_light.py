@@ -29,13 +29,13 @@ WAVELENGTHS = 5
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, colour: bool) -> Falloff:
+def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, color: bool) -> Falloff:
     """Light on the film relative to the axis, from exact rays through the whole pupil.
 
     By colour, white on the axis stays white: each channel is what is left of white there. Pictures
     without red, green and blue get its luminance.
     """
-    mixes = _mixes(by_channel=colour and canvas.colours[:3] == ("R", "G", "B"))
+    mixes = _mixes(by_channel=color and canvas.colors[:3] == ("R", "G", "B"))
     if lens.lens.prescription.is_axially_symmetric:
         return _around_axis(canvas, film, lens, mixes)
     return _over_frame(canvas, film, lens, mixes)
@@ -86,7 +86,7 @@ def _over_frame(
     """A surface over points of the frame, from edge to edge."""
     x, y = (
         offset.ravel()[[0, -1]] * film.pitch_mm
-        for offset in offsets(canvas, Rows(0, canvas.height), film.centre)
+        for offset in offsets(canvas, Rows(0, canvas.height), film.center)
     )
     # The picture stands upside down on the film, whose y is up: so turned twice.
     points = np.meshgrid(-np.linspace(x[0], x[1], ACROSS), np.linspace(y[0], y[1], DOWN))

@@ -38,25 +38,25 @@ class Plane:
     """The film behind a picture.
 
     Attributes:
-        centre: Where the axis meets it, px.
+        center: Where the axis meets it, px.
         pitch_mm: Pixel pitch, mm.
     """
 
-    centre: tuple[float, float]
+    center: tuple[float, float]
     pitch_mm: float
 
     def radii(self, canvas: Canvas, rows: Rows) -> NDArray[np.float32]:
         """Distances of pixels from the axis, mm, shape (rows, W)."""
-        x, y = offsets(canvas, rows, self.centre)
+        x, y = offsets(canvas, rows, self.center)
         return np.hypot(x, y) * np.float32(self.pitch_mm)
 
 
 def offsets(
-    canvas: Canvas, rows: Rows, centre: tuple[float, float]
+    canvas: Canvas, rows: Rows, center: tuple[float, float]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Columns (1, W) and rows (rows, 1) of pixels from a point of the display window, px."""
-    x = np.arange(canvas.width) + (canvas.corner[0] + 0.5 - centre[0])
-    y = np.arange(rows.begin, rows.end) + (canvas.corner[1] + 0.5 - centre[1])
+    x = np.arange(canvas.width) + (canvas.corner[0] + 0.5 - center[0])
+    y = np.arange(rows.begin, rows.end) + (canvas.corner[1] + 0.5 - center[1])
     return x[None, :].astype(np.float32), y[:, None].astype(np.float32)
 
 
@@ -82,7 +82,7 @@ def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
     picture is seen; it needs the size of pixels.
     """
     offset, pitch_mm = canvas.facts.get("sensorCenterOffset"), _pitch_mm(canvas, values)
-    x, y = canvas.centre
+    x, y = canvas.center
     if pitch_mm is None or not _finite(offset):
         return x, y
     return x - 1e-3 * offset[0] / pitch_mm, y + 1e-3 * offset[1] / pitch_mm
@@ -121,13 +121,13 @@ def bench(values: Values) -> Bench:
         InputError: No such lens, or it cannot be set so.
     """
     from daguerre import lenses
-    from daguerre.analysis.bench import set_up
+    from daguerre.analysis.bench import on_bench
+    from daguerre.lenses.setting import LensSetting
 
-    item = lenses.load(values["lens"])
-    return set_up(
-        item, f_stop=values.get("f_stop"), focus_m=values["focus"], zoom_mm=values.get("zoom"),
-        by=values["focus_by"],
-    )  # fmt: skip
+    setting = LensSetting(
+        values.get("f_stop"), values["focus"], values.get("zoom"), values["focus_by"]
+    )
+    return on_bench(lenses.load(values["lens"]), setting)
 
 
 def _finite(pair: Any) -> TypeGuard[tuple[float, float]]:

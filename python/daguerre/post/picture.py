@@ -27,7 +27,7 @@ class Canvas:
         height: Height of its pixels, px.
         corner: Their first pixel in the display window, px.
         full_size: Width and height of the display window, px: what effects are centred on.
-        colours: Names of the colour channels; the last one may be alpha.
+        colors: Names of the color channels; the last one may be alpha.
         planes: Names of all other channels, as in the file.
         facts: Attributes of the file by name.
         where: Its name, for messages.
@@ -39,7 +39,7 @@ class Canvas:
     height: int
     corner: tuple[int, int] = (0, 0)
     full_size: tuple[int, int] = (0, 0)
-    colours: tuple[str, ...] = ("R", "G", "B")
+    colors: tuple[str, ...] = ("R", "G", "B")
     planes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
     where: str = "picture"
@@ -52,10 +52,10 @@ class Canvas:
     @property
     def alpha(self) -> bool:
         """Whether the last of the colours is alpha."""
-        return self.colours[-1] == "A"
+        return self.colors[-1] == "A"
 
     @property
-    def centre(self) -> tuple[float, float]:
+    def center(self) -> tuple[float, float]:
         """Centre of the display window, px."""
         return 0.5 * self.full_size[0], 0.5 * self.full_size[1]
 
@@ -64,8 +64,8 @@ class Canvas:
         """That of an array of shape (H, W, C): 1 or 3 colours, one more is alpha."""
         height, width, count = shape
         names = {1: ("Y",), 2: ("Y", "A"), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
-        colours = names.get(count, tuple(f"C{k}" for k in range(count)))
-        return cls(width, height, colours=colours, planes=planes, where=where)
+        colors = names.get(count, tuple(f"C{k}" for k in range(count)))
+        return cls(width, height, colors=colors, planes=planes, where=where)
 
 
 @dataclass(frozen=True)

@@ -27,17 +27,17 @@ class Spreading(Step):
     def __init__(
         self, canvas: Canvas, spread: Spread, stays: float | NDArray[np.float32] = 0.0
     ) -> None:
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._spread, self._stays = spread, np.asarray(stays, np.float32)
         self.block, self.reach = spread.block, spread.reach
 
     def apply(self, band: Band, rows: Rows) -> Band:
         """Spreads the light of all rows that reach these."""
-        light, here = band.image[:, :, : self._colours], band.cut(rows)
+        light, here = band.image[:, :, : self._colors], band.cut(rows)
         made = self._spread.rows(light, band.rows.begin, rows)
         if self._stays.any():
-            made += here.image[:, :, : self._colours] * self._stays
-        return here.with_image(np.concatenate([made, here.image[:, :, self._colours :]], axis=2))
+            made += here.image[:, :, : self._colors] * self._stays
+        return here.with_image(np.concatenate([made, here.image[:, :, self._colors :]], axis=2))
 
 
 class Veil(Step):
@@ -51,26 +51,26 @@ class Veil(Step):
     """
 
     def __init__(self, canvas: Canvas, kernel: Floats, factor: int, share: float) -> None:
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._kernel, self._factor, self._share = kernel, factor, np.float32(share)
 
     def prepare(self, source: Source) -> None:
         """Makes the veil from a small picture of all rows."""
         height = max(SCAN // self._factor, 1) * self._factor
         found = [
-            reduced(band.image[:, :, : self._colours], self._factor)
+            reduced(band.image[:, :, : self._colors], self._factor)
             for band in bands(source, height)
         ]
         self._veil = convolve(np.concatenate(found), self._kernel)
 
     def apply(self, band: Band, rows: Rows) -> Band:
         """Mixes the veil in; a pixel that is no number stays."""
-        light = band.image[:, :, : self._colours]
+        light = band.image[:, :, : self._colors]
         veil = enlarged(self._veil, self._factor, rows, light.shape[1])
         finite = np.isfinite(light)
         known = np.where(finite, light, np.float32(0))
         made = np.where(finite, known + self._share * (veil - known), light)
-        return band.with_image(np.concatenate([made, band.image[:, :, self._colours :]], axis=2))
+        return band.with_image(np.concatenate([made, band.image[:, :, self._colors :]], axis=2))
 
 
 def reduced(light: Image, factor: int) -> Image:

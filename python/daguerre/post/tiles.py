@@ -48,7 +48,7 @@ class Stage:
         height = self.canvas.height
         rows = Rows(k * self._block, min((k + 1) * self._block, height))
         band = self.step.apply(self.source.rows(self.step.reads(rows).within(height)), rows)
-        shape = (rows.end - rows.begin, self.canvas.width, len(self.canvas.colours))
+        shape = (rows.end - rows.begin, self.canvas.width, len(self.canvas.colors))
         if band.rows != rows or band.image.shape != shape:
             raise AssertionError(f"{self.step}: {rows}, {shape}; made {band.rows}")
         return band

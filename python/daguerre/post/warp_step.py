@@ -61,7 +61,7 @@ class WarpStep(Step):
         self._height, self._warps = canvas.height, list(warps)
         self._filter, self._antialias = filter, antialias
         middle = len(self._warps) // 2
-        count = len(canvas.colours)
+        count = len(canvas.colors)
         self._map_of = [middle] * count
         if len(self._warps) == 3 and count >= 3:
             self._map_of[:3] = [0, 1, 2]

@@ -11,22 +11,21 @@ Fourier Optics, 3rd ed., section 6.4), and it is exact where either is small.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import whole
-from daguerre.color.spectra import band_colours, band_wavelengths
+from daguerre.color.spectra import band_colors, band_wavelengths
 from daguerre.errors import InputError, UsageError
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
     from daguerre.analysis.diffraction import Pupil
     from daguerre.camera.camera import Camera
-    from daguerre.lenses.focus import By
     from daguerre.sensors import Sensor
-    from daguerre.setup.camera import CameraSetup
+    from daguerre.setup.resolved import ResolvedCamera
 
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
@@ -75,7 +74,7 @@ def with_bands(wanted: Diffraction | None, bands: int) -> Diffraction | None:
 def plan(
     wanted: Diffraction,
     camera: Camera,
-    setup: CameraSetup,
+    setup: ResolvedCamera,
     resolution: tuple[int, int],
     sensor: Sensor | None = None,
 ) -> dict[str, Any]:
@@ -88,43 +87,32 @@ def plan(
 
     return {
         "bands": wanted.bands,
-        "pitch_mm": setup.frame_size[0] / resolution[0],
+        "pitch_mm": setup.frame_size_mm[0] / resolution[0],
         **({} if sensor is None else {"channels": weights_of_bands(sensor, wanted.bands).tolist()}),
         **to_json(_pupils(wanted, camera, setup)),
     }
 
 
-def _pupils(wanted: Diffraction, camera: Camera, setup: CameraSetup) -> list[list[Pupil]]:
-    from daguerre.analysis import set_up
+def _pupils(wanted: Diffraction, camera: Camera, setup: ResolvedCamera) -> list[list[Pupil]]:
+    from daguerre.analysis.bench import on_bench
     from daguerre.analysis.diffraction import PlainPupil
     from daguerre.analysis.iris import iris_of
     from daguerre.analysis.lens_pupil import zone_pupils
     from daguerre.analysis.off_axis import off_axis
     from daguerre.setup.checks import TRACED, lens_and_model
-    from daguerre.setup.lens import decenters
+    from daguerre.setup.imperfections import decenters
 
-    facts = setup.facts
-    if facts.get("f_stop") is None:
+    if setup.lens.f_stop is None:
         raise UsageError("diffraction: wanted a lens with an iris, got a pinhole")
     lens, _ = lens_and_model(camera)
-    if lens is None or facts["lens_model"] not in TRACED:
-        efl = facts.get("effective_focal_length_mm", facts["focal_length_mm"])
-        seen = facts["f_stop"] * setup.pinhole_focal_length / efl
+    if lens is None or setup.lens.model not in TRACED:
+        efl = setup.lens.effective_focal_length_mm
+        seen = setup.lens.f_stop * setup.lens.pinhole_focal_length_mm / efl
         return [[PlainPupil(seen, iris_of(camera))]]  # the same everywhere
-    bench = off_axis(
-        set_up(
-            lens,
-            f_stop=facts["f_stop"],
-            focus_m=facts["focus_distance_m"],
-            zoom_mm=facts.get("zoom_mm") if camera.zoom is not None else None,
-            by=cast("By", camera.focus_by),
-        ),
-        decenters(camera),
-        camera.tilt,
-    )
+    bench = off_axis(on_bench(lens, setup.setting), decenters(camera), camera.tilt)
     iris = iris_of(camera, bench.order.stop_semi_diameter / bench.iris_radius)
-    x, y = facts["shift_mm"]  # of the frame against the picture, which is upside down on the film
-    return zone_pupils(bench, setup.frame_size, wanted.zones, iris, center_mm=(-x, -y))
+    x, y = setup.shift_mm  # of the frame against the picture, which is upside down on the film
+    return zone_pupils(bench, setup.frame_size_mm, wanted.zones, iris, center_mm=(-x, -y))
 
 
 @dataclass
@@ -168,7 +156,7 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
             raise ValueError("channels")
     except (ValueError, TypeError, KeyError) as error:
         raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
-    sums = [(film.mean_xyz, band_colours(bands.shape[2]).astype(np.float32))]
+    sums = [(film.mean_xyz, band_colors(bands.shape[2]).astype(np.float32))]
     if sensor.size:
         sums.append((film.mean_channels, sensor))
     light = np.sum([colours.sum(axis=1) for _, colours in sums], axis=0)

@@ -18,7 +18,7 @@ from daguerre.camera.overscan import Overscan
 from .pixels import Box
 
 if TYPE_CHECKING:
-    from daguerre.setup.camera import CameraSetup
+    from daguerre.setup.resolved import ResolvedCamera
 
 NOWHERE: Box = (0, 0, 0, 0)
 #: Changes the seed around the picture, which has random numbers of its own.
@@ -81,7 +81,7 @@ def area(box: Box) -> int:
 
 
 def core_settings(
-    setup: CameraSetup,
+    setup: ResolvedCamera,
     resolution: tuple[int, int],
     core_shutter: _core.Shutter,
     overscan: Overscan,
@@ -113,13 +113,13 @@ def core_settings(
 
 
 def frame_around(
-    setup: CameraSetup, resolution: tuple[int, int], overscan: Overscan
+    setup: ResolvedCamera, resolution: tuple[int, int], overscan: Overscan
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Size and middle (mm, upright) of the film that a picture with its overscan covers."""
-    right, up = setup.facts["shift_mm"]  # at mid-exposure
+    right, up = setup.shift_mm  # at mid-exposure
     if not overscan:
-        return setup.frame_size, (right, up)
-    across, along = (mm / n for mm, n in zip(setup.frame_size, resolution, strict=True))
+        return setup.frame_size_mm, (right, up)
+    across, along = (mm / n for mm, n in zip(setup.frame_size_mm, resolution, strict=True))
     columns, rows = overscan.grown(resolution)
     center = (
         right + across * (overscan.right - overscan.left) / 2,

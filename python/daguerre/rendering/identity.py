@@ -14,7 +14,7 @@ import daguerre._core as _core
 from daguerre.camera.exposure import without_exposure
 from daguerre.frame.seen_by import sensor_metadata
 from daguerre.setup.body import scatter_facts
-from daguerre.setup.metadata import camera_metadata
+from daguerre.setup.metadata import camera_metadata, facts_of
 
 from .adaptive import Round
 from .light_paths import show_plan
@@ -50,7 +50,7 @@ def key(session: Drawn) -> dict[str, str]:
     one = session.prepared
     return {
         "scene": one.built.hash,
-        "camera": _hash_json(without_exposure(one.setup.facts)),
+        "camera": _hash_json(without_exposure(facts_of(one.setup))),
         "settings": _hash_json(_settings_facts(session)),
         "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
         f"{one.core_scene.intersector}",

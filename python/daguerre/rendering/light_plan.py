@@ -10,8 +10,9 @@ from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.sensors.bands import responses
-from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.camera import set_up
 from daguerre.setup.checks import check_surfaces
+from daguerre.setup.resolved import ResolvedCamera
 
 from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
@@ -123,7 +124,7 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
     paths = check_paths(getattr(one.settings.light, name), name)
     if paths == 0:
         return 0.0
-    check_surfaces(one.setup.facts["lens_model"], name)
+    check_surfaces(one.setup.lens.model, name)
     with core_errors(InputError, name):
         shines = getattr(core, f"prepare_{name}")(one.core_scene, one.setup.core)
     if not shines:
@@ -134,7 +135,7 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
     return float(count)
 
 
-def _settings(one: Prepared, setup: CameraSetup, overscan: Overscan) -> _core.RenderSettings:
+def _settings(one: Prepared, setup: ResolvedCamera, overscan: Overscan) -> _core.RenderSettings:
     core_shutter = shutter.core_shutter(one.camera, one.size)
     return core_settings(setup, one.size, core_shutter, overscan, _options(one.settings))
 

@@ -13,11 +13,12 @@ from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.checks import short
 from daguerre.distortion.overscan import note as overscan_note
 from daguerre.distortion.overscan import to_undistort
-from daguerre.distortion.rectified import Sight
+from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
-from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.camera import set_up
+from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
 from .film_parts import area, frame_around, inside
@@ -48,7 +49,7 @@ class Prepared:
     camera: Camera
     settings: RenderSettings
     built: BuiltScene
-    setup: CameraSetup
+    setup: ResolvedCamera
     interval: tuple[float, float]
     overscan: Overscan
     crop: Box
@@ -69,7 +70,7 @@ class Prepared:
     @property
     def focused_camera(self) -> Camera:
         """The camera with the focus that was found."""
-        return focused(self.camera, self.setup.facts)
+        return focused(self.camera, self.setup.lens.focus_distance_m)
 
     @property
     def window(self) -> Box:
@@ -106,7 +107,9 @@ def prepare(
     notes = list(setup.notes)
     overscan = check_overscan(settings.film.overscan, size)
     if overscan is None:
-        overscan = to_undistort(Sight(focused(camera, setup.facts), size, scene=scene))
+        overscan = to_undistort(
+            RectifiedView(focused(camera, setup.lens.focus_distance_m), size, scene=scene)
+        )
         notes.append(overscan_note(overscan))
     crop = crop_within(settings.film.crop, overscan.region(size))
     sensor = None if camera.sensor is None else sensors.load(camera.sensor)
@@ -121,8 +124,8 @@ def _pupils(one: Prepared) -> dict[str, Any] | None:
     """The pupils of mid-shutter, for the film with its overscan, if light is diffracted."""
     if one.settings.diffraction is None:
         return None
-    camera = one.camera.at(0.5 * (one.interval[0] + one.interval[1]))
+    camera = one.camera.frozen_at(0.5 * (one.interval[0] + one.interval[1]))
     frame, middle = frame_around(one.setup, one.size, one.overscan)
-    setup = replace(one.setup, frame_size=frame, facts=one.setup.facts | {"shift_mm": middle})
+    setup = replace(one.setup, frame_size_mm=frame, shift_mm=middle)
     grown = one.overscan.grown(one.size)
     return diffraction.plan(one.settings.diffraction, camera, setup, grown, one.sensor)

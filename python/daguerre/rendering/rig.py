@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, Unpack
 
@@ -16,6 +15,7 @@ from daguerre.frame.frame import Frame
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
+from daguerre.setup.straight import straight_focal_px
 
 from .keywords import RigKeywords, settings_of, takes
 from .render import finish
@@ -86,12 +86,7 @@ def check_straight(metadata: dict[str, Any]) -> None:
     Raises:
         InputError: The camera is another one.
     """
-    facts = metadata.get("camera", {})
-    kind = facts.get("projection", {}).get("model") or facts.get("lens_model")
-    if kind not in ("pinhole", "thin", "rectilinear"):
-        raise InputError(
-            f"disparity: wanted a pinhole, a thin lens or a rectilinear projection, got {kind}"
-        )
+    straight_focal_px(metadata, "disparity")
 
 
 def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
@@ -111,16 +106,11 @@ def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
         InputError: The picture is another one.
     """
     number(baseline, "disparity: baseline", above=0)
-    check_straight(frame.metadata)
-    projection = frame.metadata["camera"].get("projection")
+    focal = straight_focal_px(frame.metadata, "disparity")
     depth = frame.aovs.get("depth.Z")
     if depth is None or "gt_time" not in frame.metadata:
         raise InputError("disparity: wanted exact depth, got none; gt_time='mid' makes it")
     if (lens := frame.metadata.get("gt_lens", "chief")) != "chief":
         raise InputError(f"disparity: wanted gt_lens='chief', got {lens!r}")
-    focal = frame.metadata["pinholeFocalLength"] / frame.metadata["sensorPhotositePitch"] * 1e3
-    if projection:  # the one of both axes is their geometric mean
-        across, down = projection["focal_px"]
-        focal *= math.sqrt(across / down)
     apart = focal * baseline
     return np.where(depth > 0, apart / np.maximum(depth, 1e-30), 0).astype(np.float32)

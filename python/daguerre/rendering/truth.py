@@ -20,7 +20,8 @@ from daguerre.camera.overscan import NONE, Overscan
 from daguerre.errors import InputError, core_errors
 from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
-from daguerre.setup.camera import CameraSetup, set_up
+from daguerre.setup.camera import set_up
+from daguerre.setup.resolved import ResolvedCamera
 from daguerre.setup.scene import build
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
@@ -45,7 +46,7 @@ class Moment:
 
     shot: Shot
     scene: Scene
-    setup: CameraSetup
+    setup: ResolvedCamera
 
 
 @dataclass(frozen=True)
@@ -129,8 +130,8 @@ class GroundTruth:
         setup = set_up(scene, camera, self.resolution, core_scene, self.overscan)
         settings = _core.RenderSettings()
         settings.resolution = self.resolution
-        settings.sensor_size_mm = setup.frame_size
-        right, up = camera.at(scene.time).shift
+        settings.sensor_size_mm = setup.frame_size_mm
+        right, up = camera.frozen_at(scene.time).shift
         settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
@@ -142,9 +143,8 @@ def _by_channel(row: Aov, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
     return {name: values[:, :, i].astype(np.float32) for i, name in enumerate(row.channels)}
 
 
-def focused(camera: Camera, facts: dict[str, Any]) -> Camera:
+def focused(camera: Camera, distance: float | None) -> Camera:
     """The camera with the focus that was found for the picture: it does not hunt between frames."""
-    distance = facts.get("focus_distance_m")
     if distance is None or "focus_distance" in camera.motion:
         return camera
     return replace(

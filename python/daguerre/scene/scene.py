@@ -15,7 +15,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import array, frozen, given_up, matrix, optional_array, short, to_numbers
+from daguerre.checks import (
+    array,
+    as_readonly,
+    freeze_in_place,
+    matrix,
+    optional_array,
+    short,
+    to_numbers,
+)
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.errors import InputError, UsageError, suggest
@@ -87,7 +95,7 @@ class Scene:
             raise InputError(
                 f"texture {name!r}: pixels: wanted shape (H, W, 1..4), got {array.shape}"
             )
-        array = frozen(array, np.uint8 if array.dtype == np.uint8 else np.float32)
+        array = as_readonly(array, np.uint8 if array.dtype == np.uint8 else np.float32)
         self.textures.append(Texture(array, srgb, wrap, filter, name, min_filter))
         return len(self.textures) - 1
 
@@ -163,11 +171,13 @@ class Scene:
             )
         if colors is not None and np.shape(colors)[-1:] == (3,):
             rgb = array(colors, where, "colors", 3)
-            colors = given_up(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))
+            colors = freeze_in_place(
+                np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
+            )
         n = len(points)
         mesh = Mesh(
             points,
-            frozen(triangles, np.uint32),
+            as_readonly(triangles, np.uint32),
             optional_array(self._now(normals), where, "normals", 3, n),
             optional_array(uv, where, "uv", 2, n),
             optional_array(uv1, where, "uv1", 2, n),
@@ -365,7 +375,7 @@ def scene_at(scene: Scene, time: float) -> Scene:
     moved: dict[str, Any] = {
         "materials": _replaced(scene.materials, motion.materials, time),
         "lights": _replaced(scene.lights, motion.lights, time),
-        "cameras": {name: camera.moved_to(time) for name, camera in scene.cameras.items()},
+        "cameras": {name: camera.evaluated_at(time) for name, camera in scene.cameras.items()},
     }
     meshes = list(scene.meshes)
     for i, vertices in motion.meshes.items():

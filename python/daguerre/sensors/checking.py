@@ -65,7 +65,7 @@ def _light(sensor: SensorData, where: str) -> None:
     object.__setattr__(sensor, "wavelengths", nm)
     all_rows = table(f"{where}: quantum_efficiency", nm, rows)
     object.__setattr__(sensor, "quantum_efficiency", all_rows)
-    if not tells_colours(all_rows, nm):
+    if not tells_colors(all_rows, nm):
         raise InputError(
             f"{where}: quantum_efficiency: wanted curves of {', '.join(sensor.channels)} that "
             "differ between 380 and 780 nm, got some that are sums of others"
@@ -79,7 +79,7 @@ def _light(sensor: SensorData, where: str) -> None:
             table(f"{where}: {name}: transmittance", at, curve.values)
 
 
-def tells_colours(curves: FloatArray, nm: FloatArray) -> bool:
+def tells_colors(curves: FloatArray, nm: FloatArray) -> bool:
     """Whether no curve is a sum of the others: else nothing leads from channels back to XYZ."""
     fine = np.array([np.interp(illuminants.NM, nm, row, left=0, right=0) for row in curves])
     sizes = np.linalg.norm(fine, axis=1, keepdims=True)

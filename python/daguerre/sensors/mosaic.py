@@ -64,7 +64,7 @@ class Mosaic:
         """Share of the photosites that each channel has, shape (C,)."""
         return np.bincount(self.cells.ravel()) / self.cells.size
 
-    def neighbours(self) -> NDArray[np.float64]:
+    def neighbors(self) -> NDArray[np.float64]:
         """Which channels stand around: share of channel j at the four sides of i, shape (C, C)."""
         count = int(self.cells.max()) + 1
         out = np.zeros((count, count))

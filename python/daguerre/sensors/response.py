@@ -54,7 +54,7 @@ class Response(SensorData):
     def mixing(self) -> FloatArray:
         """Crosstalk of even light: channels from channels, shape (C, C)."""
         unmixed = np.eye(len(self.channels))
-        return (1 - self.crosstalk) * unmixed + self.crosstalk * self.pattern.neighbours()
+        return (1 - self.crosstalk) * unmixed + self.crosstalk * self.pattern.neighbors()
 
     def white_electrons(self, white: FloatArray | None = None) -> FloatArray:
         """Electrons per lux s with crosstalk; see :meth:`electrons_per_lux_s`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import daguerre._core as _core
@@ -13,49 +14,68 @@ DEFAULT_DEGREE: int = CAMERA["degree"].usual
 DEFAULT_TOLERANCE: float = CAMERA["fit_tolerance"].usual
 
 
-def judged(
-    lens: _core.ExactLens, camera: Camera, name: str, pitch_mm: float, notes: list[str]
-) -> tuple[_core.ExactLens, dict[str, Any]]:
-    """Returns the lens to draw with: its fit, or its surfaces where the fit is not good enough.
+@dataclass(frozen=True)
+class FitQuality:
+    """Quality of a polynomial lens over its film.
+
+    Attributes:
+        degree: Degree of the polynomials.
+        rms_um: RMS error on the film.
+        rms_px: The same in pixels.
+        largest_um: Largest error on the film.
+        used: Whether it draws; else it is not good enough, and the exact lens does.
+        note: The same in a sentence.
+    """
+
+    degree: int
+    rms_um: float
+    rms_px: float
+    largest_um: float
+    used: bool
+    note: str
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Errors for metadata and hashes."""
+        return {
+            "fit_degree": self.degree,
+            "fit_error_um": self.rms_um,
+            "fit_error_px": self.rms_px,
+            "fit_largest_error_um": self.largest_um,
+        }
+
+
+def judged(lens: _core.ExactLens, camera: Camera, name: str, pitch_mm: float) -> FitQuality:
+    """Judges whether the polynomials of a lens are as good as a camera asks for.
 
     Args:
         lens: With a fit.
         camera: For the tolerance.
-        name: Name of the lens, for notes.
+        name: Name of the lens, for the note.
         pitch_mm: Pixel pitch, mm.
-        notes: Gets a sentence about the fit.
-
-    Returns:
-        The lens, and facts for metadata: degree, errors in um and px, and the model if it is not
-        the one that was asked for.
     """
     fit = lens.fit
     assert fit is not None
     tolerance = DEFAULT_TOLERANCE if camera.fit_tolerance is None else camera.fit_tolerance
     um = pitch_mm * 1e3
     whole = fit.error.all.film
-    facts: dict[str, Any] = {
-        "fit_degree": fit.degree,
-        "fit_error_um": whole.rms,
-        "fit_error_px": whole.rms / um,
-        "fit_largest_error_um": whole.max,
-    }
     said = (
         f"the fit of {name} to degree {fit.degree} is off by {_length(whole.rms)} RMS on the film"
     )
     lit = [zone for zone in fit.error.zones if zone.rays]
     worst = max(lit, key=lambda zone: zone.film.rms)
-    if worst.film.rms <= tolerance * um:
-        notes.append(f"{said}, {whole.rms / um:.2g} px")
-        return lens, facts
-    exact = lens.without_fit()
-    angles = [_field_deg(exact, worst.low, r) for r in (worst.low, worst.high)]
-    notes.append(
-        f"{said}, and {_length(worst.film.rms)} or {worst.film.rms / um:.2g} px at {worst.low:.3g} "
-        f"to {worst.high:.3g} mm from the middle ({angles[0]:.0f} to {angles[1]:.0f} degrees off "
-        f"the axis), beyond the {tolerance:g} px of fit_tolerance: the exact lens draws instead"
-    )
-    return exact, facts | {"lens_model": "exact"}
+    good = worst.film.rms <= tolerance * um
+    if good:
+        note = f"{said}, {whole.rms / um:.2g} px"
+    else:
+        angles = [_field_deg(lens.without_fit(), worst.low, r) for r in (worst.low, worst.high)]
+        note = (
+            f"{said}, and {_length(worst.film.rms)} or {worst.film.rms / um:.2g} px at "
+            f"{worst.low:.3g} to {worst.high:.3g} mm from the middle ({angles[0]:.0f} to "
+            f"{angles[1]:.0f} degrees off the axis), beyond the {tolerance:g} px of "
+            "fit_tolerance: the exact lens draws instead"
+        )
+    return FitQuality(fit.degree, whole.rms, whole.rms / um, whole.max, good, note)
 
 
 def _length(um: float) -> str:

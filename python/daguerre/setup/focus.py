@@ -18,33 +18,56 @@ _VERTICES_AT_ONCE = 1 << 18
 _ROUNDS = 4
 
 
-@dataclass
+#: unit view direction in the camera's frame of a film point (mm, upright)
+Directions = Callable[[float, float], NDArray[np.float64]]
+#: focus distance (m) at which a point of the camera's frame (m) is sharp
+SharpAt = Callable[[NDArray[np.float64]], float]
+
+
+@dataclass(frozen=True)
+class Sharp:
+    """A focus that was found.
+
+    Attributes:
+        distance_m: From the entrance pupil along the axis; may be infinite.
+        notes: How it was found, unless it was stated.
+    """
+
+    distance_m: float
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Focus:
-    """Answers "how far is what shall be sharp": m from the entrance pupil along the axis."""
+    """Answers how far away what shall be sharp is.
+
+    Attributes:
+        scene: For nodes.
+        camera: Camera that says what is to be sharp.
+        resolution: Width and height of the picture, px.
+        frame_mm: The same on the film, without overscan.
+        world: World from camera, m, shape (4, 4).
+        core_scene: For autofocus; None: it gives infinity.
+        sharp_at: Where a tilted lens has to focus for a point; None: at the point's depth.
+    """
 
     scene: Scene
     camera: Camera
     resolution: tuple[int, int]
-    frame: tuple[float, float]
+    frame_mm: tuple[float, float]
     world: NDArray[np.float64]
     core_scene: _core.Scene | None
-    notes: list[str]
-    #: focus distance (m) at which a point of the camera's frame is sharp; None: its depth
-    sharp_at: Callable[[NDArray[np.float64]], float] | None = None
+    sharp_at: SharpAt | None = None
 
-    def distance(self, direction_of: Callable[[float, float], NDArray[np.float64]]) -> float:
-        """The focus distance, m (may be infinite).
-
-        Args:
-            direction_of: Unit view direction in the camera's frame of a film point (mm, upright).
-        """
+    def distance(self, direction_of: Directions) -> Sharp:
+        """Finds the focus distance, given where film points look."""
         camera = self.camera
         if (
             camera.focus_at is None
             and camera.focus_on is None
             and camera.focus_distance is not None
         ):
-            return camera.focus_distance
+            return Sharp(camera.focus_distance)
         if camera.focus_on is not None:
             return self._on_node(camera.focus_on)
         x, y = camera.focus_at or (self.resolution[0] / 2, self.resolution[1] / 2)
@@ -53,44 +76,38 @@ class Focus:
                 f"camera: focus_at: wanted a pixel within {self.resolution[0]} x "
                 f"{self.resolution[1]}, got {x:g},{y:g}"
             )
-        film_x = (x / self.resolution[0] - 0.5) * self.frame[0] + camera.shift[0]
-        film_y = (0.5 - y / self.resolution[1]) * self.frame[1] + camera.shift[1]
+        film_x = (x / self.resolution[0] - 0.5) * self.frame_mm[0] + camera.shift[0]
+        film_y = (0.5 - y / self.resolution[1]) * self.frame_mm[1] + camera.shift[1]
         what = f"pixel {x:g},{y:g}" if camera.focus_at else "centre ray"
         return self._along(direction_of(film_x, film_y), what)
 
-    def settled(
-        self, direction_at: Callable[[float], Callable[[float, float], NDArray[np.float64]]]
-    ) -> float:
-        """The focus distance of a lens whose view follows its focus where that matters: tilted.
+    def settled(self, direction_at: Callable[[float], Directions]) -> Sharp:
+        """Finds the focus of a lens whose view follows its focus where that matters: tilted.
 
         Args:
-            direction_at: View directions of film points, given a focus distance in m.
+            direction_at: Where film points look, given a focus distance in m.
         """
-        kept = len(self.notes)
-        distance = self.distance(direction_at(math.inf))
-        if self.sharp_at is None:
-            return distance
-        for _ in range(_ROUNDS):
-            del self.notes[kept:]
-            distance = self.distance(direction_at(distance))
-        return distance
+        found = self.distance(direction_at(math.inf))
+        if self.sharp_at is not None:
+            for _ in range(_ROUNDS):
+                found = self.distance(direction_at(found.distance_m))
+        return found
 
-    def _along(self, direction: NDArray[np.float64], what: str) -> float:
+    def _along(self, direction: NDArray[np.float64], what: str) -> Sharp:
         hit = None
         if self.core_scene is not None:
             origin = tuple(self.world[:3, 3])
             hit = self.core_scene.first_hit(origin, tuple(self.world[:3, :3] @ direction))
         if hit is None:
-            self.notes.append(f"autofocus: {what} meets nothing; focus at infinity")
-            return math.inf
+            return Sharp(math.inf, (f"autofocus: {what} meets nothing; focus at infinity",))
         depth = float(hit[0]) * -float(direction[2])
         if not depth > 0:  # the camera stands in a surface
-            self.notes.append(f"autofocus: {what} begins on a surface; focus at infinity")
-            return math.inf
-        self.notes.append(f"autofocus: {what} meets a surface {depth:.4g} m away")
-        return depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
+            note = f"autofocus: {what} begins on a surface; focus at infinity"
+            return Sharp(math.inf, (note,))
+        distance = depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
+        return Sharp(distance, (f"autofocus: {what} meets a surface {depth:.4g} m away",))
 
-    def _on_node(self, name: str) -> float:
+    def _on_node(self, name: str) -> Sharp:
         """Depth of the visible surface in the middle of the node, else of its nearest vertex."""
         scene = self.scene
         if name not in scene.node_positions and name not in scene.nodes:
@@ -123,13 +140,15 @@ class Focus:
         depth = nearest if nearest < math.inf else farthest
         return self._in_front(name, depth, "has its nearest vertex", vertex - eye)
 
-    def _in_front(self, name: str, depth: float, verb: str, from_eye: NDArray[np.float64]) -> float:
+    def _in_front(self, name: str, depth: float, verb: str, from_eye: NDArray[np.float64]) -> Sharp:
         if not depth > 0:
             raise InputError(
                 f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)"
             )
-        self.notes.append(f"focus: node {name!r} {verb} {depth:.4g} m away")
-        return depth if self.sharp_at is None else self.sharp_at(self.world[:3, :3].T @ from_eye)
+        distance = (
+            depth if self.sharp_at is None else self.sharp_at(self.world[:3, :3].T @ from_eye)
+        )
+        return Sharp(distance, (f"focus: node {name!r} {verb} {depth:.4g} m away",))
 
 
 def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:
@@ -147,7 +166,7 @@ def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.f
                 yield world.reshape(-1, 3)
 
 
-def ideal_direction(film_distance: float) -> Callable[[float, float], NDArray[np.float64]]:
+def ideal_direction(film_distance: float) -> Directions:
     """View direction of a film point through the centre of an ideal lens."""
 
     def direction(x: float, y: float) -> NDArray[np.float64]:

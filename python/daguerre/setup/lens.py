@@ -5,52 +5,60 @@ All lengths in mm unless the name says otherwise. Distances of focus are m.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre import lenses
-from daguerre.camera.camera import Camera, Decenter
-from daguerre.camera.parameters import CAMERA
+from daguerre.camera.camera import Camera
 from daguerre.camera.parameters.needs import TRACED
-from daguerre.checks import number, numbers, short, whole
-from daguerre.errors import UsageError
 from daguerre.lenses.checking import frame_notes
 from daguerre.lenses.errors import LensError, reported
+from daguerre.lenses.focus import focused
+from daguerre.lenses.setting import LensSetting
 
-from . import fit as camera_fit
 from . import tilt
 from .aim_cache import exact_lens
-from .body import parts_of, stack_facts, stack_of
-from .focus import Focus, ideal_direction
-from .iris import dirt_facts, iris_facts, iris_of, mask_of
-
-DEFAULT_F_STOP: float = CAMERA["f_stop"].usual
-
-
-Directions = Callable[[float, float], NDArray[np.float64]]
+from .body import parts_of, stack_of
+from .fit import DEFAULT_DEGREE, FitQuality, judged
+from .focus import Directions, ideal_direction
+from .framing import Framing
+from .ideal import DEFAULT_F_STOP
+from .imperfections import imperfect
+from .iris import iris_of, mask_of
+from .resolved import Glass, ResolvedLens
 
 
 @dataclass(frozen=True)
-class RealLens:
-    """A prescription as a camera uses it.
+class _Chosen:
+    """A prescription at its zoom and f-stop, and the model that shall draw it.
 
     Attributes:
-        core: The core's camera.
-        pinhole_focal_length: Film distance of the pinhole with the same framing.
-        facts: For metadata and hashes, JSON-able.
+        lens: The lens, focused as its file has it.
+        model: One of ``MODELS``.
+        order: First-order data of that lens.
+        transmittance: Share of the light on the axis that passes the glass.
+        f_stop: Focal length / entrance pupil diameter.
     """
 
-    core: _core.Camera
-    pinhole_focal_length: float
-    facts: dict[str, Any]
+    lens: lenses.Lens
+    model: str
+    order: lenses.FirstOrder
+    transmittance: float
+    f_stop: float
+
+    @property
+    def traced(self) -> bool:
+        """Whether its surfaces are drawn, or polynomials that are fitted to them."""
+        return self.model in TRACED
+
+    @property
+    def squeeze(self) -> float:
+        """Squeeze of the picture; models without surfaces have one focal length."""
+        return self.lens.squeeze if self.traced else 1.0
 
 
 @dataclass(frozen=True)
@@ -72,73 +80,75 @@ class _InFocus:
     f_stop: float
 
 
-def set_up(
-    camera: Camera,
-    lens: lenses.Lens,
-    model: str,
-    frame: tuple[float, float],
-    pose: _core.Motion,
-    focus: Focus,
-) -> RealLens:
+@dataclass(frozen=True)
+class _Drawn:
+    """A lens that is ready to draw.
+
+    Attributes:
+        core: The core's camera.
+        h0: Illuminance on the axis by a world of 1 cd/m2, lux.
+        fit: Quality of its polynomials, if they were asked for.
+        notes: Notes for the user.
+    """
+
+    core: _core.Camera
+    h0: float
+    fit: FitQuality | None = None
+    notes: tuple[str, ...] = ()
+
+
+def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     """Focuses a lens and makes the camera of the model.
 
     Raises:
         UsageError: Autofocus on a pixel outside of the frame.
         InputError: The lens cannot focus or open so far.
     """
+    camera, focus = framing.camera, framing.focus
+    chosen = _chosen(camera, lens, model)
+    lens = chosen.lens
+    if any(camera.tilt):
+        cardinal = _cardinal_points(chosen.order)
+        focus = replace(focus, sharp_at=lambda p: tilt.focus_on(cardinal, camera.tilt, p))
+    found = focus.settled(lambda s: _directions(framing, chosen, s))
+    sharp = _focused(camera, chosen, found.distance_m)
+    film = framing_distance(sharp) * tilt.cosine(camera.tilt)
+    drawn = _traced(framing, model, sharp) if chosen.traced else _ideal(framing, model, sharp, film)
+    offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
+    fit = drawn.fit
+    return ResolvedLens(
+        core=drawn.core,
+        model=model if fit is None or fit.used else "exact",
+        name=lens.name,
+        focal_length_mm=lens.zoom_mm or lens.nominal.efl_mm or chosen.order.efl,
+        pinhole_focal_length_mm=film,
+        f_stop=chosen.f_stop,
+        focus_distance_m=sharp.distance,
+        glass=Glass(
+            lens=lens,
+            effective_focal_length_mm=sharp.order.efl,
+            entrance_pupil_offset_mm=offset,
+            squeeze=chosen.squeeze,
+            transmittance=chosen.transmittance,
+            h0=drawn.h0,
+            fit=fit,
+        ),
+        notes=(*found.notes, *lens.notes, *_notes(camera, chosen), *drawn.notes),
+    )
+
+
+def _chosen(camera: Camera, lens: lenses.Lens, model: str) -> _Chosen:
     lens = lens if camera.zoom is None else lens.at_zoom(camera.zoom)
     order = lens.first_order()
     transmittance = _transmittance(lens, order)
     f_stop = _f_stop(camera, lens, model, order, transmittance)
-    if any(camera.tilt):
-        imaging = _imaging(order)
-        focus.sharp_at = lambda point: tilt.focus_on(imaging, camera.tilt, point)
-    distance = focus.settled(lambda s: _directions(camera, lens, model, frame, f_stop, s))
-    sharp = _focused(camera, lens, distance, f_stop)
-    film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    squeeze = lens.squeeze if model in TRACED else 1.0  # other models have one focal length
-    focus.notes += lens.notes
-    focus.notes += _notes(camera, lens, model, squeeze, f_stop, transmittance)
-    fitted: dict[str, Any] = {}
-    if model in TRACED:
-        exact, fitted = _traced_lens(camera, model, sharp, frame, focus)
-        core, h0 = _core.Camera.exact(pose, exact), exact.h0
-        core.sensor_stack = stack_of(camera)
-        core.scatter = parts_of(camera)
-    else:
-        core, h0 = _core_camera(camera, model, sharp, pose, film)
-    facts = {
-        "lens": lens.name,
-        "lens_sha256": _hash_lens(lens),
-        "coating": lens.coating,
-        "focal_length_mm": lens.zoom_mm or lens.nominal.efl_mm or order.efl,
-        "effective_focal_length_mm": sharp.order.efl,
-        "zoom_mm": lens.zoom_mm,
-        "zoom_range_mm": lens.zoom_range_mm,
-        "squeeze": squeeze,
-        "decenter": [[list(part) for part in one] for one in decenters(camera)],
-        "f_stop": f_stop,
-        "t_stop": f_stop / math.sqrt(transmittance),
-        "focus_distance_m": sharp.distance,
-        "focus_by": camera.focus_by,
-        "entrance_pupil_offset_mm": (sharp.film_z - sharp.order.entrance_pupil.z)
-        * tilt.cosine(camera.tilt),
-        "h0": h0,
-        "transmittance": transmittance,
-        "ripple": None if camera.ripple is None else list(_ripple(camera)),
-        **fitted,
-        **iris_facts(camera),
-        **dirt_facts(camera),
-        **stack_facts(camera),
-    }
-    return RealLens(core, film, facts)
+    return _Chosen(lens, model, order, transmittance, f_stop)
 
 
-def _notes(
-    camera: Camera, lens: lenses.Lens, model: str, squeeze: float, f_stop: float, share: float
-) -> list[str]:
+def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
     """Notes on facts that a picture does not show: zoom, light lost in the glass, squeeze."""
     notes = []
+    lens, squeeze = chosen.lens, chosen.squeeze
     if lens.zoom_range_mm and camera.zoom is None:
         short_end, long_end = lens.zoom_range_mm
         notes.append(
@@ -147,61 +157,20 @@ def _notes(
         )
     if camera.t_stop is not None:
         notes.append(
-            f"T/{camera.t_stop:.3g} of {lens.name} is f/{f_stop:.3g}: "
-            f"{100 * share:.3g} % of the light passes the glass"
+            f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: "
+            f"{100 * chosen.transmittance:.3g} % of the light passes the glass"
         )
     if squeeze != 1:
         notes.append(
             f"{lens.name} is anamorphic: it squeezes the picture's width by {squeeze:.3g}; "
             f"view it with a pixel aspect of {squeeze:.3g} (the EXR file says so)"
         )
-    elif model not in TRACED and lens.squeeze != 1:
+    elif not chosen.traced and lens.squeeze != 1:
         notes.append(
-            f"{lens.name} is anamorphic: its {model} model has the focal length of the height "
-            "alone, and squeezes nothing"
+            f"{lens.name} is anamorphic: its {chosen.model} model has the focal length of the "
+            "height alone, and squeezes nothing"
         )
     return notes
-
-
-def decenters(camera: Camera) -> list[Decenter]:
-    """The elements off the axis, checked."""
-    wanted = "((first, last), (x, y)) or ((first, last), (x, y), (about x, about y))"
-    found: list[Decenter] = []
-    given: Any = camera.decenter
-    if not isinstance(given, tuple | list):
-        raise UsageError(f"camera: decenter: wanted a list of {wanted}, got {short(given)}")
-    for i, one in enumerate(given):
-        where = f"camera: decenter[{i}]"
-        if not isinstance(one, tuple | list) or len(one) not in (2, 3):
-            raise UsageError(f"{where}: wanted {wanted}, got {short(one)}")
-        first, last = numbers(one[0], where, 2, "the first and last surface")
-        x, y = numbers(one[1], where, 2, "two finite numbers (mm)")
-        a, b = numbers(one[2], where, 2, "two angles (deg)") if len(one) == 3 else (0.0, 0.0)
-        found.append(((int(first), int(last)), (x, y), (a, b)))
-    return found
-
-
-def _ripple(camera: Camera) -> tuple[float, float, int]:
-    given: Any = camera.ripple
-    if not isinstance(given, tuple | list) or len(given) not in (2, 3):
-        raise UsageError(f"camera: ripple: wanted (nm, um) or (nm, um, seed), got {short(given)}")
-    height, period, seed = numbers((*given, 0)[:3], "camera: ripple", 3, "nm, um and a seed")
-    number(height, "camera: ripple", 0, 1000)
-    number(period, "camera: ripple", 5, 10000)
-    return height, period, whole(int(seed), "camera: ripple: seed", 0, 2**32 - 1)
-
-
-def _rippled(lens: lenses.Lens, ripple: tuple[float, float, int]) -> lenses.Lens:
-    """The lens with grooves in all of its aspheric surfaces, each with its own."""
-    height, period, seed = ripple
-    if not any(s.kind == "aspheric" for s in lens.surfaces):
-        raise UsageError(f"camera: ripple: {lens.name} has no aspheric surface")
-    return lens.rebuilt(
-        [
-            s.replaced(ripple=(height, period, seed + i)) if s.kind == "aspheric" else s
-            for i, s in enumerate(lens.surfaces)
-        ]
-    )
 
 
 def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
@@ -234,47 +203,48 @@ def _f_stop(
     return f_stop
 
 
-def _focused(camera: Camera, lens: lenses.Lens, distance: float, f_stop: float) -> _InFocus:
-    from_sensor = camera.focus_from == "sensor" and camera.focus_distance is not None
-    found = lens.focused(
-        distance,
-        f_stop=f_stop,
-        by="best" if camera.focus_by == "best" else "paraxial",
-        measured_from="sensor" if from_sensor else "pupil",
+def _focused(camera: Camera, chosen: _Chosen, distance: float) -> _InFocus:
+    setting = LensSetting(
+        f_stop=chosen.f_stop,
+        focus_m=distance,
+        focus_by="best" if camera.focus_by == "best" else "paraxial",
+        focus_from="sensor" if _from_sensor(camera) else "pupil",
     )
-    if from_sensor:  # the film's place is known now, and with it the way to the pupil
+    found = focused(chosen.lens, setting)
+    if setting.from_sensor:  # the film's place is known now, and with it the way to the pupil
         distance -= (found.film_z_mm - found.entrance_pupil_z) * 1e-3
-    used = found.lens
-    for surfaces, place, angles in decenters(camera):
-        used = used.decentered(surfaces, place, angles)
-    if camera.ripple is not None:
-        used = _rippled(used, _ripple(camera))
-    return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, f_stop)
+    used = imperfect(found.lens, camera)
+    return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, chosen.f_stop)
 
 
-def _traced_lens(
-    camera: Camera, model: str, sharp: _InFocus, frame: tuple[float, float], focus: Focus
-) -> tuple[_core.ExactLens, dict[str, Any]]:
-    """The lens by its surfaces or by polynomials, and what there is to say of those."""
-    facts: dict[str, Any] = {}
+def _from_sensor(camera: Camera) -> bool:
+    return camera.focus_from == "sensor" and camera.focus_distance is not None
+
+
+def _traced(framing: Framing, model: str, sharp: _InFocus) -> _Drawn:
+    """Makes the camera of the lens by its surfaces or by polynomials."""
+    camera, film = framing.camera, framing.film_mm
+    fit, notes = None, []
     if model == "polynomial":
-        degree = camera.degree or camera_fit.DEFAULT_DEGREE
-        exact = _exact_lens(camera, sharp, frame, degree)
-        pitch = focus.frame[0] / focus.resolution[0]
-        exact, facts = camera_fit.judged(exact, camera, sharp.lens.name, pitch, focus.notes)
+        exact = _exact_lens(framing, sharp, camera.degree or DEFAULT_DEGREE)
+        fit = judged(exact, camera, sharp.lens.name, framing.pitch_mm)
+        exact = exact if fit.used else exact.without_fit()
+        notes.append(fit.note)
     else:
-        exact = _exact_lens(camera, sharp, frame)
-    focus.notes += frame_notes(exact, sharp.lens, frame, camera.shift)
+        exact = _exact_lens(framing, sharp)
+    notes += frame_notes(exact, sharp.lens, film, camera.shift)
     masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
     if any(mask is not None for mask in masks):
         exact = exact.with_dirt(*masks)
-    return exact, facts
+    core = _core.Camera.exact(framing.pose, exact)
+    core.sensor_stack = stack_of(camera)
+    core.scatter = parts_of(camera)
+    return _Drawn(core, exact.h0, fit, tuple(notes))
 
 
-def _core_camera(
-    camera: Camera, model: str, sharp: _InFocus, pose: _core.Motion, film: float
-) -> tuple[_core.Camera, float]:
-    """Makes the camera of a model without surfaces; returns it with its H0."""
+def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn:
+    """Makes the camera of a model without surfaces."""
+    camera, pose = framing.camera, framing.pose
     with reported(sharp.lens.source):
         thick = _core.ThickLens(
             sharp.lens.prescription,
@@ -294,22 +264,16 @@ def _core_camera(
         )
     else:
         core = _core.Camera.pinhole(pose, film, vignetting)
-    return core, thick.h0
+    return _Drawn(core, thick.h0)
 
 
-def _directions(
-    camera: Camera,
-    lens: lenses.Lens,
-    model: str,
-    frame: tuple[float, float],
-    f_stop: float,
-    distance: float,
-) -> Directions:
+def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Directions:
     """View directions of film points at a focus distance that may not be the last one."""
-    if camera.focus_at is None or model not in TRACED or any(camera.tilt):
-        film = framing_distance(_focused(camera, lens, distance, f_stop))
+    camera = framing.camera
+    if camera.focus_at is None or not chosen.traced or any(camera.tilt):
+        film = framing_distance(_focused(camera, chosen, distance))
         return ideal_direction(film * tilt.cosine(camera.tilt))
-    far = _exact_lens(camera, _focused(camera, lens, math.inf, f_stop), frame)
+    far = _exact_lens(framing, _focused(camera, chosen, math.inf))
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
         return np.array(far.chief_direction(x, y))
@@ -317,9 +281,9 @@ def _directions(
     return direction
 
 
-def _imaging(order: lenses.FirstOrder) -> tilt.Imaging:
+def _cardinal_points(order: lenses.FirstOrder) -> tilt.CardinalPoints:
     front = order.front_principal_point - order.front_focal_point
-    return tilt.Imaging(
+    return tilt.CardinalPoints(
         order.front_focal_point,
         order.back_focal_point,
         order.efl * front,
@@ -343,9 +307,10 @@ def framing_distance(sharp: _InFocus) -> float:
 
 
 def _exact_lens(
-    camera: Camera, sharp: _InFocus, frame: tuple[float, float], fit_degree: int | None = None
+    framing: Framing, sharp: _InFocus, fit_degree: int | None = None
 ) -> _core.ExactLens:
-    half = [abs(s) + size / 2 for s, size in zip(camera.shift, frame, strict=True)]
+    camera, film = framing.camera, framing.film_mm
+    half = [abs(s) + size / 2 for s, size in zip(camera.shift, film, strict=True)]
     settings = _core.ExactLensSettings(
         f_stop=sharp.f_stop,
         iris=iris_of(camera),
@@ -355,13 +320,8 @@ def _exact_lens(
         film_z_mm=sharp.film_z,
         tilt_deg=camera.tilt,
         film_center_mm=camera.shift,
-        film_half_mm=(0.51 * frame[0], 0.51 * frame[1]),
+        film_half_mm=(0.51 * film[0], 0.51 * film[1]),
         fit_degree=fit_degree,
     )
     with reported(sharp.lens.source):
         return exact_lens(sharp.lens.prescription, settings)
-
-
-def _hash_lens(lens: lenses.Lens) -> str:
-    text = json.dumps(lens.data, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,11 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
+from daguerre.camera.parameters.needs import TRACED
 from daguerre.errors import UsageError
 from daguerre.motion.resample import resample
+
+from .resolved import ResolvedLens
 
 #: Blur, px, by which the focus of a state may miss.
 STATE_BLUR = 0.1
@@ -42,7 +46,7 @@ _LENS = (
 _ACROSS = 9  # points across the picture at which it is seen how far a model moves it
 
 
-@dataclass
+@dataclass(frozen=True)
 class LensMotion:
     """Changes of a lens within an exposure, and how it is made for a moment.
 
@@ -51,34 +55,26 @@ class LensMotion:
         changing: Names of the parameters that change within the interval.
         begin: Begin of the interval, s.
         end: End of the interval, s.
-        focus_distance: m, unless it changes; None: a pinhole.
-        f_stop: Unless it changes; None: a pinhole.
-        film_offset: From the entrance pupil to the film at mid-exposure, m.
-        make: The core's camera for one without motion.
+        lens: The lens at mid-exposure.
+        make: Makes the lens of a camera without motion.
     """
 
     camera: Camera
     changing: set[str]
     begin: float
     end: float
-    focus_distance: float | None
-    f_stop: float | None
-    film_offset: float
-    make: Callable[[Camera], _core.Camera]
+    lens: ResolvedLens
+    make: Callable[[Camera], ResolvedLens]
 
-    def apply(
-        self, core: _core.Camera, efl: float | None, frame: tuple[float, float], pitch: float
-    ) -> str | None:
+    def apply(self, frame: tuple[float, float], pitch: float) -> list[str]:
         """Hands the changes over to the core's camera of mid-exposure.
 
         Args:
-            core: The camera.
-            efl: Focal length of a lens that is set up in states, mm; None: an ideal lens.
             frame: Size of the picture on the film, mm.
             pitch: Pixel pitch, mm.
 
         Returns:
-            A note, if a bound is missed.
+            Notes on bounds that are missed, and on what stands in for what.
 
         Raises:
             UsageError: A parameter changes that cannot.
@@ -88,29 +84,40 @@ class LensMotion:
                 "camera: sensor_size: cannot change while the shutter is open; "
                 "wanted a focal_length that does, or shutter_time=0"
             )
-        note = None
-        if efl is None:
+        notes: list[str] = []
+        if not self._in_states:
             if self.changing & {*_LENS}:
-                note = self._change_ideal(core)
+                notes = self._change_ideal()
         elif self.changing & {*_LENS, "shift"}:
-            note = self._change_states(core, efl, frame, pitch)
-        if "shift" in self.changing or (efl is not None and "f_stop" in self.changing):
-            self._change_setting(core, exact=efl is not None)
-        return note
+            notes = self._change_states(frame, pitch)
+        if "shift" in self.changing or (self._in_states and "f_stop" in self.changing):
+            self._change_setting()
+        return notes
+
+    @property
+    def _in_states(self) -> bool:
+        """Whether the lens is set up in states; ideal lenses blend."""
+        return self.lens.model in (*TRACED, "thick")
+
+    @cached_property
+    def _still(self) -> Camera:
+        """The camera at mid-exposure."""
+        return self.camera.frozen_at(0.5 * (self.begin + self.end))
 
     def _at(self, time: float) -> Camera:
         """The camera at a time; what it focuses on is known."""
-        now = self.camera.at(time)
-        if "focus_distance" in self.changing or self.focus_distance is None:
+        now = self.camera.frozen_at(time)
+        distance = self.lens.focus_distance_m
+        if "focus_distance" in self.changing or distance is None:
             return now
         known: dict[str, Any] = {"focus_on": None, "focus_at": None}
         if "zoom" in self.changing:  # which moves the pupil, while the film stays
             known |= {
-                "focus_distance": self.focus_distance + self.film_offset,
+                "focus_distance": distance + self.lens.film_offset_m(self._still.tilt),
                 "focus_from": "sensor",
             }
         else:
-            known |= {"focus_distance": self.focus_distance, "focus_from": "pupil"}
+            known |= {"focus_distance": distance, "focus_from": "pupil"}
         return replace(now, **known)
 
     def _fractions(self, times: Sequence[float]) -> NDArray[np.float32]:
@@ -122,12 +129,12 @@ class LensMotion:
         even = self.begin + (self.end - self.begin) * np.arange(_LOOKS + 1) / _LOOKS
         return [float(t) for t in even]
 
-    def _change_ideal(self, core: _core.Camera) -> str | None:
+    def _change_ideal(self) -> list[str]:
         made: dict[float, _core.Camera] = {}
 
         def lens(time: float) -> _core.Camera:
             if time not in made:
-                made[time] = self.make(self._at(time))
+                made[time] = self.make(self._at(time)).core
             return made[time]
 
         watched = _Watched(lambda t: lens(t).lens_numbers, self.camera, self.changing)
@@ -137,9 +144,7 @@ class LensMotion:
             steps = [*steps, *self._looks()[:: _LOOKS // (MAX_STATES - 1)]]
         if steps:
             times = sorted({*times, *steps})
-        core.change_lens(self._fractions(times), [lens(t) for t in times])
-        if needed <= MAX_MODELS:
-            return None
+        self.lens.core.change_lens(self._fractions(times), [lens(t) for t in times])
         return _too_many("projection: its parameters", needed, MAX_MODELS)
 
     def _model_times(self) -> tuple[list[float], int]:
@@ -158,14 +163,12 @@ class LensMotion:
         moved = np.linalg.norm(np.diff(places, axis=0), axis=2)
         return self._spread(np.nan_to_num(moved).max(axis=1) / (2 * MODEL_BLUR), MAX_MODELS)
 
-    def _change_states(
-        self, core: _core.Camera, efl: float, frame: tuple[float, float], pitch: float
-    ) -> str | None:
+    def _change_states(self, frame: tuple[float, float], pitch: float) -> list[str]:
         cameras = [self._at(t) for t in self._looks()]
         widest = min(self._stop(c) for c in cameras)
         shifts = np.abs([c.shift for c in cameras]).max(axis=0)
         reach = math.hypot(*(size / 2 + s for size, s in zip(frame, shifts, strict=True)))
-        times, needed = self._state_times(cameras, efl, reach, widest, STATE_BLUR * pitch)
+        times, needed = self._state_times(cameras, reach, widest, STATE_BLUR * pitch)
         states = [
             replace(
                 self._at(t), f_stop=widest, t_stop=None, shift=(float(shifts[0]), float(shifts[1]))
@@ -173,19 +176,25 @@ class LensMotion:
             for t in times
         ]
         with ThreadPoolExecutor() as pool:
-            core.change_lens(self._fractions(times), list(pool.map(self.make, states)))
-        if needed <= MAX_STATES:
-            return None
-        return _too_many("lens: its focus and iris", needed, MAX_STATES)
+            made = list(pool.map(self.make, states))
+        self.lens.core.change_lens(self._fractions(times), [lens.core for lens in made])
+        notes = _too_many("lens: its focus and iris", needed, MAX_STATES)
+        models = [lens.model for lens in made]
+        if "polynomial" in models and "exact" in models:
+            notes.append(
+                f"{models.count('exact')} of the {len(models)} states of the lens are not fitted "
+                "well enough: the exact lens draws them"
+            )
+        return notes
 
     def _stop(self, camera: Camera) -> float:
         if "f_stop" in self.changing and camera.f_stop is not None:
             return float(camera.f_stop)
-        assert self.f_stop is not None  # an exact lens has one
-        return self.f_stop
+        assert self.lens.f_stop is not None  # an exact lens has one
+        return self.lens.f_stop
 
     def _state_times(
-        self, cameras: list[Camera], efl: float, reach: float, stop: float, blur_mm: float
+        self, cameras: list[Camera], reach: float, stop: float, blur_mm: float
     ) -> tuple[list[float], int]:
         """Times of the states, and how many the bounds ask for.
 
@@ -196,7 +205,7 @@ class LensMotion:
         film_mm = blur_mm * stop
         # inf counts as 0, so does a focus that stays
         inverse = [1e-3 / c.focus_distance if c.focus_distance else 0.0 for c in cameras]
-        steps = efl**2 * np.abs(np.diff(inverse)) / (2 * film_mm)
+        steps = self.lens.effective_focal_length_mm**2 * np.abs(np.diff(inverse)) / (2 * film_mm)
         tilts = np.radians([c.tilt for c in cameras])
         steps += reach * np.abs(np.diff(tilts, axis=0)).sum(axis=1) / (2 * film_mm)
         zooms = np.log([c.zoom or 1.0 for c in cameras])
@@ -217,9 +226,9 @@ class LensMotion:
         middles = way[-1] * (np.arange(count) + 0.5) / count
         return [float(t) for t in np.interp(middles, way, self._looks())], needed
 
-    def _change_setting(self, core: _core.Camera, *, exact: bool) -> None:
+    def _change_setting(self) -> None:
         """Iris radius of an exact lens, relative to its widest, and the film's shift."""
-        middle = self.camera.at(0.5 * (self.begin + self.end)).shift
+        core, exact, middle = self.lens.core, self._in_states, self._still.shift
         widest = min(self._stop(self._at(t)) for t in self._looks()) if exact else 1.0
 
         def setting(time: float) -> tuple[float, float, float]:
@@ -235,8 +244,10 @@ class LensMotion:
         core.change_setting(self._fractions(times), openings, np.ascontiguousarray(table[:, 1:]))
 
 
-def _too_many(what: str, needed: int, most: int) -> str:
-    return f"{what} change so much that {needed} states were wanted; {most} are taken"
+def _too_many(what: str, needed: int, most: int) -> list[str]:
+    if needed <= most:
+        return []
+    return [f"{what} change so much that {needed} states were wanted; {most} are taken"]
 
 
 @dataclass(frozen=True)

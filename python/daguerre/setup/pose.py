@@ -89,7 +89,7 @@ def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
     """
     moving = camera.motion.get("transform")
     if moving is None or not end > begin:
-        return _core.Motion.still(rigid(camera.at(0.5 * (begin + end)).transform))
+        return _core.Motion.still(rigid(camera.frozen_at(0.5 * (begin + end)).transform))
     if isinstance(moving, Spin):
         base = moving.transform
         if not isinstance(base, Keys):
@@ -101,24 +101,41 @@ def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
     return resample_transform(_Rigid(moving), begin, end, _AROUND).over(begin, end)
 
 
-def motion_facts(camera: Camera, begin: float, end: float) -> dict[str, Any]:
-    """Which parameters change in an interval, and what identifies how; for metadata and hashes."""
+@dataclass(frozen=True)
+class Change:
+    """How a parameter changes in an interval, JSON-able.
+
+    Attributes:
+        open: Its value at the begin.
+        close: Its value at the end.
+        sha256: Hash of its values on the way.
+    """
+
+    open: Any
+    close: Any
+    sha256: str
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The change for metadata and hashes."""
+        return {"open": self.open, "close": self.close, "sha256": self.sha256}
+
+
+def changes(camera: Camera, begin: float, end: float) -> dict[str, Change]:
+    """Which parameters change in an interval, s, and how."""
     if not end > begin:
         return {}
     even = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
-    found: dict[str, Any] = {}
+    found: dict[str, Change] = {}
     for name, dynamic in camera.motion.items():
         breaks = [float(t) for t in dynamic.breaks(begin, end)]
         times = sorted({*even, *breaks[: 16 * _LOOKS]})
         values = [_plain(dynamic.at(t)) for t in times]
         if any(value != values[0] for value in values):
             text = json.dumps([values, breaks])
-            found[name] = {
-                "open": values[0],
-                "close": values[-1],
-                "sha256": hashlib.sha256(text.encode()).hexdigest(),
-            }
-    return {"motion": found} if found else {}
+            digest = hashlib.sha256(text.encode()).hexdigest()
+            found[name] = Change(values[0], values[-1], digest)
+    return found
 
 
 def _plain(value: Any) -> Any:

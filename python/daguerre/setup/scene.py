@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 import daguerre._core as _core
-from daguerre.checks import frozen, short
+from daguerre.checks import as_readonly, short
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.motion.subdivision import samples
 from daguerre.scene.scene import Scene
 
-from .scene_motion import Moving
+from .scene_motion import MovingParts
 from .shading import add_environment, add_lights, add_materials
 
 
@@ -39,15 +39,15 @@ def build(
         builder = _core.SceneBuilder()
         seen = interval or (scene.time, scene.time)
         builder.set_interval(*seen)
-        moving = Moving(scene, seen, [] if notes is None else notes)
+        moving = MovingParts(scene, seen, [] if notes is None else notes)
         _add_all(builder, scene, moving)
         moving.finish()
         return builder.build()
 
 
-def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: Moving) -> None:
+def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> None:
     for texture in scene.textures:
-        pixels = frozen(texture.pixels)
+        pixels = as_readonly(texture.pixels)
         filters = (texture.filter, texture.min_filter)
         builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, *filters)
     for i, mesh in enumerate(scene.meshes):
@@ -55,9 +55,9 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: Moving) -> None:
         optional = (v.normals, v.uv, v.uv1, v.tangents, v.colors)
         builder.add_mesh(
             mesh.name,
-            frozen(v.positions),
-            frozen(mesh.indices),
-            *(None if values is None else frozen(values) for values in optional),
+            as_readonly(v.positions),
+            as_readonly(mesh.indices),
+            *(None if values is None else as_readonly(values) for values in optional),
         )
     add_materials(builder, scene, moving.interval)
     for i, instance in enumerate(scene.instances):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre.checks import given_matrix, given_up
+from daguerre.checks import freeze_in_place, given_matrix
 from daguerre.errors import InputError, core_errors
 from daguerre.motion.resample import resample_shown, resample_transform
 from daguerre.motion.subdivision import MAX_BREAKS, MAX_KEYS
@@ -28,7 +28,7 @@ MAX_ALL_BREAKS = 1 << 18
 _MIN_BREAKS = 8
 
 
-class Moving:
+class MovingParts:
     """The moving parts of a scene over an interval.
 
     Args:
@@ -131,7 +131,7 @@ class Moving:
 def _stacked(steps: list[Vertices], name: str) -> Any:
     """One array of all steps; None where a step has none."""
     arrays = [getattr(step, name) for step in steps]
-    return None if any(a is None for a in arrays) else given_up(np.stack(arrays))
+    return None if any(a is None for a in arrays) else freeze_in_place(np.stack(arrays))
 
 
 def corners(mesh: Mesh) -> FloatArray:

@@ -43,7 +43,7 @@ def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
 
 
 @dataclass(frozen=True)
-class Imaging:
+class CardinalPoints:
     """Cardinal points of a lens, which decide where images lie: z in its frame, see ``FirstOrder``.
 
     Attributes:
@@ -61,34 +61,34 @@ class Imaging:
     pupil_z: float
 
     @classmethod
-    def thin(cls, focal_length: float) -> Imaging:
+    def thin(cls, focal_length: float) -> CardinalPoints:
         """Makes that of a thin lens."""
         return cls(-focal_length, focal_length, focal_length**2, focal_length, 0)
 
 
-def focus_on(imaging: Imaging, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
+def focus_on(cardinal: CardinalPoints, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
     """Focus distance (m, along the lens's axis) at which a point of the camera's frame is sharp.
 
     The point's image (Newton's x x' = f f') lies on the film; so the film's place is known, and
     with it what is sharp on the axis.
 
     Args:
-        imaging: The lens.
+        cardinal: The lens.
         tilt_deg: About x and y.
         point_m: Shape (3,), camera frame, m.
     """
     rotation = turn(tilt_deg)
     p = 1e3 * rotation.T @ point_m
-    before = imaging.front_focal_z - (p[2] + imaging.pupil_z)  # of the front focus
+    before = cardinal.front_focal_z - (p[2] + cardinal.pupil_z)  # of the front focus
     if not before > 0:
         return math.inf
-    image_z = imaging.back_focal_z + imaging.focal_squared / before - imaging.pupil_z
-    scale = -imaging.front_focal / before
+    image_z = cardinal.back_focal_z + cardinal.focal_squared / before - cardinal.pupil_z
+    scale = -cardinal.front_focal / before
     depth = float((rotation @ [scale * p[0], scale * p[1], image_z])[2])  # of the film
-    behind = depth / rotation[2, 2] + imaging.pupil_z - imaging.back_focal_z
+    behind = depth / rotation[2, 2] + cardinal.pupil_z - cardinal.back_focal_z
     if not behind > 0:
         return math.inf
-    return 1e-3 * float(imaging.focal_squared / behind - imaging.front_focal_z + imaging.pupil_z)
+    return 1e-3 * float(cardinal.focal_squared / behind - cardinal.front_focal_z + cardinal.pupil_z)
 
 
 def focus_still(film_mm: float, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:

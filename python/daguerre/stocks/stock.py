@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import number
 from daguerre.color import illuminants
 from daguerre.errors import InputError
-from daguerre.sensors.checking import tells_colours
+from daguerre.sensors.checking import tells_colors
 from daguerre.sensors.curve import rising
 
 from .curve import CharacteristicCurve
@@ -181,7 +181,7 @@ def _check(stock: Stock) -> None:
         if (layer.curve.gamma < 0) != (stock.kind == "reversal"):
             wanted = "below 0" if stock.kind == "reversal" else "above 0"
             raise InputError(f"{here}: gamma: of {stock.kind} film wanted {wanted}")
-    if not tells_colours(np.array([layer.sensitivity for layer in stock.layers]), nm):
+    if not tells_colors(np.array([layer.sensitivity for layer in stock.layers]), nm):
         raise InputError(
             f"{where}: sensitivity: wanted layers that see light between 380 and 780 nm, each "
             "another than the others"

@@ -123,10 +123,10 @@ class MapFlags:
 def _write_stmaps(
     scene: Any, camera: Any, size: tuple[int, int], overscan: Any, files: dict[str, Path]
 ) -> None:
-    from daguerre.distortion.rectified import Sight
+    from daguerre.distortion.rectified import RectifiedView
     from daguerre.maps.st_maps import StMaps
 
-    maps = StMaps(Sight(camera, size, scene=scene, overscan=overscan), overscan)
+    maps = StMaps(RectifiedView(camera, size, scene=scene, overscan=overscan), overscan)
     maps.save(**files)
     source = {"undistort": "a picture of this camera", "redistort": "a straight picture"}
     for name, path in files.items():

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from daguerre.camera.parameters import CAMERA
-from daguerre.lenses.focus import By
+from daguerre.lenses.setting import By
 from daguerre.parameters.parameter import Parameter
 
 from .from_table import TableFlags

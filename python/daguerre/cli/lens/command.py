@@ -24,7 +24,7 @@ from .flare import Flare
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
     from daguerre.lenses import Lens
-    from daguerre.lenses.focus import By
+    from daguerre.lenses.setting import By
 
 #: the wavelength of the helium d line, at which lenses are specified, nm
 DESIGN_NM = 587.56

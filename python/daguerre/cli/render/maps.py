@@ -29,7 +29,7 @@ def _write(plan: Plan, job: Job, picture: Picture) -> None:
     from daguerre.camera.overscan import check_overscan
     from daguerre.camera.shutter import interval
     from daguerre.distortion.overscan import note, to_undistort
-    from daguerre.distortion.rectified import Sight
+    from daguerre.distortion.rectified import RectifiedView
     from daguerre.rendering.truth import focused
     from daguerre.setup.camera import set_up
     from daguerre.setup.scene import build
@@ -37,10 +37,11 @@ def _write(plan: Plan, job: Job, picture: Picture) -> None:
     scene, camera = job.scene_of(picture), job.camera_of(picture)
     size = picture.settings.film.resolution
     setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
-    camera = focused(camera, setup.facts)
+    camera = focused(camera, setup.lens.focus_distance_m)
     overscan = check_overscan(picture.settings.film.overscan, size, "--overscan")
     if overscan is None:
-        overscan = to_undistort(Sight(camera, size, scene=scene), "--overscan undistort")
+        view = RectifiedView(camera, size, scene=scene)
+        overscan = to_undistort(view, "--overscan undistort")
         console.note(note(overscan))
     moment = picture.settings.truth.moment
     plan.maps_of(picture).write(scene, camera, size, overscan, moment)

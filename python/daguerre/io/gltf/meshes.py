@@ -13,7 +13,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import given_up
+from daguerre.checks import freeze_in_place
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
@@ -211,9 +211,13 @@ class Meshes:
         moves = moves or (source.skin is not None and self._skins.moves(source.skin))
         made = finished(arrays, base if moves else {}, triangles, self._notes)
         index = self._scene.add_mesh(
-            indices=given_up(triangles),
+            indices=freeze_in_place(triangles),
             name=name,
-            **{key: cast("Any", given_up(v)) for key, v in vars(made).items() if v is not None},
+            **{
+                key: cast("Any", freeze_in_place(v))
+                for key, v in vars(made).items()
+                if v is not None
+            },
         )
         if moves:
             skin_of = None if influences is None else (source.skin or 0, influences)

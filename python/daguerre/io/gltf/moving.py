@@ -37,7 +37,7 @@ Matrices = NDArray[np.float64]
 _MAX_LOOKS = 64
 
 
-class Moving:
+class MotionReader:
     """Knows what moves.
 
     Args:

@@ -31,7 +31,7 @@ from .instancing import instance_transforms
 from .lights import light_items, read_light
 from .materials import read_material, read_materials
 from .meshes import Meshes
-from .moving import Moving
+from .moving import MotionReader
 from .nodes import Placed, Tree, unique_names
 from .placing import Placing
 from .poses import Poses
@@ -104,7 +104,7 @@ class _Reader:
             *(self.scene, copies, self.notes),
         )
         self.placing = Placing(self.scene, copies, self.notes)
-        self.moving = Moving(self.scene, self.animations, self.poses)
+        self.moving = MotionReader(self.scene, self.animations, self.poses)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)
         self.names = unique_names(self.tree, self.meshes.items, self.cameras)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import given_up
+from daguerre.checks import freeze_in_place
 from daguerre.files import extras
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
@@ -144,7 +144,7 @@ class Textures:
             if srgb and pixels.dtype != np.uint8:  # only 8-bit textures are decoded on lookup
                 pixels, srgb = _linear(pixels), False
             scene.add_texture(
-                given_up(pixels),
+                freeze_in_place(pixels),
                 srgb=srgb,
                 wrap=plan.sampler.wrap,
                 filter=plan.sampler.filter,

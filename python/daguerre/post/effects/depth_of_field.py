@@ -14,8 +14,8 @@ from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
 from daguerre.post import channels
 from daguerre.post.array import on_array
+from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
-from daguerre.post.fours import in_fours
 from daguerre.post.iris import BLADES, iris_shape
 from daguerre.post.optics import FOCAL_LENGTH, SENSOR, film_plane, focal_length_mm, offsets
 from daguerre.post.parameter import Parameter
@@ -121,7 +121,7 @@ class _DepthOfField(Step):
         depth = np.asarray(band.planes[self._plane], np.float32)
         depth = np.where(np.isnan(depth) | (depth == 0), np.float32(np.inf), depth)
         if self._along_ray:
-            x, y = offsets(self._canvas, band.rows, self._film.centre)
+            x, y = offsets(self._canvas, band.rows, self._film.center)
             slope = np.hypot(x, y) * np.float32(self._film.pitch_mm / self._lens.film_mm)
             depth = np.asarray(depth / np.hypot(1, slope), np.float32)
         radius = self._lens.radius_mm(depth) / np.float32(self._film.pitch_mm)
@@ -130,7 +130,7 @@ class _DepthOfField(Step):
     def apply(self, band: Band, rows: Rows) -> Band:
         radius = np.ascontiguousarray(self._radii(band))
         inside = (rows.begin - band.rows.begin, rows.end - band.rows.begin)
-        image = in_fours(band.image, lambda four: defocus(four, radius, self._iris, inside))
+        image = by_four_channels(band.image, lambda four: defocus(four, radius, self._iris, inside))
         return band.cut(rows).with_image(image)
 
     def remarks(self) -> list[str]:

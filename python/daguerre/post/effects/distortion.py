@@ -77,7 +77,7 @@ def distort(
     focal = (focal_px, focal_px) if isinstance(focal_px, int | float) else focal_px
 
     def make(canvas: Canvas) -> Step:
-        middle = canvas.centre if centre is None else centre
+        middle = canvas.center if centre is None else centre
         maps = [point_map(m, focal, middle, scale=scale, inverse=inverse) for m in given]
         warps = Warp.of_each(canvas, maps)
         return WarpStep(canvas, warps, filter=filter, antialias=antialias)
@@ -141,8 +141,8 @@ def camera(
         for k, name in enumerate(("cx", "cy"))
     )
     if values["model"] == "lens":
-        colours = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
-        made, focal_px = lens_models(canvas, values, colours)
+        colors = CHANNEL_NM if values["lateral_colour"] else CHANNEL_NM[1:2]
+        made, focal_px = lens_models(canvas, values, colors)
         return made, focal_px, (centre[0], centre[1])
     if values["fx"] is not None:
         focal = (values["fx"], values["fy"] or values["fx"])
@@ -166,7 +166,7 @@ def lens_models(
         raise UsageError("lens: wanted a name or a file with model=lens, got nothing")
     film = film_plane(canvas, values)
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
-    reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.centre).max(axis=0)
+    reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.center).max(axis=0)
     item = bench(values)
     if not item.lens.prescription.is_axially_symmetric:
         maps = LensMap.of_colours(item, (float(reach[0]), float(reach[1])), wavelengths_nm)

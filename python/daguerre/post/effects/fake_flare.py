@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from daguerre._core import IrisShape, defocus, rounded_blur
 from daguerre.convolution.rows import Rows
 from daguerre.post.array import on_array
+from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
-from daguerre.post.fours import in_fours
 from daguerre.post.iris import BLADES, iris_shape, outline
 from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image, Source, bands
@@ -64,19 +64,19 @@ def ghosts(count: int, seed: int) -> list[Ghost]:
 class _FakeFlare(Step):
     def __init__(self, canvas: Canvas, values: Values) -> None:
         self._canvas = canvas
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._values = values
         self._iris = iris_shape(values)
         self._block = math.ceil(max(canvas.width, canvas.height) / LARGEST)
-        self._flare: Image = np.zeros((1, 1, self._colours), np.float32)
+        self._flare: Image = np.zeros((1, 1, self._colors), np.float32)
 
     def prepare(self, source: Source) -> None:
         """Collects highlights in a small picture, and draws their flare there."""
         canvas, block = self._canvas, self._block
         height, width = (math.ceil(n / block) for n in (canvas.height, canvas.width))
-        small = np.zeros((height, width, self._colours), np.float32)
+        small = np.zeros((height, width, self._colors), np.float32)
         for band in bands(source, SCAN * block):
-            light = np.nan_to_num(band.image[:, :, : self._colours], posinf=0, neginf=0)
+            light = np.nan_to_num(band.image[:, :, : self._colors], posinf=0, neginf=0)
             light = light * (light.max(axis=2, keepdims=True) > self._values["threshold"])
             y = np.arange(band.rows.begin, band.rows.end) // block
             columns = np.add.reduceat(light, np.arange(0, canvas.width, block), axis=1)
@@ -91,7 +91,7 @@ class _FakeFlare(Step):
         bounced = values["reflectance"] ** 2
         for ghost in ghosts(values["ghosts"], values["seed"]):
             spot = _spread(light, ghost.place, half * ghost.radius, self._iris)
-            tint = ghost.tint if self._colours == 3 else np.ones(1, np.float32)
+            tint = ghost.tint if self._colors == 3 else np.ones(1, np.float32)
             out += bounced * tint * spot
         if values["halo"] > 0:
             ring = half * values["halo_radius"]
@@ -105,7 +105,7 @@ class _FakeFlare(Step):
         image = band.image.copy()
         y = (np.arange(rows.begin, rows.end) + 0.5) / self._block - 0.5
         x = (np.arange(image.shape[1]) + 0.5) / self._block - 0.5
-        image[:, :, : self._colours] += _between(_between(self._flare, y, 0), x, 1)
+        image[:, :, : self._colors] += _between(_between(self._flare, y, 0), x, 1)
         return band.with_image(image)
 
 
@@ -127,7 +127,7 @@ def _spread(light: Image, place: float, radius: float, iris: IrisShape) -> Image
             amount = light[y[inside], x[inside]] * share[inside, None]
             np.add.at(canvas, (row[inside], column[inside]), amount.astype(np.float32))
     blur = np.full(canvas.shape[:2], -radius, np.float32)
-    spread = in_fours(
+    spread = by_four_channels(
         canvas, lambda four: np.asarray(defocus(four, blur, iris, (rim, rim + height)))
     )
     return spread[:, rim : rim + width]

@@ -44,7 +44,7 @@ def _shared(canvas: Canvas, share: float | Floats, kernel: Floats) -> Step:
 
 def _shape(canvas: Canvas) -> tuple[int, int, int]:
     """Shape of the picture's colours, without alpha."""
-    return canvas.height, canvas.width, len(canvas.colours) - canvas.alpha
+    return canvas.height, canvas.width, len(canvas.colors) - canvas.alpha
 
 
 def _window(canvas: Canvas, wanted_px: float) -> int:
@@ -62,10 +62,10 @@ def _halo(canvas: Canvas, values: Values) -> Step:
     thickness = values["thickness"] / film_plane(canvas, values).pitch_mm
     size = _window(canvas, 60 * thickness)
     kernel = kernels.halation(thickness, values["index"], size)
-    colours = len(canvas.colours) - canvas.alpha
+    colors = len(canvas.colors) - canvas.alpha
     # The emulsion's last layer, next to the base, is the red one.
     shares = np.array([values["red"], values["green"], values["blue"]], np.float32)
-    shares = values["share"] * (shares if colours == 3 else shares[:1])
+    shares = values["share"] * (shares if colors == 3 else shares[:1])
     if (shares > 1).any():
         raise UsageError(f"{canvas.where}: halo: share: wanted at most 1 of each colour")
 
@@ -120,8 +120,8 @@ def iris_of(values: Values) -> Iris:
 
 
 def _needs_rgb(canvas: Canvas, name: str) -> None:
-    if len(canvas.colours) - canvas.alpha != 3:
-        listed = ", ".join(canvas.colours)
+    if len(canvas.colors) - canvas.alpha != 3:
+        listed = ", ".join(canvas.colors)
         raise InputError(f"{canvas.where}: {name}: wanted channels R, G and B, got {listed}")
 
 
@@ -137,8 +137,8 @@ def _psf(canvas: Canvas, values: Values) -> Step:
         )
     if not (np.isfinite(kernel).all() and (kernel.sum(axis=(0, 1)) > 0).all()):
         raise InputError(f"{values['file']}: point spread: wanted finite values, some above 0")
-    colours = len(canvas.colours) - canvas.alpha
-    kernel = kernel[:, :, :3] if colours == 3 else kernel[:, :, :3].mean(axis=2, keepdims=True)
+    colors = len(canvas.colors) - canvas.alpha
+    kernel = kernel[:, :, :3] if colors == 3 else kernel[:, :, :3].mean(axis=2, keepdims=True)
     if values["normalise"]:
         kernel = kernel / kernel.sum(axis=(0, 1), dtype=np.float64)
     return Spreading(canvas, spreader_of(kernel, _shape(canvas)))

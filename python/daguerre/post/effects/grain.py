@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 class _Grain(Step):
     def __init__(self, canvas: Canvas, values: Values) -> None:
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._corner = canvas.corner
         pitch_um = 1e3 * film_plane(canvas, values).pitch_mm
         self._radius = 0.5 * values["size"] / pitch_um
@@ -48,7 +48,7 @@ class _Grain(Step):
         height, width = image.shape[:2]
         place = (self._corner[0], self._corner[1] + rows.begin, width, height)
         pattern = None
-        for k in range(self._colours):
+        for k in range(self._colors):
             if pattern is None or self._each:
                 pattern = grain_pattern(*place, self._radius, self._seed, k)
             image[:, :, k] *= self._factor(image[:, :, k], pattern)

@@ -32,8 +32,8 @@ RAYS = 96  # across a pupil
 
 def _make(canvas: Canvas, values: Values) -> Step:
     """Kernels of a grid of points from edge to edge of the picture, blended between them."""
-    if len(canvas.colours) - canvas.alpha != 3:
-        listed = ", ".join(canvas.colours)
+    if len(canvas.colors) - canvas.alpha != 3:
+        listed = ", ".join(canvas.colors)
         raise InputError(f"{canvas.where}: lens-psf: wanted channels R, G and B, got {listed}")
     film, lens, iris = film_plane(canvas, values), bench(values), iris_of(values)
     lens = lens.moved(lens.film_z + values["defocus"])
@@ -57,9 +57,9 @@ def _points(canvas: Canvas, film: Plane, zones: int) -> list[list[tuple[float, f
     """Film points (mm) of the grid; the picture stands upside down on the film."""
     share = np.linspace(0, 1, zones) if zones > 1 else np.array([0.5])
     x, y = (
-        (corner + share * extent - centre) * film.pitch_mm
-        for corner, extent, centre in zip(
-            canvas.corner, (canvas.width, canvas.height), film.centre, strict=True
+        (corner + share * extent - center) * film.pitch_mm
+        for corner, extent, center in zip(
+            canvas.corner, (canvas.width, canvas.height), film.center, strict=True
         )
     )
     return [[(-float(a), float(b)) for a in x] for b in y]

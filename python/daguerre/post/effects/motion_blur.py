@@ -19,8 +19,8 @@ from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError
 from daguerre.post import channels
 from daguerre.post.array import on_array
+from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
-from daguerre.post.fours import in_fours
 from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image, Source, bands
 
@@ -105,7 +105,7 @@ class _MotionBlur(Step):
             )
             return out
 
-        return band.cut(rows).with_image(in_fours(band.image, spread))
+        return band.cut(rows).with_image(by_four_channels(band.image, spread))
 
     def remarks(self) -> list[str]:
         said = []

@@ -21,11 +21,11 @@ class _Saturation(Step):
 
     def __init__(self, canvas: Canvas, falloff: Falloff, *, inverse: bool) -> None:
         self._falloff, self._inverse = falloff, inverse
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._pale = 0
 
     def apply(self, band: Band, rows: Rows) -> Band:
-        if self._colours != 3:
+        if self._colors != 3:
             return band
         share = self._falloff(rows)
         if self._inverse:

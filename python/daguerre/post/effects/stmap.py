@@ -113,7 +113,7 @@ def stmap(
     """
     canvas = Canvas(*size)
     focal = (focal_px, focal_px) if isinstance(focal_px, int | float) else focal_px
-    middle = canvas.centre if centre is None else centre
+    middle = canvas.center if centre is None else centre
     warp = Warp.of(canvas, point_map(model, focal, middle, scale=scale, inverse=inverse))
     return st_rows(warp, canvas, Rows(0, canvas.height))
 

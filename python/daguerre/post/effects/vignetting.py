@@ -44,7 +44,7 @@ class _Vignetting(Step):
     """Colours times what is left of the light; alpha stays."""
 
     def __init__(self, canvas: Canvas, falloff: Falloff, *, inverse: bool) -> None:
-        self._colours = len(canvas.colours) - canvas.alpha
+        self._colors = len(canvas.colors) - canvas.alpha
         self._falloff, self._inverse = falloff, inverse
         self._dark = 0
 
@@ -56,7 +56,7 @@ class _Vignetting(Step):
             factor, dark = reciprocal(factor)
             self._dark += dark
         image = band.image.copy()
-        image[:, :, : self._colours] *= factor
+        image[:, :, : self._colors] *= factor
         return band.with_image(image)
 
     def remarks(self) -> list[str]:
@@ -80,7 +80,7 @@ def radial_polynomial(canvas: Canvas, k1: float, k2: float, k3: float) -> Fallof
     half_diagonal = 0.5 * math.hypot(*canvas.full_size)
 
     def falloff(rows: Rows) -> NDArray[np.float32]:
-        x, y = offsets(canvas, rows, canvas.centre)
+        x, y = offsets(canvas, rows, canvas.center)
         r2 = (x * x + y * y) / np.float32(half_diagonal**2)
         return np.maximum(1 + r2 * (k1 + r2 * (k2 + r2 * k3)), 0).astype(np.float32)
 
@@ -97,7 +97,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
             if values["lens"] is None:
                 raise UsageError("vignetting: lens: wanted a name with model=lens, got nothing")
             film, lens = film_plane(canvas, values), bench(values)
-            falloff = lens_light(canvas, film, lens, colour=values["colour"])
+            falloff = lens_light(canvas, film, lens, color=values["colour"])
     return _Vignetting(canvas, falloff, inverse=values["inverse"])
 
 

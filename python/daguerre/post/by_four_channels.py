@@ -9,7 +9,7 @@ import numpy as np
 from .picture import Image
 
 
-def in_fours(image: Image, spread: Callable[[Image], Image]) -> Image:
+def by_four_channels(image: Image, spread: Callable[[Image], Image]) -> Image:
     """Applies ``spread`` to a picture (H, W, C), four channels at a time: shape (rows, W, C).
 
     Args:

@@ -61,7 +61,7 @@ class Between(Distortion):
 
 
 def _make(canvas: Canvas, values: Values) -> Step:
-    if len(canvas.colours) < 3:
+    if len(canvas.colors) < 3:
         raise UsageError(f"{canvas.where}: lateral-colour: wanted R, G and B, got grey")
     half = 0.5 * math.hypot(*canvas.full_size)
     unit = half, half
@@ -69,8 +69,8 @@ def _make(canvas: Canvas, values: Values) -> Step:
         models, unit = _of_lens(canvas, values)
     else:
         models = [
-            Magnification(values[f"{colour}"] / 100, values[f"{colour}_corner"] / 100)
-            for colour in ("red", "blue")
+            Magnification(values[f"{color}"] / 100, values[f"{color}_corner"] / 100)
+            for color in ("red", "blue")
         ]
     red, blue = (
         Warp.of(canvas, point_map(m, unit, axis(canvas, values), inverse=values["inverse"]))
@@ -86,7 +86,7 @@ def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], tuple[fl
     return [Between(green, red), Between(green, blue)], focal_px
 
 
-LATERAL_COLOUR = Effect(
+LATERAL_COLOR = Effect(
     "lateral-colour",
     "red and blue in another size than green, or that taken away",
     (
@@ -118,9 +118,9 @@ def lateral_colour(image: Image, **parameters: Any) -> Image:
             than green), ``red_corner``, ``blue_corner`` (percent more in the corners, growing as
             r^2); or ``model="lens"`` with ``lens``, ``focus`` (m), ``zoom`` (mm), ``sensor`` (mm).
     """
-    return on_array(LATERAL_COLOUR, image, parameters)
+    return on_array(LATERAL_COLOR, image, parameters)
 
 
 def remove_lateral_colour(image: Image, **parameters: Any) -> Image:
     """Takes away what :func:`lateral_colour` with the same parameters did."""
-    return on_array(LATERAL_COLOUR, image, {**parameters, "inverse": True})
+    return on_array(LATERAL_COLOR, image, {**parameters, "inverse": True})

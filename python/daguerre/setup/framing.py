@@ -1,0 +1,37 @@
+"""A camera at one moment, with its pose, its film and its focus: what any lens is set up for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+
+from .focus import Focus
+
+
+@dataclass(frozen=True)
+class Framing:
+    """A camera at one moment, without its lens.
+
+    Attributes:
+        camera: In a photographer's terms.
+        pose: World from camera while the shutter is open.
+        focus: Answers how far away what shall be sharp is.
+        film_mm: Width and height of the film around the frame's middle that has all that is drawn.
+    """
+
+    camera: Camera
+    pose: _core.Motion
+    focus: Focus
+    film_mm: tuple[float, float]
+
+    @property
+    def frame_mm(self) -> tuple[float, float]:
+        """Width and height of the picture on the film, without overscan."""
+        return self.focus.frame_mm
+
+    @property
+    def pitch_mm(self) -> float:
+        """Pixel pitch."""
+        return self.focus.frame_mm[0] / self.focus.resolution[0]

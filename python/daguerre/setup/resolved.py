@@ -1,0 +1,159 @@
+"""Records of a camera that is set up: its numbers as resolved, and the core's camera.
+
+All lengths in mm and all angles in degrees unless a name says otherwise. What files say of a camera
+is made of these records in :mod:`.metadata`, and nowhere read back.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import lens_h0
+from daguerre.lenses import Lens
+from daguerre.lenses.setting import LensSetting
+
+from .fit import FitQuality
+from .pose import Change
+from .tilt import cosine
+
+if TYPE_CHECKING:
+    from daguerre.camera.projection import Projection
+
+
+@dataclass(frozen=True)
+class Glass:
+    """A prescription as a camera uses it.
+
+    Attributes:
+        lens: The lens at its zoom, focused as its file has it.
+        effective_focal_length_mm: Focal length at its focus.
+        entrance_pupil_offset_mm: From the entrance pupil to the film, along the camera's axis.
+        squeeze: How much it narrows the picture; 1: it does not.
+        transmittance: Share of the light on the axis that passes the glass.
+        h0: Illuminance on the axis by a world of 1 cd/m2, lux.
+        fit: Quality of the polynomials, if they were asked for.
+    """
+
+    lens: Lens
+    effective_focal_length_mm: float
+    entrance_pupil_offset_mm: float
+    squeeze: float
+    transmittance: float
+    h0: float
+    fit: FitQuality | None = None
+
+
+@dataclass(frozen=True)
+class ResolvedLens:
+    """A lens that is ready to draw, of any kind.
+
+    Attributes:
+        core: The core's camera.
+        model: Model that draws: exact, polynomial, thick, thin, pinhole or projection.
+        name: Name of the lens; thin, pinhole or projection without one.
+        focal_length_mm: Focal length as engraved.
+        pinhole_focal_length_mm: Film distance of the pinhole with the same framing.
+        f_stop: F-stop; None: a pinhole without a lens behind its name.
+        aperture_diameter_mm: Diameter of an ideal lens; None: glass, or no opening.
+        focus_distance_m: From the entrance pupil along the lens's axis; None: all is sharp.
+        projection: Calibration in the place of a lens.
+        glass: Prescription, if there is one, whatever model draws it.
+        notes: Decisions made on the user's behalf, one sentence each.
+    """
+
+    core: _core.Camera
+    model: str
+    name: str
+    focal_length_mm: float
+    pinhole_focal_length_mm: float
+    f_stop: float | None = None
+    aperture_diameter_mm: float | None = None
+    focus_distance_m: float | None = None
+    projection: Projection | None = None
+    glass: Glass | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def t_stop(self) -> float | None:
+        """F-stop of a lens without losses that is as bright; None: no glass."""
+        if self.glass is None or self.f_stop is None:
+            return None
+        return self.f_stop / math.sqrt(self.glass.transmittance)
+
+    @property
+    def effective_focal_length_mm(self) -> float:
+        """Focal length at its focus; as engraved, without glass."""
+        return self.glass.effective_focal_length_mm if self.glass else self.focal_length_mm
+
+    @property
+    def entrance_pupil_offset_mm(self) -> float | None:
+        """From the entrance pupil to the film, along the camera's axis; None: no glass."""
+        return self.glass.entrance_pupil_offset_mm if self.glass else None
+
+    @property
+    def squeeze(self) -> float:
+        """How much an anamorphic lens narrows the picture; else 1."""
+        return self.glass.squeeze if self.glass else 1.0
+
+    def film_offset_m(self, tilt_deg: tuple[float, float]) -> float:
+        """From the entrance pupil to the film along the lens's axis, m; 0: no glass."""
+        return 1e-3 * (self.entrance_pupil_offset_mm or 0.0) / cosine(tilt_deg)
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedCamera:
+    """A camera that is ready to draw, as it is at mid-shutter.
+
+    Attributes:
+        camera: The same in a photographer's terms, at mid-shutter.
+        lens: The lens.
+        resolution: Width and height of the picture, px.
+        interval_s: When the shutter is open: begin and end.
+        world_from_camera: Pose at mid-shutter, m, shape (4, 4).
+        frame_size_mm: Width and height of the picture on the film.
+        shift_mm: Middle of the picture against the lens's axis, right and up.
+        changes: Changes while the shutter is open, by the name of the parameter.
+        notes: Decisions made on the user's behalf, one sentence each.
+    """
+
+    camera: Camera
+    lens: ResolvedLens
+    resolution: tuple[int, int]
+    interval_s: tuple[float, float]
+    world_from_camera: NDArray[np.float64]
+    frame_size_mm: tuple[float, float]
+    shift_mm: tuple[float, float]
+    changes: Mapping[str, Change]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def core(self) -> _core.Camera:
+        """The core's camera."""
+        return self.lens.core
+
+    @property
+    def h0(self) -> float:
+        """Illuminance on the axis by a world of 1 cd/m2, lux."""
+        lens = self.lens
+        if lens.glass is not None:
+            return lens.glass.h0
+        return lens_h0(self.camera, lens.pinhole_focal_length_mm, lens.aperture_diameter_mm)
+
+    @property
+    def setting(self) -> LensSetting:
+        """Setting of a lens with glass, as the bench takes it."""
+        glass, zoomed = self.lens.glass, self.camera.zoom is not None
+        return LensSetting(
+            f_stop=self.lens.f_stop,
+            focus_m=math.inf if self.lens.focus_distance_m is None else self.lens.focus_distance_m,
+            zoom_mm=glass.lens.zoom_mm if glass and zoomed else None,
+            focus_by="best" if self.camera.focus_by == "best" else "paraxial",
+        )
