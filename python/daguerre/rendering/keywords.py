@@ -8,18 +8,17 @@ table, so that a parameter is written down once.
 from __future__ import annotations
 
 import inspect
-import textwrap
 from collections.abc import Callable, Iterable
 from typing import Any, TypedDict, TypeVar
 
-from daguerre.parameters.parameter import fill
+from daguerre.parameters.table import Table
+from daguerre.parameters.texts import attributes
 
 from .diffraction import Diffraction
-from .parameters import TABLE
+from .parameters import ROWS, TABLE
 from .settings import OverscanLike, RenderSettings
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-WIDTH = 100  # of a docstring's lines
 
 
 class ViewKeywords(TypedDict, total=False):
@@ -99,24 +98,8 @@ def with_rows(text: str | None, names: Iterable[str]) -> str | None:
         return text
     line = next(line for line in text.splitlines() if "{keywords}" in line)
     indent = line[: len(line) - len(line.lstrip())]
-    rows = [
-        textwrap.fill(
-            f"{name}: {described(name)}", WIDTH, initial_indent=indent,
-            subsequent_indent=indent + "    ", break_long_words=False, break_on_hyphens=False,
-        )
-        for name in names
-    ]  # fmt: skip
-    return text.replace(line, "\n".join(rows))
-
-
-def described(name: str) -> str:
-    """Meaning, unit, default and what else is told of a parameter."""
-    row = TABLE[name]
-    unit = f", {row.unit}" if row.unit else ""
-    default = f"; default: {row.default_words}" if row.default_words else ""
-    page = f" See ``docs/{row.explained}``." if row.explained else ""
-    more = f" {row.more}" if row.more else ""
-    return fill(f"{row.meaning}{unit}{default}.{more}{page}", "``{}``".format)
+    rows = attributes(Table(ROWS), names, indent).rstrip("\n")
+    return text.replace(line, rows)
 
 
 def settings_of(given: RenderSettings | None, keywords: Any) -> RenderSettings:

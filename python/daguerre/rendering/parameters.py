@@ -92,8 +92,8 @@ def _crop_text(flag: str, text: str) -> tuple[int, int, int, int]:
 SAMPLING_ROWS = (
     Setting(
         "spp", "Samples per pixel", kind="whole", low=1, high=MAX_SAMPLES, wants="1 .. 2^31",
-        flags=("--spp",), metavar="N", panel=SAMPLING, default_words=str(DEFAULT_SPP),
-        more="With ``noise`` the most that a pixel may get.",
+        flags=("--spp",), metavar="N", panel=SAMPLING, usual=DEFAULT_SPP, tells_default=True,
+        more="With {noise} the most that a pixel may get",
     ),
     Setting(
         "noise", "Relative error to reach, such as 0.02, with at most {spp} samples per pixel, "
@@ -101,36 +101,38 @@ SAMPLING_ROWS = (
         normal=lambda value, where: number(value, where, high=1.0, above=0.0),
         flags=("--noise",), metavar="X", panel=SAMPLING,
         more="0.05 is grainy, 0.01 clean: the root mean square over pixels and channels of "
-        "standard error / sqrt(value^2 + 0.01). Pixels then get as many samples as each needs.",
+        "standard error / sqrt(value^2 + 0.01). Pixels then get as many samples as each needs",
     ),
     Setting(
         "seed", "Seed of the random numbers", default=0, kind="whole", low=0, high=MAX_SEED,
         wants="0 .. 2^64 - 1", normal=_seed,
-        flags=("--seed",), metavar="N", panel=SAMPLING, default_words="0",
+        flags=("--seed",), metavar="N", panel=SAMPLING, tells_default=True,
     ),
     Setting(
         "filter", "Pixel filter: box, gaussian, mitchell or blackman_harris; NAME:PX sets its "
         "radius", default="blackman_harris", kind="value", normal=check_filter,
-        flags=("--filter",), metavar="NAME", panel=SAMPLING, default_words="blackman_harris",
+        flags=("--filter",), metavar="NAME", panel=SAMPLING, tells_default=True,
+        in_python="Pixel filter: box, gaussian, blackman_harris (default) or mitchell; "
+        "``\"name:radius\"`` sets the radius in px.",
     ),
 )
 FILM_ROWS = (
     Setting(
-        "resolution", "Width and height of the picture", "px", default=DEFAULT_RESOLUTION,
-        kind="value",
-        normal=check_resolution,
+        "resolution", "Width and height of the picture, px", "px", default=DEFAULT_RESOLUTION,
+        kind="value", normal=check_resolution,
     ),
     Setting(
         "crop", "Draw only these pixels", "px", kind="value", normal=check_crop, parse=_crop_text,
         flags=("--crop",), metavar="X0,X1,Y0,Y1", panel=OUTPUT,
-        more="In Python (x0, y0, x1, y1), end exclusive.",
+        in_python="Pixel region (x0, y0, x1, y1) to draw, end exclusive; default: all.",
     ),
     Setting(
         "overscan", "Pixels beside the picture, in the data window of the .exr: for all sides, for "
         "left, top, right and bottom, or as many as undistorting needs", "px", kind="value",
         flags=("--overscan",), metavar="PX|10%|L,T,R,B|undistort", panel=OUTPUT,
-        more="A number, ``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``. The picture "
-        "keeps its bits.", explained=("plates.md",),
+        in_python="Pixels to draw beside the picture (``docs/plates.md``): a number for all sides, "
+        "``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``: as many as a later "
+        "undistortion needs. The picture keeps its bits.", explained=("plates.md#overscan",),
     ),
     Setting(
         "aovs", "Whether to keep depth, normal, position, albedo and object id", default=False,
@@ -139,49 +141,59 @@ FILM_ROWS = (
     Setting(
         "bands", f"Number of wavelength bands to keep, {LEAST_BANDS} to {MOST_BANDS}, from which "
         "any sensor's channels can be made later", default=0, kind="whole", normal=check_bands,
-        flags=("--bands",), metavar="N", panel=OUTPUT, default_words="0",
-        more="They are ``frame.bands``; 0: none.",
+        flags=("--bands",), metavar="N", panel=OUTPUT, tells_default=True,
+        in_python="Number of wavelength bands that the frame keeps (``frame.bands``), from which "
+        "any sensor's channels can be made later; default: 0, none.",
     ),
 )
 LIGHT_ROWS = (
     Setting(
         "max_depth", "Largest number of surfaces along a path", default=16, kind="whole", low=1,
-        high=4096, flags=("--max-depth",), metavar="N", panel=SAMPLING, default_words="16",
+        high=4096, flags=("--max-depth",), metavar="N", panel=SAMPLING, tells_default=True,
     ),
     Setting(
         "light_paths", "Light followed from the emitters to the film, per sample index: straight "
         "to the lens, and with bounces", default="auto", kind="value", normal=_light_paths,
-        flags=("--light-paths",), metavar="auto|off|M1[,M2]", panel=SAMPLING, default_words="auto",
-        more="It comes beside the paths from the lens: auto, off, or (M1, M2).",
+        flags=("--light-paths",), metavar="auto|off|M1[,M2]", panel=SAMPLING, tells_default=True,
         explained=("light-paths.md",),
+        in_python="Light followed from the emitters to the film, beside the paths from the lens "
+        "(``docs/light-paths.md``): auto (default), off, or paths per sample index, straight to "
+        "the lens and with bounces, as (M1, M2).",
     ),
     Setting(
         "flare", "Draw ghosts of an exact lens; N paths per sample index", default="off",
         kind="value", normal=_paths,
-        flags=("--flare",), metavar="auto|off|N", panel=SAMPLING, default_words="off",
+        flags=("--flare",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
         explained=("flare.md",),
+        in_python="Ghosts of an exact lens (``docs/flare.md``): off (default), auto, or paths per "
+        "sample index.",
     ),
     Setting(
         "flare_order", "Number of reflections of ghosts; 4 draws those of 2 and of 4", default=2,
         kind="whole", normal=_order,
-        flags=("--flare-order",), metavar="2|4", panel=SAMPLING, default_words="2",
+        flags=("--flare-order",), metavar="2|4", panel=SAMPLING, tells_default=True,
     ),
     Setting(
         "flare_highlights", "Draw ghosts of light that mirrors, glass and walls send to the lens, "
         "too", default=True, kind="value", normal=check_highlights,
         flags=("--flare-highlights",), metavar="on|off", panel=SAMPLING, default_words="on",
+        in_python="Whether light that mirrors, glass and walls send to the lens has ghosts, too: "
+        "True or on (default), False or off.",
     ),
     Setting(
         "scatter", "Draw light that barrel, iris and surfaces of an exact lens scatter; N paths "
         "per sample index", default="off", kind="value", normal=_paths,
-        flags=("--scatter",), metavar="auto|off|N", panel=SAMPLING, default_words="off",
+        flags=("--scatter",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
         explained=("scatter.md",),
+        in_python="Light that barrel, blades and surfaces of an exact lens scatter "
+        "(``docs/scatter.md``): off (default), auto, or paths per sample index.",
     ),
     Setting(
         "diffraction", "Treat light as a wave at the iris: stars, discs, softness at narrow stops",
         default=False, kind="flag", normal=lambda value, where: check_diffraction(value) or False,
         flags=("--diffraction",), panel=SAMPLING, explained=("diffraction.md",),
-        more="True, or a ``Diffraction`` with the number of bands and zones.",
+        in_python="Whether light is a wave at the iris (``docs/diffraction.md``): True, or a "
+        "``Diffraction`` with the number of bands and zones; default: False.",
     ),
 )
 TRUTH_ROWS = (
@@ -190,43 +202,51 @@ TRUTH_ROWS = (
         kind="choice", choices=tuple(GT_TIMES),
         flags=("--gt-time",), metavar="open|mid|close", panel=OUTPUT,
         default_words="mid with motion", explained=("ground-truth.md",),
-        more="So are distance, object_id and material_id.",
+        more="`--aov motion,motion_back` is where things go and come from, px",
+        in_python="open, mid or close: depth, distance, P, N, object_id and material_id are exact "
+        "values at that moment of each pixel's exposure (``docs/ground-truth.md``), instead of "
+        "means over the samples; default: mid with motion or ``gt_lens=\"mean\"``, else none.",
     ),
     Setting(
         "gt_lens", "Ground truth by the chief ray of each pixel, or as means over the rays that "
         "expose it", default="chief", kind="choice", choices=GT_LENSES,
-        flags=("--gt-lens",), metavar="chief|mean", panel=OUTPUT, default_words="chief",
-        more="Means have the share of rays that meets a surface as ``coverage.Y``.",
+        flags=("--gt-lens",), metavar="chief|mean", panel=OUTPUT, tells_default=True,
+        explained=("ground-truth.md#means",),
+        more="`--aov coverage` is the share of its light that meets a surface",
+        in_python="Rays for ground truth: chief (default), the one of the pixel's centre; mean: "
+        "means over those that expose the pixel then, with their share that meets a surface as "
+        "``coverage.Y``.",
     ),
     Setting(
         "gt_rays", "Rays per pixel for {gt_lens} mean", kind="whole", low=1, high=MAX_RAYS,
-        flags=("--gt-rays",), metavar="N", panel=OUTPUT, default_words=str(GT_RAYS),
-        more="They are the same ones each time.",
+        flags=("--gt-rays",), metavar="N", panel=OUTPUT, usual=GT_RAYS, tells_default=True,
+        more="They are the same ones each time",
     ),
     Setting(
-        "motion", "Whether to add ``motion`` and ``motion_back``, where things go and come from",
-        "px", default=False, kind="flag", normal=_switch("True or False"),
-        more="At mid unless ``gt_time`` is given.",
+        "motion",
+        "Whether to add ``motion`` and ``motion_back``, where things go and come from, px", "px",
+        default=False, kind="flag", normal=_switch("True or False"),
+        more="At mid unless {gt_time} is given",
     ),
 )
 REFERENCE_ROWS = (
     Setting(
-        "strategy", "mis, or light or bsdf alone, to check one against the other", default="mis",
-        kind="choice", choices=("mis", "light", "bsdf"),
+        "strategy", "Ways to sample light at a surface, to check one against the other",
+        default="mis", kind="choice", choices=("mis", "light", "bsdf"), tells_default=True,
     ),
     Setting(
-        "technique", "Technique for light that both could find: both, or camera or light alone, "
-        "to check one against the other", default="both", kind="choice", choices=TECHNIQUES,
+        "technique", "Technique for light that both could find, to check one against the other",
+        default="both", kind="choice", choices=TECHNIQUES, tells_default=True,
     ),
     Setting(
-        "dispersion", "Treatment of a path's other wavelengths by an exact lens: reproject, or "
-        "end_secondary (the plain reference; noisier)", default="reproject", kind="choice",
-        choices=("reproject", "end_secondary"),
+        "dispersion", "Treatment of a path's other wavelengths by an exact lens (end_secondary is "
+        "the plain reference, and noisier)", default="reproject", kind="choice",
+        choices=("reproject", "end_secondary"), tells_default=True,
     ),
 )
 THREADS = Setting(
     "threads", "Number of threads; 0 uses all cores", default=0, kind="whole", low=0, high=1024,
-    wants="0 (all) .. 1024", flags=("--threads",), metavar="N", panel=SAMPLING, default_words="0",
+    wants="0 (all) .. 1024", flags=("--threads",), metavar="N", panel=SAMPLING, tells_default=True,
 )
 #: Flags alone: the record that ``diffraction`` takes is made of them.
 DIFFRACTION_ROWS = (
@@ -234,13 +254,13 @@ DIFFRACTION_ROWS = (
         "diffraction_bands", "Number of wavelength bands for {diffraction}",
         default=Diffraction.bands, kind="whole", low=LEAST_BANDS, high=MOST_BANDS,
         flags=("--diffraction-bands",), metavar="N", panel=SAMPLING,
-        default_words=str(Diffraction.bands),
+        tells_default=True,
     ),
     Setting(
         "diffraction_zones", "Points along each side of the frame with diffraction of their own",
         default=Diffraction.zones, kind="whole", low=1, high=MOST_ZONES,
         flags=("--diffraction-zones",), metavar="N", panel=SAMPLING,
-        default_words=str(Diffraction.zones),
+        tells_default=True,
     ),
 )
 # fmt: on

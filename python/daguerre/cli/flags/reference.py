@@ -11,6 +11,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
 from daguerre.parameters.table import Table
 from daguerre.parameters.texts import attributes, page_table, put_between_marks
+from daguerre.rendering.parameters import FLAGS
 
 PAGE = Path("docs", "cli.md")
 _BEGIN, _END = "    Attributes:\n", '    """\n'
@@ -34,6 +35,7 @@ class Section:
 SECTIONS = (
     Section("flags of the camera", CAMERA_FLAGS, CAMERA),
     Section("flags of the shutter", SHUTTER, CAMERA),
+    Section("flags of rendering", FLAGS, FLAGS),
 )
 #: Files with the docstring of a record: the record's class, its fields and their table.
 RECORDS = {Path("python", "daguerre", "camera", "camera.py"): (Camera, CAMERA)}
