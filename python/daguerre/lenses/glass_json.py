@@ -8,6 +8,7 @@ from daguerre.files.json_item import Item
 from . import glasses
 from .errors import LensError
 from .glass_formula import absorption_of, formula_of
+from .glasses.catalogue import LINE_D
 from .reading import member, number, text
 
 
@@ -61,5 +62,5 @@ def _with_absorption(item: Item, glass: _core.Glass, label: str) -> _core.Glass:
     own = absorption_of(item)
     if own is not None:
         return glass.with_absorption(*own)
-    known = glasses.similar(label, glass.index(587.5618)) if label else None
+    known = glasses.similar(label, glass.index(LINE_D)) if label else None
     return glass.with_absorption_of(known.core) if known else glass

@@ -15,13 +15,15 @@ import daguerre._core as _core
 from daguerre.errors import InputError
 
 from .configurations import Configuration
+from .glasses.catalogue import LINE_D
 from .groups import Group, placed
 from .surface import LensSurface
 
 if TYPE_CHECKING:
     from .focus import By, Focused, MeasuredFrom
 
-DESIGN_WAVELENGTH_NM = 587.5618
+#: Wavelength at which lenses are specified, nm.
+DESIGN_WAVELENGTH_NM = LINE_D
 
 
 class _Fields:

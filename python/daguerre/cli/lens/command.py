@@ -13,7 +13,7 @@ from daguerre.cli.console import note
 from daguerre.cli.drawings import check_drawing
 from daguerre.cli.flags.groups import option
 from daguerre.errors import InputError, UsageError
-from daguerre.units import SENSORS, angle_deg, distance_m, f_number, length_mm
+from daguerre.units import SENSORS, TYPED_D_LINE_NM, angle_deg, distance_m, f_number, length_mm
 
 from .export import Export
 from .flare import Flare
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from daguerre.analysis import Bench
     from daguerre.lenses import Lens
 
-#: the wavelength of the helium d line, at which lenses are specified, nm
-DESIGN_NM = 587.56
 FOCUS_BY = ("best", "paraxial")
 BENCH, FILES = "On the bench", "Files written"
 
@@ -187,9 +185,11 @@ def lens(
     wavelength: Annotated[
         float,
         option(
-            "--wavelength", metavar="NM", help="Wavelength of the first-order data, nm [587.56]."
+            "--wavelength",
+            metavar="NM",
+            help=f"Wavelength of the first-order data, nm [{TYPED_D_LINE_NM}].",
         ),
-    ] = DESIGN_NM,
+    ] = TYPED_D_LINE_NM,
 ) -> int:
     """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""
     from daguerre import lenses as library
