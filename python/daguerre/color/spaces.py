@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import srgb
 from .adaptation import BRADFORD
 
 FloatArray = NDArray[np.float64]
@@ -37,7 +38,13 @@ class ColourSpace:
 
 
 # IEC 61966-2-1; ITU-R BT.2020-2, table 4, turned around: E' = a E^0.45 - (a - 1).
-_SRGB = (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+_SRGB = (
+    srgb.POWER,
+    1 / (1 + srgb.OFFSET),
+    srgb.OFFSET / (1 + srgb.OFFSET),
+    1 / srgb.SLOPE,
+    srgb.ENCODED_KNEE,
+)
 
 
 _A, _B = 1.09929682680944, 0.018053968510807

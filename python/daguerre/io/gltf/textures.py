@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import given_up
+from daguerre.color import srgb
 from daguerre.files import extras
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
@@ -231,5 +232,5 @@ def _coordinates(info: Item) -> tuple[int, tuple[float, float, float, float, flo
 def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
     """Colour channels undone from sRGB; the alpha of 2 or 4 channels stays."""
     colors = pixels.shape[2] - (pixels.shape[2] in (2, 4))
-    linear = images.srgb_to_linear(pixels[:, :, :colors])
+    linear = srgb.to_linear(pixels[:, :, :colors])
     return np.concatenate([linear, pixels[:, :, colors:]], axis=2)
