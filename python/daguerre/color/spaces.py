@@ -8,12 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import srgb
-from .adaptation import BRADFORD
+from .illuminants import D65_STATED, xyz_of_xy
 
 FloatArray = NDArray[np.float64]
-
-
-D65 = (0.3127, 0.3290)
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ _A, _B = 1.09929682680944, 0.018053968510807
 _BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
 
 
-_P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
+P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
 
 
 _P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white D65
@@ -65,29 +62,17 @@ _P2020 = ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))  # ITU-R BT.2020-2, ta
 COLOUR_SPACES = {
     space.name: space
     for space in (
-        ColourSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
+        ColourSpace("srgb", "sRGB", P709, _SRGB, (1, 13), "rec709"),
         ColourSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
         ColourSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
     )
 }
 
 
-def xyz_of(xy: tuple[float, float]) -> FloatArray:
-    """XYZ of luminance 1 at a chromaticity."""
-    x, y = xy
-    return np.array([x / y, 1.0, (1 - x - y) / y])
-
-
 def xyz_from_rgb(space: ColourSpace) -> FloatArray:
     """Matrix from linear light in the space to XYZ, shape (3, 3); D65 white has luminance 1."""
-    columns = np.stack([xyz_of(primary) for primary in space.primaries], axis=1)
-    return np.asarray(columns * np.linalg.solve(columns, xyz_of(D65)))
-
-
-def adaptation(white: FloatArray, to: FloatArray) -> FloatArray:
-    """XYZ under one white as they look under another, by Bradford's matrix, shape (3, 3)."""
-    ratio = (BRADFORD @ to) / (BRADFORD @ white)
-    return np.asarray(np.linalg.solve(BRADFORD, ratio[:, None] * BRADFORD))
+    columns = np.stack([xyz_of_xy(primary) for primary in space.primaries], axis=1)
+    return np.asarray(columns * np.linalg.solve(columns, xyz_of_xy(D65_STATED)))
 
 
 def decoded(values: NDArray[np.float32], name: str) -> NDArray[np.float32]:

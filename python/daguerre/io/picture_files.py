@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import whole
 from daguerre.color import spaces
+from daguerre.color.illuminants import D65_STATED
 from daguerre.errors import OutputError, UsageError, suggest
 from daguerre.files.atomic import atomic_path
 from daguerre.frame.picture import quantised
@@ -202,7 +203,7 @@ def _write_linear(
     for row in range(0, len(pixels), 64):
         linear[row : row + 64] = spaces.decoded(pixels[row : row + 64], space)
     header = attributes(metadata)
-    corners = (*spaces.COLOUR_SPACES[space].primaries, spaces.D65)
+    corners = (*spaces.COLOUR_SPACES[space].primaries, D65_STATED)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
     header["colorInteropID"] = f"lin_{spaces.COLOUR_SPACES[space].interop}_scene"
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
