@@ -44,4 +44,4 @@ def make(width: float = 0.9) -> Chart:
 
 def linear(code: int) -> float:
     """Linear light of an sRGB code value."""
-    return float(srgb.to_linear(np.float64(code / 255)))
+    return float(srgb.to_linear(np.asarray(code / 255)))

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import srgb
+from .spaces import LUMINANCE_709
 
-#: Luminance of linear Rec.709 (ITU-R BT.709-6).
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+_LUMINANCE = LUMINANCE_709.astype(np.float32)
 
 
 def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:

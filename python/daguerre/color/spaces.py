@@ -51,6 +51,9 @@ _BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
 
 
 P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
+#: Luminance of linear Rec.709 to the digits of ITU-R BT.709-6: for mixing with gray. Photometry
+#: takes ``spectra.luminance_of_rgb()``, which adds up with the spectra of the renderer.
+LUMINANCE_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
 _P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white D65
