@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import struct
-import zlib
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +23,10 @@ from daguerre.errors import OutputError, UsageError, suggest
 from daguerre.files.atomic import atomic_path
 from daguerre.frame.picture import quantised
 
-from . import exif, icc
+from . import exif, icc, png_chunks
 from .tiff import TiffImage, write_tiff
 
 ENDINGS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr")
-_PNG_START = 8 + 25  # signature and IHDR
 
 
 def check_ending(path: str | os.PathLike[str], known: tuple[str, ...] = ENDINGS) -> str:
@@ -140,37 +139,14 @@ def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
 
 def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
-    if not complete_png(data):
+    if not png_chunks.is_complete(BytesIO(data)):
         raise OutputError("PNG: the file is not complete; is the disk full?")
     cicp = bytes([*spaces.COLOUR_SPACES[space].cicp, 0, 1])
-    kept = b"".join(
-        chunk for kind, chunk in _png_chunks(data) if kind not in (b"eXIf", b"cICP", b"IHDR")
-    )
-    chunks = _png_chunk(b"cICP", cicp) + _png_chunk(b"eXIf", block)
-    return data[:_PNG_START] + chunks + kept
-
-
-def complete_png(data: bytes) -> bool:
-    """Whether every chunk has its checksum and the last one is IEND (PNG 3rd edition, 5.3)."""
-    chunks = _png_chunks(data)
-    good = all(zlib.crc32(chunk[4:-4]) == int.from_bytes(chunk[-4:], "big") for _, chunk in chunks)
-    end = 8 + sum(len(chunk) for _, chunk in chunks)
-    return good and bool(chunks) and chunks[-1][0] == b"IEND" and end == len(data)
-
-
-def _png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
-    chunks, at = [], 8
-    while at + 12 <= len(data):
-        end = at + 12 + int.from_bytes(data[at : at + 4], "big")
-        chunks.append((data[at + 4 : at + 8], data[at:end]))
-        at = end
-    return chunks
-
-
-def _png_chunk(kind: bytes, value: bytes) -> bytes:
-    return (
-        struct.pack(">I", len(value)) + kind + value + struct.pack(">I", zlib.crc32(kind + value))
-    )
+    head, *rest = png_chunks.chunks(BytesIO(data))
+    kept = [(c.kind, c.data) for c in rest if c.kind not in (b"eXIf", b"cICP")]
+    all_ = [(head.kind, head.data), (b"cICP", cicp), (b"eXIf", block), *kept]
+    start = data[: png_chunks.SIGNATURE_BYTES]
+    return start + b"".join(png_chunks.encoded(*chunk) for chunk in all_)
 
 
 def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping[str, Any]) -> None:
