@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from daguerre import _core, lenses
-from daguerre.errors import InputError
+from daguerre.errors import InputError, UsageError
 
 from .lens_names import CLASSICS
 
@@ -60,6 +60,13 @@ def test_unknown_names_get_the_nearest() -> None:
         lenses.load("nowhere/lens.json")
     with pytest.raises(InputError, match="cannot be read"):
         lenses.load("lens.zmx")
+
+
+def test_a_lens_is_itself() -> None:
+    lens = lenses.load("double-gauss-50mm-f2")
+    assert lenses.load(lens) is lens
+    with pytest.raises(UsageError, match=r"configuration: wanted None, .* got 'far'"):
+        lenses.load(lens, "far")
 
 
 # First-order data and exact rays ------------------------------------------------------------------

@@ -206,7 +206,7 @@ def _see(
     for side in numbers(shift, "calibrate: shift", 2, "right and up, mm"):
         number(side, "calibrate: shift", -1e5, 1e5)
     number(wavelength_nm, "calibrate: wavelength_nm", *WAVELENGTHS_NM)
-    item = load(lens) if isinstance(lens, str) else lens
+    item = load(lens)
     bench = set_up(item, **use)
     size, pitch = (int(width), int(height)), sensor_size[0] / width
     axis = (np.array(size) - 1) / 2 + np.array(shift) / pitch * (-1, 1)
