@@ -150,7 +150,6 @@ def test_first_order_of_the_fifty() -> None:
     order = lenses.load("double-gauss-50mm-f2").first_order()
     assert order.efl == pytest.approx(100.015 / 2, rel=1e-5)  # US 2,673,491, indices of the patent
     assert order.bfl == pytest.approx(71.445 / 2, rel=1e-5)
-    assert order["efl"] == order.efl
     assert order.back_focal_point - order.back_principal_point == pytest.approx(order.efl)
     assert order.front_principal_point - order.front_focal_point == pytest.approx(order.efl)
     assert order.front_nodal_point == pytest.approx(order.front_principal_point)

@@ -26,17 +26,8 @@ if TYPE_CHECKING:
 DESIGN_WAVELENGTH_NM = LINE_D
 
 
-class _Fields:
-    """Fields by name too: ``order["efl"]`` is ``order.efl``."""
-
-    def __getitem__(self, key: str) -> Any:
-        if key not in {f.name for f in dataclasses.fields(self)}:  # type: ignore[arg-type]
-            raise KeyError(key)
-        return getattr(self, key)
-
-
 @dataclass(frozen=True)
-class Nominal(_Fields):
+class Nominal:
     """Claims of the source about the lens; None: it does not say."""
 
     efl_mm: float | None = None
@@ -48,7 +39,7 @@ class Nominal(_Fields):
 
 
 @dataclass(frozen=True)
-class Pupil(_Fields):
+class Pupil:
     """An image of the stop: z in the lens frame and diameter wide open, mm."""
 
     z: float
@@ -56,7 +47,7 @@ class Pupil(_Fields):
 
 
 @dataclass(frozen=True)
-class FirstOrder(_Fields):
+class FirstOrder:
     """First-order properties at one wavelength.
 
     Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the
