@@ -7,6 +7,7 @@ from daguerre.files.json_item import Item
 from . import glasses
 from .errors import LensError
 from .glass_formula import absorption_of, formula_of
+from .glasses.catalogue import LINE_D
 from .medium import AIR, Medium
 from .reading import member, number, text
 
@@ -61,5 +62,5 @@ def _with_absorption(item: Item, glass: Medium, label: str) -> Medium:
     own = absorption_of(item)
     if own is not None:
         return glass.with_absorption(*own)
-    known = glasses.similar(label, glass.index(587.5618)) if label else None
+    known = glasses.similar(label, glass.index(LINE_D)) if label else None
     return glass.with_absorption_of(known.core) if known else glass

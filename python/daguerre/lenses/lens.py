@@ -18,6 +18,7 @@ from daguerre.files.value import Value
 
 from .configurations import Configuration
 from .errors import reported
+from .glasses.catalogue import LINE_D
 from .groups import Group, placed
 from .medium import Medium
 from .setting import By, LensSetting, MeasuredFrom
@@ -26,20 +27,12 @@ from .surface import LensSurface
 if TYPE_CHECKING:
     from .focus import Focused
 
-DESIGN_WAVELENGTH_NM = 587.5618
-
-
-class _Fields:
-    """Fields by name too: ``order["efl"]`` is ``order.efl``."""
-
-    def __getitem__(self, key: str) -> Any:
-        if key not in {f.name for f in dataclasses.fields(self)}:  # type: ignore[arg-type]
-            raise KeyError(key)
-        return getattr(self, key)
+#: Wavelength at which lenses are specified, nm.
+DESIGN_WAVELENGTH_NM = LINE_D
 
 
 @dataclass(frozen=True)
-class Nominal(_Fields):
+class Nominal:
     """Claims of the source about the lens; None: it does not say."""
 
     efl_mm: float | None = None
@@ -51,7 +44,7 @@ class Nominal(_Fields):
 
 
 @dataclass(frozen=True)
-class Pupil(_Fields):
+class Pupil:
     """An image of the stop: z in the lens frame and diameter wide open, mm."""
 
     z: float
@@ -59,7 +52,7 @@ class Pupil(_Fields):
 
 
 @dataclass(frozen=True)
-class FirstOrder(_Fields):
+class FirstOrder:
     """First-order properties at one wavelength.
 
     Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the

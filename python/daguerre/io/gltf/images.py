@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
+from daguerre.color import srgb as srgb_curve
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.uris import data_bytes, is_data
@@ -121,5 +122,5 @@ class Images:
 def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
     """Colour channels undone from sRGB; the alpha of 2 or 4 channels stays."""
     colors = pixels.shape[2] - (pixels.shape[2] in (2, 4))
-    linear = images.srgb_to_linear(pixels[:, :, :colors])
+    linear = srgb_curve.to_linear(pixels[:, :, :colors])
     return np.concatenate([linear, pixels[:, :, colors:]], axis=2)

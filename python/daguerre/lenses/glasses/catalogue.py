@@ -35,7 +35,8 @@ _OTHER_NAMES = {"FLUORITE": "CaF2", "CALCIUMFLUORIDE": "CaF2", "FUSEDSILICA": "S
 }
 _WITH_MAKER = re.compile(r"^(.*?)\s*\(([A-Za-z]+)\)$")
 _WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:-[A-Za-z0-9]+)*")
-LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725  # nm
+#: Spectral lines at which makers state indices, nm: F and C of hydrogen, d of helium.
+LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725
 
 
 @dataclass(frozen=True, eq=False)
