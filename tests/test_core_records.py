@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from daguerre import _core
-from daguerre.frame.aovs import AOV_NAMES, COVERAGE, PLANES
+from daguerre.frame.aovs import FILM_CHANNELS, MEANS_CHANNELS, TRUTH_CHANNELS
 
 
 def test_counters_add_up_field_by_field() -> None:
@@ -52,7 +52,7 @@ def test_settings_of_a_lens_keep_what_they_are_given() -> None:
 
 def test_a_film_has_the_channels_that_the_core_lists() -> None:
     film = _core.Film(_core.FilmLayout(width=3, height=2, aovs=True))
-    assert (*AOV_NAMES, "alpha") == _core.FILM_AOVS
+    assert {*FILM_CHANNELS, "alpha"} == {*_core.FILM_AOVS, "object_id"}
     for name in _core.FILM_AOVS:
         assert film.aov(name).shape == (2, 3)
     with pytest.raises(_core.Error, match=r"depth\.Z, P\.X, .*, alpha, got velocity"):
@@ -69,9 +69,11 @@ def test_truth_has_the_planes_that_the_core_lists() -> None:
     settings.resolution, settings.sensor_size_mm = (3, 2), (36.0, 24.0)
     seen = _core.see(scene, camera, settings, (0, 0, 3, 2))
     mean = _core.see_mean(scene, camera, settings, (0, 0, 3, 2), 4)
-    for name in PLANES:
+    assert set(TRUTH_CHANNELS) == set(_core.TRUTH_PLANES)
+    assert set(MEANS_CHANNELS) - set(TRUTH_CHANNELS) == {_core.COVERAGE_PLANE}
+    for name in TRUTH_CHANNELS:
         assert seen.plane(name).shape == mean.plane(name).shape == (2, 3)
         assert seen.plane(name).dtype == (np.uint32 if name.endswith("_id") else np.float32)
-    assert mean.plane(COVERAGE).shape == (2, 3)
+    assert mean.plane(_core.COVERAGE_PLANE).shape == (2, 3)
     with pytest.raises(_core.Error, match=r"one of depth\.Z, .*, material_id, got coverage"):
-        seen.plane(COVERAGE)
+        seen.plane(_core.COVERAGE_PLANE)

@@ -12,7 +12,7 @@ from daguerre import _core, lenses
 from daguerre.errors import CoreError, InputError, core_errors
 from daguerre.lenses import library
 from daguerre.lenses.errors import CODES, LensError, from_core, reported
-from daguerre.lenses.reader import lens_of
+from daguerre.lenses.json_lens import lens_of
 
 
 def test_a_code_stands_in_the_message_once() -> None:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.checks import frozen
+from daguerre.checks import as_readonly
 from daguerre.rendering.session import Session
 from daguerre.setup.scene import content_hash
 
@@ -143,7 +143,7 @@ def test_arrays_that_travelled_are_read_in_place() -> None:
         scene = pickle.loads(pickle.dumps(_of_arrays(), protocol))
         arrays = [scene.meshes[0].positions, scene.meshes[0].indices, scene.textures[0].pixels]
         assert all(not array.flags.writeable for array in arrays)
-        assert all(frozen(array) is array for array in arrays)  # the core needs no copy
+        assert all(as_readonly(array) is array for array in arrays)  # the core needs no copy
 
 
 def test_a_sensor_chosen_after_a_trip_still_gives_its_size() -> None:
