@@ -1,6 +1,6 @@
 """A catalogue of bad files, by theme, and of odd ones that are drawn all the same.
 
-``script/make-bad-files DIR`` writes them; ``tests/test_bad_files.py`` runs them.
+``script/make-bad-files DIR`` writes them; ``tests/cli/test_bad_files.py`` runs them.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from tests import lens_writers as write
+from tests.support import lens_writers as write
 
 from .bases import beside_scene
 from .case import DRAW, Case

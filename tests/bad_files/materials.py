@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.make_gltf import Builder
+from tests.support.make_gltf import Builder
 
 from .bases import full, seen
 from .case import Case, Change, both, drawn, put, scenes

@@ -1,0 +1,113 @@
+"""The order of floors holds in python/daguerre, and its check catches planted faults."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+GOOD = {
+    "__init__.py": "from .scene.scene import Scene",
+    "errors.py": "class Bad(Exception): pass",
+    "checks.py": "from .errors import Bad",
+    "lenses/__init__.py": "from .lens import Lens",
+    "lenses/lens.py": """
+from typing import TYPE_CHECKING
+if TYPE_CHECKING:
+    from .zoom import Range
+class Lens:
+    def at_zoom(self, zoom_mm: float) -> "Range":
+        '''Returns the lens at a focal length.'''
+        from .zoom import at_zoom
+        return at_zoom(self, zoom_mm)
+""",
+    "lenses/zoom.py": "from daguerre.checks import Bad\nfrom .lens import Lens",
+    "scene/scene.py": "import numpy\nfrom daguerre._core import Scene as Core",
+    "io/gltf/reader.py": "from daguerre.scene.scene import Scene",
+    "rendering/job.py": "from daguerre import errors\nfrom daguerre.io.gltf import reader",
+    "cli/main.py": "from daguerre.rendering.job import Job\nfrom daguerre import Scene",
+}
+
+
+def checked(folder: Path, planted: dict[str, str]) -> tuple[int, str]:
+    """Checks a small package that is in order but for what is planted."""
+    core = folder / "core"
+    (core / "math").mkdir(parents=True)
+    (core / "math" / "vec.h").write_text("#include <cmath>\n")
+    package = folder / "daguerre"
+    for name, text in (GOOD | planted).items():
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text(text + "\n")
+    command = [sys.executable, str(ROOT / "script" / "check-floors"), str(core), str(package)]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    return found.returncode, found.stdout + found.stderr
+
+
+def test_package_is_in_order() -> None:
+    command = [sys.executable, str(ROOT / "script" / "check-floors")]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
+def test_design_has_a_row_for_every_room() -> None:
+    """Rows stand in the order of floors."""
+    floors = runpy.run_path(str(ROOT / "script" / "floors_python.py"))["FLOORS"]
+    table = (ROOT / "docs" / "design.md").read_text().split("## The rooms of Python")[1]
+    rows = re.findall(r"^\| `(\w+)/?` \|", table, re.MULTILINE)
+    assert sorted(rows) == sorted(room for rooms in floors for room in rooms if room != "__main__")
+    heights = [next(i for i, rooms in enumerate(floors) if room in rooms) for room in rows]
+    assert heights == sorted(heights)
+
+
+def test_order_without_fault_passes(tmp_path: Path) -> None:
+    assert checked(tmp_path, {}) == (
+        0,
+        "check-floors: 1 files of C++ and 10 of Python, 0 faults against the order of floors\n",
+    )
+
+
+LOOP = {
+    "io/gltf/nodes.py": "def f():\n    from . import meshes",
+    "io/gltf/meshes.py": "from daguerre.io.gltf.nodes import f",
+}
+DECIDES = GOOD["lenses/lens.py"].replace(
+    "        return at", "        self.x = 1\n        return at"
+)
+ELSEWHERE = GOOD["lenses/lens.py"].replace("def at_zoom", "def zoomed")
+
+
+@pytest.mark.parametrize(
+    ("planted", "message"),
+    [
+        (
+            {"scene/bad.py": "from daguerre.rendering.job import Job"},
+            "bad.py:1: points up: rendering",
+        ),
+        ({"scene/bad.py": "def f():\n    from ..io.gltf import reader"}, "bad.py:2: points up: io"),
+        (
+            {"scene/bad.py": "import typing\nif typing.TYPE_CHECKING:\n    import daguerre.io.exr"},
+            "bad.py:3: points up: io",
+        ),
+        ({"checks.py": "import daguerre"}, "checks.py:1: points up: __init__"),
+        ({"scene/bad.py": "from daguerre import Scene"}, "points up: __init__ stands above scene"),
+        ({"maps/a.py": "from daguerre.charts import b"}, "charts is a neighbor of maps"),
+        ({"cellar/a.py": "x = 1"}, "room cellar is not in the table of floors"),
+        ({"cli/bad.py": "from daguerre.attic import x"}, "attic is not a room"),
+        (LOOP, "circle of 2 files: io/gltf/meshes.py, io/gltf/nodes.py"),
+        ({"lenses/lens.py": DECIDES}, "circle of 2 files: lenses/lens.py, lenses/zoom.py"),
+        ({"lenses/lens.py": ELSEWHERE}, "circle of 2 files: lenses/lens.py, lenses/zoom.py"),
+        (
+            {"lenses/bad.py": "def at_zoom(x):\n    from daguerre.plots import a\n    return a(x)"},
+            "points up: plots stands above lenses",
+        ),
+    ],
+)
+def test_fault_is_found(tmp_path: Path, planted: dict[str, str], message: str) -> None:
+    code, said = checked(tmp_path, planted)
+    assert code == 1, said
+    assert message in said

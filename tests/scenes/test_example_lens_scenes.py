@@ -1,0 +1,54 @@
+"""The scenes of scenes/lens_scenes.py: the same every time, read without a note, and lit."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("lens_scenes")
+    make(made)
+    return made
+
+
+def make(folder: Path, *flags: str) -> None:
+    script = ROOT / "scenes" / "lens_scenes.py"
+    subprocess.run([sys.executable, script, "-o", folder, *flags], check=True, capture_output=True)
+
+
+def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
+    make(tmp_path)
+    for name in SCENES:
+        assert (tmp_path / f"{name}.glb").read_bytes() == (folder / f"{name}.glb").read_bytes()
+        assert (tmp_path / f"{name}.glb").stat().st_size < 5_000_000
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_loads_without_a_warning_and_shows_something(folder: Path, name: str) -> None:
+    scene = dg.load(folder / f"{name}.glb")
+    assert scene.warnings == []
+    frame = dg.render(scene, "Camera", spp=4, resolution=(72, 48), max_depth=3)
+    assert np.isfinite(frame.rgb).all()
+    assert (frame.rgb.max(axis=2) > 0.01).mean() > (0.001 if name == "lamps" else 0.1)
+
+
+def test_the_subject_of_the_arcade_lies_in_the_plane_of_focus(folder: Path) -> None:
+    """Frame and chart at z = 0, as far away as shows half a metre of it."""
+    scene = dg.load(folder / "arcade.glb")
+    camera = scene.cameras["Camera"]
+    assert camera.focus_distance == pytest.approx(camera.transform[2, 3], abs=1e-4)
+    assert camera.focus_distance * 24 / camera.focal_length == pytest.approx(0.5, abs=1e-3)
+    places = {i.name: np.asarray(i.transform)[:3, 3] for i in scene.instances}
+    for name in ("frame", "chart"):
+        assert abs(places[name][2]) < 0.002
