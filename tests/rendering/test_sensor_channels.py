@@ -254,7 +254,7 @@ def test_diffraction_spreads_channels_as_it_spreads_light(monkeypatch: pytest.Mo
     np.testing.assert_allclose(total[1], total[0], rtol=0.02)
     np.testing.assert_allclose(wave.channels[..., 1], wave.xyz[..., 1], atol=2e-3 * wave.xyz.max())
     kept = Session(scene, eye, resolution=(48, 32), diffraction=True, bands=8, light_paths="off")
-    assert kept.diffraction.bands == 8
+    assert kept.settings.diffraction.bands == 8
     kept.draw(0, 64)
     frame = kept.frame()
     made = channels_from_bands(frame.bands, OBSERVER)
