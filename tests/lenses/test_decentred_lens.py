@@ -82,12 +82,14 @@ def bench_spot(
     return film[np.asarray(stopped) < 0][:, :2]
 
 
-def picture(camera: dg.Camera, spp: int = 400) -> tuple[Array, Array]:
+def picture(camera: dg.Camera, spp: int = 8) -> tuple[Array, Array]:
     """Luminance of a point source on the axis, and the pixels' x and y on the film, mm."""
     scene = dg.Scene()
     shining = dg.Material(dg.Diffuse((0, 0, 0)), emission=(100, 100, 100))
     scene.add_instance(scene.add_mesh(*scenes.quad(2e-4)), shining, scenes.at(0, 0, -AWAY))
-    frame = dg.render(scene, camera, resolution=(48, 48), spp=spp, filter="box")
+    # As many as `auto` chooses, of fewer indices: moments have a noise of 0.5 %, places of 0.04 um.
+    options = {"resolution": (48, 48), "filter": "box", "light_paths": (8000, 0)}
+    frame = dg.render(scene, camera, spp=spp, **options)
     side = camera.sensor_size[0]
     x = ((np.arange(48) + 0.5) / 48 - 0.5) * side
     place = np.stack(np.meshgrid(x, -x), -1) + camera.shift
