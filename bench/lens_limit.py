@@ -2,12 +2,12 @@
 
     python bench/lens_limit.py [NAME] [--ghz 3.7] [--lanes 16] [--json]
 
-Operations are counted from the kernel (trace-inl.h, meet-inl.h, transmission-inl.h of core/optics
-and pupil-inl.h), per vector of rays. A multiplication, fused or not, takes the pipe for 1
-cycle, and so does a comparison; a division keeps the divider busy for 6 cycles and a root for 10,
-of which the pipe sees 2 each, and additions have a pipe of their own: measured on Zen 4 with 512
-bits. The limit is the busier of pipe and divider. Aspheres count as spheres; absorption, gathers,
-loads and stores are not counted.
+Operations are counted from the kernel (core/optics/trace: trace-inl.h, meet-inl.h,
+transmission-inl.h; core/optics/aim/pupil-inl.h), per vector of rays. A multiplication, fused or
+not, takes the pipe for 1 cycle, and so does a comparison; a division keeps the divider busy for
+6 cycles and a root for 10, of which the pipe sees 2 each, and additions have a pipe of their own:
+measured on Zen 4 with 512 bits. The limit is the busier of pipe and divider. Aspheres count as
+spheres; absorption, gathers, loads and stores are not counted.
 """
 
 from __future__ import annotations

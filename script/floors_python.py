@@ -44,6 +44,15 @@ FLOORS = [
 FREE = {"_core"}
 #: (file, method, module above, or a higher one of its room): a value that hands itself up.
 HAND_OVERS = {
+    ("camera/camera.py", "from_colmap", "calibration.cameras"),
+    ("camera/camera.py", "from_kalibr", "calibration.cameras"),
+    ("camera/camera.py", "from_opencv", "calibration.cameras"),
+    ("camera/camera.py", "from_opentrackio", "calibration.cameras"),
+    ("camera/camera.py", "from_ros", "calibration.cameras"),
+    ("frame/frame.py", "_repr_png_", "io.png"),
+    ("frame/frame.py", "expose", "exposure.expose"),
+    ("frame/frame.py", "exposure_truth", "exposure.expose"),
+    ("frame/raw.py", "develop", "development.develop"),
     ("lenses/lens.py", "_repr_svg_", "plots.lens_section"),
     ("lenses/lens.py", "at_zoom", "lenses.zoom"),
     ("lenses/lens.py", "focused", "lenses.focus"),

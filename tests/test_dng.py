@@ -9,7 +9,8 @@ import pytest
 import daguerre as dg
 from daguerre.color import spectra
 from daguerre.development import bayer_of
-from daguerre.development.dng import baseline_exposure, noise_profile, write_dng
+from daguerre.development.dng import baseline_exposure, noise_profile
+from daguerre.development.raw_files import write_dng
 from daguerre.sensors import load, names
 
 from .colour_chart import (

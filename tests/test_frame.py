@@ -153,10 +153,10 @@ def test_soft_tone_keeps_the_dark_and_separates_highlights() -> None:
 
 
 def test_colours_that_srgb_lacks_keep_their_luminance() -> None:
-    from daguerre.io.images import srgb_to_linear
+    from daguerre.color.srgb import to_linear
 
     laser = np.array([[[-0.3, 0.6, -0.05], [0.2, 0.1, 0.3], [-1, 0.1, 0.1]]], np.float32)
-    shown = srgb_to_linear(Frame(laser).display()[0] / np.float32(255))
+    shown = to_linear(Frame(laser).display()[0] / np.float32(255))
     luminance = np.array([0.2126, 0.7152, 0.0722])
     assert shown[0] @ luminance == pytest.approx(laser[0, 0] @ luminance, abs=0.005)
     assert shown[0].min() == 0

@@ -8,9 +8,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from daguerre.color.srgb import to_linear
 from daguerre.errors import InputError
 from daguerre.io import images
-from daguerre.io.images import decode, read_environment, srgb_to_linear
+from daguerre.io.images import decode, read_environment
 
 from .make_gltf import jpeg, png
 
@@ -195,7 +196,7 @@ def test_decode_prints_nothing(capfd):
 
 def test_transfer_function():
     values = np.linspace(0, 1, 101, dtype=np.float32)
-    linear = srgb_to_linear(values)
+    linear = to_linear(values)
     back = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
     assert back == pytest.approx(values, abs=1e-6)
     assert linear[-1] == pytest.approx(1)

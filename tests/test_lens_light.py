@@ -9,6 +9,7 @@ import daguerre as dg
 from daguerre import lenses
 from daguerre.analysis.bench import set_up
 from daguerre.analysis.illumination import relative_illumination, spectral_illumination
+from daguerre.color.spaces import LUMINANCE_709
 from daguerre.convolution.rows import Rows
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.post import lens_light
@@ -99,7 +100,7 @@ def test_one_share_for_all_channels_is_the_luminance():
     image = np.ones((41, 61, 3), np.float32)
     setting = {"model": "lens", "lens": LENS, "f_stop": 2.0, "sensor": (36, 24)}
     plain = dg.post.vignette(image, colour=False, **setting)
-    luminance = dg.post.vignette(image, **setting) @ lens_light.LUMINANCE
+    luminance = dg.post.vignette(image, **setting) @ LUMINANCE_709
     assert np.ptp(plain, axis=2).max() == 0
     assert plain[:, :, 0] == pytest.approx(luminance, rel=2e-3)
     assert np.array_equal(dg.post.vignette(image[:, :, :1], **setting)[:, :, 0], plain[:, :, 0])

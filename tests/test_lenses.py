@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from daguerre import _core, lenses
-from daguerre.errors import InputError
+from daguerre.errors import InputError, UsageError
 
 from .lens_names import CLASSICS
 
@@ -63,6 +63,13 @@ def test_unknown_names_get_the_nearest() -> None:
         lenses.load("nowhere/lens.json")
     with pytest.raises(InputError, match="cannot be read"):
         lenses.load("lens.zmx")
+
+
+def test_a_lens_is_itself() -> None:
+    lens = lenses.load("double-gauss-50mm-f2")
+    assert lenses.load(lens) is lens
+    with pytest.raises(UsageError, match=r"configuration: wanted None, .* got 'far'"):
+        lenses.load(lens, "far")
 
 
 # First-order data and exact rays ------------------------------------------------------------------
@@ -146,7 +153,6 @@ def test_first_order_of_the_fifty() -> None:
     order = lenses.load("double-gauss-50mm-f2").first_order()
     assert order.efl == pytest.approx(100.015 / 2, rel=1e-5)  # US 2,673,491, indices of the patent
     assert order.bfl == pytest.approx(71.445 / 2, rel=1e-5)
-    assert order["efl"] == order.efl
     assert order.back_focal_point - order.back_principal_point == pytest.approx(order.efl)
     assert order.front_principal_point - order.front_focal_point == pytest.approx(order.efl)
     assert order.front_nodal_point == pytest.approx(order.front_principal_point)

@@ -10,7 +10,8 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre.errors import OutputError
-from daguerre.io.png import PngWriter, _intact
+from daguerre.io.png import PngWriter
+from daguerre.io.png_chunks import is_complete
 from daguerre.post.display import Display
 from daguerre.post.picture import Canvas
 
@@ -53,10 +54,10 @@ def test_a_full_disk_is_said_in_one_line_and_early(tmp_path):
 
 def test_files_that_end_early_or_have_a_wrong_bit_are_noticed(tmp_path):
     good = written(tmp_path / "good.png", [NOISE[:2]])
-    assert _intact(io.BytesIO(good))
+    assert is_complete(io.BytesIO(good))
     for cut in range(8, len(good), 97):
-        assert not _intact(io.BytesIO(good[:cut]))
+        assert not is_complete(io.BytesIO(good[:cut]))
         wrong = bytearray(good)
         wrong[cut] ^= 4
-        assert not _intact(io.BytesIO(bytes(wrong)))
-    assert not _intact(io.BytesIO(good + b"\0"))
+        assert not is_complete(io.BytesIO(bytes(wrong)))
+    assert not is_complete(io.BytesIO(good + b"\0"))

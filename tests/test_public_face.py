@@ -20,7 +20,7 @@ Face = dict[str, str]
 
 
 def differences(before: Face, now: Face) -> dict[str, tuple[str, str]]:
-    """What happened to each name that differs, and what stands there now."""
+    """Differences by name: what happened, and what stands there now."""
     found = dict.fromkeys(before.keys() - now.keys(), ("removed", ""))
     found |= {name: ("added", now[name]) for name in now.keys() - before.keys()}
     both = before.keys() & now.keys()

@@ -18,7 +18,7 @@ class RayOnFilm {
     RayOnFilm(const FilmDensity& density, const Sensor& sensor,
               std::span<const Reprojection> landings, float time);
 
-    /// Density of camera samples, per m2 sr of rays and sample index; see light_weight.h.
+    /// Density of camera samples, per m2 sr of rays and sample index; see camera_first_ray.h.
     double camera_density() const { return density_; }
     /// Some pixel of the region is in reach.
     bool in_reach() const { return in_reach_; }

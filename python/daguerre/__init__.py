@@ -155,8 +155,9 @@ def load(
     time: float = 0.0,
     variant: str | None = None,
     allow_dirs: Sequence[str | Path] = (),
+    **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb or .gltf) at a time in seconds.
+    """Reads a scene file (.glb, .gltf, or a format that was registered) at a time in seconds.
 
     A file without a camera gets one, named ``framing``, that has everything in view.
 
@@ -165,21 +166,15 @@ def load(
         time: Where the animations are evaluated, s.
         variant: One of the file's ``variants`` of materials; absent: as the file stands.
         allow_dirs: Folders outside the file's own that it may refer to.
+        **options: Those of a registered format (``docs/importers.md``).
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it.
+        UsageError: The file's format has no such option.
     """
-    from .io.gltf import reader as gltf
-    from .scene.framing import frame_everything
+    from .io.load import load as read
 
-    suffix = Path(path).suffix.lower()
-    if suffix not in (".glb", ".gltf"):
-        raise InputError(f"{path}: format: wanted .glb or .gltf, got {suffix or 'no suffix'}")
-    scene = gltf.read(path, time=time, variant=variant, allow_dirs=allow_dirs)
-    if not scene.cameras and (camera := frame_everything(scene)) is not None:
-        scene.add_camera("framing", camera)
-        scene.warnings.append("no camera in the file; 'framing' has everything in view")
-    return scene
+    return read(path, time=time, variant=variant, allow_dirs=allow_dirs, **options)
 
 
 def load_frame(path: str | Path) -> Frame:
@@ -188,6 +183,6 @@ def load_frame(path: str | Path) -> Frame:
     Raises:
         InputError: It cannot be read; the message names the file.
     """
-    from .io.exr.write import read_frame
+    from .io.exr.read import read_frame
 
     return read_frame(path)

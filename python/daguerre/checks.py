@@ -72,6 +72,8 @@ def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray
     while isinstance(base, np.ndarray) and not base.flags.writeable:
         base = base.base
     in_order = values.flags.c_contiguous and values.flags.aligned
+    if isinstance(base, bytes):  # as of an array that was pickled; nobody can change those either
+        base = None
     if base is None and in_order and values.dtype == (values.dtype if dtype is None else dtype):
         return values
     copy = np.array(values, dtype, order="C")

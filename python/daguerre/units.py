@@ -26,6 +26,9 @@ LENGTHS = {
 TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
 #: degrees
 ANGLES = {"deg": 1.0, "rad": 180 / math.pi}
+#: The helium d line to the digits that users type and commands print, nm: the default of
+#: ``--wavelength``. The lens code has all its digits (``lenses.lens.DESIGN_WAVELENGTH_NM``).
+TYPED_D_LINE_NM = 587.56
 #: Width x height, mm. s35: the camera aperture of 35 mm film, 4 perforations (SMPTE ST 59).
 SENSORS = {
     "ff": (36.0, 24.0),

@@ -189,8 +189,8 @@ void look(const Scene& scene, FuzzInput& in) {
         ray.direction = normalize(towards);
         PathSettings settings;
         settings.max_depth = 8;
-        AovSample aov;
-        radiance(scene, ray, wavelengths, sampler, settings, &aov, nullptr);
+        FirstHit hit;
+        radiance(scene, ray, wavelengths, sampler, settings, &hit, nullptr);
     }
 }
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.lenses import FirstOrder, Lens
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
+from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.lenses.setting import By, LensSetting
 
@@ -21,7 +22,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: F, d and C, nm, and what the eye makes of them (CIE 1924 V)
-FDC_NM = (486.1327, 587.5618, 656.2725)
+FDC_NM = (LINE_F, LINE_D, LINE_C)
 FDC_WEIGHTS = (0.181, 0.783, 0.072)
 
 

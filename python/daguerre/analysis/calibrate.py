@@ -215,7 +215,7 @@ class _Seen:
 
 
 def _see(lens: Lens | str, picture: _Picture, setting: LensSetting) -> _Seen:
-    item = load(lens) if isinstance(lens, str) else lens
+    item = load(lens)
     bench = on_bench(item, setting)
     size, pitch, axis = picture.size, picture.pitch_mm, picture.axis
     pixels, film = _grid(bench, size, pitch, axis)

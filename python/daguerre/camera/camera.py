@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import UsageError, suggest
+from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
 from .parameters import CAMERA, FULL_FRAME
@@ -41,8 +42,8 @@ _default = CAMERA.default
 Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
 
 
-@dataclass(frozen=True)
-class Camera:
+@dataclass(frozen=True, eq=False)
+class Camera(Value):
     """A camera in a photographer's terms; ``with_`` makes changed copies.
 
     Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
@@ -199,6 +200,21 @@ class Camera:
             object.__setattr__(self, name, value.at(0.0))
         object.__setattr__(self, "motion", {**self.motion, **found})
 
+    def __getstate__(self) -> dict[str, Any]:
+        # ``sensor_size`` tells by its identity that nobody chose it.
+        unchosen = self.sensor_size is FULL_FRAME
+        return super().__getstate__() | ({"sensor_size": None} if unchosen else {})
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        unchosen = state["sensor_size"] is None
+        super().__setstate__(state | ({"sensor_size": FULL_FRAME} if unchosen else {}))
+
+    def __repr__(self) -> str:
+        """Names what is not as a camera has it without being told."""
+        told = [text for text in changed(self) if not text.startswith("motion=")]
+        moving = [f"moving: {', '.join(self.motion)}"] if self.motion else []
+        return f"<Camera {', '.join(told + moving) or 'at the origin'}>"
+
     @classmethod
     def from_opencv(
         cls,
@@ -227,17 +243,15 @@ class Camera:
         Raises:
             InputError: The calibration cannot be used; the message names the place.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_opencv
 
-        found = read(
-            *(calibration, name),
-            format="opencv",
+        return from_opencv(
+            *(calibration, name, camera, pixel_pitch),
             model=model,
             size=size,
             rectified=rectified,
             unit_m=unit_m,
         )
-        return found.camera(camera, pixel_pitch)
 
     @classmethod
     def from_ros(
@@ -253,9 +267,9 @@ class Camera:
         Args: those of :meth:`from_opencv`; ``camera`` stands at the rig's first rectified one.
             ``rectified`` draws that picture, by P.
         """
-        from daguerre.calibration import read_ros
+        from daguerre.calibration.cameras import from_ros
 
-        return read_ros(calibration, rectified=rectified).camera(camera, pixel_pitch)
+        return from_ros(calibration, rectified, camera, pixel_pitch)
 
     @classmethod
     def from_kalibr(
@@ -272,10 +286,9 @@ class Camera:
         Args: those of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
             ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_kalibr
 
-        found = read(calibration, name, format="kalibr")
-        return found.camera(camera, pixel_pitch, timeshift=timeshift)
+        return from_kalibr(calibration, name, timeshift, camera, pixel_pitch)
 
     @classmethod
     def from_colmap(
@@ -291,10 +304,9 @@ class Camera:
 
         Args: those of :meth:`from_opencv`; ``name`` is that of the picture.
         """
-        from daguerre.calibration import read
+        from daguerre.calibration.cameras import from_colmap
 
-        found = read(folder, name, format="colmap", unit_m=unit_m)
-        return found.camera(camera, pixel_pitch)
+        return from_colmap(folder, name, unit_m, camera, pixel_pitch)
 
     @classmethod
     def from_opentrackio(
@@ -309,11 +321,9 @@ class Camera:
 
         Args: those of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
         """
-        from daguerre.calibration import read_opentrackio, read_track
+        from daguerre.calibration.cameras import from_opentrackio
 
-        if isinstance(calibration, list):
-            return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
-        return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)
+        return from_opentrackio(calibration, size, camera, pixel_pitch)
 
     def frozen_at(self, time: float) -> Camera:
         """Returns the camera frozen at a time, s; nothing in it moves."""

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short, to_numbers, whole
 from daguerre.errors import UsageError, core_errors, suggest
+from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
 
@@ -47,7 +48,7 @@ NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
 
 
 @dataclass(frozen=True)
-class Projection:
+class Projection(Value):
     """Projection of directions to pixels: a camera model with its numbers.
 
     Attributes:

@@ -31,7 +31,6 @@ READOUT_S = 1 / 60
 GATE_ANGLE = 60.0
 #: A leaf shutter is on its way for as long as it rests wide open (radius).
 LEAF_EFFICIENCY = 0.75
-MAX_POINTS = 4096
 
 
 def shutter_time(camera: Camera) -> float:

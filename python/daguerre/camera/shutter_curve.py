@@ -8,7 +8,8 @@ from pathlib import Path
 
 from daguerre.errors import InputError
 
-from .shutter import MAX_POINTS
+#: Points of a curve.
+MAX_POINTS = 4096
 
 _MAX_BYTES = 1 << 20
 

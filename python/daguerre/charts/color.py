@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.color import srgb
+
 from .chart import Chart, Patch, grey, rectangle
 
 #: sRGB, 8 bits, of the classic chart of McCamy, Marcus and Davidson 1976 ("A color-rendition
@@ -41,6 +43,5 @@ def make(width: float = 0.9) -> Chart:
 
 
 def linear(code: int) -> float:
-    """Linear light of an sRGB code value (IEC 61966-2-1)."""
-    v = code / 255
-    return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
+    """Linear light of an sRGB code value."""
+    return float(srgb.to_linear(np.asarray(code / 255)))

@@ -11,6 +11,7 @@ import re
 import sys
 import traceback
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import typer
@@ -83,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     console.argv = list(sys.argv[1:] if arguments is None else arguments)
     console.quiet, console.writer = False, None
     try:
-        code = app(args=console.argv, prog_name="daguerre", standalone_mode=False)
+        code = _program()(args=console.argv, prog_name="daguerre", standalone_mode=False)
         sys.stdout.flush()
         return int(code or 0)
     except DaguerreError as error:
@@ -98,6 +99,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)
         return _internal(error)
+
+
+@cache
+def _program() -> Any:
+    """Reads the commands' signatures once, however often `main` runs in a process."""
+    return typer.main.get_command(app)
 
 
 def _usage(error: Any) -> str:

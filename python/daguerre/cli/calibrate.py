@@ -84,8 +84,9 @@ def calibrate(
         option("--shift", metavar="X,Y", help="Shift of the film, right and up, mm [0,0]."),
     ] = None,
     wavelength: Annotated[
-        float, option("--wavelength", metavar="NM", help="Wavelength, nm [587.56].")
-    ] = 587.56,
+        float,
+        option("--wavelength", metavar="NM", help=f"Wavelength, nm [{q.TYPED_D_LINE_NM}]."),
+    ] = q.TYPED_D_LINE_NM,
     output: Annotated[
         Path | None, option("-o", "--output", metavar="FILE", help="Calibration file to write.")
     ] = None,

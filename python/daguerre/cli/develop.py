@@ -197,12 +197,12 @@ def _named(source: Path) -> Iterator[None]:
 def _check(source: Path, outputs: list[Path], sensor: str | None, quality: int) -> None:
     """Refuses wrong flags before anything is read."""
     from daguerre.files.atomic import check_writable
-    from daguerre.io.picture_files import ENDINGS, check_ending
+    from daguerre.files.formats import check_written, written
 
     if not 1 <= quality <= 100:
         raise UsageError(f"--quality: wanted 1 to 100, got {quality}")
     for path in outputs:
-        check_ending(path, (*ENDINGS, ".dng"))
+        check_written(path, (*written("picture"), ".dng"))
         if path.exists() and source.exists() and path.samefile(source):
             raise UsageError(f"{path}: wanted another file than the one that is developed")
         check_writable(path)
@@ -245,7 +245,7 @@ def _tell_speed(film: float, camera: float | None) -> None:
 
 
 def _frame(path: Path) -> Frame:
-    from daguerre.io.exr.write import read_frame
+    from daguerre.io.exr.read import read_frame
 
     return read_frame(path)
 

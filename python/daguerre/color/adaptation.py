@@ -1,4 +1,8 @@
-"""Chromatic adaptation by Bradford's matrix."""
+"""Chromatic adaptation by Bradford's matrix.
+
+Source: Lindbloom, "Chromatic Adaptation",
+http://www.brucelindbloom.com/index.html?Eqn_ChromAdapt.html; ICC.1:2022, annex E.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from . import illuminants
 FloatArray = NDArray[np.float64]
 
 
-#: Cone responses of the Bradford adaptation (as in ICC profiles of version 4, annex E).
+#: Cone responses of XYZ.
 BRADFORD = np.array(
     [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
 )
@@ -18,6 +22,10 @@ BRADFORD = np.array(
 
 def adaptation(from_xy: tuple[float, float], to_xy: tuple[float, float]) -> FloatArray:
     """XYZ under one white to those that look alike under another (Bradford), shape (3, 3)."""
-    before = BRADFORD @ illuminants.xyz_of_xy(from_xy)
-    after = BRADFORD @ illuminants.xyz_of_xy(to_xy)
-    return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
+    return adaptation_of_xyz(illuminants.xyz_of_xy(from_xy), illuminants.xyz_of_xy(to_xy))
+
+
+def adaptation_of_xyz(white: FloatArray, to: FloatArray) -> FloatArray:
+    """The same for whites by their XYZ, shape (3,) each."""
+    gains = (BRADFORD @ to) / (BRADFORD @ white)
+    return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(gains) @ BRADFORD)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-#: Luminance of linear Rec.709 (ITU-R BT.709-6).
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+from . import srgb
+from .spaces import LUMINANCE_709
+
+_LUMINANCE = LUMINANCE_709.astype(np.float32)
 
 
 def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The sRGB curve of IEC 61966-2-1, clipped to [0, 1]."""
-    x = np.clip(linear, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-8) ** (1 / 2.4) - 0.055)
+    """The sRGB curve, clipped to [0, 1]."""
+    return srgb.from_linear(np.clip(linear, 0, 1))
 
 
 def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:

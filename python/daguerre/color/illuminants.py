@@ -20,8 +20,12 @@ PLANCK, LIGHT = 6.62607015e-34, 299792458.0
 BOLTZMANN = 1.380649e-23
 #: Luminous efficacy of 540 THz, lm/W (SI).
 EFFICACY = 683.0
-#: Chromaticity of D65 by this program's tables, which are those of the CIE in steps of 5 nm.
+#: Chromaticity of D65 by this program's tables, which are those of the CIE in steps of 5 nm: the
+#: white that arithmetic adapts to, so that a grey world stays exactly grey.
 D65_XY = (0.31275676, 0.32907241)
+#: The same as standards of RGB state it (IEC 61966-2-1, ITU-R BT.709-6): for matrices of their
+#: primaries, profiles and headers, where other programs expect these digits.
+D65_STATED = (0.3127, 0.3290)
 #: Correlated colour temperatures of DNG's illuminants 21 and 17, K.
 D65_KELVIN, A_KELVIN = 6504.0, 2856.0
 LOWEST_KELVIN, HIGHEST_KELVIN = 1000.0, 25000.0

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .adaptation import BRADFORD
+from . import srgb
+from .illuminants import D65_STATED, xyz_of_xy
 
 FloatArray = NDArray[np.float64]
-
-
-D65 = (0.3127, 0.3290)
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,13 @@ class ColorSpace:
 
 
 # IEC 61966-2-1; ITU-R BT.2020-2, table 4, turned around: E' = a E^0.45 - (a - 1).
-_SRGB = (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+_SRGB = (
+    srgb.POWER,
+    1 / (1 + srgb.OFFSET),
+    srgb.OFFSET / (1 + srgb.OFFSET),
+    1 / srgb.SLOPE,
+    srgb.ENCODED_KNEE,
+)
 
 
 _A, _B = 1.09929682680944, 0.018053968510807
@@ -46,7 +50,10 @@ _A, _B = 1.09929682680944, 0.018053968510807
 _BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
 
 
-_P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
+P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
+#: Luminance of linear Rec.709 to the digits of ITU-R BT.709-6: for mixing with gray. Photometry
+#: takes ``spectra.luminance_of_rgb()``, which adds up with the spectra of the renderer.
+LUMINANCE_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
 _P3 = ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))  # SMPTE EG 432-1, white D65
@@ -58,29 +65,17 @@ _P2020 = ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))  # ITU-R BT.2020-2, ta
 COLOR_SPACES = {
     space.name: space
     for space in (
-        ColorSpace("srgb", "sRGB", _P709, _SRGB, (1, 13), "rec709"),
+        ColorSpace("srgb", "sRGB", P709, _SRGB, (1, 13), "rec709"),
         ColorSpace("p3", "Display P3", _P3, _SRGB, (12, 13), "p3d65"),
         ColorSpace("rec2020", "Rec.2020", _P2020, _BT2020, (9, 14), "rec2020"),
     )
 }
 
 
-def xyz_of(xy: tuple[float, float]) -> FloatArray:
-    """XYZ of luminance 1 at a chromaticity."""
-    x, y = xy
-    return np.array([x / y, 1.0, (1 - x - y) / y])
-
-
 def xyz_from_rgb(space: ColorSpace) -> FloatArray:
     """Matrix from linear light in the space to XYZ, shape (3, 3); D65 white has luminance 1."""
-    columns = np.stack([xyz_of(primary) for primary in space.primaries], axis=1)
-    return np.asarray(columns * np.linalg.solve(columns, xyz_of(D65)))
-
-
-def adaptation(white: FloatArray, to: FloatArray) -> FloatArray:
-    """XYZ under one white as they look under another, by Bradford's matrix, shape (3, 3)."""
-    ratio = (BRADFORD @ to) / (BRADFORD @ white)
-    return np.asarray(np.linalg.solve(BRADFORD, ratio[:, None] * BRADFORD))
+    columns = np.stack([xyz_of_xy(primary) for primary in space.primaries], axis=1)
+    return np.asarray(columns * np.linalg.solve(columns, xyz_of_xy(D65_STATED)))
 
 
 def decoded(values: NDArray[np.float32], name: str) -> NDArray[np.float32]:

@@ -25,6 +25,11 @@ def rgb_from_xyz() -> FloatArray:
     return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3).tolist()]).T
 
 
+def luminance_of_rgb() -> FloatArray:
+    """Luminance of linear Rec.709 by this program's tables, shape (3,)."""
+    return np.asarray(np.linalg.inv(rgb_from_xyz())[1])
+
+
 def xyz_of(rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     """CIE XYZ of linear Rec.709, shape (..., 3)."""
     return np.asarray(rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32))

@@ -203,7 +203,7 @@ def _demosaiced(raw: Raw, demosaic: Demosaic) -> tuple[NDArray[np.uint16], Float
 
     file = io.BytesIO()
     xtrans = raw.sensor.pattern.name == "xtrans"
-    put_dng(file, _with_margin(raw) if xtrans else _large_enough(raw), preview=False)
+    put_dng(file, _with_margin(raw) if xtrans else _large_enough(raw))
     file.seek(0)
     balance = 1 / np.clip(raw.neutral, 0.05, 1)
     with rawpy.imread(file) as opened:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import UsageError, suggest
+from daguerre.files import formats
 from daguerre.frame.picture import Picture
 
 from .channels import XY, Channels, Demosaic, of_frame, of_raw
@@ -145,17 +145,7 @@ def _channels(source: Any, demosaic: Demosaic) -> Channels:
 
 def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
     """Writes a raw picture: its numbers as ``.dng``, or developed; see ``Raw.save``."""
-    from daguerre.io.picture_files import ENDINGS, check_ending
-
-    files = {name: look.pop(name) for name in ("quality", "bits") if name in look}
-    if check_ending(path, (".dng", *ENDINGS)) != ".dng":
-        develop(raw, **look).save(path, **files)
-        return
-    from .dng import write_dng
-
-    if given := [*look, *files]:
-        raise UsageError(f"{Path(path)}: a DNG is not developed: {', '.join(given)} has no place")
-    write_dng(path, raw)
+    formats.write("raw", path, raw, **look)
 
 
 def _balance(source: Channels, white: XY) -> FloatArray:

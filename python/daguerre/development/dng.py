@@ -8,7 +8,6 @@ of the photosites as they are, 16 bits each.
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -16,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import illuminants
-from daguerre.files.atomic import atomic_path
 from daguerre.io import exif
 from daguerre.io.exif import Tags
 from daguerre.io.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
 from daguerre.sensors.sensor import GREY_LX_S
 
-from .binning import bayer_of, is_mono
+from .binning import is_mono
 from .looks import GREY
 
 if TYPE_CHECKING:
@@ -33,23 +31,6 @@ MAKE = "Daguerre"
 LEAST_OPENED = 22
 #: Numbers of EXIF's light sources, in DNG's order: incandescent first.
 _LAMP_A, _LAMP_D65 = 17, 21
-
-
-def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
-    """Writes a raw picture, whole or not at all.
-
-    A Quad-Bayer mosaic is written as it is binned in cameras, four photosites to one: no reader
-    knows its pattern of four by four.
-
-    Args:
-        path: Its name should end in ``.dng``.
-        raw: The picture.
-
-    Raises:
-        OutputError: The file cannot be written.
-    """
-    with atomic_path(path) as temp:
-        put_dng(temp, bayer_of(raw))
 
 
 def size_note(raw: Raw) -> str | None:
@@ -66,19 +47,23 @@ def size_note(raw: Raw) -> str | None:
     return f"LibRaw {what} from {least} x {least} px: other programs may refuse {width} x {height}"
 
 
-def put_dng(target: Path | IO[bytes], raw: Raw, *, preview: bool = True) -> None:
-    """The same into a file that exists, or a stream; ``preview``: with the small picture."""
+def put_dng(target: Path | IO[bytes], raw: Raw, preview: NDArray[np.uint8] | None = None) -> None:
+    """Writes a raw picture into a file that exists, or a stream.
+
+    Args:
+        target: The file or stream.
+        raw: The picture, of a pattern that DNG knows.
+        preview: Small developed picture, shape (h, w, 3); None: the file has none.
+    """
     facts = shot_facts(raw)
     about = exif.main_tags(facts | body_facts(raw)) | photograph_tags(raw)
     mosaic = mosaic_tags(raw)
     photometric = LINEAR_RAW if is_mono(raw) else CFA
     exposure = exif.exposure_tags(facts)
-    if not preview:
+    if preview is None:
         write_tiff(target, [TiffImage(raw.mosaic, photometric, about | mosaic)], exposure)
         return
-    from .preview import preview_of
-
-    small = TiffImage(preview_of(raw), "rgb", about, reduced=True)
+    small = TiffImage(preview, "rgb", about, reduced=True)
     write_tiff(target, [small, TiffImage(raw.mosaic, photometric, mosaic)], exposure)
 
 

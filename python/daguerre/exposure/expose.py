@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.checks import number, whole
 from daguerre.color import illuminants
-from daguerre.color.spectra import rgb_from_xyz
+from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
 from daguerre.frame.raw import Raw
@@ -224,7 +224,7 @@ def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
     if frame.variance is None:
         return 0.0
     of_white = light.lux_s * float(sensor.electrons_per_lux_s().max())
-    luma = np.linalg.inv(rgb_from_xyz())[1].astype(np.float32)
+    luma = luminance_of_rgb().astype(np.float32)
     noisy = 0
     for rows in _stripes(frame.height):
         mean = frame.rgb[rows] @ luma
@@ -245,7 +245,7 @@ def exposure_map(frame: Frame, ev: float | None = None) -> NDArray[np.float32]:
     factor = np.float32(luminance_exposure(frame.metadata) * 2.0 ** chosen_ev(frame, ev))
     if frame.xyz is not None:
         return np.asarray(frame.xyz[..., 1] * factor, np.float32)
-    luma = np.linalg.inv(rgb_from_xyz())[1].astype(np.float32)
+    luma = luminance_of_rgb().astype(np.float32)
     return np.asarray((frame.rgb @ luma) * factor, np.float32)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import numbers
-from daguerre.color.spectra import rgb_from_xyz
+from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.frame.frame import Frame
 
@@ -167,7 +167,7 @@ def _spot_weight(place: _Place, rows: slice) -> FloatArray:
 
 def _luminances(frame: Frame) -> Iterator[tuple[slice, FloatArray]]:
     """Stripes of rows and their luminance, cd/m2; what is no number or negative is black."""
-    luma = np.linalg.inv(rgb_from_xyz())[1]
+    luma = luminance_of_rgb()
     for begin in range(0, frame.height, _STRIPE):
         rows = slice(begin, min(begin + _STRIPE, frame.height))
         y = frame.xyz[rows, :, 1] if frame.xyz is not None else frame.rgb[rows] @ luma

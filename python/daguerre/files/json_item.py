@@ -42,6 +42,19 @@ class Item:
         self.key = key
         self.parent = parent
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travels with its place, but without the rest of its file."""
+        place: list[str | int] = []
+        item: Item | None = self
+        while item is not None:
+            place.append(item.key)
+            item = item.parent
+        return _at_place, (self.value, tuple(reversed(place)))
+
+    def holding(self, value: Any) -> Item:
+        """Another value at the same place."""
+        return Item(value, self.key, self.parent)
+
     @property
     def path(self) -> str:
         """Such as ``meshes[2].primitives[0].attributes.POSITION``."""
@@ -204,3 +217,11 @@ class Item:
         """The object of an extension, or None."""
         extensions = self.get("extensions")
         return None if extensions is None else extensions.get(name)
+
+
+def _at_place(value: Any, place: tuple[str | int, ...]) -> Item:
+    """A value whose parents are known by their keys alone."""
+    parent: Item | None = None
+    for key in place[:-1]:
+        parent = Item(None, key, parent)
+    return Item(value, place[-1], parent)

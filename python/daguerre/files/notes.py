@@ -19,3 +19,10 @@ class Notes:
             f"{sentence} ({count} {'use' if count == 1 else 'uses'})"
             for sentence, count in self._counts.items()
         ]
+
+
+class Silence(Notes):
+    """For what is read again: its remarks have been counted."""
+
+    def add(self, sentence: str, count: int = 1) -> None:
+        """Does nothing."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,8 @@ from numpy.typing import NDArray
 
 from daguerre.color.display import _into_gamut, _shoulder, _srgb
 from daguerre.errors import UsageError, suggest
+from daguerre.files import formats
+from daguerre.files.value import Value
 
 if TYPE_CHECKING:
     import os
@@ -22,12 +23,11 @@ if TYPE_CHECKING:
     from .raw import Raw
 
 TONES = ("srgb", "soft")
-FORMATS = (".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 _STRIPE = 64  # rows
 
 
-@dataclass
-class Frame:
+@dataclass(eq=False)
+class Frame(Value):
     """A rendered picture, or one in the making.
 
     Attributes:
@@ -58,6 +58,8 @@ class Frame:
     flare: NDArray[np.float32] | None = None
     channels: NDArray[np.float32] | None = None
     bands: NDArray[np.float32] | None = None
+
+    __hash__ = None  # type: ignore[assignment]  # it changes
 
     def __post_init__(self) -> None:
         if self.rgb.ndim != 3 or self.rgb.shape[2] != 3:
@@ -133,7 +135,7 @@ class Frame:
             shown[rows] = np.rint(encoded * 255)
         return shown
 
-    def _encoded(self, tone: str) -> NDArray[np.float32]:
+    def encoded(self, tone: str) -> NDArray[np.float32]:
         """Display values like ``display``, 0 to 1."""
         shown = np.empty(self.rgb.shape, np.float32)
         for rows, encoded in self._stripes(tone):
@@ -164,20 +166,7 @@ class Frame:
             UsageError: Unknown suffix.
             OutputError: The file cannot be written.
         """
-        suffix = check_format(path)
-        if suffix == ".exr":
-            from daguerre.io.exr.write import write_exr
-
-            write_exr(path, self)
-        elif suffix == ".png":
-            from daguerre.io.png import write_png
-
-            write_png(path, self.without_overscan(), tone)
-        else:
-            from daguerre.development import Picture
-
-            shown = self.without_overscan()
-            Picture(shown._encoded(tone), "srgb", shown.metadata).save(path)
+        formats.write("frame", path, self, tone=tone)
 
     def expose(
         self,
@@ -279,12 +268,4 @@ def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> st
     Raises:
         UsageError: Not one that can be written; the message lists those.
     """
-    suffix = Path(path).suffix.lower()
-    known = (*FORMATS, *more)
-    if suffix not in known:
-        wanted = f"{', '.join(known[:-1])} or {known[-1]}"
-        hint = "; a raw file is made by frame.expose().save()" if suffix == ".dng" else ""
-        raise UsageError(
-            f"{path}: output format: wanted a name ending in {wanted}, got {suffix!r}{hint}"
-        )
-    return suffix
+    return formats.check_written(path, (*formats.written("frame"), *more))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import spaces
+from daguerre.files import formats
 
 if TYPE_CHECKING:
     import os
@@ -61,11 +62,7 @@ class Picture:
             UsageError: Another ending, or bits that the format lacks.
             OutputError: The file cannot be written.
         """
-        from daguerre.io.picture_files import write_picture
-
-        write_picture(
-            path, self.pixels, self.colour_space, self.metadata, quality=quality, bits=bits
-        )
+        formats.write("picture", path, self, quality=quality, bits=bits)
 
     def __repr__(self) -> str:
         return f"<Picture {self.width}x{self.height}, {self.colour_space}>"

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files import formats
 from daguerre.sensors.sensor import Sensor
 
 if TYPE_CHECKING:
     import os
 
-    from daguerre.development import Picture
+    from .picture import Picture
 
 
 @dataclass(eq=False)
@@ -113,9 +114,7 @@ class Raw:
             path: ``.dng`` keeps the numbers; others are developed first.
             look: Look of developed files; see ``daguerre.development.develop``.
         """
-        from daguerre.development import save_raw
-
-        save_raw(path, self, **look)
+        formats.write("raw", path, self, **look)
 
     def __repr__(self) -> str:
         return f"<Raw {self.width}x{self.height}, {self.sensor.name}, ISO {self.iso:g}>"

@@ -12,7 +12,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.color.spaces import COLOR_SPACES, D65, adaptation, xyz_from_rgb, xyz_of
+from daguerre.color.adaptation import adaptation_of_xyz
+from daguerre.color.illuminants import D65_STATED, xyz_of_xy
+from daguerre.color.spaces import COLOR_SPACES, xyz_from_rgb
 
 FloatArray = NDArray[np.float64]
 #: The white of profiles' connection space as ICC.1 writes it, XYZ.
@@ -23,7 +25,7 @@ D50_XYZ = (0.9642, 1.0, 0.8249)
 def profile(name: str) -> bytes:
     """The profile of a colour space of ``COLOR_SPACES``."""
     space = COLOR_SPACES[name]
-    to_d50 = adaptation(xyz_of(D65), np.array(D50_XYZ))
+    to_d50 = adaptation_of_xyz(xyz_of_xy(D65_STATED), np.array(D50_XYZ))
     columns = (to_d50 @ xyz_from_rgb(space)).T
     curve = struct.pack(">4s4xH2x", b"para", 3) + _fixed(space.curve)
     tags = {

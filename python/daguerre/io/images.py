@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import DEFLATE_LIMIT
+from daguerre.color import srgb
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 
@@ -32,13 +33,6 @@ MAX_LIGHT = 1e38
 _PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 # Bits by colour type (PNG specification, 11.2.1).
 _PNG_DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
-
-
-def srgb_to_linear(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The sRGB transfer function undone (IEC 61966-2-1), any shape, 0 .. 1."""
-    low = values / np.float32(12.92)
-    high = ((np.maximum(values, 0) + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
-    return np.where(values <= np.float32(0.04045), low, high).astype(np.float32)
 
 
 def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[np.float32]:
@@ -108,7 +102,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     pixels, spec, kind = _read(str(file), str(file), MAX_ENVIRONMENT_BYTES)
     if np.issubdtype(pixels.dtype, np.integer):
         scale = np.float32(np.iinfo(pixels.dtype).max)
-        rgb = srgb_to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
+        rgb = srgb.to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
     else:
         rgb = _rgb(pixels, spec, file).astype(np.float32)
     if kind == "openexr":

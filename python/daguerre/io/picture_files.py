@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import struct
-import zlib
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -18,31 +18,14 @@ from numpy.typing import NDArray
 
 from daguerre.checks import whole
 from daguerre.color import spaces
-from daguerre.errors import OutputError, UsageError, suggest
+from daguerre.color.illuminants import D65_STATED
+from daguerre.errors import OutputError, UsageError
 from daguerre.files.atomic import atomic_path
+from daguerre.files.formats import check_written, written
 from daguerre.frame.picture import quantized
 
-from . import exif, icc
+from . import exif, icc, png_chunks
 from .tiff import TiffImage, write_tiff
-
-ENDINGS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr")
-_PNG_START = 8 + 25  # signature and IHDR
-
-
-def check_ending(path: str | os.PathLike[str], known: tuple[str, ...] = ENDINGS) -> str:
-    """The ending of an output, in lower case.
-
-    Raises:
-        UsageError: Not one of ``known``.
-    """
-    suffix = Path(path).suffix.lower()
-    if suffix not in known:
-        wanted = ", ".join(known)
-        raise UsageError(
-            f"{path}: output format: wanted a name ending in {wanted}; got {suffix!r}"
-            f"{suggest(suffix, known)}"
-        )
-    return suffix
 
 
 def write_picture(
@@ -69,7 +52,7 @@ def write_picture(
         UsageError: Another ending, a quality beyond 1 to 100, or bits that the format lacks.
         OutputError: The file cannot be written.
     """
-    suffix = check_ending(path)
+    suffix = check_written(path, written("picture"))
     whole(quality, f"{path}: quality", 1, 100)
     if suffix == ".exr":
         _write_linear(path, pixels, space, metadata)
@@ -139,37 +122,14 @@ def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
 
 def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
-    if not complete_png(data):
+    if not png_chunks.is_complete(BytesIO(data)):
         raise OutputError("PNG: the file is not complete; is the disk full?")
     cicp = bytes([*spaces.COLOR_SPACES[space].cicp, 0, 1])
-    kept = b"".join(
-        chunk for kind, chunk in _png_chunks(data) if kind not in (b"eXIf", b"cICP", b"IHDR")
-    )
-    chunks = _png_chunk(b"cICP", cicp) + _png_chunk(b"eXIf", block)
-    return data[:_PNG_START] + chunks + kept
-
-
-def complete_png(data: bytes) -> bool:
-    """Whether every chunk has its checksum and the last one is IEND (PNG 3rd edition, 5.3)."""
-    chunks = _png_chunks(data)
-    good = all(zlib.crc32(chunk[4:-4]) == int.from_bytes(chunk[-4:], "big") for _, chunk in chunks)
-    end = 8 + sum(len(chunk) for _, chunk in chunks)
-    return good and bool(chunks) and chunks[-1][0] == b"IEND" and end == len(data)
-
-
-def _png_chunks(data: bytes) -> list[tuple[bytes, bytes]]:
-    chunks, at = [], 8
-    while at + 12 <= len(data):
-        end = at + 12 + int.from_bytes(data[at : at + 4], "big")
-        chunks.append((data[at + 4 : at + 8], data[at:end]))
-        at = end
-    return chunks
-
-
-def _png_chunk(kind: bytes, value: bytes) -> bytes:
-    return (
-        struct.pack(">I", len(value)) + kind + value + struct.pack(">I", zlib.crc32(kind + value))
-    )
+    head, *rest = png_chunks.chunks(BytesIO(data))
+    kept = [(c.kind, c.data) for c in rest if c.kind not in (b"eXIf", b"cICP")]
+    all_ = [(head.kind, head.data), (b"cICP", cicp), (b"eXIf", block), *kept]
+    start = data[: png_chunks.SIGNATURE_BYTES]
+    return start + b"".join(png_chunks.encoded(*chunk) for chunk in all_)
 
 
 def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping[str, Any]) -> None:
@@ -202,7 +162,7 @@ def _write_linear(
     for row in range(0, len(pixels), 64):
         linear[row : row + 64] = spaces.decoded(pixels[row : row + 64], space)
     header = attributes(metadata)
-    corners = (*spaces.COLOR_SPACES[space].primaries, spaces.D65)
+    corners = (*spaces.COLOR_SPACES[space].primaries, D65_STATED)
     header["chromaticities"] = tuple(value for corner in corners for value in corner)
     header["colorInteropID"] = f"lin_{spaces.COLOR_SPACES[space].interop}_scene"
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))

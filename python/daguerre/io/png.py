@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,6 +15,7 @@ from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 
 from . import exif
+from .png_chunks import checksum, chunks, is_complete
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -95,7 +95,7 @@ class PngWriter:
             _put_rationals(file, self._rationals)
         # libpng's writer need not notice a full disk, so what is there is read back.
         with self._path.open("rb") as file:
-            if not _intact(file):
+            if not is_complete(file):
                 raise self._error("the file is not complete; is the disk full?")
 
     def _check(self, done: bool) -> None:
@@ -132,25 +132,10 @@ def _write(path: Path, frame: Frame, tone: str, target: str | os.PathLike[str]) 
 
 def _put_rationals(file: BinaryIO, values: Mapping[int, tuple[int, int]]) -> None:
     """Exposure times and stops as a camera writes them; EXIF comes before the pixels."""
-    file.seek(8)
-    while len(head := file.read(8)) == 8 and head[4:] not in (b"IDAT", b"IEND"):
-        length, kind = int.from_bytes(head[:4], "big"), head[4:]
-        if kind == b"eXIf" and len(block := file.read(length)) == length:
-            block = exif.with_rationals(block, values)
-            file.seek(-length, 1)
-            file.write(block + zlib.crc32(kind + block).to_bytes(4, "big"))
+    for chunk in chunks(file):
+        if chunk.kind == b"eXIf" and chunk.intact:
+            block = exif.with_rationals(chunk.data, values)
+            file.seek(chunk.at)
+            file.write(block + checksum(b"eXIf", block))
+        if chunk.kind in (b"eXIf", b"IDAT"):
             return
-        file.seek(length + 4, 1)
-
-
-def _intact(file: BinaryIO) -> bool:
-    """Whether every chunk has its checksum and the last one is IEND (PNG specification, 5.3)."""
-    file.seek(8)
-    while len(head := file.read(8)) == 8:
-        length, kind = int.from_bytes(head[:4], "big"), head[4:]
-        found = zlib.crc32(file.read(length), zlib.crc32(kind))
-        if file.read(4) != found.to_bytes(4, "big"):
-            return False
-        if kind == b"IEND":
-            return not file.read(1)
-    return False

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 
 from .errors import LensError, reported
-from .lens import Lens
+from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .sag import sag
 from .surface import LensSurface
 
@@ -27,7 +27,6 @@ ROUNDING = 0.9
 #: A lens of which less of the beam on the axis passes is slower than it says.
 ENOUGH_LIGHT = 0.6
 _RADII = 129
-_DESIGN_NM = 587.5618
 
 
 def checked(lens: Lens) -> Lens:
@@ -121,7 +120,7 @@ def _beam(lens: Lens) -> NDArray[np.float64]:
         return out
     for share in (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1):
         origin, direction = _ray(lens, order.entrance_pupil.z, 0.0, share * radius)
-        path = lens.prescription.path(origin[None], direction[None], _DESIGN_NM, False)
+        path = lens.prescription.path(origin[None], direction[None], DESIGN_WAVELENGTH_NM, False)
         if len(path) == len(out):
             return np.asarray(np.hypot(path[:, 0], path[:, 1]), np.float64)
     return out
@@ -154,7 +153,7 @@ def _check_light(lens: Lens) -> list[str]:
         if x * x + y * y <= 1
     ]
     origins, directions = (np.ascontiguousarray(part) for part in zip(*rays, strict=True))
-    nm = np.full(len(rays), _DESIGN_NM)
+    nm = np.full(len(rays), DESIGN_WAVELENGTH_NM)
     stopped = lens.prescription.rays(origins, directions, nm, True)[-1]
     passed = float((stopped < 0).mean())
     if passed > 0:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import itertools
 import math
 
-import daguerre._core as _core
 from daguerre.errors import CoreError
 from daguerre.files.json_item import Item
+
+from .medium import Medium
 
 #: Members that give the index by themselves.
 FORMULAS = ("table", "sellmeier", "polynomial")
 MAX_TERMS = 32
 
 
-def formula_of(item: Item) -> tuple[_core.Glass, str] | None:
+def formula_of(item: Item) -> tuple[Medium, str] | None:
     """The glass of ``table``, ``sellmeier`` or ``polynomial`` and which of them; None: without.
 
     Raises:
@@ -48,19 +49,19 @@ def absorption_of(item: Item) -> tuple[list[float], list[float]] | None:
     return [nm for nm, _ in nodes], [-math.log(tau) / thickness for _, tau in nodes]
 
 
-def _table(member: Item) -> _core.Glass:
+def _table(member: Item) -> Medium:
     nm, n = zip(*_nodes(member, "n", low=1, high=5), strict=True)
-    return _core.Glass.table(list(nm), list(n))
+    return Medium("table", (nm, n))
 
 
-def _sellmeier(member: Item) -> _core.Glass:
+def _sellmeier(member: Item) -> Medium:
     b, c = _terms(member, "b", "c")
-    return _core.Glass.sellmeier(b, c, member.number_of("constant", 0.0, -10, 10))
+    return Medium("sellmeier", (b, c, member.number_of("constant", 0.0, -10, 10)))
 
 
-def _polynomial(member: Item) -> _core.Glass:
+def _polynomial(member: Item) -> Medium:
     coefficients, powers = _terms(member, "coefficients", "powers")
-    return _core.Glass.polynomial(coefficients, powers)
+    return Medium("polynomial", (coefficients, powers))
 
 
 def _terms(member: Item, first: str, second: str) -> tuple[list[float], list[float]]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import daguerre._core as _core
 from daguerre.files.json_item import Item
 
 from . import glasses
 from .errors import LensError
 from .glass_formula import absorption_of, formula_of
+from .glasses.catalogue import LINE_D
+from .medium import AIR, Medium
 from .reading import member, number, text
 
 
-def glass_from_json(item: Item | None) -> tuple[_core.Glass, str]:
+def glass_from_json(item: Item | None) -> tuple[Medium, str]:
     """The glass and its label: its name, or nd/Vd. None and null are air.
 
     Numbers decide the index: a formula or a table, else nd and vd; only a name alone asks the
@@ -23,7 +24,7 @@ def glass_from_json(item: Item | None) -> tuple[_core.Glass, str]:
             name that no catalogue has.
     """
     if item is None or item.value is None:
-        return _core.Glass.constant(1.0), ""
+        return AIR, ""
     label = text(item, "name") or ""
     formula = formula_of(item)
     if formula is not None:
@@ -35,17 +36,17 @@ def glass_from_json(item: Item | None) -> tuple[_core.Glass, str]:
     return _with_absorption(item, glass, label), label or default
 
 
-def _abbe(item: Item) -> tuple[_core.Glass, str]:
+def _abbe(item: Item) -> tuple[Medium, str]:
     nd = item.need("nd").number(1, 5)
     vd = number(item, "vd", above=0)
     if vd is None:
-        return _core.Glass.constant(nd), f"{nd:.5g}"
+        return Medium("constant", (nd,)), f"{nd:.5g}"
     if vd < 5:
         item.need("vd").fail(f"wanted an Abbe number of at least 5, got {vd:g}")
-    return _core.Glass.abbe(nd, vd), f"{nd:.5g}/{vd:.4g}"
+    return Medium("abbe", (nd, vd)), f"{nd:.5g}/{vd:.4g}"
 
 
-def _of_catalogue(item: Item, label: str) -> tuple[_core.Glass, str]:
+def _of_catalogue(item: Item, label: str) -> tuple[Medium, str]:
     if member(item, "vd") is not None:
         item.need("nd")  # says that it is missing
     try:
@@ -57,9 +58,9 @@ def _of_catalogue(item: Item, label: str) -> tuple[_core.Glass, str]:
     return found.core.with_absorption(*own) if own else found.core, found.name
 
 
-def _with_absorption(item: Item, glass: _core.Glass, label: str) -> _core.Glass:
+def _with_absorption(item: Item, glass: Medium, label: str) -> Medium:
     own = absorption_of(item)
     if own is not None:
         return glass.with_absorption(*own)
-    known = glasses.similar(label, glass.index(587.5618)) if label else None
+    known = glasses.similar(label, glass.index(LINE_D)) if label else None
     return glass.with_absorption_of(known.core) if known else glass

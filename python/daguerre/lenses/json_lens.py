@@ -14,7 +14,7 @@ from .diameters import with_derived_diameters
 from .errors import LensError, reported
 from .glass_json import glass_from_json
 from .groups import Group, placed
-from .lens import Lens, Nominal, core_prescription
+from .lens import Lens, Nominal
 from .reading import member, number, text, triple
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
@@ -86,7 +86,6 @@ def _assembled(
         nominal=nominal,
         surfaces=tuple(surfaces),
         coating=coating_name,
-        prescription=core_prescription(name, surfaces, medium, coating_name, nominal.f_number),
         data=root.value,
         configurations=configurations,
         object_medium=medium,

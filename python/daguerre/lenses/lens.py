@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -13,30 +14,25 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.errors import InputError
+from daguerre.files.value import Value
 
 from .configurations import Configuration
 from .errors import reported
+from .glasses.catalogue import LINE_D
 from .groups import Group, placed
+from .medium import Medium
 from .setting import By, LensSetting, MeasuredFrom
 from .surface import LensSurface
 
 if TYPE_CHECKING:
     from .focus import Focused
 
-DESIGN_WAVELENGTH_NM = 587.5618
-
-
-class _Fields:
-    """Fields by name too: ``order["efl"]`` is ``order.efl``."""
-
-    def __getitem__(self, key: str) -> Any:
-        if key not in {f.name for f in dataclasses.fields(self)}:  # type: ignore[arg-type]
-            raise KeyError(key)
-        return getattr(self, key)
+#: Wavelength at which lenses are specified, nm.
+DESIGN_WAVELENGTH_NM = LINE_D
 
 
 @dataclass(frozen=True)
-class Nominal(_Fields):
+class Nominal:
     """Claims of the source about the lens; None: it does not say."""
 
     efl_mm: float | None = None
@@ -48,7 +44,7 @@ class Nominal(_Fields):
 
 
 @dataclass(frozen=True)
-class Pupil(_Fields):
+class Pupil:
     """An image of the stop: z in the lens frame and diameter wide open, mm."""
 
     z: float
@@ -56,7 +52,7 @@ class Pupil(_Fields):
 
 
 @dataclass(frozen=True)
-class FirstOrder(_Fields):
+class FirstOrder:
     """First-order properties at one wavelength.
 
     Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the
@@ -84,7 +80,7 @@ class FirstOrder(_Fields):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Lens:
+class Lens(Value):
     """A lens prescription, read and checked.
 
     Lens frame: mm, +z from object to film, z = 0 at the first vertex, R > 0 when the centre lies
@@ -98,7 +94,6 @@ class Lens:
         nominal: Claims of the source: focal length, f-number, field.
         surfaces: Surfaces from the object side to the film.
         coating: Coating of surfaces between air and glass.
-        prescription: The core's version.
         data: The parsed file.
         configurations: Zoom and focus positions of the file.
         object_medium: Medium before the first surface.
@@ -113,12 +108,21 @@ class Lens:
     nominal: Nominal
     surfaces: tuple[LensSurface, ...]
     coating: str
-    prescription: _core.Prescription
     data: dict[str, Any]
     configurations: tuple[Configuration, ...]
-    object_medium: _core.Glass
+    object_medium: Medium
     zoom_mm: float | None = None
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        _ = self.prescription  # a lens that the core refuses is none
+
+    @cached_property
+    def prescription(self) -> _core.Prescription:
+        """The core's version."""
+        surfaces = [surface.core() for surface in self.surfaces]
+        medium, f_number = self.object_medium.core, self.nominal.f_number or 0.0
+        return _core.Prescription(self.name, surfaces, medium, self.coating, f_number)
 
     def first_order(
         self, wavelength_nm: float = DESIGN_WAVELENGTH_NM, section: Literal["x", "y"] = "y"
@@ -200,11 +204,7 @@ class Lens:
 
     def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
         """Returns the lens with another table, and other fields changed."""
-        nominal = changes.get("nominal", self.nominal)
-        core = core_prescription(
-            self.name, surfaces, self.object_medium, self.coating, nominal.f_number
-        )
-        return dataclasses.replace(self, surfaces=tuple(surfaces), prescription=core, **changes)
+        return dataclasses.replace(self, surfaces=tuple(surfaces), **changes)
 
     def with_gaps(self, gaps: Mapping[int, float]) -> Lens:
         """Returns the lens with other thicknesses after some surfaces, by index, mm."""
@@ -344,19 +344,6 @@ class Lens:
         from daguerre.plots.lens_section import draw
 
         return draw(self)
-
-
-def core_prescription(
-    name: str,
-    surfaces: Sequence[LensSurface],
-    object_medium: _core.Glass,
-    coating: str,
-    f_number: float | None,
-) -> _core.Prescription:
-    """The core's version of a table."""
-    return _core.Prescription(
-        name, [surface.core() for surface in surfaces], object_medium, coating, f_number or 0.0
-    )
 
 
 def _rays(

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from daguerre.errors import InputError, suggest
+from daguerre.checks import short
+from daguerre.errors import UsageError
+from daguerre.files.library import find
 
 from .formats import SUFFIXES
 from .lens import Lens
@@ -79,26 +81,27 @@ def names() -> list[str]:
     return [entry.name for entry in entries()]
 
 
-def load(name_or_path: str | Path, configuration: str | None = None) -> Lens:
+def load(name_or_path: str | Path | Lens, configuration: str | None = None) -> Lens:
     """Loads a lens of the library or from a file.
 
     Args:
-        name_or_path: A name of ``names()``, or a file of the schema ``daguerre-lens/0.1``.
-        configuration: Zoom or focus position by name; the first of the file if None.
+        name_or_path: A name of ``names()``, or a file of the schema ``daguerre-lens/0.1``; a lens
+            is itself.
+        configuration: Zoom or focus position by name; default: the first of the file.
 
     Raises:
         InputError: An unknown name (the nearest are suggested), or a file that cannot be used.
+        UsageError: A configuration of a lens that is loaded already.
     """
-    text = str(name_or_path)
-    path = Path(text)
-    looks_like_file = isinstance(name_or_path, Path) or path.suffix != "" or len(path.parts) > 1
-    if text in names():
-        return read(FOLDER / f"{text}.json", configuration)
-    if path.is_file() or (looks_like_file and path.suffix.lower() in (".json", *SUFFIXES)):
-        return read(path, configuration)
-    raise InputError(
-        f"lens {text!r}: no lens of the library and no file has this name{suggest(text, names())}"
-    )
+    if isinstance(name_or_path, Lens):
+        if configuration is not None:
+            raise UsageError(
+                f"{name_or_path.name}: configuration: wanted None, as the lens is loaded already, "
+                f"got {short(configuration)}"
+            )
+        return name_or_path
+    path = find("lens", name_or_path, FOLDER, names(), (".json", *SUFFIXES))
+    return read(path, configuration)
 
 
 def _entry(row: dict[str, str]) -> Entry:

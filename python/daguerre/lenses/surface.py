@@ -9,6 +9,8 @@ from typing import Any
 
 import daguerre._core as _core
 
+from .medium import Medium
+
 #: Values that ``kind`` may have.
 KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
 #: Kinds whose two sections have curvatures of their own.
@@ -29,7 +31,7 @@ class LensSurface:
         semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
         glass: Glass that follows it, by name or nd/Vd; empty: air.
         stop: The iris lies here.
-        core_glass: Glass that follows it, as the core has it.
+        medium: Medium that follows it.
         conic: k: 0 is a sphere, -1 a paraboloid.
         asphere: Coefficients by power of r = hypot(x, y), added to the sag.
         radius_x: Radius in the x-z plane of a biconic or toroid.
@@ -50,7 +52,7 @@ class LensSurface:
     semi_diameter: float | None
     glass: str
     stop: bool
-    core_glass: _core.Glass = field(repr=False, compare=False)
+    medium: Medium = field(repr=False)
     conic: float = 0.0
     asphere: dict[int, float] = field(default_factory=dict)
     radius_x: float | None = None
@@ -67,6 +69,11 @@ class LensSurface:
         """A copy with some fields changed."""
         return dataclasses.replace(self, **changes)
 
+    @property
+    def core_glass(self) -> _core.Glass:
+        """The medium that follows it, in the core."""
+        return self.medium.core
+
     def core(self) -> _core.Surface:
         """The core's version."""
         clear = math.inf if self.semi_diameter is None else self.semi_diameter
@@ -74,7 +81,7 @@ class LensSurface:
             _curvature(self.radius),
             self.thickness or 0.0,
             clear,
-            self.core_glass,
+            self.medium.core,
             self.stop,
             self.kind,
             conic=self.conic,

@@ -42,7 +42,7 @@ def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
         semi_diameter=semi_diameter,
         glass=label,
         stop=kind == "stop" or (flag is not None and flag.flag()),
-        core_glass=glass,
+        medium=glass,
         conic=number(item, "conic") or 0.0,
         asphere=_asphere(item),
         radius_x=radius_x,

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 import daguerre._core as _core
 from daguerre.checks import as_readonly, matrix, number, short, to_numbers
 from daguerre.errors import InputError, core_errors, suggest
+from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
 #: Ways between two matrices; the first is the default. Each is explained in docs/motion.md.
@@ -53,7 +54,7 @@ class Dynamic(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Keys:
+class Keys(Value):
     """A value given at some times; made by :func:`keys`.
 
     Attributes:
@@ -97,9 +98,14 @@ class Keys:
         last = np.searchsorted(self.times, end, side="left")
         return [float(t) for t in self.times[first:last]]
 
+    def __repr__(self) -> str:
+        first, last = float(self.times[0]), float(self.times[-1])
+        kind = "matrices" if self.moves_matrices else type(self.values[0]).__name__
+        return f"<Keys {len(self.times)} x {kind}, {first:g} .. {last:g} s, {self.interpolation}>"
+
 
 @dataclass(frozen=True, eq=False)
-class Spin:
+class Spin(Value):
     """A transform that turns evenly, by any number of turns; made by :func:`spin`.
 
     Attributes:
@@ -131,9 +137,13 @@ class Spin:
         """Breaks of its transform, s."""
         return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else []
 
+    def __repr__(self) -> str:
+        x, y, z = self.axis
+        return f"<Spin {self.revolutions_per_second:g} rev/s about ({x:g}, {y:g}, {z:g})>"
+
 
 @dataclass(frozen=True, eq=False)
-class Composite:
+class Composite(Value):
     """A dataclass, tuple or list with dynamic values somewhere inside."""
 
     value: Any

@@ -60,9 +60,7 @@ def from_lens(
         UsageError: A parameter that cannot be.
     """
     own_film = lens.film_z_mm if isinstance(lens, Focused) else None
-    prescribed = lens.lens if isinstance(lens, Focused) else lens
-    if not isinstance(prescribed, Lens):
-        prescribed = load(prescribed)
+    prescribed = load(lens.lens if isinstance(lens, Focused) else lens)
     if film_z is None:
         film_z = prescribed.image_z if own_film is None else own_film
     ray = _ray(about)

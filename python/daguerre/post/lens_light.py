@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color.spaces import LUMINANCE_709
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError
 
@@ -25,8 +26,6 @@ HEIGHTS = 33  # at which the light of a lens is measured that is the same on all
 ACROSS, DOWN = 13, 9  # points of the frame at which that of others is,
 RAYS = 64  # and rays across the pupil of each
 WAVELENGTHS = 5
-#: Luminance of linear Rec.709, ITU-R BT.709-6.
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, color: bool) -> Falloff:
@@ -47,7 +46,7 @@ def _mixes(*, by_channel: bool) -> tuple[FloatArray, FloatArray]:
 
     nm, mixes = rgb_mixes(WAVELENGTHS)
     white = mixes.sum(axis=2)
-    return nm, white if by_channel else (white @ LUMINANCE)[:, None]
+    return nm, white if by_channel else (white @ LUMINANCE_709)[:, None]
 
 
 def _relative(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from daguerre.checks import number
-from daguerre.color.spectra import rgb_from_xyz
+from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def illuminance(environment: Environment) -> float:
 
     E = integral of L cos(theta) over the upper half; the rows of a panorama exactly.
     """
-    luma = np.linalg.inv(rgb_from_xyz())[1]
+    luma = luminance_of_rgb()
     if environment.image is None:
         return float(math.pi * environment.scale * (luma @ np.asarray(environment.color)))
     height, width = environment.image.shape[:2]

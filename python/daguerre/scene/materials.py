@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from daguerre.checks import color, number, short
 from daguerre.errors import InputError
+from daguerre.files.value import changed
 
 Color = tuple[float, float, float]
 
@@ -124,6 +125,10 @@ class Gltf:
     glossiness: float = 1.0
     specular_glossiness_texture: TextureSlot | None = None
     unlit: bool = False
+
+    def __repr__(self) -> str:
+        """Names what is not as it is by default: there are 52 fields."""
+        return f"Gltf({', '.join(changed(self))})"
 
 
 Kind = Diffuse | Conductor | Dielectric | Gltf

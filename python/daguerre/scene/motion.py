@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import FixedArrays, Value
 from daguerre.motion.values import Dynamic
 
 
-@dataclass(frozen=True)
-class Vertices:
+@dataclass(frozen=True, eq=False)
+class Vertices(FixedArrays):
     """The vertices of a mesh at a time.
 
     Attributes:
@@ -33,8 +34,8 @@ class Vertices:
     colors: NDArray[np.float32] | None = None
 
 
-@dataclass
-class SceneMotion:
+@dataclass(eq=False)
+class SceneMotion(Value):
     """Values over time, by the index of what they belong to; what is absent stays.
 
     Attributes:
@@ -54,6 +55,8 @@ class SceneMotion:
     lights: dict[int, Dynamic] = field(default_factory=dict)
     environment: Dynamic | None = None
     node_positions: dict[str, Dynamic] = field(default_factory=dict)
+
+    __hash__ = None  # type: ignore[assignment]  # it changes
 
     def __bool__(self) -> bool:
         return any(getattr(self, part.name) for part in fields(self))

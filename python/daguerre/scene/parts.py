@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import FixedArrays, Value
+
 from .motion import Vertices
 
 
-@dataclass(frozen=True)
-class Mesh:
+@dataclass(frozen=True, eq=False)
+class Mesh(FixedArrays):
     """Triangles of one material, in their own space (m)."""
 
     positions: NDArray[np.float32]
@@ -23,14 +25,19 @@ class Mesh:
     colors: NDArray[np.float32] | None = None
     name: str = ""
 
+    def __repr__(self) -> str:
+        return (
+            f"<Mesh {self.name!r}: {len(self.positions)} vertices, {len(self.indices)} triangles>"
+        )
+
 
 def vertices_of(mesh: Mesh) -> Vertices:
     """The vertices of a mesh at the time of its scene."""
     return Vertices(mesh.positions, mesh.normals, mesh.tangents, mesh.uv, mesh.uv1, mesh.colors)
 
 
-@dataclass(frozen=True)
-class Texture:
+@dataclass(frozen=True, eq=False)
+class Texture(FixedArrays):
     """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels.
 
     ``filter`` is for magnified texels ("linear" or "nearest"), ``min_filter`` for minified ones,
@@ -44,9 +51,13 @@ class Texture:
     name: str = ""
     min_filter: str = "linear_mipmap_linear"
 
+    def __repr__(self) -> str:
+        height, width, channels = self.pixels.shape
+        return f"<Texture {self.name!r}: {width}x{height}, {channels} channels>"
 
-@dataclass(frozen=True)
-class Instance:
+
+@dataclass(frozen=True, eq=False)
+class Instance(Value):
     """A mesh in the world."""
 
     mesh: int
@@ -55,12 +66,21 @@ class Instance:
     name: str = ""
     shown: bool = True
 
+    def __repr__(self) -> str:
+        return f"<Instance {self.name!r}: mesh {self.mesh}, material {self.material}>"
 
-@dataclass(frozen=True)
-class Environment:
+
+@dataclass(frozen=True, eq=False)
+class Environment(Value):
     """Light from infinity: a panorama (H, W, 3) or one colour, times ``scale`` cd/m2."""
 
     image: NDArray[np.float32] | None = None
     color: tuple[float, float, float] | None = None
     scale: float = 1.0
     rotation: float = 0.0  # degrees about +y
+
+    def __repr__(self) -> str:
+        light = f"color {self.color}"
+        if self.image is not None:
+            light = "{1}x{0} pixels".format(*self.image.shape)
+        return f"<Environment {light}, {self.scale:g} cd/m2>"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import array, optional_array, short, to_numbers
 from daguerre.errors import InputError
+from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic, is_dynamic, keys
 
 from .motion import Vertices
@@ -20,7 +21,7 @@ FloatArray = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
-class PointCache:
+class PointCache(Value):
     """The vertices of a mesh over time.
 
     Attributes:

@@ -27,6 +27,8 @@ from daguerre.checks import (
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files import formats
+from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 
 from .illuminance import scale_for
@@ -37,8 +39,8 @@ from .parts import Environment, Instance, Mesh, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 
 
-@dataclass
-class Scene:
+@dataclass(eq=False)
+class Scene(Value):
     """A scene: meshes, materials, lights, cameras and environment.
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
@@ -73,9 +75,50 @@ class Scene:
     #: what the reader met and did not understand, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
 
+    __hash__ = None  # type: ignore[assignment]  # it changes
+
+    def __repr__(self) -> str:
+        names = ("mesh", "instance", "light", "camera")
+        counts = [len(p) for p in (self.meshes, self.instances, self.lights, self.cameras)]
+        words = [_counted(count, name) for count, name in zip(counts, names, strict=True)]
+        words += ["an environment"] if self.environment is not None else []
+        words += ["moving"] if self.motion else []
+        return f"<Scene {self.path.name if self.path else 'of arrays'}: {', '.join(words)}>"
+
     def at(self, time: float) -> Scene:
         """Returns the scene at another time, s; what does not change is shared."""
         return scene_at(self, check_number(time, "scene: time"))
+
+    def note(self, *sentences: str) -> None:
+        """Says what a reader met and did not understand, or decided: one sentence each."""
+        self.warnings.extend(sentences)
+
+    def set_clock(self, duration: float | None) -> None:
+        """Says how long the animations of a file last, s; None: there are none."""
+        self.duration = duration
+
+    def add_variant(self, name: str) -> None:
+        """Says that the file has another set of materials, for ``load(variant=...)``."""
+        self.variants.append(name)
+
+    def add_node(
+        self, name: str, position: NDArray[np.float64], *, motion: Dynamic | None = None
+    ) -> None:
+        """Names a place, which may have instances of the same name.
+
+        Args:
+            name: For ``focus_on``, ids and boxes; each once.
+            position: In the world, shape (3,), m.
+            motion: The same over time.
+        """
+        self.node_positions[name] = position
+        self.nodes.setdefault(name, [])
+        if motion is not None:
+            self.motion.node_positions[name] = motion
+
+    def group_instances(self, name: str, instances: Sequence[int]) -> None:
+        """Says which instances a node stands for: its own and its descendants'."""
+        self.nodes[name] = list(instances)
 
     def add_texture(
         self,
@@ -99,11 +142,18 @@ class Scene:
         self.textures.append(Texture(array, srgb, wrap, filter, name, min_filter))
         return len(self.textures) - 1
 
-    def add_material(self, material: Material | Kind | None = None, **fields: Any) -> int:
+    def add_material(
+        self,
+        material: Material | Kind | None = None,
+        *,
+        motion: Dynamic | None = None,
+        **fields: Any,
+    ) -> int:
         """Adds a material; returns its index.
 
         Args:
             material: A material, or only what it is made of; absent: made from ``fields``.
+            motion: The material over time; ``material`` then is that of the scene's time.
             **fields: Those of :class:`Material`.
         """
         if material is None:
@@ -116,7 +166,7 @@ class Scene:
             material = Material(material)
         shown = at(material, self.time)
         check_material(shown, f"material {getattr(shown, 'name', '') or len(self.materials)!r}")
-        if (motion := _motion_of(material)) is not None:
+        if (motion := motion or _motion_of(material)) is not None:
             self.motion.materials[len(self.materials)] = motion
         self.materials.append(shown)
         return len(self.materials) - 1
@@ -132,6 +182,7 @@ class Scene:
         tangents: ArrayLike | None = None,
         colors: ArrayLike | None = None,
         steps: Dynamic | tuple[ArrayLike, ArrayLike] | None = None,
+        motion: Dynamic | None = None,
         name: str = "",
     ) -> int:
         """Adds triangles; returns the index of the mesh.
@@ -147,6 +198,8 @@ class Scene:
             colors: Vertex colors, linear RGB or RGBA, shape (N, 3) or (N, 4).
             steps: Vertices over time: (times (S,) in s, positions (S, N, 3)) or a value over time;
                 ``positions`` then are those to which the normals belong.
+            motion: All vertices over time, as :class:`daguerre.scene.motion.Vertices`; the arrays
+                then are those of the scene's time.
             name: For messages.
 
         Raises:
@@ -189,8 +242,9 @@ class Scene:
             rest = vertices_of(mesh)
             path = moving or Composite(points)
             cache = PointCache(path, moving_normals, rest, mesh.indices, where)
-            mesh = replace(mesh, **vars(cache.at(self.time)))
-            self.motion.meshes[len(self.meshes)] = cache
+            mesh, motion = replace(mesh, **vars(cache.at(self.time))), cache
+        if motion is not None:
+            self.motion.meshes[len(self.meshes)] = motion
         self.meshes.append(mesh)
         return len(self.meshes) - 1
 
@@ -206,6 +260,7 @@ class Scene:
         *,
         name: str = "",
         shown: bool | Dynamic = True,
+        motion: Dynamic | None = None,
     ) -> int:
         """Puts a mesh into the world; returns the index of the instance.
 
@@ -215,6 +270,7 @@ class Scene:
             transform: World from local, shape (4, 4), may change over time; default: identity.
             name: Name for messages, ids and ``focus_on``.
             shown: Whether it is there, which may change over time.
+            motion: The transform over time; ``transform`` then is that of the scene's time.
 
         Raises:
             InputError: There is no such mesh or material, or the transform is no finite matrix.
@@ -224,8 +280,9 @@ class Scene:
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
         if _are_keys(transform):
             raise UsageError(f"{where}: transform: keys over time: wanted dg.keys(...), got a list")
-        motion, presence = _dynamic(transform), None if shown is True else _dynamic(shown)
-        world = matrix(transform if motion is None else motion.at(self.time), where)
+        moving, presence = _dynamic(transform), None if shown is True else _dynamic(shown)
+        world = matrix(transform if moving is None else moving.at(self.time), where)
+        motion = motion or moving
         visible = shown if presence is None else presence.at(self.time)
         if not isinstance(visible, bool | np.bool_ | int | float):
             raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
@@ -244,25 +301,67 @@ class Scene:
             self.nodes.setdefault(name, []).append(index)
         return index
 
-    def add_light(self, light: Light, transform: ArrayLike | Dynamic | None = None) -> int:
-        """Adds a light at the origin of ``transform`` (4, 4), shining along its -z."""
+    def add_instances(
+        self, mesh: int, material: int, transforms: NDArray[np.float64], *, name: str = ""
+    ) -> None:
+        """Puts a mesh into the world many times, looked at all at once: there may be a million.
+
+        Args:
+            mesh: Index from ``add_mesh``.
+            material: Index from ``add_material``.
+            transforms: World from local, shape (N, 4, 4).
+            name: Name of all of them, as in :meth:`add_instance`.
+
+        Raises:
+            InputError: There is no such mesh or material, or a transform is no finite matrix.
+        """
+        where = f"instances {name or len(self.instances)!r}"
+        mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
+        material = self._index(material, len(self.materials), f"{where}: material")
+        worlds = to_numbers(transforms, where, "transforms", "shape (N, 4, 4)").astype(float)
+        if worlds.shape[1:] != (4, 4) or not np.isfinite(worlds).all():
+            raise InputError(
+                f"{where}: transforms: wanted finite numbers of shape (N, 4, 4), got others of "
+                f"shape {worlds.shape}"
+            )
+        first = len(self.instances)
+        self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
+        if name:
+            self.nodes.setdefault(name, []).extend(range(first, len(self.instances)))
+
+    def add_light(
+        self,
+        light: Light,
+        transform: ArrayLike | Dynamic | None = None,
+        *,
+        motion: Dynamic | None = None,
+    ) -> int:
+        """Adds a light at the origin of ``transform`` (4, 4), shining along its -z.
+
+        ``motion`` is both over time, (light, transform); they then are those of the scene's time.
+        """
         shown = at(light, self.time)
         check_light(shown)
         world = matrix(self._now(transform), f"light {shown.name!r}")
-        motion = _motion_of((light, _dynamic(transform) or world))
+        motion = motion or _motion_of((light, _dynamic(transform) or world))
         if motion is not None:
             self.motion.lights[len(self.lights)] = motion
         self.lights.append((shown, world))
         return len(self.lights) - 1
 
-    def add_camera(self, name: str, camera: Camera) -> None:
-        """Adds a camera under a name; the first one becomes the default."""
+    def add_camera(self, name: str, camera: Camera, *, alias: str = "") -> None:
+        """Adds a camera under a name; the first one becomes the default.
+
+        ``alias`` is another name by which ``camera`` finds it, unless another camera has it.
+        """
         for value, kind in ((name, str), (camera, Camera)):
             if not isinstance(value, kind):
                 raise UsageError(f"add_camera: wanted a {kind.__name__}, got {short(value)}")
         self.cameras[name] = camera
         if self.default_camera is None:
             self.default_camera = name
+        if alias:
+            self.camera_aliases.setdefault(alias, name)
 
     def set_environment(
         self,
@@ -290,9 +389,7 @@ class Scene:
             raise UsageError("environment: wanted either an image or a color")
         pixels = None
         if isinstance(image, str | Path):
-            from daguerre.io.images import read_environment
-
-            pixels = read_environment(image)
+            pixels = formats.read("environment", image)
         elif image is not None:
             pixels = _panorama(image)
         given = Environment(pixels, cast("Any", color), cast("Any", scale), cast("Any", rotation))
@@ -335,6 +432,10 @@ class Scene:
                 f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"
             )
         return self.cameras[name]
+
+
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}" + ("" if count == 1 else "es" if name == "mesh" else "s")
 
 
 def _dynamic(value: Any) -> Dynamic | None:

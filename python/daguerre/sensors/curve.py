@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class Curve(Value):
     """A transmittance by wavelength, linear in between, and beyond its ends as there.
 
     Attributes:

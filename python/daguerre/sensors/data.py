@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import Value
+
 from .curve import Curve
 from .mosaic import Mosaic
 
@@ -62,7 +64,7 @@ class DualGain:
 
 
 @dataclass(frozen=True, eq=False)
-class SensorData:
+class SensorData(Value):
     """Values of a sensor; :class:`~daguerre.sensors.sensor.Sensor` names each with its unit."""
 
     name: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from daguerre.errors import InputError, suggest
+from daguerre.files.library import find, stems
 
 from .ideal import NAMES, ideal
 from .reader import read
@@ -15,7 +15,7 @@ FOLDER = Path(__file__).parent / "library"
 
 def names() -> list[str]:
     """Names of the library's sensors, sorted."""
-    return sorted([*NAMES, *(path.stem for path in FOLDER.glob("*.json"))])
+    return sorted([*NAMES, *stems(FOLDER)])
 
 
 def load(name_or_path: str | Path | Sensor) -> Sensor:
@@ -30,15 +30,6 @@ def load(name_or_path: str | Path | Sensor) -> Sensor:
     """
     if isinstance(name_or_path, Sensor):
         return name_or_path
-    text = str(name_or_path)
-    path = Path(text)
-    if text in NAMES:
-        return ideal(text)
-    if text in names():
-        return read(FOLDER / f"{text}.json")
-    if path.is_file() or path.suffix.lower() == ".json":
-        return read(path)
-    raise InputError(
-        f"sensor {text!r}: no sensor of the library and no file has this name"
-        f"{suggest(text, names())}"
-    )
+    if str(name_or_path) in NAMES:
+        return ideal(str(name_or_path))
+    return read(find("sensor", name_or_path, FOLDER, names()))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import UsageError, suggest
+from daguerre.files.value import Value
 
 #: Rows of the cell that repeats, by name; the first letter is the top left photosite of a picture.
 PATTERNS = {
@@ -24,7 +25,7 @@ PATTERNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Mosaic:
+class Mosaic(Value):
     """A colour filter array.
 
     Attributes:

@@ -52,8 +52,7 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
                 f"camera: lens_model {model}: wanted the name or file of a lens, got none"
             )
         return None, model or kind
-    lens = camera.lens if isinstance(camera.lens, lenses.Lens) else lenses.load(camera.lens)
-    return lens, model or "exact"
+    return lenses.load(camera.lens), model or "exact"
 
 
 def _projection(camera: Camera) -> str:

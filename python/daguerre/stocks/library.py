@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from daguerre.errors import InputError, suggest
+from daguerre.files.library import find, stems
 
 from .reader import read
 from .stock import Stock
@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parent / "library"
 
 def names() -> list[str]:
     """Names of the library's stocks, sorted."""
-    return sorted(path.stem for path in FOLDER.glob("*.json"))
+    return stems(FOLDER)
 
 
 def load(name_or_path: str | Path | Stock) -> Stock:
@@ -29,12 +29,4 @@ def load(name_or_path: str | Path | Stock) -> Stock:
     """
     if isinstance(name_or_path, Stock):
         return name_or_path
-    text = str(name_or_path)
-    path = Path(text)
-    if text in names():
-        return read(FOLDER / f"{text}.json")
-    if path.is_file() or path.suffix.lower() == ".json":
-        return read(path)
-    raise InputError(
-        f"stock {text!r}: no stock of the library and no file has this name{suggest(text, names())}"
-    )
+    return read(find("stock", name_or_path, FOLDER, names()))

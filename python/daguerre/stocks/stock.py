@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import number
 from daguerre.color import illuminants
 from daguerre.errors import InputError
+from daguerre.files.value import Value
 from daguerre.sensors.checking import tells_colors
 from daguerre.sensors.curve import rising
 
@@ -46,7 +47,7 @@ class Halation:
 
 
 @dataclass(frozen=True, eq=False)
-class Layer:
+class Layer(Value):
     """A layer of emulsion.
 
     Attributes:
@@ -61,7 +62,7 @@ class Layer:
 
 
 @dataclass(frozen=True, eq=False)
-class Stock:
+class Stock(Value):
     """A film stock.
 
     Attributes:

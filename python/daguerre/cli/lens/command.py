@@ -16,7 +16,7 @@ from daguerre.cli.flags.groups import option, with_flags
 from daguerre.cli.flags.setting import F_STOP, FOCUS, ZOOM, BenchFlags, focus_by
 from daguerre.errors import InputError, UsageError
 from daguerre.parameters.table import Table
-from daguerre.units import angle_deg, distance_m, length_mm
+from daguerre.units import TYPED_D_LINE_NM, angle_deg, distance_m, length_mm
 
 from .export import FILES, Export
 from .flare import Flare
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from daguerre.lenses import Lens
     from daguerre.lenses.setting import By
 
-#: the wavelength of the helium d line, at which lenses are specified, nm
-DESIGN_NM = 587.56
 BENCH = "On the bench"
 _SETTING = Table(
     *(ZOOM, FOCUS, F_STOP),
@@ -148,9 +146,11 @@ def lens(
     wavelength: Annotated[
         float,
         option(
-            "--wavelength", metavar="NM", help="Wavelength of the first-order data, nm [587.56]."
+            "--wavelength",
+            metavar="NM",
+            help=f"Wavelength of the first-order data, nm [{TYPED_D_LINE_NM}].",
         ),
-    ] = DESIGN_NM,
+    ] = TYPED_D_LINE_NM,
 ) -> int:
     """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""
     from daguerre import lenses as library

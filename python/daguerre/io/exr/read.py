@@ -1,8 +1,7 @@
 """OpenEXR files as frames: what Daguerre wrote comes back whole; of others, what is there.
 
 The counterpart of :mod:`daguerre.io.exr.write`. Colors of other primaries become Rec.709; white is
-adapted, so that (1, 1, 1) stays white (Bradford: Lindbloom, "Chromatic Adaptation",
-http://www.brucelindbloom.com/index.html?Eqn_ChromAdapt.html).
+adapted, so that (1, 1, 1) stays white.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color.adaptation import adaptation_of_xyz
 from daguerre.color.spectra import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
 from daguerre.frame.frame import Frame
@@ -21,10 +21,6 @@ from daguerre.frame.frame import Frame
 from . import write as exr
 from .header import ExrHeader
 from .rows import ExrReader, Planes
-
-_BRADFORD = np.array(
-    [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
-)
 
 
 def read_frame(path: str | os.PathLike[str]) -> Frame:
@@ -139,8 +135,6 @@ def _to_rec709(chromaticities: Any) -> NDArray[np.float64] | None:
         primaries = xyz[:, :3] * np.linalg.solve(xyz[:, :3], xyz[:, 3])
         to_rgb = rgb_from_xyz()
         white = np.linalg.inv(to_rgb).sum(axis=1)
-        gains = (_BRADFORD @ white) / (_BRADFORD @ xyz[:, 3])
-        adapted = np.linalg.solve(_BRADFORD, gains[:, None] * _BRADFORD)
-        return np.asarray(to_rgb @ adapted @ primaries)
+        return np.asarray(to_rgb @ adaptation_of_xyz(xyz[:, 3], white) @ primaries)
     except np.linalg.LinAlgError:
         return None

@@ -17,14 +17,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.color.illuminants import D65_STATED
+from daguerre.color.spaces import P709
 from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
-#: Rec.709 primaries and D65, ITU-R BT.709-6: red, green, blue, white as x, y.
-REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
+#: Rec.709: red, green, blue and white as x, y.
+REC709 = (*itertools.chain(*P709), *D65_STATED)
 
 FLOATS = (
     "isoSpeed", "expTime", "aperture", "tStop", "focus", "nominalFocalLength",
@@ -116,13 +118,6 @@ def band_names(count: int) -> list[str]:
 
     edges = np.rint(np.linspace(FIRST_NM, LAST_NM, count + 1)).astype(int).tolist()
     return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]
-
-
-def read_frame(path: str | os.PathLike[str]) -> Frame:
-    """Reads a picture with all its channels and facts; see :mod:`daguerre.io.exr.read`."""
-    from .read import read_frame as read
-
-    return read(path)
 
 
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:

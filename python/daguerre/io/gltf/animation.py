@@ -1,7 +1,8 @@
-"""Animation of glTF at one moment, written into the JSON itself.
+"""Animation of glTF at one moment, written into the JSON before anything is read from it.
 
 Whoever reads a node, a material or a light then meets the value of that moment and need not know
-that it moves. What does know asks for another moment: of one part of the file at a time.
+that it moves. What does know asks for another moment: of a copy of one part of the file, so that
+the file as read never changes.
 Sources: glTF 2.0 specification, chapter 3.11 and appendix C; KHR_animation_pointer.
 """
 
@@ -9,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
+from daguerre.files.value import Value
 
 from .accessors import Accessors
 from .pointers import Pointers, Target, parse
@@ -24,28 +27,29 @@ _PATHS = ("translation", "rotation", "scale", "weights")
 Part = tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Channel:
+@dataclass(frozen=True, eq=False)
+class Channel(Value):
     """A value of the file and what it is over time.
 
     Attributes:
         tokens: The way to it.
-        target: Where it is written.
         track: Its values over time.
+        is_flag: Whether it is true or false.
     """
 
-    tokens: list[str]
-    target: Target
+    tokens: tuple[str, ...]
     track: Track
+    is_flag: bool
 
-    def write(self, time: float) -> None:
-        """Sets the value to what it is at a time, s."""
-        value = self.track.at(time)
-        old = self.target.holder[self.target.key] if _has(self.target) else None
-        if isinstance(old, list) and isinstance(value, list):
-            old[:] = value  # single elements of it may be animated too
-        else:
-            self.target.holder[self.target.key] = value
+    @property
+    def part(self) -> Part:
+        """The part of the file that the tokens lead into: up to the first index."""
+        return self.tokens[: 4 if self.tokens[0] == "extensions" else 2]
+
+    @property
+    def inside(self) -> tuple[str, ...]:
+        """The way to the value from that part."""
+        return self.tokens[len(self.part) :]
 
 
 class Animations:
@@ -65,7 +69,7 @@ class Animations:
         self.duration: float | None = None
         pointers = Pointers(root)
         samplers = Samplers(accessors, notes)
-        found: dict[tuple[int, str | int], Channel] = {}  # keeps the holders alive, and their ids
+        found: dict[Part, Channel] = {}
         for animation in root.list_of("animations"):
             listed = list(animation.need("samplers"))
             for item in animation.need("channels"):
@@ -73,17 +77,18 @@ class Animations:
                 tokens, target = _target(item.need("target"), pointers, notes)
                 if target is None:
                     continue
-                place = (id(target.holder), target.key)
+                place = tuple(tokens)
                 if place in found:
                     notes.add(f"a second animation of the same {target.name} replaces the first")
-                found[place] = Channel(tokens, target, samplers.track(sampler, target))
-                found[place].write(time)
-                end = found[place].track.span[1]
+                track = samplers.track(sampler, target)
+                found[place] = Channel(place, track, target.is_flag)
+                _write(target, track.at(time))
+                end = track.span[1]
                 self.duration = end if self.duration is None else max(end, self.duration)
         self._parts: dict[Part, list[Channel]] = {}
         for channel in found.values():
             if channel.track.changes:
-                self._parts.setdefault(_part(channel.tokens), []).append(channel)
+                self._parts.setdefault(channel.part, []).append(channel)
 
     def of(self, *part: str) -> list[Channel]:
         """Channels that change a part of the file, such as ``of("nodes", "3")``."""
@@ -94,10 +99,22 @@ class Animations:
         return sorted(int(part[-1]) for part in self._parts if part[0] == kind)
 
 
-def play(channels: Sequence[Channel], time: float) -> None:
-    """Sets values to what they are at a time, s."""
+def played(part: Any, channels: Sequence[Channel], time: float) -> Any:
+    """A part of the file with what its channels say at a time, s; the part itself stays.
+
+    Only what lies on the way to the values is copied.
+    """
     for channel in channels:
-        channel.write(time)
+        part = _with(part, channel.inside, channel.track.at(time))
+    return part
+
+
+def _with(holder: Any, way: tuple[str, ...], value: Any) -> Any:
+    """A copy of an object or list with another value at the end of the way."""
+    copy = holder.copy()
+    key: Any = int(way[0]) if isinstance(holder, list) else way[0]
+    copy[key] = value if len(way) == 1 else _with(holder[key], way[1:], value)
+    return copy
 
 
 def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArray:
@@ -107,13 +124,15 @@ def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArr
     return times[0] if len(times) == 1 else np.unique(np.concatenate([np.zeros(0), *times]))
 
 
-def _has(target: Target) -> bool:
-    return isinstance(target.holder, list) or target.key in target.holder
-
-
-def _part(tokens: list[str]) -> Part:
-    """The part of the file that the tokens lead into: up to the first index."""
-    return tuple(tokens[: 4 if tokens[0] == "extensions" else 2])
+def _write(target: Target, value: Any) -> None:
+    """Sets a value of the file that is being read."""
+    holder: Any = target.holder
+    has = isinstance(holder, list) or target.key in holder
+    old = holder[cast("Any", target.key)] if has else None
+    if isinstance(old, list) and isinstance(value, list):
+        old[:] = value  # single elements of it may be animated too
+    else:
+        holder[target.key] = value
 
 
 def _target(item: Item, pointers: Pointers, notes: Notes) -> tuple[list[str], Target | None]:

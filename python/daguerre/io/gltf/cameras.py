@@ -9,7 +9,7 @@ lens sees what stands close to it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -98,7 +98,7 @@ def _snake(name: str) -> str:
     return "".join("_" + c.lower() if c.isupper() else c for c in name)
 
 
-def fields_of(tokens: list[str]) -> tuple[str, ...]:
+def fields_of(tokens: Sequence[str]) -> tuple[str, ...]:
     """Parameters of ``Camera`` that a value of the file, such as yfov, has a say in."""
     key = tokens[-1]
     fields = {

@@ -10,55 +10,52 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.files.notes import Notes
+from daguerre.files.notes import Notes, Silence
+from daguerre.files.value import Value
 from daguerre.scene.motion import Vertices
 from daguerre.scene.normals import unit_normals, unit_tangents
 
-from .accessors import Accessors
-from .morphs import morph
+from .morphs import KeptShapes, morph
 from .over_time import PartOverTime
-from .skins import Influences, Skins, skin
+from .skins import SkinOverTime, skin
 
 FloatArray = NDArray[np.float32]
 Arrays = dict[str, FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
-class MeshOverTime:
+class MeshOverTime(Value):
     """The vertices of a primitive over time.
 
     Attributes:
         arrays: Attributes by their names in glTF, as they are in the file.
         triangles: Shape (M, 3), wound as the vertices lay when the file was read.
         displacements: Displacements that morph it.
-        skins: Those of the file.
-        skin: Index of its skin, and who moves its vertices; None: it has none.
-        accessors: Those of the file.
+        shapes: Knows the displacements.
+        skin: Skin that moves it; None: it has none.
     """
 
     arrays: Arrays
     triangles: NDArray[np.uint32]
     displacements: PartOverTime
-    skins: Skins
-    skin: tuple[int, Influences] | None
-    accessors: Accessors
+    shapes: KeptShapes
+    skin: SkinOverTime | None
 
     def at(self, time_s: float) -> Vertices:
         """The vertices at a time, s."""
         arrays = dict(self.arrays)
         with np.errstate(all="ignore"):
-            morph(arrays, self.displacements.at(time_s), self.accessors)
+            morph(arrays, self.displacements.at(time_s), self.shapes)
             if self.skin is not None:
-                index, influences = self.skin
-                skin(arrays, influences, self.skins.matrices_at(index, time_s))
-            return finished(arrays, self.arrays, self.triangles, Notes())
+                skin(arrays, self.skin.influences, self.skin.at(time_s))
+            return finished(arrays, self.arrays, self.triangles, Silence())
 
     def breaks(self, begin: float, end: float) -> NDArray[np.float64]:
         """Times of all keys of weights and joints."""
         morphs = self.displacements.breaks(begin, end)
         if self.skin is None:
             return morphs
-        return np.union1d(morphs, self.skins.breaks(self.skin[0], begin, end))
+        return np.union1d(morphs, self.skin.breaks(begin, end))
 
 
 def finished(arrays: Arrays, base: Arrays, triangles: NDArray[np.uint32], notes: Notes) -> Vertices:

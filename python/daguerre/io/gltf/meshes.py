@@ -5,7 +5,7 @@ Source: glTF 2.0 specification, chapters 3.7.2 and 5.24; KHR_mesh_quantization.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, cast
@@ -21,9 +21,17 @@ from daguerre.scene.scene import Scene
 
 from . import draco as gltf_draco
 from .accessors import Accessors
-from .animation import Animations
+from .animation import Animations, Channel
 from .deforming import MeshOverTime, finished
-from .morphs import Displacement, displacements, morph, weights_of
+from .morphs import (
+    Displacement,
+    KeptShapes,
+    all_uses,
+    displacements,
+    displacements_again,
+    morph,
+    weights_of,
+)
 from .nodes import MAX_SIZE
 from .over_time import PartOverTime
 from .skins import Influences, Skins, skin
@@ -64,7 +72,9 @@ class _Source:
     attributes: dict[str, Item]
     displacements: tuple[Displacement, ...]
     skin: int | None
-    weights: PartOverTime
+    #: the node or mesh whose weights count, and what changes there
+    owner: Item
+    moved: Sequence[Channel]
     #: equal for weights that change alike
     changes: tuple[Hashable, ...]
 
@@ -124,7 +134,8 @@ class Meshes:
         chosen = None if skin_use is None else self._skins.index(skin_use)
         weights = weights_of(node, item)
         shape = None if weights is None else tuple(w.number() for w in weights)
-        owner = ("meshes", str(index)) if node.get("weights") is None else ("nodes", str(node.key))
+        holder = item if node.get("weights") is None else node
+        owner = ("meshes" if holder is item else "nodes", str(holder.key))
         moved = [c for c in self._animations.of(*owner) if "weights" in c.tokens]
         changes = tuple((id(c.track), *c.tokens[2:]) for c in moved)
         key = index, shape, chosen, changes
@@ -134,15 +145,11 @@ class Meshes:
             self._parts[key] = []
             for primitive in primitives:
                 full = name if len(primitives) == 1 else f"{name}/{primitive.key}"
-                reading = partial(self._displacements, primitive, node, item)
-                source = self._source(primitive, chosen, PartOverTime(moved, reading), changes)
+                source = self._source(primitive, chosen, holder, moved, changes)
                 part = None if source is None else self._part(source, full)
                 if part is not None:
                     self._parts[key].append(part)
         return self._parts[key]
-
-    def _displacements(self, primitive: Item, node: Item, mesh: Item) -> tuple[Displacement, ...]:
-        return displacements(primitive, weights_of(node, mesh), self._accessors, self._notes)
 
     def _part(self, source: _Source, name: str) -> Part | None:
         key = source.key(self._accessors)
@@ -157,7 +164,8 @@ class Meshes:
         self,
         primitive: Item,
         chosen: int | None,
-        weights: PartOverTime,
+        owner: Item,
+        moved: Sequence[Channel],
         changes: tuple[Hashable, ...],
     ) -> _Source | None:
         mode_item = primitive.get("mode")
@@ -178,8 +186,11 @@ class Meshes:
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):
             mode = 4
-        indices, moved = primitive.get("indices"), weights.read()
-        return _Source(primitive, mode, indices, attributes, moved, chosen, weights, changes)
+        indices, weights = primitive.get("indices"), owner.get("weights")
+        displaced = displacements(primitive, weights, self._accessors, self._notes)
+        return _Source(
+            *(primitive, mode, indices, attributes, displaced, chosen, owner, moved, changes)
+        )
 
     def _is_nothing(self, skin: int) -> bool:
         return not self._skins.moves(skin) and not self._skins.matrices(skin)[:, :3, :3].any()
@@ -210,8 +221,10 @@ class Meshes:
         moves = bool(source.changes)
         moves = moves or (source.skin is not None and self._skins.moves(source.skin))
         made = finished(arrays, base if moves else {}, triangles, self._notes)
-        index = self._scene.add_mesh(
+        over = self._over_time(source, base, triangles, influences) if moves else None
+        return self._scene.add_mesh(
             indices=freeze_in_place(triangles),
+            motion=over,
             name=name,
             **{
                 key: cast("Any", freeze_in_place(v))
@@ -219,13 +232,23 @@ class Meshes:
                 if v is not None
             },
         )
-        if moves:
-            skin_of = None if influences is None else (source.skin or 0, influences)
-            over = MeshOverTime(
-                base, triangles, source.weights, self._skins, skin_of, self._accessors
-            )
-            self._scene.motion.meshes[index] = over
-        return index
+
+    def _over_time(
+        self,
+        source: _Source,
+        base: dict[str, FloatArray],
+        triangles: NDArray[np.uint32],
+        influences: Influences | None,
+    ) -> MeshOverTime:
+        needed = [part.use for part in source.displacements]
+        uses = all_uses(source.primitive) if source.moved else needed
+        shapes = KeptShapes(uses, self._accessors)
+        again = partial(displacements_again, primitive=source.primitive, shapes=shapes)
+        weights = PartOverTime(source.owner, source.moved, again)
+        skin_of = None
+        if source.skin is not None and influences is not None:
+            skin_of = self._skins.over_time(source.skin, influences)
+        return MeshOverTime(base, triangles, weights, shapes, skin_of)
 
     def _deform(
         self, source: _Source, arrays: dict[str, FloatArray], triangles: NDArray[np.uint32]

@@ -5,13 +5,16 @@ Source: glTF 2.0 specification, chapters 3.7.2.2 and 3.7.4; KHR_mesh_quantizatio
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item, clean
-from daguerre.files.notes import Notes
+from daguerre.files.notes import Notes, Silence
+from daguerre.files.value import Value
 
 from .accessors import Accessors
 
@@ -36,6 +39,60 @@ class Displacement:
     use: Item = field(compare=False)
 
 
+class Shapes(Protocol):
+    """Looks displacements up: the accessors of a file, or arrays that were kept of them."""
+
+    def index(self, use: Item) -> int:
+        """The accessor that ``use`` names."""
+
+    def count(self, use: Item) -> int:
+        """Number of its elements."""
+
+    def changes(
+        self, use: Item, types: tuple[str, ...], what: str
+    ) -> tuple[NDArray[np.int64] | slice, FloatArray]:
+        """Indices of the elements that may differ from 0, and their numbers."""
+
+
+class KeptShapes(Value):
+    """The displacements of one primitive that its weights may ask for.
+
+    Args:
+        uses: Members of its targets that name them.
+        accessors: Those of the file.
+    """
+
+    def __init__(self, uses: Iterable[Item], accessors: Accessors) -> None:
+        self._known: dict[int, tuple[int, Any]] = {}
+        for use in uses:
+            changes = accessors.changes(use, _TYPES[str(use.key)], "displacement")
+            self._known[accessors.index(use)] = accessors.count(use), changes
+
+    def index(self, use: Item) -> int:
+        """The accessor that ``use`` names."""
+        return use.integer()
+
+    def count(self, use: Item) -> int:
+        """Number of its elements."""
+        return self._known[self.index(use)][0]
+
+    def changes(
+        self, use: Item, types: tuple[str, ...], what: str
+    ) -> tuple[NDArray[np.int64] | slice, FloatArray]:
+        """Indices of the elements that may differ from 0, and their numbers."""
+        places, values = self._known[self.index(use)][1]
+        return places, values
+
+
+def all_uses(primitive: Item) -> Iterator[Item]:
+    """Members of targets that name displacements of attributes that the primitive has."""
+    attributes = primitive.need("attributes")
+    for target in primitive.list_of("targets"):
+        for use in target.members():
+            if str(use.key) in _TYPES and attributes.get(str(use.key)) is not None:
+                yield use
+
+
 def weights_of(node: Item, mesh: Item) -> Item | None:
     """The list of weights of a mesh at a node, or None if it has its own shape there."""
     weights = node.get("weights")
@@ -43,7 +100,7 @@ def weights_of(node: Item, mesh: Item) -> Item | None:
 
 
 def displacements(
-    primitive: Item, weights: Item | None, accessors: Accessors, notes: Notes
+    primitive: Item, weights: Item | None, shapes: Shapes, notes: Notes
 ) -> tuple[Displacement, ...]:
     """Displacements of a primitive; targets without weight are not looked at.
 
@@ -60,7 +117,7 @@ def displacements(
             name = str(use.key)
             if name in _TYPES and attributes.get(name) is not None:
                 # Files may name one accessor a thousand times: it is read once.
-                key = name, accessors.index(use)
+                key = name, shapes.index(use)
                 parts[key] = parts.get(key, (0.0, use))[0] + weight, use
             elif not name.startswith("_"):
                 notes.add(f"morph target attribute {clean(name)[:40]!r} is not used")
@@ -70,26 +127,31 @@ def displacements(
     )
 
 
-def morph(
-    arrays: dict[str, FloatArray], parts: tuple[Displacement, ...], accessors: Accessors
-) -> None:
+def displacements_again(
+    owner: Item, primitive: Item, shapes: KeptShapes
+) -> tuple[Displacement, ...]:
+    """Does as :func:`displacements`, with the weights of a node or mesh at some time."""
+    return displacements(primitive, owner.get("weights"), shapes, Silence())
+
+
+def morph(arrays: dict[str, FloatArray], parts: tuple[Displacement, ...], shapes: Shapes) -> None:
     """Replaces arrays of vertices by displaced ones; normals and tangents are no units then.
 
     Args:
         arrays: Attributes of the mesh, by their names in glTF, shape (N, components).
         parts: The displacements.
-        accessors: Those of the file.
+        shapes: Knows them.
     """
     for name in dict.fromkeys(part.attribute for part in parts):
         arrays[name] = arrays[name].copy()
     for part in parts:
         array = arrays[part.attribute]
-        if accessors.count(part.use) != len(array):
+        if shapes.count(part.use) != len(array):
             part.use.fail(
                 f"wrong count: wanted {len(array)} like {part.attribute} of the mesh, "
-                f"got {accessors.count(part.use)}"
+                f"got {shapes.count(part.use)}"
             )
-        places, values = accessors.changes(part.use, _TYPES[part.attribute], "displacement")
+        places, values = shapes.changes(part.use, _TYPES[part.attribute], "displacement")
         width = min(values.shape[1], array.shape[1])
         array[places, :width] += np.float32(part.weight) * values[:, :width]
     if any(part.attribute == "COLOR_0" for part in parts):

@@ -1,4 +1,4 @@
-"""Fills the motion of a scene with what its file animates."""
+"""Tells what of a glTF file moves, and how."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic
 from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
 from daguerre.scene.materials import Material
-from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import ranks
 
 from .animation import Animations
@@ -41,27 +40,25 @@ class MotionReader:
     """Knows what moves.
 
     Args:
-        scene: Has the motion.
+        root: The JSON object of the file.
         animations: Those of the file.
         poses: Its nodes over time.
+        time: When the file is read, s.
     """
 
-    def __init__(self, scene: Scene, animations: Animations, poses: Poses) -> None:
-        self._scene, self._animations, self._poses = scene, animations, poses
+    def __init__(self, root: Item, animations: Animations, poses: Poses, time: float) -> None:
+        self._materials = root.list_of("materials")
+        self._animations, self._poses, self._time = animations, poses, time
 
-    def materials(self, read: Callable[[Item], Material], root: Item) -> None:
-        """All materials that change."""
-        items = root.list_of("materials")
-        for index in self._animations.parts("materials"):
-            channels = self._animations.of("materials", str(index))
-            over = PartOverTime(channels, partial(read, items[index]))
-            self._scene.motion.materials[index] = over
+    def material(self, index: int, read: Callable[[Item], Material]) -> PartOverTime | None:
+        """A material over time, which ``read`` makes of its part of the file; None: it stays."""
+        channels = self._animations.of("materials", str(index))
+        return PartOverTime(self._materials[index], channels, read) if channels else None
 
-    def position(self, node: int, name: str) -> None:
-        """Where a node is."""
-        if self._poses.moves(node):
-            place = PositionOverTime(NodeOverTime(self._poses, node))
-            self._scene.motion.node_positions[name] = place
+    def position(self, node: int) -> PositionOverTime | None:
+        """Where a node is over time; None: it stays."""
+        moves = self._poses.moves(node)
+        return PositionOverTime(NodeOverTime(self._poses, node)) if moves else None
 
     def instances(
         self, node: int, copies: Matrices | None, worlds: Matrices, *, rigid: bool
@@ -92,7 +89,7 @@ class MotionReader:
     def _is_flat(self, place: NodeOverTime) -> bool:
         """Whether it is a plane at some key, and not only on its way from one to another."""
         times = place.breaks(-np.inf, np.inf)
-        some = np.array([self._scene.time, *times[:: 1 + len(times) // _MAX_LOOKS]])
+        some = np.array([self._time, *times[:: 1 + len(times) // _MAX_LOOKS]])
         return bool((ranks(place.many(some)[:, :3, :3]) == 2).any())
 
     def camera(self, camera: Camera, item: Item, node: Item) -> Camera:
@@ -104,20 +101,23 @@ class MotionReader:
         for channel in channels:
             for name in fields_of(channel.tokens):
                 if name in MOVABLE and getattr(camera, name) is not None:
-                    read = partial(_parameter, item, camera.transform, name)
-                    motion[name] = PartOverTime(channels, read)
+                    read = partial(_parameter, name=name, transform=camera.transform)
+                    motion[name] = PartOverTime(item, channels, read)
         return replace(camera, motion=motion) if motion else camera
 
     def light(
-        self, read: Callable[[], PointLight | SpotLight | DirectionalLight], item: Item, node: int
+        self,
+        read: Callable[[Item], PointLight | SpotLight | DirectionalLight],
+        item: Item,
+        node: int,
     ) -> LightOverTime | None:
         """A light and its transform over time; None if nothing of it changes."""
         channels = self._animations.of("extensions", "KHR_lights_punctual", "lights", str(item.key))
         poses = self._poses
         if not (channels or poses.moves(node) or poses.blinks(node)):
             return None
-        return LightOverTime(NodeOverTime(poses, node), PartOverTime(channels, read))
+        return LightOverTime(NodeOverTime(poses, node), PartOverTime(item, channels, read))
 
 
-def _parameter(item: Item, transform: Matrices, name: str) -> Any:
+def _parameter(item: Item, name: str, transform: Matrices) -> Any:
     return getattr(read_camera(item, transform, Notes()), name)

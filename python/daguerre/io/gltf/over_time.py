@@ -1,6 +1,8 @@
 """Animated parts of a glTF file, as values over time of the scene.
 
-Each asks the file anew for its part at a time: whatever a reader understands can move.
+Each asks a reader anew, for a copy of its part of the file as it is at a time: whatever a reader
+understands can move. Nothing is written anywhere, so many threads may ask at once; nothing leads
+back to the whole file, so that a scene can travel.
 """
 
 from __future__ import annotations
@@ -13,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
+from daguerre.files.value import Value
 from daguerre.scene.lights import DirectionalLight, Light, PointLight, SpotLight
 from daguerre.scene.motion import Vertices
 from daguerre.scene.transforms import Matrix, ranks, without_scale
 
-from .animation import Channel, breaks_of, play
+from .animation import Channel, breaks_of, played
 from .poses import Poses
 
 FloatArray = NDArray[np.float64]
@@ -26,22 +29,24 @@ _NONE = np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
-class PartOverTime:
+class PartOverTime(Value):
     """Result of a reader for a part of the file over time: a material, a camera's parameter.
 
     Attributes:
+        item: The part, as it was when the file was read.
         channels: Channels that change it.
-        read: Reads the part, as it is in the JSON now.
+        read: Makes something of the part; it can be pickled.
     """
 
+    item: Item
     channels: Sequence[Channel]
-    read: Callable[[], Any]
+    read: Callable[[Item], Any]
 
     def at(self, time_s: float) -> Any:
-        """Reads the part at a time, s."""
-        play(self.channels, time_s)
+        """Reads the part as it is at a time, s."""
+        value = played(self.item.value, self.channels, time_s)
         with np.errstate(all="ignore"):
-            return self.read()
+            return self.read(self.item.holding(value))
 
     def breaks(self, begin: float, end: float) -> FloatArray:
         """Times of the keys."""
@@ -49,7 +54,7 @@ class PartOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class NodeOverTime:
+class NodeOverTime(Value):
     """World from node, or world from something that stands in the node.
 
     Attributes:
@@ -82,7 +87,7 @@ class NodeOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class RigidOverTime:
+class RigidOverTime(Value):
     """The place and directions of a camera, which ignores the scale of its node.
 
     Attributes:
@@ -109,7 +114,7 @@ class RigidOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class PositionOverTime:
+class PositionOverTime(Value):
     """Where a node is."""
 
     node: NodeOverTime
@@ -124,7 +129,7 @@ class PositionOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class ShownOverTime:
+class ShownOverTime(Value):
     """Whether a mesh is there: its node is shown (KHR_node_visibility), and not scaled to nothing.
 
     Attributes:
@@ -152,7 +157,7 @@ class ShownOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class FlatOverTime:
+class FlatOverTime(Value):
     """A mesh that its node presses flat: there is no inverse, so its vertices are in the world."""
 
     node: NodeOverTime
@@ -170,7 +175,7 @@ class FlatOverTime:
 
 
 @dataclass(frozen=True, eq=False)
-class LightOverTime:
+class LightOverTime(Value):
     """A light and its transform; it is dark where its node is hidden or scaled to nothing.
 
     Attributes:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
 from daguerre.scene.materials import Gltf, Material
-from daguerre.scene.parts import Instance, vertices_of
+from daguerre.scene.parts import vertices_of
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import ranks
 
@@ -89,42 +90,46 @@ class Placing:
             self._notes.add("a mesh that its node scales to nothing is left out", hidden)
         if moves is not None:
             for world, motion in zip(worlds, moves, strict=True):
-                self._add_moving(node, Instance(mesh, material, world, name), motion)
+                self._add_moving(node, mesh, material, world, name, motion)
             return
-        for world, rank in zip(worlds, dimensions.tolist(), strict=True):
-            if rank == 3:  # checked above, all at once: there may be a million
-                scene.instances.append(Instance(mesh, material, world, name))
-            elif rank == 2:
+        for rank, run in groupby(range(len(worlds)), dimensions.tolist().__getitem__):
+            if rank == 3:
+                scene.add_instances(mesh, material, worlds[list(run)], name=name)
+            for k in run if rank == 2 else ():
                 self._copies.spend(len(scene.meshes[mesh].positions), node)
-                scene.add_instance(self._flattened(mesh, world, name), material, name=name)
+                scene.add_instance(self._flattened(mesh, worlds[k], name), material, name=name)
 
-    def _add_moving(self, node: Item, instance: Instance, motion: Motion) -> None:
-        scene, index = self._scene, len(self._scene.instances)
+    def _add_moving(
+        self, node: Item, mesh: int, material: int, world: Matrices, name: str, motion: Motion
+    ) -> None:
         if motion.flat is not None:
-            mesh = scene.meshes[instance.mesh]
-            self._copies.spend(len(mesh.positions), node)
-            flat = self._flattened(instance.mesh, instance.transform, instance.name)
-            rest = replace(vertices_of(mesh), normals=None, tangents=None)
-            scene.motion.meshes[flat] = FlatOverTime(motion.flat, rest)
-            instance = replace(instance, mesh=flat, transform=np.eye(4))
-        if motion.transform is not None:
-            scene.motion.instances[index] = motion.transform
-        if motion.shown is not None:
-            scene.motion.shown[index] = motion.shown
-            instance = replace(instance, shown=bool(motion.shown.at(scene.time)))
-        scene.instances.append(instance)
+            vertices = vertices_of(self._scene.meshes[mesh])
+            self._copies.spend(len(vertices.positions), node)
+            rest = replace(vertices, normals=None, tangents=None)
+            mesh = self._flattened(mesh, world, name, FlatOverTime(motion.flat, rest))
+            world = np.eye(4)
+        shown = True if motion.shown is None else motion.shown
+        self._scene.add_instance(
+            mesh, material, world, name=name, shown=shown, motion=motion.transform
+        )
 
     def _default(self) -> int:
         if self._default_material is None:
             self._default_material = self._scene.add_material(Material(Gltf(), name="default"))
         return self._default_material
 
-    def _flattened(self, mesh: int, world: Matrices, name: str) -> int:
+    def _flattened(
+        self, mesh: int, world: Matrices, name: str, motion: FlatOverTime | None = None
+    ) -> int:
         """Squashed flat, there is no inverse: the world's vertices are written down."""
         flat = self._scene.meshes[mesh]
         points = flat.positions @ world[:3, :3].T + world[:3, 3]
         return self._scene.add_mesh(
-            points, flat.indices, None, flat.uv, uv1=flat.uv1, colors=flat.colors, name=name
+            *(points, flat.indices, None, flat.uv),
+            uv1=flat.uv1,
+            colors=flat.colors,
+            motion=motion,
+            name=name,
         )
 
     def _note_missing_uv(self, mesh: int, material: int) -> None:

@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from daguerre.files.value import Value
 from daguerre.scene.transforms import Matrix, compose
 
 from .animation import Animations, Channel, breaks_of
@@ -24,7 +26,7 @@ _THIN = 1e-6
 _PLACE = ("translation", "rotation", "scale")
 
 
-class Poses:
+class Poses(Value):
     """The nodes of a file over time.
 
     Args:
@@ -38,11 +40,14 @@ class Poses:
         self._shown: dict[int, list[Channel]] = {}
         for node in animations.parts("nodes"):
             channels = animations.of("nodes", str(node))
-            own = [c for c in channels if c.target.key in _PLACE and len(c.tokens) == 3]
-            shown = [c for c in channels if c.target.is_flag]
+            own = [c for c in channels if c.tokens[-1] in _PLACE and len(c.tokens) == 3]
+            shown = [c for c in channels if c.is_flag]
             self._own |= {node: own} if own else {}
             self._shown |= {node: shown} if shown else {}
         self._known: OrderedDict[tuple[int, bytes], Matrix] = OrderedDict()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return super().__getstate__() | {"_known": OrderedDict()}
 
     @cached_property
     def _moving(self) -> set[int]:
@@ -59,7 +64,7 @@ class Poses:
             {
                 node
                 for node, channels in self._own.items()
-                if any(c.target.key == "scale" and c.track.lowest < _THIN for c in channels)
+                if any(c.tokens[-1] == "scale" and c.track.lowest < _THIN for c in channels)
             }
         )
 
@@ -97,10 +102,10 @@ class Poses:
             return np.asarray(np.broadcast_to(self._tree.world(node), (len(times), 4, 4)))
         moment = times.tobytes()
         chain = []
-        while node in self._moving and (node, moment) not in self._known:
+        world: Matrix | None = None  # looked up once: another thread may forget what is known
+        while node in self._moving and (world := self._known.get((node, moment))) is None:
             chain.append(node)
             node = self._tree.parents[node]
-        world: Matrix | None = self._known.get((node, moment))
         if world is None and node >= 0:
             world = self._tree.world(node)
         for below in reversed(chain):
@@ -115,7 +120,7 @@ class Poses:
         """Parent from node, (T, 4, 4), or (4, 4) where the node itself stays."""
         if node not in self._own:
             return self._tree.local(node)
-        moved = {str(c.target.key): c.track for c in self._own[node]}
+        moved = {c.tokens[-1]: c.track for c in self._own[node]}
         parts = (
             moved[path].many(times) if path in moved else np.broadcast_to(p, (len(times), len(p)))
             for path, p in zip(_PLACE, self._tree.parts(node), strict=True)

@@ -17,7 +17,7 @@ import numpy as np
 from daguerre.errors import InputError, UsageError
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
-from daguerre.files.notes import Notes
+from daguerre.files.notes import Notes, Silence
 from daguerre.files.uris import Folder
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
@@ -27,6 +27,7 @@ from .animation import Animations
 from .cameras import read_camera
 from .extensions import check_extensions
 from .file import load_buffers, open_document
+from .images import Images
 from .instancing import instance_transforms
 from .lights import light_items, read_light
 from .materials import read_material, read_materials
@@ -91,37 +92,41 @@ class _Reader:
         self.accessors = Accessors(self.root, buffers)
         # Before anything else is read:
         self.animations = Animations(self.root, self.accessors, time, self.notes)
-        self.scene.duration = self.animations.duration
+        self.scene.set_clock(self.animations.duration)
         self.tree = Tree(self.root)
         self.poses = Poses(self.tree, self.animations)
         skins = Skins(self.root, self.accessors, self.tree, self.poses, self.notes)
         limit = max(_MAX_COPIES, sum(map(len, buffers)) // _BYTES_PER_COPY)
         copies = Budget(limit, "vertices that are not shared")
         variants = Variants(self.root, variant)
-        self.scene.variants = variants.names
+        for name in variants.names:
+            self.scene.add_variant(name)
         self.meshes = Meshes(
             *(self.root, self.accessors, self.animations, skins, variants),
             *(self.scene, copies, self.notes),
         )
         self.placing = Placing(self.scene, copies, self.notes)
-        self.moving = MotionReader(self.scene, self.animations, self.poses)
+        self.moving = MotionReader(self.root, self.animations, self.poses, time)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)
         self.names = unique_names(self.tree, self.meshes.items, self.cameras)
 
     def read(self, scene_index: int | None) -> Scene:
         scene = self.scene
-        textures = Textures(self.document, self.accessors, self.notes)
-        scene.materials = read_materials(self.root, textures, self.notes)
-        textures.decode(scene)
-        self.moving.materials(partial(read_material, textures=textures, notes=Notes()), self.root)
+        images = Images(self.document, self.accessors)
+        textures = Textures(self.root, images.same, self.notes)
+        materials = read_materials(self.root, textures, self.notes)
+        images.decode(textures.plans, scene)
+        again = partial(read_material, textures=textures.silenced(), notes=Silence())
+        for index, material in enumerate(materials):
+            scene.add_material(material, motion=self.moving.material(index, again))
         placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
         firsts = []
         for position in placed:
             firsts.append(len(scene.instances))
             self._node(position)
         self._collect(placed, [*firsts, len(scene.instances)])
-        scene.warnings = self.notes.sentences()
+        scene.note(*self.notes.sentences())
         return scene
 
     def _scene_item(self, index: int | None) -> Item | None:
@@ -143,8 +148,8 @@ class _Reader:
 
     def _node(self, placed: Placed) -> None:
         item, name = self.tree.items[placed.index], self.names[placed.index]
-        self.scene.node_positions[name] = placed.world[:3, 3].copy()
-        self.moving.position(placed.index, name)
+        position = placed.world[:3, 3].copy()
+        self.scene.add_node(name, position, motion=self.moving.position(placed.index))
         mesh, camera = item.get("mesh"), item.get("camera")
         light = item.extension("KHR_lights_punctual")
         seen = placed.visible or self.poses.blinks(placed.index)
@@ -176,17 +181,15 @@ class _Reader:
             node.fail("wanted a transform that leaves its camera a direction, got a scale of 0")
         camera = read_camera(item, rigid, self.notes)
         if camera is not None:
-            self.scene.add_camera(name, self.moving.camera(camera, item, node))
-            if item.name():
-                self.scene.camera_aliases.setdefault(item.name(), name)
+            camera = self.moving.camera(camera, item, node)
+            self.scene.add_camera(name, camera, alias=item.name())
 
     def _light(self, item: Item, placed: Placed, name: str) -> None:
         light = read_light(item, name)
-        motion = self.moving.light(partial(read_light, item, name), item, placed.index)
+        motion = self.moving.light(partial(read_light, name=name), item, placed.index)
         rigid = without_scale(placed.world)
         if motion is not None:
-            self.scene.motion.lights[len(self.scene.lights)] = motion
-            self.scene.lights.append(motion.at(self.scene.time))
+            self.scene.add_light(*motion.at(self.scene.time), motion=motion)
         elif rigid is None:
             self.notes.add("a light whose node is scaled to nothing is left out")
         else:
@@ -201,4 +204,4 @@ class _Reader:
             if left < 0:
                 self.notes.add("a node too deep in the tree stands for its own meshes only")
                 last = firsts[position + 1]
-            self.scene.nodes[self.names[node.index]] = list(range(first, last))
+            self.scene.group_instances(self.names[node.index], range(first, last))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from daguerre.camera import rolling_shutter, shutter
+from daguerre.camera import rolling_shutter, shutter, shutter_curve
 from daguerre.camera.parameters import CAMERA, LIMITS
 from daguerre.files.json_item import Item
 
@@ -17,8 +17,8 @@ def _curve(item: Item) -> rolling_shutter.ShutterCurve:
     if isinstance(item.value, dict):
         return "trapezoid", item.need("trapezoid").number(0.5, 1)
     points = list(item)
-    if not 2 <= len(points) <= shutter.MAX_POINTS:
-        item.fail(f"wrong length: wanted 2 .. {shutter.MAX_POINTS} points, got {len(points)}")
+    if not 2 <= len(points) <= shutter_curve.MAX_POINTS:
+        item.fail(f"wrong length: wanted 2 .. {shutter_curve.MAX_POINTS} points, got {len(points)}")
     curve: list[tuple[float, float]] = []
     for point in points:
         time, opening = point.numbers(2, 0)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
+from daguerre.files.value import Value
 from daguerre.scene.transforms import affine
 
 from .accessors import Accessors
@@ -27,8 +28,8 @@ _CHUNK = 1 << 15
 _SLACK = 0.01
 
 
-@dataclass(frozen=True)
-class Influences:
+@dataclass(frozen=True, eq=False)
+class Influences(Value):
     """Who moves the vertices of a mesh, and how much.
 
     Attributes:
@@ -38,6 +39,36 @@ class Influences:
 
     joints: list[NDArray[Any]]
     weights: list[FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class SkinOverTime(Value):
+    """The joints that move a mesh, over time.
+
+    Attributes:
+        poses: The nodes of the file.
+        joints: Those of them that are joints.
+        bind: Joint from mesh for each, shape (joints, 4, 4), or one for all.
+        still: World from mesh for each, where no joint moves.
+        influences: Whom they move.
+    """
+
+    poses: Poses
+    joints: list[int]
+    bind: NDArray[np.float64]
+    still: NDArray[np.float64] | None
+    influences: Influences
+
+    def at(self, time_s: float) -> NDArray[np.float64]:
+        """World from mesh for each joint at a time, s, shape (joints, 4, 4)."""
+        if self.still is not None:
+            return self.still
+        worlds = {joint: self.poses.world(joint, time_s) for joint in set(self.joints)}
+        return np.stack([worlds[joint] for joint in self.joints]) @ self.bind
+
+    def breaks(self, begin: float, end: float) -> NDArray[np.float64]:
+        """Times of all keys that move the joints, inside of (begin, end), s."""
+        return self.poses.breaks_of_all(self.joints, begin, end)
 
 
 class Skins:
@@ -75,22 +106,18 @@ class Skins:
             self._matrices[index] = world @ self._bind[index]
         return self._matrices[index]
 
-    def matrices_at(self, index: int, time: float) -> NDArray[np.float64]:
-        """The same at a time, s."""
-        if not self.moves(index):
-            return self.matrices(index)
-        joints = self._joint_nodes[index]
-        worlds = {joint: self._poses.world(joint, time) for joint in set(joints)}
-        return np.stack([worlds[joint] for joint in joints]) @ self._bind[index]
+    def over_time(self, index: int, influences: Influences) -> SkinOverTime:
+        """The same over time, for a mesh."""
+        still = self.matrices(index)
+        return SkinOverTime(
+            *(self._poses, self._joint_nodes[index], self._bind[index]),
+            *(None if self.moves(index) else still, influences),
+        )
 
     def moves(self, index: int) -> bool:
         """Whether a joint moves."""
         self.matrices(index)
         return any(map(self._poses.moves, self._joint_nodes[index]))
-
-    def breaks(self, index: int, begin: float, end: float) -> NDArray[np.float64]:
-        """Times of all keys that move the joints, inside of (begin, end), s."""
-        return self._poses.breaks_of_all(self._joint_nodes[index], begin, end)
 
     def _read(self, index: int) -> None:
         item = self._items[index]
@@ -148,7 +175,8 @@ class Skins:
         return np.asarray(np.maximum(weights, 0))
 
     def _joints(self, use: Item, weights: FloatArray, skin: int) -> NDArray[Any]:
-        joints, count = self._accessors.joints(use), len(self.matrices(skin))
+        # A copy: what moves a mesh shall not keep the bytes of the whole file.
+        joints, count = self._accessors.joints(use).copy(), len(self.matrices(skin))
         beyond = joints >= count
         if not beyond.any():
             return joints

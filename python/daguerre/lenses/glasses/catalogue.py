@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-import daguerre._core as _core
 from daguerre.errors import suggest
 from daguerre.files.json_item import Item
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.glass_formula import absorption_of, formula_of
+from daguerre.lenses.medium import AIR, Medium
 
 FOLDER = Path(__file__).parent
 #: In the order in which an ambiguous name is looked up.
@@ -35,7 +35,8 @@ _OTHER_NAMES = {"FLUORITE": "CaF2", "CALCIUMFLUORIDE": "CaF2", "FUSEDSILICA": "S
 }
 _WITH_MAKER = re.compile(r"^(.*?)\s*\(([A-Za-z]+)\)$")
 _WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:-[A-Za-z0-9]+)*")
-LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725  # nm
+#: Spectral lines at which makers state indices, nm: F and C of hydrogen, d of helium.
+LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class GlassData:
     Attributes:
         name: Name in its maker's spelling.
         maker: One of ``MAKERS``, or ``core`` for air, water and vacuum.
-        core: The core's version: index and absorption.
+        core: Its medium: index and absorption.
         stated_nd: Index at 587.56 nm in the maker's own words; None: not stated.
         stated_vd: Abbe number likewise.
         note: Substitution for the name that was asked for; empty: that very glass.
@@ -53,7 +54,7 @@ class GlassData:
 
     name: str
     maker: str
-    core: _core.Glass
+    core: Medium
     stated_nd: float | None = None
     stated_vd: float | None = None
     note: str = ""
@@ -199,8 +200,7 @@ def _by_key(maker: str | None) -> dict[str, _Entry]:
 @cache
 def _load(entry: _Entry, note: str = "") -> GlassData:
     if entry.maker == "core":
-        core = {"water": _core.Glass.water, "vacuum": _core.Glass.vacuum}.get(entry.name)
-        made = core() if core else _core.Glass.constant(1.0)
+        made = AIR if entry.name == "air" else Medium(entry.name)
         return GlassData(entry.name, "core", made, note=note)
     item = Item(_catalogue(entry.maker)["glasses"][entry.name], entry.name, Item({}, entry.file))
     formula = formula_of(item)

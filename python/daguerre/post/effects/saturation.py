@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.color.spaces import LUMINANCE_709
 from daguerre.convolution.rows import Rows
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
-from daguerre.post.lens_light import LUMINANCE, Falloff
+from daguerre.post.lens_light import Falloff
 from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image
 
@@ -32,7 +33,7 @@ class _Saturation(Step):
             share, pale = reciprocal(share)
             self._pale += pale
         image = band.image.copy()
-        grey = (image[:, :, :3] @ LUMINANCE.astype(np.float32))[:, :, None]
+        grey = (image[:, :, :3] @ LUMINANCE_709.astype(np.float32))[:, :, None]
         image[:, :, :3] = grey + (image[:, :, :3] - grey) * share[:, :, None]
         return band.with_image(image)
 

@@ -1,0 +1,51 @@
+"""Raw pictures into files, as the table of formats calls for them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from daguerre.errors import UsageError
+from daguerre.files.atomic import atomic_path
+from daguerre.frame.raw import Raw
+
+from .binning import bayer_of
+from .develop import develop
+from .dng import put_dng
+from .preview import preview_of
+
+
+def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
+    """Writes a raw picture, whole or not at all.
+
+    A Quad-Bayer mosaic is written as it is binned in cameras, four photosites to one: no reader
+    knows its pattern of four by four.
+
+    Args:
+        path: Its name should end in ``.dng``.
+        raw: The picture.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    with atomic_path(path) as temp:
+        binned = bayer_of(raw)
+        put_dng(temp, binned, preview_of(binned))
+
+
+def as_dng(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
+    """Writes the numbers as they are.
+
+    Raises:
+        UsageError: A look was asked for.
+    """
+    if look:
+        raise UsageError(f"{Path(path)}: a DNG is not developed: {', '.join(look)} has no place")
+    write_dng(path, raw)
+
+
+def as_picture(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
+    """Develops the picture; ``quality`` and ``bits`` are those of the file."""
+    files = {name: look.pop(name) for name in ("quality", "bits") if name in look}
+    develop(raw, **look).save(path, **files)

@@ -1,0 +1,179 @@
+"""The table of file formats: which function reads or writes a file, told by the end of its name.
+
+Whoever reads or writes asks this table and knows no format. A new one is a row: below, or at run
+time by :func:`register`. ``docs/importers.md`` says what the reader of a scene has to do.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Literal
+
+from daguerre.errors import InputError, UsageError, suggest
+
+Kind = Literal["scene", "frame", "picture", "raw", "environment"]
+#: A function, or "module:function", so that nothing is imported before it is needed.
+Function = str | Callable[..., Any]
+#: A suffix: whatever no other row of the kind has.
+ANY = "*"
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format.
+
+    Attributes:
+        name: For messages, such as ``glTF 2.0``.
+        kind: Contents of such a file.
+        suffixes: Ends of names, lower case, with their dots; or ``ANY``.
+        reads: Called as ``reads(path, **options)``; None: it cannot be read.
+        writes: Called as ``writes(path, value, **options)``; None: it cannot be written.
+        takes: Options of both, besides ``time`` (s) of scenes; None: they check them.
+        needs: A package without which it cannot be used, and how to install it.
+    """
+
+    name: str
+    kind: Kind
+    suffixes: tuple[str, ...]
+    reads: Function | None = None
+    writes: Function | None = None
+    takes: tuple[str, ...] | None = ()
+    needs: tuple[str, str] | None = None
+
+
+_GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
+_DEVELOPED = "daguerre.development.raw_files"
+_EXR, _PNG, _JPEG, _TIFF = (".exr",), (".png",), (".jpg", ".jpeg"), (".tif", ".tiff")
+_READ_EXR = "daguerre.io.exr.read:read_frame"
+_SHOWN, _CODED = ("tone",), ("quality", "bits")
+_FORMATS = [
+    Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
+           takes=("variant", "allow_dirs", "scene_index")),
+    Format("OpenEXR", "frame", _EXR, _READ_EXR, f"{_FRAMES}:as_exr", _SHOWN),
+    Format("PNG", "frame", _PNG, None, f"{_FRAMES}:as_png", _SHOWN),
+    Format("JPEG", "frame", _JPEG, None, f"{_FRAMES}:as_picture", _SHOWN),
+    Format("TIFF", "frame", _TIFF, None, f"{_FRAMES}:as_picture", _SHOWN),
+    Format("JPEG", "picture", _JPEG, None, f"{_FRAMES}:picture", _CODED),
+    Format("PNG", "picture", _PNG, None, f"{_FRAMES}:picture", _CODED),
+    Format("TIFF", "picture", _TIFF, None, f"{_FRAMES}:picture", _CODED),
+    Format("OpenEXR", "picture", _EXR, None, f"{_FRAMES}:picture", _CODED),
+    Format("DNG", "raw", (".dng",), None, f"{_DEVELOPED}:as_dng", None),
+    Format("a developed picture", "raw", (*_JPEG, *_PNG, *_TIFF, *_EXR), None,
+           f"{_DEVELOPED}:as_picture", None),
+    Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
+]  # fmt: skip
+
+
+def register(made: Format) -> None:
+    """Adds a format to the table; one of the same kind and name is replaced.
+
+    Raises:
+        UsageError: Another format of the kind has one of its suffixes.
+    """
+    place = len(_FORMATS)
+    for i, row in enumerate(_FORMATS):
+        if row.kind != made.kind:
+            continue
+        if row.name == made.name:
+            place = i
+        elif both := sorted({*row.suffixes} & {*made.suffixes}):
+            raise UsageError(
+                f"format {made.name!r}: suffixes: {both[0]} belongs to {row.name} already"
+            )
+    _FORMATS[place : place + 1] = [made]
+
+
+def formats(kind: Kind) -> list[Format]:
+    """The rows of a kind."""
+    return [row for row in _FORMATS if row.kind == kind]
+
+
+def written(kind: Kind) -> tuple[str, ...]:
+    """Ends of names that values of a kind can be written to."""
+    return tuple(suffix for row in formats(kind) if row.writes for suffix in row.suffixes)
+
+
+def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
+    """Reads a file by the end of its name.
+
+    Raises:
+        InputError: No format of the kind has this suffix, or the file cannot be used.
+        UsageError: The format has no such option.
+    """
+    rows = [row for row in formats(kind) if row.reads]
+    suffix = Path(path).suffix.lower()
+    row = _row(rows, suffix)
+    if row is None or row.reads is None:
+        known = _either([s for row in rows for s in row.suffixes])
+        raise InputError(f"{path}: format: wanted {known}, got {suffix or 'no suffix'}")
+    return _ready(row, row.reads, path, options)(path, **options)
+
+
+def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) -> None:
+    """Writes a value, whole or not at all, by the end of the file's name.
+
+    Raises:
+        UsageError: No format of the kind has this suffix, or the format no such option.
+        OutputError: The file cannot be written.
+    """
+    row = _row(formats(kind), check_written(path, written(kind)))
+    assert row is not None
+    assert row.writes is not None
+    _ready(row, row.writes, path, options)(path, value, **options)
+
+
+def check_written(path: str | os.PathLike[str], known: tuple[str, ...]) -> str:
+    """The end of the name of an output, in lower case.
+
+    Raises:
+        UsageError: Not one of ``known``; the message lists those.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in known:
+        hint = suggest(suffix, known)
+        if suffix == ".dng":
+            hint = "; a raw file is made by frame.expose().save()"
+        raise UsageError(
+            f"{path}: output format: wanted a name ending in {_either(known)}, got {suffix!r}{hint}"
+        )
+    return suffix
+
+
+def _row(rows: list[Format], suffix: str) -> Format | None:
+    exact = [row for row in rows if suffix in row.suffixes]
+    return next(iter(exact or (row for row in rows if ANY in row.suffixes)), None)
+
+
+def _either(names: list[str] | tuple[str, ...]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else names[0]
+
+
+def _ready(
+    row: Format, function: Function, path: str | os.PathLike[str], options: dict[str, Any]
+) -> Callable[..., Any]:
+    """The function of a format, after a look at its options and the package it needs."""
+    _check_options(row, path, options)
+    if row.needs is not None and find_spec(row.needs[0]) is None:
+        raise UsageError(f"{path}: {row.name} needs {row.needs[0]}: {row.needs[1]}")
+    if callable(function):
+        return function
+    module, _, name = function.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
+    return found
+
+
+def _check_options(row: Format, path: str | os.PathLike[str], options: dict[str, Any]) -> None:
+    if row.takes is None:
+        return
+    known = (*row.takes, "time") if row.kind == "scene" else row.takes
+    for name in options:
+        if name not in known:
+            takes = ", ".join(known) or "none"
+            raise UsageError(
+                f"{path}: no option {name!r}: {row.name} takes {takes}{suggest(name, known)}"
+            )

@@ -1,0 +1,42 @@
+"""Libraries that ship with Daguerre: folders of files, loaded by name."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from daguerre.errors import InputError, suggest
+
+
+def stems(folder: Path) -> list[str]:
+    """Names of the JSON files of a folder, sorted."""
+    return sorted(path.stem for path in folder.glob("*.json"))
+
+
+def find(
+    what: str,
+    name_or_path: str | Path,
+    folder: Path,
+    names: Collection[str],
+    suffixes: Collection[str] = (".json",),
+) -> Path:
+    """Returns the file of a name, or the file that is meant itself.
+
+    Args:
+        what: Kind of thing that the library holds, for messages: sensor, stock, lens.
+        name_or_path: One of ``names``, or a file.
+        folder: Folder of the library.
+        names: Names of the library.
+        suffixes: Suffixes, in lower case, that mark a file even where there is none of that name.
+
+    Raises:
+        InputError: An unknown name; the nearest are suggested.
+    """
+    text, path = str(name_or_path), Path(name_or_path)
+    if text in names:
+        return folder / f"{text}.json"
+    if path.is_file() or path.suffix.lower() in suffixes:
+        return path
+    raise InputError(
+        f"{what} {text!r}: no {what} of the library and no file has this name{suggest(text, names)}"
+    )

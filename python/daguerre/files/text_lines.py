@@ -1,0 +1,36 @@
+"""Text files of one statement a line, such as OBJ: each with its place, for complaints."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from daguerre.errors import InputError
+
+#: A statement takes some bytes: what a file can ask for is bounded by its size.
+MAX_BYTES = 1 << 30
+
+
+def statements(
+    path: str | os.PathLike[str], comment: str = "#"
+) -> Iterator[tuple[str, str, list[str]]]:
+    """Place (``file: line 7: word``), first word and the others of each line that has words.
+
+    Raises:
+        InputError: It is no ordinary file, is too large, or cannot be read as UTF-8.
+    """
+    file = Path(path)
+    try:
+        if file.exists() and not file.is_file():  # a pipe or a device would never end
+            raise InputError(f"{file}: wanted an ordinary file, got something else")
+        if (size := file.stat().st_size) > MAX_BYTES:
+            raise InputError(f"{file}: wanted at most {MAX_BYTES} bytes, got {size}")
+        text = file.read_text("utf-8")
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: wanted UTF-8, got another byte at {error.start}") from None
+    for number, line in enumerate(text.splitlines(), 1):
+        if words := line.split(comment)[0].split():
+            yield f"{file}: line {number}: {words[0][:20]}", words[0], words[1:]

@@ -1,0 +1,114 @@
+"""Values that travel: they pickle, copy and compare by what they hold.
+
+Results that a value caches (``cached_property``, such as its form in the core) stay at home: they
+are made again where they are needed.
+"""
+
+from __future__ import annotations
+
+import types
+from dataclasses import MISSING, Field, fields
+from functools import cached_property
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+
+from daguerre.checks import freeze_in_place, short
+
+_Seen = dict[tuple[int, int], tuple[Any, Any]]
+_PLAIN = str | int | bool | None
+
+
+class Value:
+    """Base of values that may hold arrays. As a dataclass, it wants ``eq=False``."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        kind = type(self)
+        return {
+            name: part
+            for name, part in vars(self).items()
+            if not isinstance(getattr(kind, name, None), cached_property)
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+
+    def __eq__(self, other: object) -> bool:
+        return same(self, other) if isinstance(other, Value) else NotImplemented
+
+    def __hash__(self) -> int:
+        state = self.__getstate__()
+        return hash((type(self), *(part for part in state.values() if isinstance(part, _PLAIN))))
+
+
+class FixedArrays(Value):
+    """Base of values whose arrays nobody changes, not after a trip either: the core reads them."""
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        for part in state.values():
+            if isinstance(part, np.ndarray):
+                freeze_in_place(part)
+
+
+def same(a: Any, b: Any) -> bool:
+    """Whether two values hold the same: numbers by size, NaN like NaN, arrays by their elements.
+
+    Types without a comparison of their own are compared by what they would be pickled as.
+    """
+    return _same(a, b, {})
+
+
+def _same(a: Any, b: Any, seen: _Seen) -> bool:
+    if a is b:
+        return True
+    if isinstance(a, int | float | np.generic) and isinstance(b, int | float | np.generic):
+        return bool(a == b or (a != a and b != b))
+    if type(a) is not type(b):
+        return False
+    if (id(a), id(b)) in seen:  # shared parts are looked at once
+        return True
+    seen[id(a), id(b)] = a, b  # also keeps them alive, and so their ids
+    if isinstance(a, np.ndarray):
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind in "fc")
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(_same(a[key], b[key], seen) for key in a)
+    if isinstance(a, tuple | list):
+        return len(a) == len(b) and all(_same(x, y, seen) for x, y in zip(a, b, strict=True))
+    if isinstance(a, Value) or not _compares(type(a)):
+        return _pickled_alike(a, b, seen)
+    return bool(a == b)
+
+
+def _compares(kind: type[Any]) -> bool:
+    """Whether values of a type know by themselves when they are equal."""
+    return any("__eq__" in vars(base) for base in kind.__mro__[:-1])
+
+
+def _pickled_alike(a: Any, b: Any, seen: _Seen) -> bool:
+    if isinstance(a, type | types.FunctionType):
+        return False
+    try:
+        parts = zip_longest(a.__reduce_ex__(4), b.__reduce_ex__(4))
+    except TypeError:  # it stays where it is
+        return False
+    return all(_same(x, y, seen) for x, y in parts)
+
+
+def changed(record: Any) -> list[str]:
+    """Fields of a dataclass that are not as they are by default, as ``name=value``, to print it."""
+    return [
+        f"{field.name}={_brief(value)}"
+        for field in fields(record)
+        if not same(value := getattr(record, field.name), _default(field))
+    ]
+
+
+def _default(field: Field[Any]) -> Any:
+    made = field.default_factory
+    return field.default if made is MISSING else made()
+
+
+def _brief(value: Any) -> str:
+    return f"<array {value.shape}>" if isinstance(value, np.ndarray) else short(value)

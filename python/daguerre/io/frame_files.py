@@ -1,0 +1,36 @@
+"""Frames and pictures into files, as the table of formats calls for them."""
+
+from __future__ import annotations
+
+import os
+
+from daguerre.frame.frame import Frame
+from daguerre.frame.picture import Picture
+
+from .exr.write import write_exr
+from .picture_files import write_picture
+from .png import write_png
+
+
+def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
+    """Everything that a frame has; a tone is for pictures alone and changes nothing here."""
+    write_exr(path, frame)
+
+
+def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
+    """A picture for the eye, with the facts of the shot."""
+    write_png(path, frame.without_overscan(), tone)
+
+
+def as_picture(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
+    """A picture for the eye, with a color profile."""
+    shown = frame.without_overscan()
+    picture(path, Picture(shown.encoded(tone), "srgb", shown.metadata))
+
+
+def picture(
+    path: str | os.PathLike[str], shown: Picture, quality: int = 95, bits: int | None = None
+) -> None:
+    """A developed picture."""
+    space, facts = shown.colour_space, shown.metadata
+    write_picture(path, shown.pixels, space, facts, quality=quality, bits=bits)

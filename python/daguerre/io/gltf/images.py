@@ -1,0 +1,126 @@
+"""Images of glTF, decoded side by side; each once, whoever uses it.
+
+Source: glTF 2.0 specification, chapter 3.8.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import freeze_in_place
+from daguerre.color import srgb as srgb_curve
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, clean
+from daguerre.files.uris import data_bytes, is_data
+from daguerre.io import images
+from daguerre.scene.scene import Scene
+
+from .accessors import Accessors
+from .file import Document
+from .textures import Plan
+
+#: All images of a file together, decoded; a few kB of JSON could ask for any number of them.
+_MAX_TOTAL_BYTES = 8 << 30
+
+
+class Images:
+    """The images of a file.
+
+    Args:
+        document: The file.
+        accessors: For images inside of bufferViews.
+
+    Attributes:
+        same: For each image the first one that is the same file or bufferView.
+    """
+
+    def __init__(self, document: Document, accessors: Accessors) -> None:
+        self._document = document
+        self._accessors = accessors
+        self._images = document.root.list_of("images")
+        self._paths = [self._path(item) for item in self._images]
+        first: dict[object, int] = {}
+        self.same = [first.setdefault(self._source(i), i) for i in range(len(self._images))]
+
+    def decode(self, plans: Iterable[Plan], scene: Scene) -> None:
+        """Decodes what is planned and adds it to the scene, which has no textures yet."""
+        wanted = sorted({plan.image for plan in plans})
+        budget = Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
+
+        def load(index: int) -> NDArray[Any]:
+            pixels = images.decode(self._bytes(index), self._where(index))
+            budget.spend(pixels.nbytes, self._images[index])
+            return pixels
+
+        # OpenImageIO releases the interpreter's lock while it decodes.
+        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
+            futures = [pool.submit(load, index) for index in wanted]
+            try:
+                decoded = {i: f.result() for i, f in zip(wanted, futures, strict=True)}
+            finally:
+                for future in futures:
+                    future.cancel()
+        for plan in plans:
+            pixels, srgb = decoded[plan.image], plan.srgb
+            if srgb and pixels.dtype != np.uint8:  # only 8-bit textures are decoded on lookup
+                pixels, srgb = _linear(pixels), False
+            scene.add_texture(
+                freeze_in_place(pixels),
+                srgb=srgb,
+                wrap=plan.sampler.wrap,
+                filter=plan.sampler.filter,
+                min_filter=plan.sampler.min_filter,
+                name=self._name(plan.image),
+            )
+
+    def _path(self, item: Item) -> Path | None:
+        """Where an image lies if it is a file; checks also those that no material uses."""
+        uri, view = item.get("uri"), item.get("bufferView")
+        if (uri is None) == (view is None):
+            item.fail("wanted either a uri or a bufferView, got " + ("both" if uri else "neither"))
+        if view is not None:
+            self._accessors.view_bytes(view)
+            return None
+        assert uri is not None
+        return None if is_data(uri) else self._document.folder.resolve(uri)
+
+    def _source(self, index: int) -> object:
+        view = self._images[index].get("bufferView")
+        if view is not None:
+            return ("bufferView", view.integer())
+        return self._paths[index] or ("data", index)
+
+    def _bytes(self, index: int) -> bytes | memoryview:
+        item, path = self._images[index], self._paths[index]
+        if path is not None:
+            try:
+                return path.read_bytes()
+            except OSError as error:
+                item.need("uri").fail(f"cannot be read: {error.strerror}")
+        uri = item.get("uri")
+        if uri is not None:
+            return data_bytes(uri)
+        return self._accessors.view_bytes(item.need("bufferView"))
+
+    def _name(self, index: int) -> str:
+        path = self._paths[index]
+        return self._images[index].name() or (clean(path.name) if path else f"image{index}")
+
+    def _where(self, index: int) -> str:
+        item, path = self._images[index], self._paths[index]
+        name = item.name() or (path.name if path else "")
+        return f"{item.file}: {item.path}" + (f" ({clean(name)[:60]!r})" if name else "")
+
+
+def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Colour channels undone from sRGB; the alpha of 2 or 4 channels stays."""
+    colors = pixels.shape[2] - (pixels.shape[2] in (2, 4))
+    linear = srgb_curve.to_linear(pixels[:, :, :colors])
+    return np.concatenate([linear, pixels[:, :, colors:]], axis=2)

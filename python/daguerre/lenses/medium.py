@@ -1,0 +1,79 @@
+"""Glasses and other media as plain numbers: an index by wavelength, and absorption."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import daguerre._core as _core
+from daguerre.files.value import Value
+
+_CORE: dict[str, Callable[..., _core.Glass]] = {
+    "constant": _core.Glass.constant,
+    "abbe": _core.Glass.abbe,
+    "table": _core.Glass.table,
+    "sellmeier": _core.Glass.sellmeier,
+    "polynomial": _core.Glass.polynomial,
+    "water": _core.Glass.water,
+    "vacuum": _core.Glass.vacuum,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Medium(Value):
+    """A glass, or another medium that light crosses.
+
+    The core's glass is made when a medium is, and again after a trip. Impossible numbers are a
+    ``ValueError`` in the core's words.
+
+    Attributes:
+        formula: constant, abbe, table, sellmeier, polynomial, water or vacuum.
+        numbers: Arguments of that formula.
+        vacuum: The numbers are relative to vacuum instead of air.
+        absorption: Wavelengths (nm) and coefficients of base e (1/mm); empty: it is clear.
+    """
+
+    formula: str
+    numbers: tuple[Any, ...] = ()
+    vacuum: bool = False
+    absorption: tuple[tuple[float, ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        _ = self.core
+
+    @cached_property
+    def core(self) -> _core.Glass:
+        """The core's version."""
+        made = _CORE[self.formula](*self.numbers)
+        made = made.against_vacuum() if self.vacuum else made
+        return made.with_absorption(*self.absorption) if self.absorption else made
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether it is known how much it absorbs."""
+        return bool(self.absorption)
+
+    def against_vacuum(self) -> Medium:
+        """The same numbers, taken as relative to vacuum instead of air."""
+        return replace(self, vacuum=True)
+
+    def with_absorption(self, nm: Sequence[float], per_mm: Sequence[float]) -> Medium:
+        """The same glass that absorbs light: coefficients of base e, 1/mm."""
+        return replace(self, absorption=(tuple(nm), tuple(per_mm)))
+
+    def with_absorption_of(self, other: Medium) -> Medium:
+        """The same glass with the absorption of another."""
+        return replace(self, absorption=other.absorption)
+
+    def index(self, nm: float) -> float:
+        """Index relative to air at a wavelength, nm."""
+        return float(self.core.index(nm))
+
+    def absorption_per_mm(self, nm: float) -> float:
+        """Coefficient of base e at a wavelength (nm), 1/mm."""
+        return float(self.core.absorption_per_mm(nm))
+
+
+AIR = Medium("constant", (1.0,))
