@@ -136,7 +136,7 @@ class Job:
     def _is_complete(self, picture: Picture) -> bool:
         """Whether its files are there; those of a single picture may be of another call."""
         one = len(self.pictures) == 1 and picture.frame is None
-        files = all(path.exists() for path in picture.output.files)
+        files = all(path.exists() for path in picture.output.written)
         return files and not one and not picture.output.checkpoint.exists()
 
     def _render(self, picture: Picture, began: float, *, resume: bool) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,7 @@ class Output:
         photograph: How pictures are exposed and developed.
         is_pass: Whether an .exr keeps the sums, so that it can be merged.
         baseline: Distance of the cameras of a stereo pair, m; 0: there is none.
+        beside: Files that the front end writes beside them, such as maps.
     """
 
     paths: tuple[Path, ...] = ()
@@ -43,6 +44,7 @@ class Output:
     photograph: Photograph = field(default_factory=Photograph)
     is_pass: bool = False
     baseline: float = 0.0
+    beside: tuple[Path, ...] = ()
 
     @property
     def exposed(self) -> bool:
@@ -53,6 +55,16 @@ class Output:
     def files(self) -> tuple[Path, ...]:
         """All that is written: of a bracket each exposure."""
         return tuple(file for path in self.paths for file, _ in self.photograph.files(path))
+
+    @property
+    def written(self) -> tuple[Path, ...]:
+        """The same, with those beside them."""
+        return (*self.files, *self.beside)
+
+    def renamed(self, name: Callable[[Path], Path]) -> Output:
+        """The same into other files."""
+        paths, beside = (tuple(map(name, given)) for given in (self.paths, self.beside))
+        return replace(self, paths=paths, beside=beside)
 
     @property
     def checkpoint(self) -> Path:

@@ -93,13 +93,8 @@ def _one_of(picture: Picture, frame: int | None, *, several: bool) -> Picture:
     if several:
         words.append(f"camera {picture.view.name}")
         facts["camera"] = picture.view.name
-    output = replace(
-        picture.output,
-        paths=tuple(
-            path_of(path, picture.view.name, frame, several=several)
-            for path in picture.output.paths
-        ),
-    )
+    name = picture.view.name
+    output = picture.output.renamed(lambda path: path_of(path, name, frame, several=several))
     return replace(picture, output=output, frame=frame, words=", ".join(words), facts=facts)
 
 

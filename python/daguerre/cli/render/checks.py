@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from daguerre import units as q
@@ -116,16 +115,16 @@ def check_crop(film: Film) -> None:
         )
 
 
-def check_writable(written: list[Path], output: Output) -> None:
+def check_writable(output: Output) -> None:
     """Refuses files that cannot be written at all, before hours are spent."""
     from daguerre.files.atomic import check_writable as check
 
-    names = [path.resolve() for path in written]
+    names = [path.resolve() for path in output.written]
     if len(set(names)) < len(names):
         raise UsageError("-o: the same file is named twice")
     if output.paths and output.checkpoint.resolve() in names:
         raise UsageError(f"-o {output.checkpoint}: this name is kept for the checkpoint")
-    for path in written:
+    for path in output.written:
         check(path)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from daguerre import units as q
 from daguerre.cli.flags.job import JobFlags
@@ -43,10 +42,6 @@ class Plan:
         name, frame = picture.view.name, picture.frame
         return self.maps.renamed(lambda path: path_of(path, name, frame, several=several))
 
-    def written(self, picture: Picture) -> list[Path]:
-        """All files of a picture: of a bracket each exposure, and maps."""
-        return [*picture.output.files, *self.maps_of(picture).files]
-
 
 def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Cameras) -> Plan:
     """Checks what the flags of a render ask for.
@@ -64,7 +59,7 @@ def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Camer
     maps.check()
     check_names([*flags.paths, *maps.files], numbers)
     check_places([*flags.paths, *maps.files], views)
-    output = _output(flags, groups, settings[0], cameras)
+    output = replace(_output(flags, groups, settings[0], cameras), beside=tuple(maps.files))
     made = [
         Picture(view.view(cameras), how, _output_of(output, view, how), samples)
         for view, how in zip(views, settings, strict=True)
@@ -105,7 +100,7 @@ def _check_distinct(plan: Plan) -> None:
         UsageError: Two would share one, such as of cameras whose names differ by a slash.
     """
     for picture in plan.pictures:
-        checks.check_writable(plan.written(picture), picture.output)
-    paths = [path for picture in plan.pictures for path in plan.written(picture)]
+        checks.check_writable(picture.output)
+    paths = [path for picture in plan.pictures for path in picture.output.written]
     if twice := [path for path, count in Counter(paths).items() if count > 1]:
         raise UsageError(f"-o {twice[0]}: wanted a file for each picture, got one for several")
