@@ -276,7 +276,8 @@ TEST_CASE("surfaces that cannot be are refused with a code and the surface") {
         } catch (const LensError& e) {
             CHECK(e.code == code);
             CHECK(e.surface == 1);
-            CHECK(std::string(e.what()).find(code) != std::string::npos);
+            CHECK(e.message.find(code) == std::string::npos);
+            CHECK(e.what() == e.message + " [" + code + "]");
         }
     };
     const double nan = std::nan("");
