@@ -87,7 +87,7 @@ def picture(camera: dg.Camera, spp: int = 8) -> tuple[Array, Array]:
     scene = dg.Scene()
     shining = dg.Material(dg.Diffuse((0, 0, 0)), emission=(100, 100, 100))
     scene.add_instance(scene.add_mesh(*scenes.quad(2e-4)), shining, scenes.at(0, 0, -AWAY))
-    # As many as `auto` chooses, of fewer indices: moments have a noise of 0.5 %, places of 0.04 um.
+    # Light paths as `auto` chooses, of fewer indices: noise of moments 0.5 %, of places 0.04 um.
     options = {"resolution": (48, 48), "filter": "box", "light_paths": (8000, 0)}
     frame = dg.render(scene, camera, spp=spp, **options)
     side = camera.sensor_size[0]
