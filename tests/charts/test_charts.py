@@ -122,14 +122,20 @@ def test_a_star_has_its_modulation_where_pixels_are_fine(profile: str) -> None:
     np.testing.assert_allclose(seen, chart.truth["modulation"] * pixel, rtol=0.03)
 
 
-def test_leaves_look_alike_at_every_scale_and_cover_the_ground() -> None:
+@pytest.fixture(scope="module")
+def leaves() -> tuple[charts.Chart, np.ndarray]:
+    """Dead leaves, and the light of their picture."""
     chart = charts.make("dead-leaves", smallest=0.01)
+    frame = _shot(chart, chart.camera(), spp=8)
+    return chart, np.asarray(frame.xyz[..., 1], np.float64)
+
+
+def test_leaves_look_alike_at_every_scale_and_cover_the_ground(leaves: Any) -> None:
+    chart, light = leaves
     again = charts.make("dead-leaves", smallest=0.01)
     assert len(chart.patches) == len(again.patches)
     other = charts.make("dead-leaves", smallest=0.02, seed=1)
     assert len(chart.patches) != len(other.patches)
-    frame = _shot(chart, chart.camera(), spp=8, resolution=(600, 400))
-    light = np.asarray(frame.xyz[..., 1], np.float64)
     assert light.mean() == pytest.approx(0.5, abs=0.08)
     assert light.std() == pytest.approx(chart.truth["standard_deviation"], rel=0.25)
     # From the largest leaf to the smallest power falls off as f^-2, as that of natural pictures.
@@ -142,10 +148,8 @@ def test_leaves_look_alike_at_every_scale_and_cover_the_ground() -> None:
     assert slope == pytest.approx(-2, abs=0.4)
 
 
-def test_texture_response_tells_blur_from_noise() -> None:
-    chart = charts.make("dead-leaves", smallest=0.01)
-    frame = _shot(chart, chart.camera(), spp=8)
-    sharp = np.asarray(frame.xyz[..., 1], np.float64)
+def test_texture_response_tells_blur_from_noise(leaves: Any) -> None:
+    _, sharp = leaves
     f = np.hypot(*np.meshgrid(np.fft.fftfreq(600), np.fft.fftfreq(400)))
     blurred = np.fft.ifft2(np.fft.fft2(sharp) * np.exp(-2 * (np.pi * 1.2 * f) ** 2)).real
     noisy = blurred + 0.01 * np.random.default_rng(3).standard_normal(sharp.shape)
