@@ -18,9 +18,7 @@ from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
-from .parameters import CAMERA, FULL_FRAME
-from .parameters import LIMITS as LIMITS
-from .parameters import MOVABLE as MOVABLE
+from .parameters import CAMERA, FULL_FRAME, MOVABLE
 from .parameters.needs import OPENING
 
 if TYPE_CHECKING:

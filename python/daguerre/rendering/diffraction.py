@@ -99,7 +99,8 @@ def _pupils(wanted: Diffraction, camera: Camera, setup: ResolvedCamera) -> list[
     from daguerre.analysis.iris import iris_of
     from daguerre.analysis.lens_pupil import zone_pupils
     from daguerre.analysis.off_axis import off_axis
-    from daguerre.setup.checks import TRACED, lens_and_model
+    from daguerre.camera.parameters.needs import TRACED
+    from daguerre.setup.checks import lens_and_model
     from daguerre.setup.imperfections import decenters
 
     if setup.lens.f_stop is None:

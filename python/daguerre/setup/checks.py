@@ -13,8 +13,7 @@ from daguerre.camera import shutter
 from daguerre.camera.camera import IDEAL, Camera
 from daguerre.camera.exposure import check_exposure
 from daguerre.camera.parameters import CAMERA, OPTICS
-from daguerre.camera.parameters.needs import LENS_ITSELF
-from daguerre.camera.parameters.needs import TRACED as TRACED
+from daguerre.camera.parameters.needs import LENS_ITSELF, TRACED
 from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.parameters.parameter import Parameter

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera.camera import IDEAL, LIMITS, Camera
+from daguerre.camera.camera import IDEAL, Camera
+from daguerre.camera.parameters import LIMITS
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
 from daguerre.lenses import library

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera.camera import MOVABLE, Camera
+from daguerre.camera.camera import Camera
+from daguerre.camera.parameters import MOVABLE
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic
