@@ -122,18 +122,15 @@ void change_setting(dg::Camera& camera, const Column& times, const Column& openi
     camera.setting = std::move(setting);
 }
 
-std::vector<std::vector<double>> lens_numbers(const dg::Camera& camera) {
-    if (const auto* pinhole = std::get_if<dg::Pinhole>(&camera.lens)) return {{pinhole->film_distance_mm}};
-    if (const auto* thin = std::get_if<dg::ThinLens>(&camera.lens)) {
-        const auto n = thin->numbers();
-        return {{n.film_distance_mm, n.aperture_radius_mm, n.inverse_focus, n.tilt_deg.x, n.tilt_deg.y}};
-    }
-    if (const auto* projection = std::get_if<dg::Projection>(&camera.lens)) {
-        const auto n = projection->numbers();
-        return {{n.focal_mm.x, n.focal_mm.y}, {n.principal_mm.x, n.principal_mm.y}, {n.aperture_radius_mm},
-                {n.inverse_focus}};
-    }
-    throw dg::Error("camera: lens numbers: wanted a pinhole, a thin lens or a projection");
+dg::NumberGroups lens_numbers(const dg::Camera& camera) {
+    return std::visit(
+        []<typename L>(const L& lens) -> dg::NumberGroups {
+            if constexpr (dg::ChangesEvenly<L>)
+                return lens.numbers().groups();
+            else
+                throw dg::Error("camera: lens numbers: wanted a pinhole, a thin lens or a projection");
+        },
+        camera.lens);
 }
 
 void bind_iris(nb::module_& m) {

@@ -4,18 +4,15 @@
 // Camera frame: metres, origin = centre of the entrance pupil, -z along the view, +x right, +y up.
 // Film points: mm, as the picture is seen upright: +x right, +y up, (0,0) on the optical axis.
 //
-// Adding a kind X, in this order; up to the bindings the compiler says what is missing:
-//   camera/x.h, x.cpp, x_test.cpp     what camera_kind.h asks for: generate(), reproject(), chief_direction(), and
-//                                     either numbers() with blend(), or in_the_body_of()
-//   camera/camera.h                   X as an alternative of LensKind
-//   camera/inverse/chief.h, .cpp      ChiefRays::of(X), and where points land
-//   camera/inverse/pupil_view.h, .cpp PupilView::of(X), and a kind of view if none fits
-//   camera/inverse/pixel_cone.cpp     only if it is not the same on all sides of its axis
-//   camera/inverse/view_cases.h       X among the cameras that all tests of the way back run through
-//   bind/bind_camera.cpp              a constructor, and its numbers in lens_numbers()
-//   python/daguerre                   the fields of Camera, which of them go together, and the set-up that calls the
-//                                     constructor; the table of parameters, and with it flags and docs
-//   docs/lens-models.md or docs/projections.md, CHANGELOG.md
+// Adding an ideal kind X takes four files (examples/camera_kind.diff); the compiler says what is missing:
+//   camera/x.h                         what camera_kind.h asks for: generate() and reproject(), chief_direction() and
+//                                      film_point(), opening(); numbers(), set() and blend() for what changes
+//   camera/camera.h                    X as an alternative of LensKind
+//   bind/bind_camera.cpp               a constructor
+//   python/daguerre/camera/ideal.py    a row: its name, whether it has an iris, the call of the constructor
+// Then X joins the cameras that all tests of the way back run through (camera/inverse/view_cases.h), and stands in
+// docs/lens-models.md and CHANGELOG.md. A parameter of its own is a row more (CONTRIBUTING.md). A kind whose chief rays
+// or pupil change from place to place has ChiefRays::of and PupilView::of instead, like the exact lens.
 // Nothing in render asks for a kind, but for what only an exact lens has: wavelengths that part, ghosts, scatter.
 #pragma once
 #include <span>

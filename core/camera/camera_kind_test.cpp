@@ -12,13 +12,18 @@ namespace {
 struct Complete {
     struct Numbers {
         double focal_mm;
+        NumberGroups groups() const { return {{focal_mm}}; }
     };
     Numbers numbers() const { return {50}; }
+    void set(const Numbers&) {}
     void generate(std::span<const CameraSample>, std::span<CameraRay>) const {}
     void generate(const Numbers&, std::span<const CameraSample>, std::span<CameraRay>) const {}
     void reproject(std::span<const CameraRay>, std::span<Reprojection>) const {}
     void reproject(const Numbers&, std::span<const CameraRay>, std::span<Reprojection>) const {}
     Vec3d chief_direction(Vec2d) const { return {0, 0, -1}; }
+    std::optional<Vec2d> film_point(Vec3d, double) const { return {}; }
+    Opening opening() const { return Hole{}; }
+    Opening opening(const Numbers&) const { return Hole{}; }
 };
 Complete::Numbers blend(const Complete::Numbers& a, const Complete::Numbers&, double) { return a; }
 
@@ -27,6 +32,9 @@ struct OneWay : Complete {
 };
 struct Blind : Complete {
     void chief_direction() const {}
+};
+struct Hidden : Complete {   // from the scene
+    void opening() const {}
 };
 struct Still : Complete {   // neither numbers that blend nor states
     struct Numbers {};
@@ -38,10 +46,12 @@ struct Both : Complete {
 static_assert(CameraKind<Complete>);
 static_assert(!CameraKind<OneWay>);
 static_assert(!CameraKind<Blind>);
+static_assert(!CameraKind<Hidden>);
 static_assert(!CameraKind<Still>);
 static_assert(!CameraKind<Both>);
 static_assert(!kCameraKinds<std::variant<Pinhole, OneWay>>);
-static_assert(!InverseKind<Complete>);   // chief rays and the pupil's view are not said
+static_assert(InverseKind<Complete>);   // film_point() and opening() say how the scene sees it
+static_assert(!InverseKind<Hidden>);
 static_assert(ReprojectsByWavelength<ExactLens> && !ReprojectsByWavelength<Pinhole>);
 static_assert(ChangesEvenly<Pinhole> && ChangesEvenly<ThinLens> && ChangesEvenly<Projection>);
 static_assert(ChangesInSteps<ThickLens> && ChangesInSteps<ExactLens>);

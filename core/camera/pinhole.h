@@ -1,8 +1,12 @@
 // pinhole.h -- everything is sharp: all rays pass one point. Of a leaf shutter it has the area only.
 #pragma once
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "camera/camera_sample.h"
+#include "camera/opening.h"
+#include "camera/straight.h"
 
 namespace dg {
 
@@ -14,8 +18,11 @@ struct Pinhole {
     /// Numbers that change evenly while it is on its way.
     struct Numbers {
         double film_distance_mm;
+
+        std::vector<std::vector<double>> groups() const { return {{film_distance_mm}}; }
     };
     Numbers numbers() const { return {film_distance_mm}; }
+    void set(const Numbers& numbers) { film_distance_mm = numbers.film_distance_mm; }
 
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         generate(numbers(), samples, rays);
@@ -30,7 +37,10 @@ struct Pinhole {
     void reproject(const Numbers& numbers, std::span<const CameraRay> rays, std::span<Reprojection> out) const;
 
     /// Unit, camera frame.
-    Vec3d chief_direction(Vec2d film_mm) const { return normalize(Vec3d{film_mm.x, film_mm.y, -film_distance_mm}); }
+    Vec3d chief_direction(Vec2d film_mm) const { return straight_direction(film_mm, film_distance_mm); }
+    std::optional<Vec2d> film_point(Vec3d p, double) const { return straight_film_point(p, film_distance_mm); }
+    Opening opening() const { return Hole{}; }
+    Opening opening(const Numbers&) const { return opening(); }
 };
 
 inline Pinhole::Numbers blend(const Pinhole::Numbers& a, const Pinhole::Numbers& b, double share) {

@@ -30,6 +30,11 @@ Projection::Numbers blend(const Projection::Numbers& a, const Projection::Number
             mix(a.aperture_radius_mm, b.aperture_radius_mm), mix(a.inverse_focus, b.inverse_focus)};
 }
 
+Opening Projection::opening(const Numbers& now) const {
+    if (!(now.aperture_radius_mm > 0)) return Hole{model.is_wide()};
+    return TurningIris{1e-3 * now.aperture_radius_mm * iris.outer_radius(), model.is_wide()};
+}
+
 std::optional<Vec3d> Projection::chief_direction(const Numbers& now, Vec2d film) const {
     const auto d = model.unproject(model_point(now, film));
     return d ? std::optional(turned(*d)) : std::nullopt;

@@ -7,8 +7,10 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "camera/camera_sample.h"
+#include "camera/opening.h"
 #include "camera/projection_model.h"
 #include "optics/lens/stop.h"
 
@@ -30,6 +32,9 @@ struct Projection {
 
         /// Square of iris over image distance, like ThinLens::Numbers::light_cone.
         double light_cone() const { return aperture_radius_mm * aperture_radius_mm / (focal_mm.x * focal_mm.y); }
+        std::vector<std::vector<double>> groups() const {
+            return {{focal_mm.x, focal_mm.y}, {principal_mm.x, principal_mm.y}, {aperture_radius_mm}, {inverse_focus}};
+        }
     };
     Numbers numbers() const { return {focal_mm, principal_mm, aperture_radius_mm, 1 / focus_distance_m}; }
     void set(const Numbers& numbers);
@@ -47,7 +52,10 @@ struct Projection {
 
     /// Unit, camera frame; nothing where the model sees nothing.
     std::optional<Vec3d> chief_direction(Vec2d film_mm) const { return chief_direction(numbers(), film_mm); }
-    std::optional<Vec2d> film_point(Vec3d direction) const { return film_point(numbers(), direction); }
+    std::optional<Vec2d> film_point(Vec3d p, double) const { return film_point(numbers(), p); }
+    Opening opening() const { return opening(numbers()); }
+    Opening opening(const Numbers& numbers) const;
+    static constexpr bool is_axial() { return false; }
     /// Solid angle of the scene per mm2 of film.
     double solid_angle(Vec2d film_mm) const { return solid_angle(numbers(), film_mm); }
 

@@ -126,8 +126,14 @@ std::optional<Vec2d> ThickLens::film_hit(Vec3d direction) const {
     return xy(turn_.vector({at->x, at->y, at->z - order_.entrance_pupil_z}));
 }
 
-std::optional<Vec2d> ThickLens::film_point(Vec3d direction) const {
-    const auto hit = film_hit(direction);
+Opening ThickLens::opening() const {
+    Affine3d frame = turn_;
+    frame.origin = {0, 0, offset_m_};
+    return FlatIris{frame, 1e-3 * order_.entrance_magnification * iris_radius_, -1e-3 * order_.entrance_pupil_z};
+}
+
+std::optional<Vec2d> ThickLens::film_point(Vec3d p, double w) const {
+    const auto hit = film_hit({p.x, p.y, p.z - w * offset_m_});
     if (!hit) return std::nullopt;
     return film_origin_ - *hit;
 }

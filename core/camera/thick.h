@@ -12,6 +12,7 @@
 #include <span>
 
 #include "camera/camera_sample.h"
+#include "camera/opening.h"
 #include "math/transform.h"
 #include "optics/first_order/paraxial.h"
 #include "optics/lens/stop.h"
@@ -45,13 +46,16 @@ class ThickLens {
     /// Through the centres of the pupils: from the camera's origin (unit; camera frame). Every plane that is
     /// imaged to the film sees its points on these rays.
     Vec3d chief_direction(Vec2d film_mm) const;
-    /// Its inverse: the film point (mm, upright) that looks that way; nothing if none does.
-    std::optional<Vec2d> film_point(Vec3d direction) const;
+    /// Its inverse: the film point (mm, upright) that sees a point (p, 1), m, or a direction (p, 0); nothing if none
+    /// does.
+    std::optional<Vec2d> film_point(Vec3d p, double w) const;
     /// z of the camera's origin, m, as it lies from the middle of the pupil: 0 but for states of a body.
     double pupil_offset_m() const { return offset_m_; }
     /// Camera from lens, with the middle of the entrance pupil as origin.
     const Affine3d& turn() const { return turn_; }
     const Iris& iris() const { return iris_; }
+    /// The entrance pupil.
+    Opening opening() const;
 
     /// H0 like ExactLens::h0: with the transmittance of the glass on the axis, which all rays have here.
     double h0() const { return transmittance_ * axial_; }

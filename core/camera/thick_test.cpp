@@ -156,7 +156,7 @@ TEST_CASE("a tilted lens keeps what is straight ahead, and its axis in focus") {
         const Vec3d ahead = lens.chief_direction({0, 0});
         CHECK(length(ahead - Vec3d{0, 0, -1}) < 1e-12);
         const Vec3d axis = -lens_turn(tilt).z;
-        const auto film = lens.film_point(axis);
+        const auto film = lens.film_point(axis, 0);
         REQUIRE(film);
         const Meeting m = meeting(drawn(lens, {float(film->x), float(film->y)}, 400));
         CHECK(m.miss < 1e-6);
@@ -225,7 +225,7 @@ TEST_CASE("the film of a tilted lens that moves stays: its axis meets it elsewhe
     const Vec2d tilt{6, -4};
     const ThickLens near = thick_double_gauss(4, 1, tilt), far = thick_double_gauss(4, 3, tilt);
     const Vec3d axis = lens_turn(tilt).z;
-    const auto on = near.in_the_body_of(far).film_point(-axis), before = far.film_point(-axis);
+    const auto on = near.in_the_body_of(far).film_point(-axis, 0), before = far.film_point(-axis, 0);
     REQUIRE((on && before));
     const Vec2d expected = Vec2d{axis.x, axis.y} * (far.film_z_mm() - near.film_z_mm());
     CHECK(length(expected) > 0.1);   // mm

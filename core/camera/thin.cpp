@@ -4,6 +4,11 @@
 
 namespace dg {
 
+void ThinLens::set(const Numbers& n) {
+    film_distance_mm = n.film_distance_mm, aperture_radius_mm = n.aperture_radius_mm;
+    focus_distance_m = 1 / n.inverse_focus, tilt_deg = n.tilt_deg;
+}
+
 /// On the iris of unit radius, with the weight of what passes there; `covered`: the sampled region may
 /// exceed the shape.
 Vec2f ThinLens::iris_point(Vec2f u, double covered, float& weight) const {

@@ -1,8 +1,12 @@
 // thin.h -- the lecture's lens: an iris of some diameter and one plane in perfect focus.
 #pragma once
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "camera/camera_sample.h"
+#include "camera/opening.h"
+#include "camera/straight.h"
 #include "camera/tilt.h"
 #include "optics/lens/stop.h"
 
@@ -34,10 +38,14 @@ struct ThinLens {
             const double slope = aperture_radius_mm / film_distance_mm;
             return slope * slope;
         }
+        std::vector<std::vector<double>> groups() const {
+            return {{film_distance_mm, aperture_radius_mm, inverse_focus, tilt_deg.x, tilt_deg.y}};
+        }
     };
     Numbers numbers() const {
         return {film_distance_mm, aperture_radius_mm, 1 / focus_distance_m, 1, tilt_deg};
     }
+    void set(const Numbers& numbers);
 
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         generate(numbers(), samples, rays);
@@ -54,7 +62,12 @@ struct ThinLens {
                    std::span<Reprojection> out) const;
 
     /// Through the centre, which does not bend a ray, tilted or not; unit, camera frame.
-    Vec3d chief_direction(Vec2d film_mm) const { return normalize(Vec3d{film_mm.x, film_mm.y, -film_distance_mm}); }
+    Vec3d chief_direction(Vec2d film_mm) const { return straight_direction(film_mm, film_distance_mm); }
+    std::optional<Vec2d> film_point(Vec3d p, double) const { return straight_film_point(p, film_distance_mm); }
+    Opening opening() const { return opening(numbers()); }
+    Opening opening(const Numbers& numbers) const {
+        return FlatIris{lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0};
+    }
 
   private:
     Vec2f iris_point(Vec2f u, double covered, float& weight) const;

@@ -61,30 +61,34 @@ Meridional mirrored(const Meridional& m) {
     return {-m.angle, -m.offset, m.start};
 }
 
+/// Point that all chief rays of a kind with film_point() go through.
+template <typename L>
+Vec3d origin_of(const L& lens) {
+    if constexpr (requires { lens.pupil_offset_m(); })
+        return {0, 0, lens.pupil_offset_m()};
+    else
+        return {};
+}
+
+Vec3d direction_of(const auto& lens, Vec2d film_mm) {
+    return std::optional<Vec3d>(lens.chief_direction(film_mm)).value_or(Vec3d{0, 0, 0});
+}
+
+template <typename L>
+std::optional<Vec2d> film_point_of(const L& lens, Vec3d p, double w) {
+    if constexpr (HasFilmPoint<L>)
+        return lens.film_point(p, w);
+    else
+        return std::nullopt;   // never: an exact lens has a table or a grid
+}
+
 }  // namespace
 
 ChiefRays::ChiefRays(const LensKind& kind)
     : ChiefRays(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
 
-ChiefRays ChiefRays::of(const Pinhole& lens) { return ChiefRays(lens.film_distance_mm); }
-
-ChiefRays ChiefRays::of(const ThinLens& lens) { return ChiefRays(lens.film_distance_mm); }
-
-ChiefRays ChiefRays::of(const ThickLens& lens) {
-    ChiefRays rays(0);
-    rays.thick_ = lens;
-    return rays;
-}
-
-ChiefRays ChiefRays::of(const Projection& lens) {
-    ChiefRays rays(0);
-    rays.projection_ = lens;
-    rays.projection_->iris = {};   // chief rays need none
-    return rays;
-}
-
 ChiefRays ChiefRays::of(const ExactLens& lens) {
-    ChiefRays rays(0);
+    ChiefRays rays;
     if (lens.is_axial())
         rays.tabulate(lens);
     else
@@ -105,11 +109,18 @@ void ChiefRays::tabulate(const ExactLens& lens) {
     table_[0].angle = table_[0].offset = 0;
 }
 
+bool ChiefRays::changes_evenly() const {
+    return straight_ && std::visit([]<typename L>(const L&) { return ChangesEvenly<L>; }, *straight_);
+}
+
 ChiefRays ChiefRays::between(const ChiefRays& a, const ChiefRays& b, double share) {
-    if (!a.projection_)
-        return ChiefRays(a.film_distance_mm_ + share * (b.film_distance_mm_ - a.film_distance_mm_));
     ChiefRays now = share < 0.5 ? a : b;
-    now.projection_->set(blend(a.projection_->numbers(), b.projection_->numbers(), share));
+    std::visit(
+        [&]<typename L>(L& lens) {
+            if constexpr (ChangesEvenly<L>)
+                lens.set(blend(std::get<L>(*a.straight_).numbers(), std::get<L>(*b.straight_).numbers(), share));
+        },
+        *now.straight_);
     return now;
 }
 
@@ -121,7 +132,6 @@ ChiefRaysOverTime::ChiefRaysOverTime(const Camera& camera)
 
 /// Cubic between radii (Catmull and Rom), linear past the last one.
 ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
-    if (film_distance_mm_ > 0) return {std::atan2(mm, film_distance_mm_), 0, 0};
     const int last = int(table_.size()) - 1;
     const auto node = [&](int i) {
         return i < 0      ? mirrored(table_[-i])
@@ -142,8 +152,9 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
 }
 
 ChiefRay ChiefRays::at(Vec2d film_mm) const {
-    if (thick_) return {{0, 0, thick_->pupil_offset_m()}, thick_->chief_direction(film_mm)};
-    if (projection_) return {{}, projection_->chief_direction(film_mm).value_or(Vec3d{0, 0, 0})};
+    if (straight_)
+        return std::visit([&](const auto& lens) { return ChiefRay{origin_of(lens), direction_of(lens, film_mm)}; },
+                          *straight_);
     if (grid_) {
         const ChiefGrid::Line line = grid_->at(film_mm);
         return {line.foot + line.direction * line.start, line.direction};
@@ -160,7 +171,7 @@ ChiefRay ChiefRays::at(Vec2d film_mm) const {
 }
 
 ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
-    if (projection_) return projection_->chief_direction(film_mm) ? Lit::yes : Lit::no;
+    if (straight_) return length(at(film_mm).direction) > 0 ? Lit::yes : Lit::no;
     if (grid_) return grid_->lit(film_mm);
     if (!ends_) return Lit::yes;
     const double last = step_mm_ * (table_.size() - 1), radius = length(film_mm);
@@ -199,13 +210,8 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
 }
 
 std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
-    if (thick_) return thick_->film_point({p.x, p.y, p.z - w * thick_->pupil_offset_m()});
-    if (projection_) return projection_->film_point(p);
+    if (straight_) return std::visit([&](const auto& lens) { return film_point_of(lens, p, w); }, *straight_);
     if (grid_) return grid_->film_point(p, w);
-    if (film_distance_mm_ > 0) {
-        if (!(p.z < 0)) return std::nullopt;
-        return Vec2d{p.x, p.y} * (film_distance_mm_ / -p.z);
-    }
     const double outward = std::hypot(p.x, p.y);
     if (outward == 0) return p.z < 0 ? std::optional(Vec2d{}) : std::nullopt;
     const auto radius = solve(outward, p.z, w);

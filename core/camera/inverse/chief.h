@@ -28,11 +28,14 @@ class ChiefRays {
 
     /// Throws Error if no light passes an exact lens on its axis.
     explicit ChiefRays(const LensKind& lens);
-    static ChiefRays of(const Pinhole& lens);
-    static ChiefRays of(const ThinLens& lens);
-    static ChiefRays of(const ThickLens& lens);
+    template <HasFilmPoint L>
+    static ChiefRays of(L lens) {
+        if constexpr (requires { lens.iris = {}; }) lens.iris = {};   // they need none
+        ChiefRays rays;
+        rays.straight_ = std::move(lens);
+        return rays;
+    }
     static ChiefRays of(const ExactLens& lens);
-    static ChiefRays of(const Projection& lens);
 
     /// Chief ray of a film point (mm, upright). Beyond what an exact lens draws the outermost ones
     /// are continued linearly in the film radius, for points that leave the frame. Where a
@@ -56,21 +59,19 @@ class ChiefRays {
 
   private:
     friend class ChiefRaysOverTime;
-    explicit ChiefRays(double film_distance_mm) : film_distance_mm_(film_distance_mm) {}
+    ChiefRays() = default;
     void tabulate(const ExactLens& lens);
-    /// Chief rays between two lenses that change evenly.
+    /// Chief rays of a moment between two keys: between them, if the lens changes evenly, else the nearer's.
     static ChiefRays between(const ChiefRays& a, const ChiefRays& b, double share);
-    bool changes_evenly() const { return film_distance_mm_ > 0 || projection_; }
+    bool changes_evenly() const;
     Meridional at_radius(double mm) const;
     std::optional<double> solve(double outward, double z, double w) const;
 
-    double film_distance_mm_ = 0;    // of a pinhole or a thin lens, else 0
-    std::optional<ThickLens> thick_;
-    std::optional<Projection> projection_;
-    std::optional<ChiefGrid> grid_;  // of an exact lens that is not the same on all sides
-    std::vector<Meridional> table_;  // of an exact one, by film radius
+    std::optional<LensKind> straight_;   // a kind that has film_point(); else it is an exact lens
+    std::optional<ChiefGrid> grid_;      // of one that is not the same on all sides
+    std::vector<Meridional> table_;      // of another, by film radius
     double step_mm_ = 0;
-    bool ends_ = false;              // the table, before the film does: beyond the image circle
+    bool ends_ = false;                  // the table, before the film does: beyond the image circle
 };
 
 /// Those of a camera whose lens changes while the shutter is open: of the lens that draws

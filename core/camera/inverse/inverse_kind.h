@@ -1,5 +1,5 @@
-// inverse_kind.h -- what a kind of camera must say of itself as the scene sees it: its chief rays, the cone of a
-// pixel, and where light must aim to come through.
+// inverse_kind.h -- a kind of camera as the scene sees it: its chief rays, the cone of a pixel, and where light must
+// aim to come through. All three follow from chief_direction(), film_point() and opening(); an exact lens measures them.
 #pragma once
 #include "camera/inverse/chief.h"
 #include "camera/inverse/pixel_cone.h"

@@ -11,11 +11,12 @@ Vec3d direction(const std::optional<Vec3d>& chief) { return chief.value_or(Vec3d
 
 /// Whether a circle about the axis is seen under one angle.
 template <HasChief Lens>
-bool is_round(const Lens&) {
-    return true;
+bool is_round(const Lens& lens) {
+    if constexpr (requires { lens.is_axial(); })
+        return lens.is_axial();
+    else
+        return true;
 }
-bool is_round(const ExactLens& lens) { return lens.is_axial(); }
-bool is_round(const Projection&) { return false; }
 
 /// Solid angle per mm^2 of film (its root), mean over the directions at a radius: of lenses that are not the
 /// same on all sides.

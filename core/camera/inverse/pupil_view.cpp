@@ -50,43 +50,15 @@ std::optional<Sample> sample_hole(Vec3d p, double w, bool all_around) {
 
 }  // namespace
 
-PupilView::Disc PupilView::disc_of(const ThinLens::Numbers& numbers,
-                                   std::shared_ptr<const Iris> iris) {
-    return {lens_turn(numbers.tilt_deg), 1e-3 * numbers.aperture_radius_mm, 0,
-            std::move(iris)};
-}
-
-PupilView::Turning PupilView::turning(const Projection::Numbers& numbers, const Projection& shape) {
-    return {1e-3 * numbers.aperture_radius_mm * shape.iris.outer_radius(), shape.model.is_wide()};
-}
-
-PupilView PupilView::of(const Pinhole&) { return PupilView(Hole{}); }
-
-PupilView PupilView::of(const ThinLens& lens) {
-    return PupilView(disc_of(lens.numbers(), std::make_shared<const Iris>(lens.iris)));
-}
-
-PupilView PupilView::of(const ThickLens& lens) {
-    const FirstOrder& order = lens.first_order();
-    Affine3d frame = lens.turn();
-    frame.origin = {0, 0, lens.pupil_offset_m()};
-    return PupilView(Disc{frame, 1e-3 * order.entrance_magnification * lens.iris_radius_mm(),
-                          -1e-3 * order.entrance_pupil_z, std::make_shared<const Iris>(lens.iris())});
-}
-
 PupilView PupilView::of(const ExactLens& lens) { return PupilView(std::make_shared<const PupilShape>(lens)); }
-
-PupilView PupilView::of(const Projection& lens) {
-    if (!(lens.aperture_radius_mm > 0)) return PupilView(Hole{lens.model.is_wide()});
-    return PupilView(turning(lens.numbers(), lens));
-}
 
 PupilView::PupilView(const LensKind& kind)
     : PupilView(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
 
 std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
-    if (const auto* hole = std::get_if<Hole>(&kind_)) return sample_hole(p, w, hole->all_around);
-    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+    if (pupil_) return pupil_->sample(p, w, u);
+    if (const auto* hole = std::get_if<Hole>(&opening_)) return sample_hole(p, w, hole->all_around);
+    if (const auto* iris = std::get_if<TurningIris>(&opening_)) {
         const double far = length(p);
         if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return std::nullopt;
         const Vec3d axis = p / far;
@@ -98,15 +70,13 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
         if (!line) return std::nullopt;
         return Sample{to_float(q), to_float(line->direction), float(line->pdf)};
     }
-    if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
-        return (*shape)->sample(p, w, u);
-    const Disc& disc = std::get<Disc>(kind_);
+    const FlatIris& disc = std::get<FlatIris>(opening_);
     const Vec3d axis = -disc.frame.z;
     // Rays start at the depth -start along the axis, and the point lies before that.
     if (!(dot(p - w * disc.frame.origin, axis) > w * -disc.start)) return std::nullopt;
-    const Vec2d at = disc.iris->sample({u.x, u.y}, kRim) * disc.radius;
+    const Vec2d at = iris_->sample({u.x, u.y}, kRim) * disc.radius;
     const Vec3d q = disc.frame.point({at.x, at.y, 0});
-    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
+    const double area = iris_->sampling_area(kRim) * disc.radius * disc.radius;
     const auto line = line_through(p, w, q, axis, 1 / area);
     if (!line) return std::nullopt;
     const Vec3d origin = q - line->direction * (disc.start / dot(line->direction, axis));
@@ -114,11 +84,12 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
 }
 
 float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
-    if (const auto* hole = std::get_if<Hole>(&kind_)) {
+    if (pupil_) return pupil_->pdf(p, w, ray);
+    if (const auto* hole = std::get_if<Hole>(&opening_)) {
         const auto drawn = sample_hole(p, w, hole->all_around);
         return drawn ? drawn->pdf : 0;
     }
-    if (const auto* iris = std::get_if<Turning>(&kind_)) {
+    if (const auto* iris = std::get_if<TurningIris>(&opening_)) {
         const double far = length(p);
         if (!(far > w * kNear * iris->radius) || !(iris->all_around || p.z < 0)) return 0;
         const Vec3d axis = p / far, d = to_double(ray.direction), from = to_double(ray.origin);
@@ -129,25 +100,21 @@ float PupilView::pdf(Vec3d p, double w, const Ray& ray) const {
         const auto line = line_through(p, w, q, axis, 1 / (kPiD * radius * radius));
         return line ? float(line->pdf) : 0;
     }
-    if (const auto* shape = std::get_if<std::shared_ptr<const PupilShape>>(&kind_))
-        return (*shape)->pdf(p, w, ray);
-    const Disc& disc = std::get<Disc>(kind_);
+    const FlatIris& disc = std::get<FlatIris>(opening_);
     const Vec3d axis = -disc.frame.z, d = to_double(ray.direction);
     const Vec3d from = to_double(ray.origin) - disc.frame.origin;
     if (!(dot(d, axis) > 0) || !(dot(p - w * disc.frame.origin, axis) > w * -disc.start))
         return 0;
     const Vec3d at = from - d * (dot(from, axis) / dot(d, axis));
     const Vec2d in{dot(at, disc.frame.x), dot(at, disc.frame.y)};
-    if (!disc.iris->in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
-    const double area = disc.iris->sampling_area(kRim) * disc.radius * disc.radius;
+    if (!iris_->in_sampling_region(in * (1 / disc.radius), kRim)) return 0;
+    const double area = iris_->sampling_area(kRim) * disc.radius * disc.radius;
     const auto line = line_through(p, w, at + disc.frame.origin, axis, 1 / area);
     return line ? float(line->pdf) : 0;
 }
 
 PupilViewOverTime::PupilViewOverTime(const Camera& camera)
-    : times_(camera.lens_motion.times),
-      evenly_(std::holds_alternative<ThinLens>(camera.lens) ||
-              std::holds_alternative<Projection>(camera.lens)) {
+    : times_(camera.lens_motion.times) {
     const auto add = [&](const LensKind& lens) {
         states_.push_back(std::make_unique<State>());
         states_.back()->lens = lens;
@@ -166,20 +133,18 @@ template <typename Use>
 decltype(auto) PupilViewOverTime::with_lens(float time, const Use& use) const {
     if (times_.empty()) return use(view(0));
     const KeyPlace p = place_among(times_, time);
-    const PupilView& nearest = view(p.share < 0.5 ? p.left : p.right);
-    if (!evenly_) return use(nearest);
-    if (const auto* from = std::get_if<Projection>(&states_[p.left]->lens)) {
-        if (!std::holds_alternative<PupilView::Turning>(nearest.kind_)) return use(nearest);
-        const auto& to = std::get<Projection>(states_[p.right]->lens);
-        const Projection& shape = p.share < 0.5 ? *from : to;
-        const auto now = blend(from->numbers(), to.numbers(), p.share);
-        return use(PupilView(PupilView::turning(now, shape)));
-    }
-    const ThinLens &a = std::get<ThinLens>(states_[p.left]->lens),
-                   &b = std::get<ThinLens>(states_[p.right]->lens);
-    return use(
-        PupilView(PupilView::disc_of(blend(a.numbers(), b.numbers(), p.share),
-                                     std::get<PupilView::Disc>(nearest.kind_).iris)));
+    const std::size_t nearest = p.share < 0.5 ? p.left : p.right;
+    return std::visit(
+        [&]<typename L>(const L& lens) {
+            if constexpr (ChangesEvenly<L>) {
+                const L &from = std::get<L>(states_[p.left]->lens), &to = std::get<L>(states_[p.right]->lens);
+                const auto now = blend(from.numbers(), to.numbers(), p.share);
+                return use(PupilView(lens.opening(now), view(nearest).iris_));
+            } else {
+                return use(view(nearest));
+            }
+        },
+        states_[nearest]->lens);
 }
 
 std::optional<Sample> PupilViewOverTime::sample(Vec3d p, double w, Vec2f u,

@@ -26,11 +26,11 @@ class PupilShape;
 class PupilView {
   public:
     explicit PupilView(const LensKind& lens);
-    static PupilView of(const Pinhole& lens);
-    static PupilView of(const ThinLens& lens);
-    static PupilView of(const ThickLens& lens);
+    template <HasOpening L>
+    static PupilView of(const L& lens) {
+        return PupilView(lens.opening(), iris_of(lens));
+    }
     static PupilView of(const ExactLens& lens);
-    static PupilView of(const Projection& lens);
 
     struct Sample {
         Vec3f origin;  // where rays of the camera start: the lens, or its first surface
@@ -46,30 +46,23 @@ class PupilView {
 
   private:
     friend class PupilViewOverTime;
-    struct Hole {
-        bool all_around = false;   // what lies beside it and behind is seen, too
-    };
-    /// An iris that faces each chief ray, within a ball of that radius (m) about the origin.
-    struct Turning {
-        double radius;
-        bool all_around;
-    };
-    /// A flat iris. Rays start on the plane z = start of its frame.
-    struct Disc {
-        Affine3d frame;  // camera from iris, m
-        double radius;   // of the unit of the shape, m; negative: an image turned by 180
-                         // degrees
-        double start;
-        std::shared_ptr<const Iris> iris;
-    };
-    using Kind = std::variant<Hole, Turning, Disc, std::shared_ptr<const PupilShape>>;
-    explicit PupilView(Kind kind) : kind_(std::move(kind)) {}
-    static Disc disc_of(const ThinLens::Numbers& numbers,
-                        std::shared_ptr<const Iris> iris);
+    using Shape = std::shared_ptr<const Iris>;
+    PupilView(const Opening& opening, Shape iris) : opening_(opening), iris_(std::move(iris)) {}
+    explicit PupilView(std::shared_ptr<const PupilShape> pupil) : pupil_(std::move(pupil)) {}
+    /// Shape of the iris; none without one.
+    template <typename L>
+    static Shape iris_of(const L& lens) {
+        if constexpr (requires { lens.iris(); })
+            return std::make_shared<const Iris>(lens.iris());
+        else if constexpr (requires { lens.iris; })
+            return std::make_shared<const Iris>(lens.iris);
+        else
+            return nullptr;
+    }
 
-    static Turning turning(const Projection::Numbers& numbers, const Projection& shape);
-
-    Kind kind_;
+    Opening opening_;
+    Shape iris_;
+    std::shared_ptr<const PupilShape> pupil_;   // exact lenses, instead
 };
 
 /// Those of a camera whose lens changes while the shutter is open: of the lens that draws
@@ -95,7 +88,6 @@ class PupilViewOverTime {
     const PupilView& view(std::size_t state) const;
 
     std::vector<float> times_;  // empty: one state
-    bool evenly_ = false;       // thin lenses and projections change evenly from one to the next
     std::vector<std::unique_ptr<State>> states_;
 };
 

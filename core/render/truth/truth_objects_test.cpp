@@ -102,14 +102,14 @@ TEST_CASE("edges that a fisheye bends reach as far as their points") {
     for (int i = 0; i <= 200; ++i)
         for (int j = 0; j <= 200; ++j) {
             const Vec3d p{0.7 + 2 * (i / 100.0 - 1), 0.3 + 2 * (j / 100.0 - 1), -1.5};
-            const Vec2d px = kSensor.px_from_mm(*fisheye.film_point(p));
+            const Vec2d px = kSensor.px_from_mm(*fisheye.film_point(p, 1));
             dense.low = {std::min(dense.low.x, px.x), std::min(dense.low.y, px.y)};
             dense.high = {std::max(dense.high.x, px.x), std::max(dense.high.y, px.y)};
         }
     const Outline o = world.outline();
     CHECK(!o.open);
     check_box(o, dense.low.x, dense.low.y, dense.high.x, dense.high.y, 0.06);
-    const Vec2d corner = kSensor.px_from_mm(*fisheye.film_point({-1.3, 2.3, -1.5}));
+    const Vec2d corner = kSensor.px_from_mm(*fisheye.film_point({-1.3, 2.3, -1.5}, 1));
     CHECK(corner.x - dense.low.x > 1);   // planted: corners alone
     CHECK(corner.y - dense.low.y > 1);
 }

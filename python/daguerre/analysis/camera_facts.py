@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.checks import DEFAULT_RESOLUTION
 from daguerre.motion.subdivision import some_breaks
 from daguerre.scene.framing import bounds
@@ -148,7 +149,7 @@ def camera_facts(
 
 def needs_autofocus(camera: Camera) -> bool:
     """Whether the focus distance has to be measured in the scene."""
-    if camera.lens == "pinhole" or camera.lens_model == "pinhole":
+    if camera.lens in WITHOUT_IRIS or camera.lens_model in WITHOUT_IRIS:
         return False
     return camera.focus_distance is None or camera.focus_at is not None
 

@@ -18,6 +18,7 @@ from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
+from .ideal import IDEAL, WITHOUT_IRIS
 from .parameters import CAMERA, FULL_FRAME, MOVABLE
 from .parameters.needs import OPENING
 
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from .rolling_shutter import RollingShutter, ShutterCurve
 
 
-#: lenses without a prescription
-IDEAL = ("thin", "pinhole")
 _default = CAMERA.default
 
 
@@ -357,10 +356,11 @@ class Camera(Value):
                     f"camera: no parameter {name!r}{suggest(name, self.__dataclass_fields__)}"
                 )
         given = {name for name, value in changes.items() if value is not None}
-        if "pinhole" in (changes.get("lens"), changes.get("lens_model")):
+        asked = changes.get("lens"), changes.get("lens_model")
+        if hole := next((name for name in WITHOUT_IRIS if name in asked), None):
             odd = sorted(name for name in given if OPENING in CAMERA[name].needs)
             if odd:
-                raise UsageError(f"camera: a pinhole has no {odd[0]}")
+                raise UsageError(f"camera: a {hole} has no {odd[0]}")
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
             replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}

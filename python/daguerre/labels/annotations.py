@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.session import Session
@@ -230,7 +231,7 @@ def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
         (x, y), rows = made.center, made.size[1]  # middles coincide: a shape's rows may be rounded
         center = [scale * (x + 0.5) - 0.5, scale * (y + 0.5 - rows / 2) + height / 2 - 0.5]
         named: dict[str, Any] = {"model": made.model, "parameters": list(made.parameters)}
-    elif model in ("pinhole", "thin") and not any(camera.tilt):
+    elif model in IDEAL and not any(camera.tilt):
         right, up = setup.shift_mm
         across, down = width / setup.frame_size_mm[0], height / setup.frame_size_mm[1]
         focal = [setup.lens.pinhole_focal_length_mm * pixels for pixels in (across, down)]

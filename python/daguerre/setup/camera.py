@@ -14,6 +14,7 @@ from daguerre import lenses
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import exposure_notes
+from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.projection import check_resolution
 from daguerre.checks import as_readonly, short
@@ -67,7 +68,7 @@ def set_up(
     framing = Framing(now, pose, focus, _film_size(size, resolution, overscan))
     lens = _set_up_lens(framing, prescription, model)
     notes = [*lens.notes]
-    if any(now.tilt) and model != "pinhole":
+    if any(now.tilt) and model not in WITHOUT_IRIS:
         notes.append(tilt.note(now.tilt, lens.focal_length_mm))
 
     def lens_of(moment: Camera) -> ResolvedLens:

@@ -10,8 +10,9 @@ import numpy as np
 
 from daguerre import lenses
 from daguerre.camera import shutter
-from daguerre.camera.camera import IDEAL, Camera
+from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
+from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA, OPTICS
 from daguerre.camera.parameters.needs import LENS_ITSELF, TRACED
 from daguerre.checks import short

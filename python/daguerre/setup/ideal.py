@@ -1,4 +1,4 @@
-"""A camera without glass: a calibrated projection, a pinhole, or a thin lens.
+"""A camera without glass: a calibrated projection, or an ideal lens.
 
 All lengths in mm unless the name says otherwise. Distances of focus are m.
 """
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL, IdealLens
 from daguerre.camera.parameters import CAMERA
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
@@ -36,7 +37,9 @@ def set_up(framing: Framing, model: str) -> ResolvedLens:
     """
     if framing.camera.projection is not None:
         return _projection(framing, framing.camera.projection)
-    return _pinhole(framing) if model == "pinhole" else _thin(framing)
+    if IDEAL[model].has_iris:
+        return _with_iris(framing, model)
+    return _all_sharp(framing, model)
 
 
 def _projection(framing: Framing, projection: Projection) -> ResolvedLens:
@@ -78,14 +81,29 @@ def _projection(framing: Framing, projection: Projection) -> ResolvedLens:
     )
 
 
-def _pinhole(framing: Framing) -> ResolvedLens:
-    camera = framing.camera
-    f = camera.focal_length or DEFAULT_FOCAL_LENGTH
-    core = _core.Camera.pinhole(framing.pose, f, camera.natural_vignetting)
-    return ResolvedLens(core, "pinhole", "pinhole", focal_length_mm=f, pinhole_focal_length_mm=f)
+def _all_sharp(framing: Framing, model: str) -> ResolvedLens:
+    f = framing.camera.focal_length or DEFAULT_FOCAL_LENGTH
+    core = _core_of(framing, model, f, 0.0, math.inf)
+    return ResolvedLens(core, model, model, focal_length_mm=f, pinhole_focal_length_mm=f)
 
 
-def _thin(framing: Framing) -> ResolvedLens:
+def _core_of(
+    framing: Framing, model: str, film_mm: float, radius_mm: float, focus_m: float
+) -> _core.Camera:
+    camera, kind = framing.camera, IDEAL[model]
+    lens = IdealLens(
+        framing.pose,
+        film_mm,
+        radius_mm,
+        focus_m,
+        iris_of(camera) if kind.has_iris else _core.Iris(),
+        camera.natural_vignetting,
+        camera.tilt,
+    )
+    return kind.make(lens)
+
+
+def _with_iris(framing: Framing, model: str) -> ResolvedLens:
     camera, focus = framing.camera, framing.focus
     f = camera.focal_length or DEFAULT_FOCAL_LENGTH
     f_stop = camera.f_stop or camera.t_stop  # without glass they are the same
@@ -97,19 +115,10 @@ def _thin(framing: Framing) -> ResolvedLens:
     if camera.focus_from == "sensor" and camera.focus_distance is not None:
         distance = _from_pupil(distance, f)
     film = _film_distance(camera, f, distance)
-    core = _core.Camera.thin(
-        framing.pose,
-        film,
-        diameter / 2,
-        distance,
-        iris_of(camera),
-        camera.natural_vignetting,
-        camera.tilt,
-    )
     return ResolvedLens(
-        core=core,
-        model="thin",
-        name="thin",
+        core=_core_of(framing, model, film, diameter / 2, distance),
+        model=model,
+        name=model,
         focal_length_mm=f,
         pinhole_focal_length_mm=film,
         f_stop=f / diameter,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS, IdealLens
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.lenses.checking import frame_notes
 from daguerre.lenses.errors import LensError, reported
@@ -191,7 +192,7 @@ def _f_stop(
     if camera.t_stop is None:
         f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
         # A pinhole does not open: a scene's f-stop that the lens lacks is no error.
-        return max(f_stop, order.f_number) if model == "pinhole" else f_stop
+        return max(f_stop, order.f_number) if model in WITHOUT_IRIS else f_stop
     f_stop = camera.t_stop * math.sqrt(transmittance)
     if f_stop < 0.99 * order.f_number:  # as the core grants
         widest = order.f_number / math.sqrt(transmittance)
@@ -254,17 +255,18 @@ def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn
             film_z_mm=sharp.film_z,
             tilt_deg=camera.tilt,
         )
-    radius = sharp.order.efl / sharp.f_stop / 2
-    vignetting = camera.natural_vignetting
     if model == "thick":
-        core = _core.Camera.thick(pose, thick)
-    elif model == "thin":
-        core = _core.Camera.thin(
-            pose, film, radius, sharp.distance, iris_of(camera), vignetting, camera.tilt
-        )
-    else:
-        core = _core.Camera.pinhole(pose, film, vignetting)
-    return _Drawn(core, thick.h0)
+        return _Drawn(_core.Camera.thick(pose, thick), thick.h0)
+    numbers = IdealLens(
+        pose,
+        film,
+        sharp.order.efl / sharp.f_stop / 2,
+        sharp.distance,
+        iris_of(camera),
+        camera.natural_vignetting,
+        camera.tilt,
+    )
+    return _Drawn(IDEAL[model].make(numbers), thick.h0)
 
 
 def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Directions:

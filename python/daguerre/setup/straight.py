@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
 
-_STRAIGHT = ("pinhole", "thin", "rectilinear")
+_STRAIGHT = (*IDEAL, "rectilinear")
 
 
 def straight_focal_px(metadata: Mapping[str, Any], where: str) -> float:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
+from daguerre.camera.ideal import IDEAL
 from daguerre.parameters.parameter import Parameter
 
 from . import needs
 
+_QUOTED = " or ".join(f'``"{name}"``' for name in IDEAL)
 LensRow = partial(Parameter, panel="Camera")
 
 #: Camera of a scene; no parameter of the camera itself.
@@ -27,8 +29,8 @@ LENS = (
         "Lens of the library or a lens file; see `daguerre lenses`",
         kind="text",
         flags=("--lens",),
-        metavar="NAME|FILE|thin|pinhole",
-        in_python='Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; default: thin.',
+        metavar="|".join(("NAME", "FILE", *IDEAL)),
+        in_python=f"Library name, file, ``Lens``, {_QUOTED}; default: thin.",
         explained=("lens-format.md", "lens-import.md"),
         needs=(needs.LENS_ITSELF,),
     ),

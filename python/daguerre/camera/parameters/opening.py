@@ -56,7 +56,7 @@ STOP = (
         flags=("--aperture-diameter",),
         metavar="MM",
         more="Thin lens only",
-        needs=(needs.LENS_ITSELF, needs.OPENING, needs.THIN, needs.IDEAL),
+        needs=(needs.LENS_ITSELF, needs.OPENING, needs.APERTURE, needs.IDEAL),
         rivals="stop",
         movable=True,
     ),

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
 
@@ -145,10 +146,12 @@ class CalibrationFlags:
             for row in CAMERA.flagged
             if row.name in changes and not row.takes("projection")
         ]
-        if changes.get("lens") == "pinhole":  # no iris: all is sharp
+        if changes.get("lens") in WITHOUT_IRIS:  # no iris: all is sharp
             both.remove("--lens")
             if "f_stop" in changes:
-                raise UsageError("--lens pinhole and --f-stop: wanted one of them, got both")
+                raise UsageError(
+                    f"--lens {changes['lens']} and --f-stop: wanted one of them, got both"
+                )
         if self.pixel_pitch is not None and {"sensor", "sensor_size"} & set(changes):
             raise UsageError("--pixel-pitch and --sensor: wanted one of them, got both")
         if both:
@@ -160,7 +163,7 @@ class CalibrationFlags:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
             camera = calibration.camera(camera, um)
-            if changes.get("lens") == "pinhole":
+            if changes.get("lens") in WITHOUT_IRIS:
                 changes = {name: value for name, value in changes.items() if name != "lens"}
                 camera = camera.with_(f_stop=None)
         camera = camera.with_(**changes)

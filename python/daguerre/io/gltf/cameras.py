@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.camera.camera import IDEAL, Camera
+from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import LIMITS
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
@@ -77,7 +78,7 @@ _PHYSICAL: dict[str, _Reader] = {
 }
 _EXTRAS: dict[str, _Reader] = _PHYSICAL | {
     "lens": _lens,
-    "lensModel": _one_of("exact", "thin", "pinhole"),
+    "lensModel": _one_of("exact", *IDEAL),
     "sensorFit": _one_of("horizontal", "vertical", "auto", "fill"),
     "apertureDiameter": _within("aperture_diameter"),
     "focusOn": lambda item: item.text(),
