@@ -27,6 +27,16 @@ double widest(double alpha) {
     return alpha <= 0.5 ? alpha / (1 - alpha) : (1 - alpha) / alpha;
 }
 
+/// Where a slope that is positive at `low` and not at `high` turns, to the last bit that is positive.
+template <class Slope>
+double last_rising(Slope slope, double low, double high) {
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (slope(middle) > 0 ? low : high) = middle;
+    }
+    return low;
+}
+
 using Matrix = std::array<double, 9>;
 
 Vec3d times(const Matrix& m, Vec3d v) {
@@ -174,11 +184,11 @@ void ProjectionModel::find_fold() {
     case Kind::omni: {
         // The ideal radius beyond which the distorted one falls; an omni model's ideal points end at its own.
         double last = kInfinity;
-        for (int i = 1; i <= 4 * kFoldSteps; ++i) {
+        double before = 0;
+        for (int i = 0; i <= 4 * kFoldSteps && last == kInfinity; ++i) {
             const double r = std::exp(-6 + 12.0 * i / (4 * kFoldSteps));   // 0.0025 to 400 focal lengths
-            if (radial_slope(r) > 0) continue;
-            last = std::exp(-6 + 12.0 * (i - 1) / (4 * kFoldSteps));
-            break;
+            if (!(radial_slope(r) > 0)) last = last_rising([&](double x) { return radial_slope(x); }, before, r);
+            before = r;
         }
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
