@@ -7,17 +7,17 @@ Brandt 2006.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
+import daguerre._core as _core
+
 from .model import Distortion, FloatArray, Radial
 from .monotone import SAMPLES, Monotone
-
-NEWTON = 30
-ANGLES = np.linspace(0, math.radians(89.9), SAMPLES)
 
 
 @dataclass(frozen=True)
@@ -45,91 +45,19 @@ class OpenCV(Distortion):
     tau_x: float = 0.0
     tau_y: float = 0.0
 
-    @cached_property
-    def _radial(self) -> Monotone:
-        return Monotone(lambda r: r * self._factor(r * r), np.tan(ANGLES))
-
-    def _factor(self, r2: FloatArray) -> FloatArray:
-        top = 1 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
-        bottom = 1 + r2 * (self.k4 + r2 * (self.k5 + r2 * self.k6))
-        return np.where(bottom > 0, top / bottom, np.nan)
-
-    def _formula(self, points: FloatArray) -> FloatArray:
-        x, y = points[:, 0], points[:, 1]
-        xx, yy, xy = x * x, y * y, x * y
-        r2 = xx + yy
-        factor = self._factor(r2)
-        u = x * factor + 2 * self.p1 * xy + self.p2 * (r2 + 2 * xx) + r2 * (self.s1 + r2 * self.s2)
-        v = y * factor + self.p1 * (r2 + 2 * yy) + 2 * self.p2 * xy + r2 * (self.s3 + r2 * self.s4)
-        return self._tilted(np.column_stack([u, v]))
-
-    def _tilted(self, points: FloatArray) -> FloatArray:
-        if self.tau_x == 0 and self.tau_y == 0:
-            return points
-        homogeneous = np.column_stack([points, np.ones(len(points))]) @ self._tilt.T
-        return np.asarray(homogeneous[:, :2] / homogeneous[:, 2:])
-
-    @cached_property
-    def _tilt(self) -> FloatArray:
-        """The plane of a sensor that is turned about x, then y, seen along the axis."""
-        cx, sx = math.cos(self.tau_x), math.sin(self.tau_x)
-        cy, sy = math.cos(self.tau_y), math.sin(self.tau_y)
-        about_x = np.array([[1, 0, 0], [0, cx, sx], [0, -sx, cx]])
-        about_y = np.array([[cy, 0, -sy], [0, 1, 0], [sy, 0, cy]])
-        turned = about_y @ about_x
-        along_z = [[turned[2, 2], 0, -turned[0, 2]], [0, turned[2, 2], -turned[1, 2]], [0, 0, 1]]
-        return np.asarray(np.array(along_z) @ turned)
-
     def _distorted(self, points: FloatArray) -> FloatArray:
-        with np.errstate(all="ignore"):
-            out = self._formula(points)
-            out[~self._upright(points)] = np.nan
-        return out
+        model = _model(dataclasses.astuple(self))
+        return np.asarray(model.project(np.column_stack([points, np.ones(len(points))])))
 
     def _ideal(self, points: FloatArray) -> FloatArray:
-        with np.errstate(all="ignore"):
-            x = self._start(points)
-            open_ = np.arange(len(points))
-            for _ in range(NEWTON):
-                miss = self._formula(x[open_]) - points[open_]
-                far = np.abs(miss).max(axis=1) > 1e-14  # False for what has been lost
-                open_, miss = open_[far], miss[far]
-                if not len(open_):
-                    break
-                x[open_] -= self._solved(x[open_], miss)
-            lost = ~(np.abs(self._formula(x) - points).max(axis=1) < 1e-9) | ~self._upright(x)
-        x[lost] = np.nan
-        return x
+        seen = _model(dataclasses.astuple(self)).unproject(np.ascontiguousarray(points))
+        return np.asarray(seen[:, :2] / seen[:, 2:])
 
-    def _start(self, points: FloatArray) -> FloatArray:
-        """The radial part undone: near enough for Newton's method."""
-        if self.tau_x or self.tau_y:
-            flat = np.column_stack([points, np.ones(len(points))]) @ np.linalg.inv(self._tilt).T
-            points = flat[:, :2] / flat[:, 2:]
-        radius = np.hypot(points[:, 0], points[:, 1])
-        limit = self._radial.value_limit
-        safe = np.clip(radius, 1e-9, limit)
-        return points * (self._radial.inverse(safe) / np.maximum(radius, 1e-9))[:, None]
 
-    def _jacobian(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        h = 1e-6
-        across, along = np.array([h, 0]), np.array([0, h])
-        by_x = (self._formula(points + across) - self._formula(points - across)) / (2 * h)
-        by_y = (self._formula(points + along) - self._formula(points - along)) / (2 * h)
-        return by_x, by_y
-
-    def _solved(self, points: FloatArray, miss: FloatArray) -> FloatArray:
-        a, b = self._jacobian(points)
-        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        dx = (miss[:, 0] * b[:, 1] - miss[:, 1] * b[:, 0]) / det
-        dy = (a[:, 0] * miss[:, 1] - a[:, 1] * miss[:, 0]) / det
-        return np.column_stack([dx, dy])
-
-    def _upright(self, points: FloatArray) -> np.ndarray:
-        """Within the radius at which the radial part turns back, and not mirrored."""
-        a, b = self._jacobian(points)
-        radius = np.hypot(points[:, 0], points[:, 1])
-        return (radius <= self._radial.limit) & (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0)
+@lru_cache(16)
+def _model(numbers: tuple[float, ...]) -> _core.ProjectionModel:
+    """The core's model: beside the value, so that the value travels without it."""
+    return _core.ProjectionModel("opencv", [float(k) for k in numbers])
 
 
 @dataclass(frozen=True)
