@@ -15,9 +15,8 @@ from daguerre.analysis.chief import chief_rays
 from daguerre.errors import InputError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
-from .model import FloatArray, Radial
+from .model import WIDEST, FloatArray, Radial
 from .monotone import SAMPLES, Monotone
-from .opencv import tangent
 
 HEIGHTS = 48
 NEAR, NEAR_HEIGHTS = 0.1, 10  # for the scale near the axis: up to a share of the reach
@@ -83,6 +82,11 @@ class LensDistortion(Radial):
 
     def _straight(self, radius: FloatArray) -> FloatArray:
         return self._to_ideal(radius)
+
+
+def tangent(angle: FloatArray) -> FloatArray:
+    """Radius at distance 1 of an angle off the axis; NaN for what lies beside or behind."""
+    return np.where(angle < WIDEST, np.tan(np.minimum(angle, 1.5706)), np.nan)
 
 
 def _angles(

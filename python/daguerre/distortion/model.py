@@ -8,6 +8,7 @@ direction. Where a model is not defined, or turns back upon itself, the answer i
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
@@ -18,6 +19,8 @@ from daguerre.checks import to_numbers
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]
+#: Angle off the axis, rad, from which on things lie beside the camera: no ideal picture shows them.
+WIDEST = math.radians(89.99)
 
 
 class Distortion(ABC):

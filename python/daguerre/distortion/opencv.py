@@ -7,21 +7,14 @@ Brandt 2006.
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from typing import ClassVar
 
-import numpy as np
-
-import daguerre._core as _core
-
-from .model import Distortion, FloatArray, Radial
-from .monotone import SAMPLES, Monotone
+from .projected import Projected
 
 
 @dataclass(frozen=True)
-class OpenCV(Distortion):
+class OpenCV(Projected):
     """The rational model with tangential terms, thin prism and tilt: all 14 numbers of OpenCV.
 
     x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
@@ -30,6 +23,7 @@ class OpenCV(Distortion):
     tau_x about x and by tau_y about y (rad).
     """
 
+    projection: ClassVar = "opencv"
     k1: float = 0.0
     k2: float = 0.0
     p1: float = 0.0
@@ -44,20 +38,6 @@ class OpenCV(Distortion):
     s4: float = 0.0
     tau_x: float = 0.0
     tau_y: float = 0.0
-
-    def _distorted(self, points: FloatArray) -> FloatArray:
-        model = _model(dataclasses.astuple(self))
-        return np.asarray(model.project(np.column_stack([points, np.ones(len(points))])))
-
-    def _ideal(self, points: FloatArray) -> FloatArray:
-        seen = _model(dataclasses.astuple(self)).unproject(np.ascontiguousarray(points))
-        return np.asarray(seen[:, :2] / seen[:, 2:])
-
-
-@lru_cache(16)
-def _model(numbers: tuple[float, ...]) -> _core.ProjectionModel:
-    """The core's model: beside the value, so that the value travels without it."""
-    return _core.ProjectionModel("opencv", [float(k) for k in numbers])
 
 
 @dataclass(frozen=True)
@@ -76,31 +56,11 @@ class BrownConrady(OpenCV):
 
 
 @dataclass(frozen=True)
-class OpenCVFisheye(Radial):
+class OpenCVFisheye(Projected):
     """Radius = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8), t the angle off the axis."""
 
+    projection: ClassVar = "kannala_brandt"
     k1: float = 0.0
     k2: float = 0.0
     k3: float = 0.0
     k4: float = 0.0
-
-    @cached_property
-    def _of_angle(self) -> Monotone:
-        return Monotone(self._radius, np.linspace(0, math.pi, SAMPLES))
-
-    def _radius(self, angle: FloatArray) -> FloatArray:
-        a2 = angle * angle
-        return np.asarray(
-            angle * (1 + a2 * (self.k1 + a2 * (self.k2 + a2 * (self.k3 + a2 * self.k4))))
-        )
-
-    def _bent(self, radius: FloatArray) -> FloatArray:
-        return self._of_angle(np.arctan(radius))
-
-    def _straight(self, radius: FloatArray) -> FloatArray:
-        return tangent(self._of_angle.inverse(radius))
-
-
-def tangent(angle: FloatArray) -> FloatArray:
-    """Radius at distance 1 of an angle off the axis; NaN for what lies beside or behind."""
-    return np.where(angle < math.radians(89.99), np.tan(np.minimum(angle, 1.5706)), np.nan)

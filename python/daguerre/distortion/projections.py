@@ -8,56 +8,41 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from .model import FloatArray, Radial
 from .monotone import SAMPLES, Monotone
-from .opencv import tangent
+from .projected import Projected
 
 
 @dataclass(frozen=True)
-class Equidistant(Radial):
+class Equidistant(Projected):
     """Radius = theta: equal angles are equal lengths."""
 
-    def _bent(self, radius: FloatArray) -> FloatArray:
-        return np.asarray(np.arctan(radius))
-
-    def _straight(self, radius: FloatArray) -> FloatArray:
-        return tangent(radius)
+    projection: ClassVar = "equidistant"
 
 
 @dataclass(frozen=True)
-class Equisolid(Radial):
+class Equisolid(Projected):
     """Radius = 2 sin(theta / 2): equal solid angles are equal areas."""
 
-    def _bent(self, radius: FloatArray) -> FloatArray:
-        return np.asarray(2 * np.sin(0.5 * np.arctan(radius)))
-
-    def _straight(self, radius: FloatArray) -> FloatArray:
-        return tangent(2 * np.arcsin(_up_to_one(0.5 * radius)))
+    projection: ClassVar = "equisolid"
 
 
 @dataclass(frozen=True)
-class Stereographic(Radial):
+class Stereographic(Projected):
     """Radius = 2 tan(theta / 2): small shapes stay as they are."""
 
-    def _bent(self, radius: FloatArray) -> FloatArray:
-        return np.asarray(2 * np.tan(0.5 * np.arctan(radius)))
-
-    def _straight(self, radius: FloatArray) -> FloatArray:
-        return tangent(2 * np.arctan(0.5 * radius))
+    projection: ClassVar = "stereographic"
 
 
 @dataclass(frozen=True)
-class Orthographic(Radial):
+class Orthographic(Projected):
     """Radius = sin(theta): the half sphere seen from far away."""
 
-    def _bent(self, radius: FloatArray) -> FloatArray:
-        return np.asarray(np.sin(np.arctan(radius)))
-
-    def _straight(self, radius: FloatArray) -> FloatArray:
-        return tangent(np.arcsin(_up_to_one(radius)))
+    projection: ClassVar = "orthographic"
 
 
 @dataclass(frozen=True)
@@ -85,7 +70,3 @@ class Division(Radial):
 
     def _straight(self, radius: FloatArray) -> FloatArray:
         return self._to_ideal(radius)
-
-
-def _up_to_one(value: FloatArray) -> FloatArray:
-    return np.where(value <= 1, value, np.nan)
