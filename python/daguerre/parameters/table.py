@@ -73,6 +73,26 @@ class Table:
                 values[name] = row.default
         return values
 
+    def filled(self, given: Mapping[str, Any], function: str) -> dict[str, Any]:
+        """All parameters by name: values of Python, checked, and defaults for the others.
+
+        Args:
+            given: Keywords of a function.
+            function: Its name, for messages.
+
+        Raises:
+            TypeError: There is no such parameter.
+            UsageError: None of its values.
+        """
+        for name in given:
+            if name not in self:
+                raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        values = self.defaults() | dict(given)
+        for row in self.rows:
+            if values[row.name] is not None or row.default is not None:
+                row.check_given(values[row.name], f"{function}: {row.name}")
+        return values
+
     def default(self, name: str) -> Any:
         """Default of a parameter; None: not given."""
         return self[name].default
