@@ -8,6 +8,8 @@ from daguerre.parameters.parameter import Parameter
 
 from .from_table import TableFlags
 
+#: Part of a help that shows what is done with the lens.
+BENCH = "On the bench"
 ZOOM = replace(CAMERA["zoom"], meaning="Focal length of a zoom, mm", panel=None)
 FOCUS = replace(
     CAMERA["focus_distance"],
