@@ -8,6 +8,13 @@ from typing import Any, get_type_hints
 
 import pytest
 
+from daguerre.analysis.calibrate import (
+    CalibrateKeywords,
+    SeenKeywords,
+    calibrate,
+    calibrate_all,
+)
+from daguerre.camera.parameters.bench import CALIBRATE, SEEN
 from daguerre.development import develop
 from daguerre.development.develop import Recipe
 from daguerre.development.parameters import DEVELOP, RecipeKeywords
@@ -16,18 +23,25 @@ from daguerre.parameters.keywords import takes
 from daguerre.parameters.table import Table
 
 #: Tables and keywords of functions.
-FACES: dict[Callable[..., Any], tuple[Table, Any]] = {develop: (DEVELOP, RecipeKeywords)}
+FACES: dict[Callable[..., Any], tuple[Table, Any]] = {
+    calibrate: (CALIBRATE, CalibrateKeywords),
+    calibrate_all: (SEEN, SeenKeywords),
+    develop: (DEVELOP, RecipeKeywords),
+}
+#: Keywords that must be given stand in the function itself.
+OWN = {"resolution"}
 
 
 @pytest.mark.parametrize("face", FACES)
 def test_signatures_and_docstrings_show_every_row(face: Callable[..., Any]) -> None:
     table, keywords = FACES[face]
-    assert set(keywords.__annotations__) == {row.name for row in table}
+    assert set(keywords.__annotations__) == {row.name for row in table} - OWN
     shown = inspect.signature(face).parameters
     assert not [p for p in shown.values() if p.kind is p.VAR_KEYWORD]
     for row in table:
-        assert shown[row.name].default == row.default
-        assert f"    {row.name}: " in (face.__doc__ or "")
+        default = inspect.Parameter.empty if row.required else row.default
+        assert shown[row.name].default == default
+        assert "Args: those of" in (face.__doc__ or "") or f"    {row.name}: " in face.__doc__
 
 
 def test_records_have_the_types_of_the_keywords() -> None:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from daguerre.camera.parameters import typed
 from daguerre.development.parameters import DEVELOP, FILE, SENSOR
 from daguerre.errors import InputError, UsageError
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
-from daguerre.units import plain_number
 
 from . import console
 from .flags.from_table import TableFlags, made_of
@@ -38,7 +38,7 @@ _SENSOR = Table(
     ),
     Parameter(
         "iso", "ISO of the sensor", flags=("--iso",), metavar="N",
-        parse=lambda flag, text: plain_number(flag, text, "a number such as 400"),
+        parse=typed.number("a number such as 400"),
         default_words="the frame's, else 100",
     ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypedDict
 
-from daguerre import units
+from daguerre.camera.parameters import typed
 from daguerre.color.spaces import COLOR_SPACES
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
@@ -38,7 +38,7 @@ DEVELOP = Table(
     Parameter(
         "exposure", "Exposure compensation, EV: on the sensor with --sensor, else in development",
         "EV", 0.0, low=-64, high=64,
-        parse=lambda flag, text: units.plain_number(flag, text, "an exposure in EV such as -0.5"),
+        parse=typed.number("an exposure in EV such as -0.5"),
         flags=("--ev",), metavar="EV", panel=LOOK, in_python="Exposure compensation, EV.",
     ),
     Parameter(
@@ -68,7 +68,7 @@ DEVELOP = Table(
     ),
     Parameter(
         "grain", "Diameter of the film's grains, um", "um", 0.0, low=0, high=1000,
-        parse=lambda flag, text: units.plain_number(flag, text, "a diameter in um such as 2"),
+        parse=typed.number("a diameter in um such as 2"),
         flags=("--grain",), metavar="UM", panel=LOOK, tells_default=True,
         in_python="Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` "
         "in the metadata, or a raw picture.",

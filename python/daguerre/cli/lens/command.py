@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from daguerre.camera.parameters.bench import F_STOP, FOCUS, ZOOM, focus_by
 from daguerre.cli.console import note
 from daguerre.cli.flags.from_table import made_of
 from daguerre.cli.flags.groups import option, with_flags
-from daguerre.cli.flags.setting import BENCH, F_STOP, FOCUS, ZOOM, BenchFlags, focus_by
+from daguerre.cli.flags.setting import BENCH, BenchFlags
 from daguerre.errors import InputError
 from daguerre.parameters.table import Table
 from daguerre.units import TYPED_D_LINE_NM
