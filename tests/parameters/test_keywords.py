@@ -21,12 +21,16 @@ from daguerre.development.parameters import DEVELOP, RecipeKeywords
 from daguerre.errors import UsageError
 from daguerre.parameters.keywords import takes
 from daguerre.parameters.table import Table
+from daguerre.polynomial import fit, from_lens
+from daguerre.polynomial.parameters import EXPANSION, FIT, ExpansionKeywords, FitKeywords
 
 #: Tables and keywords of functions.
 FACES: dict[Callable[..., Any], tuple[Table, Any]] = {
     calibrate: (CALIBRATE, CalibrateKeywords),
     calibrate_all: (SEEN, SeenKeywords),
     develop: (DEVELOP, RecipeKeywords),
+    fit: (FIT, FitKeywords),
+    from_lens: (EXPANSION, ExpansionKeywords),
 }
 #: Keywords that must be given stand in the function itself.
 OWN = {"resolution"}
