@@ -23,6 +23,8 @@ from daguerre.parameters.keywords import takes
 from daguerre.parameters.table import Table
 from daguerre.polynomial import fit, from_lens
 from daguerre.polynomial.parameters import EXPANSION, FIT, ExpansionKeywords, FitKeywords
+from daguerre.scene.mesh import MESH, MeshKeywords
+from daguerre.scene.scene import Scene
 
 #: Tables and keywords of functions.
 FACES: dict[Callable[..., Any], tuple[Table, Any]] = {
@@ -31,6 +33,7 @@ FACES: dict[Callable[..., Any], tuple[Table, Any]] = {
     develop: (DEVELOP, RecipeKeywords),
     fit: (FIT, FitKeywords),
     from_lens: (EXPANSION, ExpansionKeywords),
+    Scene.add_mesh: (MESH, MeshKeywords),
 }
 #: Keywords that must be given stand in the function itself.
 OWN = {"resolution"}
