@@ -27,56 +27,43 @@ WORTH_TELLING = 20.0
 SEGMENTS = (1, 2, 4)
 
 _BLADES = ("blades", "blade_rotation", "blade_curvature")
+# fmt: off
 _FIT = (
     replace(CAMERA["degree"], meaning="Degree of the exported polynomials, odd, 1 to 13"),
     replace(
-        CAMERA["sensor_size"],
-        meaning="Size of the film for --export and --flare, mm",
-        flags=("--sensor",),
-        metavar="WxH|" + "|".join(SENSORS),
-        tells_default=False,
+        CAMERA["sensor_size"], meaning="Size of the film for --export and --flare, mm",
+        flags=("--sensor",), metavar="WxH|" + "|".join(SENSORS), tells_default=False,
         default_words="the lens's format",
     ),
     replace(
-        CAMERA["blades"],
-        meaning="Blades of the exported lens's iris; 0 is round",
+        CAMERA["blades"], meaning="Blades of the exported lens's iris; 0 is round",
         tells_default=True,
     ),
     replace(
-        CAMERA["blade_rotation"],
-        meaning="Rotation of the exported lens's iris blades, degrees",
+        CAMERA["blade_rotation"], meaning="Rotation of the exported lens's iris blades, degrees",
         tells_default=True,
     ),
     replace(
-        CAMERA["blade_curvature"],
-        meaning="Curvature of its iris blades, -1 to 1; 1 is round",
+        CAMERA["blade_curvature"], meaning="Curvature of its iris blades, -1 to 1; 1 is round",
         tells_default=True,
     ),
 )
 _FILES = Table(
     Parameter(
-        "plot",
-        "Data sheet of one page; with --psf its pictures. Extra `plot`",
-        kind="file",
-        flags=("--plot", "-o"),
-        metavar="FILE.svg|png|pdf",
+        "plot", "Data sheet of one page; with --psf its pictures. Extra `plot`", kind="file",
+        flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
-        "drawing",
-        "Section with rays of three fields; .png, .pdf: extra `plot`",
-        kind="file",
-        flags=("--drawing",),
-        metavar="FILE.svg|png|pdf",
+        "drawing", "Section with rays of three fields; .png, .pdf: extra `plot`", kind="file",
+        flags=("--drawing",), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
-        "export",
-        "The lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy, data",
-        kind="file",
-        flags=("--export",),
-        metavar="FILE.osl|c|glsl|py|json",
+        "export", "The lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy, data",
+        kind="file", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
     ),
     _FIT,
 )
+# fmt: on
 
 
 @made_of(_FILES, panel="Files written")

@@ -38,22 +38,15 @@ def _surfaces(flag: str, text: str) -> tuple[int, int]:
     return int(first), int(second)
 
 
+# fmt: off
 _FLARE = Table(
     Parameter(
-        "angle",
-        "Ghosts of light from this angle (deg), brightest first; --drawing draws one, --plot all "
-        "on the film",
-        flags=("--flare",),
-        metavar="ANGLE",
-        parse=_angle,
+        "angle", "Ghosts of light from this angle (deg), brightest first; --drawing draws one, "
+        "--plot all on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
     ),
     Parameter(
-        "ghost",
-        "Surfaces of the ghost that --drawing shows",
-        flags=("--ghost",),
-        metavar="I,J",
-        parse=_surfaces,
-        default_words="the brightest",
+        "ghost", "Surfaces of the ghost that --drawing shows", default_words="the brightest",
+        flags=("--ghost",), metavar="I,J", parse=_surfaces,
     ),
     replace(
         CAMERA["cover_glass"],
@@ -64,6 +57,7 @@ _FLARE = Table(
         meaning="Reflectance of the sensor, 0 to 1, for --flare",
     ),
 )
+# fmt: on
 
 
 @made_of(_FLARE, panel=BENCH)

@@ -32,21 +32,18 @@ def _point(flag: str, text: str) -> tuple[float, bool, float]:
     return value, is_angle, metres
 
 
+# fmt: off
 _PSF = Table(
     Parameter(
-        "psf",
-        "Point spread function: image height (mm) or angle (deg), distance (m) or inf",
-        flags=("--psf",),
-        metavar="FIELD,DISTANCE",
-        parse=_point,
+        "psf", "Point spread function: image height (mm) or angle (deg), distance (m) or inf",
+        flags=("--psf",), metavar="FIELD,DISTANCE", parse=_point,
     ),
     Parameter(
-        "through_focus",
-        "Show the PSF on nine films around the focus",
-        kind="flag",
+        "through_focus", "Show the PSF on nine films around the focus", kind="flag",
         flags=("--through-focus",),
     ),
 )
+# fmt: on
 
 
 @made_of(_PSF, panel=BENCH)
