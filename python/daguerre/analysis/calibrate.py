@@ -5,16 +5,18 @@ from __future__ import annotations
 import contextlib
 import math
 from dataclasses import dataclass
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.parameters.bench import CALIBRATE, SEEN
 from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.lenses import Lens, load
-from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.lenses.setting import By, LensSetting
+from daguerre.parameters.keywords import takes
 
 from .bench import Bench, FloatArray, on_bench
 from .chief import ChiefRays, chief_rays
@@ -34,9 +36,30 @@ PARAMETERS = {"opencv": 5}
 COUNTS = {"opencv": (4, 5, 8, 12)}
 ACROSS = 41  # chief rays across the picture
 LEAST = 50  # chief rays that a fit needs
-WAVELENGTHS_NM = 300, 2500  # beyond, formulas of glasses are no glasses
 NOTHING = 1e-13  # what is left of parameters that symmetry forbids
 NEAR = 0.25  # of the picture's half, for the first guess of the focal length
+
+
+class _PictureKeywords(TypedDict, total=False):
+    sensor_size: tuple[float, float]
+    f_stop: float | None
+    focus_distance: float
+    focal_length: float | None
+    focus_by: By
+    shift: tuple[float, float]
+
+
+class SeenKeywords(_PictureKeywords, total=False):
+    """Keywords of ``calibrate_all``."""
+
+    wavelength_nm: float
+
+
+class CalibrateKeywords(_PictureKeywords, total=False):
+    """Keywords of ``calibrate``."""
+
+    terms: int | None
+    wavelength_nm: float
 
 
 @dataclass(frozen=True)
@@ -77,19 +100,13 @@ class ProjectionFit:
         return float(np.hypot(*self.residuals.T).max())
 
 
+@takes(CALIBRATE, CalibrateKeywords)
 def calibrate(
     lens: Lens | str,
     model: str = "opencv",
     *,
     resolution: tuple[int, int],
-    sensor_size: tuple[float, float] = (36.0, 24.0),
-    f_stop: float | None = None,
-    focus_distance: float = math.inf,
-    focal_length: float | None = None,
-    focus_by: By = "paraxial",
-    shift: tuple[float, float] = (0.0, 0.0),
-    terms: int | None = None,
-    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+    **keywords: Unpack[CalibrateKeywords],
 ) -> ProjectionFit:
     """Fits a projection to a lens: least squares of pixels, evenly over the picture.
 
@@ -97,38 +114,21 @@ def calibrate(
         lens: A lens, its name in the library, or a file.
         model: One of ``MODELS``, but for panoramas; ``fisheye`` is OpenCV's, kannala_brandt.
         resolution: Width and height of the picture, px.
-        sensor_size: mm; the picture's width is the sensor's, its pixels are square.
-        f_stop: Wide open if None; it matters to where the film stands.
-        focus_distance: m from the entrance pupil; may be infinite.
-        focal_length: Focal length of a zoom, mm.
-        focus_by: paraxial or best; see ``Camera``.
-        shift: Shift of the sensor, mm; see ``Camera``.
-        terms: How many parameters of the model are fitted, from the first; None: 5 of ``opencv``,
-            all of others.
-        wavelength_nm: nm.
+        {keywords}
 
     Raises:
         UsageError: No such model, or numbers that are no picture's.
         InputError: The lens sees what the model cannot show, or nothing.
     """
+    asked = CALIBRATE.filled({"resolution": resolution, **keywords}, "calibrate")
     model = OTHER_NAMES.get(model, model)
-    count = _count(model, terms)
-    picture = _Picture(resolution, sensor_size, shift, wavelength_nm)
-    seen = _see(lens, picture, LensSetting(f_stop, focus_distance, focal_length, focus_by))
-    return seen.fitted(model, count)
+    count = _count(model, asked.pop("terms"))
+    return _see(lens, asked).fitted(model, count)
 
 
+@takes(SEEN, SeenKeywords)
 def calibrate_all(
-    lens: Lens | str,
-    *,
-    resolution: tuple[int, int],
-    sensor_size: tuple[float, float] = (36.0, 24.0),
-    f_stop: float | None = None,
-    focus_distance: float = math.inf,
-    focal_length: float | None = None,
-    focus_by: By = "paraxial",
-    shift: tuple[float, float] = (0.0, 0.0),
-    wavelength_nm: float = DESIGN_WAVELENGTH_NM,
+    lens: Lens | str, *, resolution: tuple[int, int], **keywords: Unpack[SeenKeywords]
 ) -> list[ProjectionFit]:
     """Fits every model that can show what the lens sees, the best (by RMS) first.
 
@@ -138,8 +138,8 @@ def calibrate_all(
         UsageError: Numbers that are no picture's.
         InputError: The lens sees nothing.
     """
-    picture = _Picture(resolution, sensor_size, shift, wavelength_nm)
-    seen = _see(lens, picture, LensSetting(f_stop, focus_distance, focal_length, focus_by))
+    asked = {"resolution": resolution, **keywords}
+    seen = _see(lens, SEEN.filled(asked, "calibrate_all", "calibrate"))
     found = []
     for model in MODELS:
         for count in COUNTS.get(model, (len(MODELS[model]),)) if model not in UNFIT else ():
@@ -170,9 +170,6 @@ class _Picture:
             whole(int(side) if side == int(side) else side, where, 2, 65536)
         for side in numbers(self.sensor_mm, "calibrate: sensor_size", 2, "width and height, mm"):
             number(side, "calibrate: sensor_size", 0, 1e5, above=0)
-        for side in numbers(self.shift_mm, "calibrate: shift", 2, "right and up, mm"):
-            number(side, "calibrate: shift", -1e5, 1e5)
-        number(self.wavelength_nm, "calibrate: wavelength_nm", *WAVELENGTHS_NM)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -214,7 +211,11 @@ class _Seen:
         )
 
 
-def _see(lens: Lens | str, picture: _Picture, setting: LensSetting) -> _Seen:
+def _see(lens: Lens | str, asked: dict[str, Any]) -> _Seen:
+    """Traces chief rays, with the parameters in ``SEEN``."""
+    picture = _Picture(*(asked[n] for n in ("resolution", "sensor_size", "shift", "wavelength_nm")))
+    names = ("f_stop", "focus_distance", "focal_length", "focus_by")
+    setting = LensSetting(*(asked[name] for name in names))
     item = load(lens)
     bench = on_bench(item, setting)
     size, pitch, axis = picture.size, picture.pitch_mm, picture.axis

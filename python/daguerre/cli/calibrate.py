@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from daguerre import units as q
 from daguerre.camera.parameters import CAMERA
+from daguerre.camera.parameters.bench import MODEL, SEEN, TERMS
 from daguerre.errors import UsageError, suggest
 from daguerre.parameters.table import Table
+from daguerre.units import TYPED_D_LINE_NM
 
 from . import console
 from .drawings import check_drawing
-from .flags.from_table import made_of
+from .flags.from_table import TableFlags, made_of
 from .flags.groups import option, with_flags
 from .flags.map import MapFlags
-from .flags.setting import F_STOP, FOCUS, ZOOM, BenchFlags, focus_by
 
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit
@@ -27,66 +27,20 @@ FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
 PICTURES = (".png", ".svg", ".pdf")
 ALL = "all"
 WELL = 1.0  # px: what is worse is told
+USUAL = {"resolution": (1920, 1280), "wavelength_nm": TYPED_D_LINE_NM}
 
 
-_SETTING = Table(
-    *(FOCUS, F_STOP, ZOOM),
-    focus_by("Focus where rays near the axis meet, or where the spot is smallest", "paraxial"),
-)
+@made_of(Table(MODEL, TERMS, SEEN))
+class CalibrateFlags(TableFlags):
+    """Parameters of ``dg.calibrate``."""
 
 
-@made_of(_SETTING)
-class SettingFlags(BenchFlags):
-    """How the lens is set; without flags wide open and focused at infinity."""
-
-    def options(self) -> dict[str, Any]:
-        """Those of ``dg.calibrate`` that were given."""
-        given = self.given()
-        if "zoom" in given:
-            given["focal_length"] = given.pop("zoom")
-        return given
-
-
-@with_flags(map_flags=MapFlags, setting=SettingFlags)
+@with_flags(map_flags=MapFlags, flags=CalibrateFlags)
 def calibrate(
     name: Annotated[str, typer.Argument(metavar="LENS", help="Library name or lens file.")],
     *,
     map_flags: MapFlags,
-    model: Annotated[
-        str,
-        option(
-            "--model",
-            metavar="NAME",
-            help="Projection model: opencv, fisheye, double_sphere, ...; all compares them "
-            "[opencv].",
-        ),
-    ] = "opencv",
-    terms: Annotated[
-        int | None,
-        option(
-            "--terms",
-            metavar="N",
-            help="Number of parameters to fit [5 of opencv, else all; for Kalibr 4].",
-        ),
-    ] = None,
-    setting: SettingFlags,
-    sensor: Annotated[
-        str,
-        option(
-            "--sensor", metavar="WxH|" + "|".join(q.SENSORS), help="Size of the sensor, mm [36x24]."
-        ),
-    ] = "36x24",
-    resolution: Annotated[
-        str, option("--res", metavar="WxH", help="Size of the picture, px [1920x1280].")
-    ] = "1920x1280",
-    shift: Annotated[
-        str | None,
-        option("--shift", metavar="X,Y", help="Shift of the film, right and up, mm [0,0]."),
-    ] = None,
-    wavelength: Annotated[
-        float,
-        option("--wavelength", metavar="NM", help=f"Wavelength, nm [{q.TYPED_D_LINE_NM}]."),
-    ] = q.TYPED_D_LINE_NM,
+    flags: CalibrateFlags,
     output: Annotated[
         Path | None, option("-o", "--output", metavar="FILE", help="Calibration file to write.")
     ] = None,
@@ -113,7 +67,8 @@ def calibrate(
     from daguerre.analysis.calibrate import calibrate_all
     from daguerre.files.atomic import check_writable
 
-    setting.check()
+    use: dict[str, Any] = USUAL | flags.given()
+    CAMERA["focus_by"].check(use.get("focus_by"), "--focus-by")
     _check_files(output, file_format, residuals)
     map_flags.check()
     for path in map_flags.files:
@@ -121,21 +76,15 @@ def calibrate(
     written = [path.resolve() for path in (output, residuals, *map_flags.files) if path]
     if len(set(written)) < len(written):
         raise UsageError("-o: the same file is named twice")
-    if terms is None and file_format == "kalibr" and model == "opencv":
-        terms = 4  # Kalibr's radtan has no k3
-    use: dict[str, Any] = {
-        "resolution": q.resolution("--res", resolution, (1920, 1280)),
-        "sensor_size": q.sensor_mm("--sensor", sensor),
-        "shift": CAMERA["shift"].default if shift is None else CAMERA["shift"].from_text(shift),
-        **setting.options(),
-        "wavelength_nm": wavelength,
-    }
+    model = use.pop("model", MODEL.default)
     if model == ALL:
-        if terms is not None or output or residuals or map_flags.files:
+        if "terms" in use or output or residuals or map_flags.files:
             raise UsageError("--model all compares models: wanted no file and no --terms with it")
         _compare(calibrate_all(name, **use), json=json)
         return 0
-    made = fit(name, model, terms=terms, **use)
+    if file_format == "kalibr" and model == "opencv":
+        use.setdefault("terms", 4)  # Kalibr's radtan has no k3
+    made = fit(name, model, **use)
     if made.largest > WELL:
         console.note(
             f"note: {made.projection.model} is up to {made.largest:.3g} px off; --model all says "

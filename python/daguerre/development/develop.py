@@ -5,23 +5,24 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import Development, develop_picture
 from daguerre._core import sharpen as sharpen_picture
-from daguerre.checks import number, whole
 from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.frame.picture import Picture
+from daguerre.parameters.keywords import takes
 
 from .channels import XY, Channels, Demosaic, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
+from .parameters import DEVELOP, RecipeKeywords
 from .white import white_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from daguerre.frame.raw import Raw
 
 FloatArray = NDArray[np.float64]
-HIGHLIGHTS = ("clip", "blend", "reconstruct")
 #: Standard deviation of the Gaussian of the unsharp mask, px: as far as demosaicing softens.
 SHARPEN_RADIUS = 0.8
 
@@ -38,30 +38,23 @@ SHARPEN_RADIUS = 0.8
 class Recipe:
     """How to develop; see ``develop``."""
 
-    wb: Any = None
-    look: str = "neutral"
-    exposure: float = 0.0
-    colour_space: str = "srgb"
-    sharpen: float = 0.0
-    grain: float = 0.0
-    highlights: str = "clip"
-    seed: int = 0
-    colour_noise: int = 0
+    wb: Any
+    look: str
+    exposure: float
+    colour_space: str
+    sharpen: float
+    grain: float
+    highlights: str
+    demosaic: str
+    colour_noise: int
+    seed: int
+
+    @classmethod
+    def of(cls, **keywords: Unpack[RecipeKeywords]) -> Recipe:
+        """The recipe of these keywords, checked; defaults for the others."""
+        return cls(**DEVELOP.filled(keywords, "develop"))
 
     def __post_init__(self) -> None:
-        for name, value, known in (
-            ("colour_space", self.colour_space, tuple(spaces.COLOR_SPACES)),
-            ("highlights", self.highlights, HIGHLIGHTS),
-        ):
-            if value not in known:
-                raise UsageError(
-                    f"develop: {name}: wanted one of {', '.join(known)}, got {value!r}"
-                    f"{suggest(str(value), known)}"
-                )
-        number(self.exposure, "develop: exposure", -64, 64)
-        number(self.sharpen, "develop: sharpen", 0, 10)
-        whole(self.colour_noise, "develop: colour_noise", 0, 20)
-        number(self.grain, "develop: grain", 0, 1000)
         if not self.view:
             look_of(self.look)
         elif self.colour_space == "rec2020":
@@ -72,21 +65,14 @@ class Recipe:
         """The OCIO view that makes the picture, or nothing."""
         return self.look.removeprefix("ocio:") if self.look.startswith("ocio:") else ""
 
+    @property
+    def demosaicing(self) -> Demosaic:
+        """How a mosaic gets three channels."""
+        return Demosaic(self.demosaic, self.colour_noise, clip=self.highlights == "clip")
 
-def develop(
-    source: Raw | Frame | Channels,
-    *,
-    wb: Any = None,
-    look: str = "neutral",
-    exposure: float = 0.0,
-    colour_space: str = "srgb",
-    sharpen: float = 0.0,
-    grain: float = 0.0,
-    highlights: str = "clip",
-    demosaic: str = "good",
-    colour_noise: int = 0,
-    seed: int = 0,
-) -> Picture:
+
+@takes(DEVELOP, RecipeKeywords)
+def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) -> Picture:
     """Develops a raw picture, or a frame: without noise then, like one from a perfect sensor.
 
     Brightness is that of ISO 12232: a luminance exposure of 10 / ISO lux s is middle grey, 118 of
@@ -95,39 +81,23 @@ def develop(
 
     Args:
         source: Raw picture, frame, or channels.
-        wb: The white that becomes neutral: "as-shot" (None), "auto", a temperature in K, or a
-            chromaticity (x, y).
-        look: ``neutral``: light in proportion, up to white; ``standard``, ``film``, ``filmic``:
-            curves with shoulder and toe; ``ocio:VIEW``: a view of OpenColorIO's ACES configuration
-            (extra ``color``).
-        exposure: Exposure compensation, EV.
-        colour_space: ``srgb``, ``p3`` or ``rec2020``.
-        sharpen: Strength of an unsharp mask: 0 none, 0.5 about that of a camera.
-        grain: Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` in
-            the metadata, or a raw picture.
-        highlights: ``clip``: saturated is white; ``blend``: highlights keep their differences
-            and lose colour; ``reconstruct``: a saturated channel is guessed from the others.
-        demosaic: ``best``, ``good`` or ``fast``, or a method of LibRaw by name.
-        colour_noise: Passes of a median filter over the differences of colours, for the coloured
-            specks of high ISO; 0 none, 2 to 5 are usual. For raw pictures with colours.
-        seed: Seed of the grain.
+        {keywords}
 
     Raises:
         UsageError: A wrong parameter.
         InputError: A frame without exposure metadata; the message names the field.
     """
-    recipe = Recipe(
-        wb, look, exposure, colour_space, sharpen, grain, highlights, seed, colour_noise
-    )
-    source = _channels(source, Demosaic(demosaic, colour_noise, clip=highlights == "clip"))
+    recipe = Recipe.of(**keywords)
+    source = _channels(source, recipe.demosaicing)
     white = white_of(source, recipe.wb)
     if recipe.view or recipe.grain:
         pixels = _by_light(source, white, recipe)
     else:
         pixels = _shown(source, white, recipe)
     if recipe.sharpen:
-        sharpen_picture(pixels, _luminance(colour_space).tolist(), recipe.sharpen, SHARPEN_RADIUS)
-    return Picture(pixels, colour_space, dict(source.metadata))
+        luminance = _luminance(recipe.colour_space).tolist()
+        sharpen_picture(pixels, luminance, recipe.sharpen, SHARPEN_RADIUS)
+    return Picture(pixels, recipe.colour_space, dict(source.metadata))
 
 
 def _channels(source: Any, demosaic: Demosaic) -> Channels:

@@ -23,7 +23,7 @@ class OpenCV(Projected):
     tau_x about x and by tau_y about y (rad).
     """
 
-    projection: ClassVar = "opencv"
+    _projection: ClassVar = "opencv"
     k1: float = 0.0
     k2: float = 0.0
     p1: float = 0.0
@@ -59,7 +59,7 @@ class BrownConrady(OpenCV):
 class OpenCVFisheye(Projected):
     """Radius = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8), t the angle off the axis."""
 
-    projection: ClassVar = "kannala_brandt"
+    _projection: ClassVar = "kannala_brandt"
     k1: float = 0.0
     k2: float = 0.0
     k3: float = 0.0

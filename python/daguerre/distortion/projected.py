@@ -18,7 +18,7 @@ from .model import WIDEST, Distortion, FloatArray
 class Projected(Distortion):
     """A model of the core; its fields are the model's parameters, in their order."""
 
-    projection: ClassVar[str]
+    _projection: ClassVar[str]
 
     def _distorted(self, points: FloatArray) -> FloatArray:
         return np.asarray(_model(self).project(np.column_stack([points, np.ones(len(points))])))
@@ -33,4 +33,4 @@ class Projected(Distortion):
 def _model(of: Projected) -> _core.ProjectionModel:
     """The core's model: beside the value, so that the value travels without it."""
     numbers = [float(getattr(of, field.name)) for field in fields(of)]
-    return _core.ProjectionModel(of.projection, numbers)
+    return _core.ProjectionModel(of._projection, numbers)

@@ -21,28 +21,28 @@ from .projected import Projected
 class Equidistant(Projected):
     """Radius = theta: equal angles are equal lengths."""
 
-    projection: ClassVar = "equidistant"
+    _projection: ClassVar = "equidistant"
 
 
 @dataclass(frozen=True)
 class Equisolid(Projected):
     """Radius = 2 sin(theta / 2): equal solid angles are equal areas."""
 
-    projection: ClassVar = "equisolid"
+    _projection: ClassVar = "equisolid"
 
 
 @dataclass(frozen=True)
 class Stereographic(Projected):
     """Radius = 2 tan(theta / 2): small shapes stay as they are."""
 
-    projection: ClassVar = "stereographic"
+    _projection: ClassVar = "stereographic"
 
 
 @dataclass(frozen=True)
 class Orthographic(Projected):
     """Radius = sin(theta): the half sphere seen from far away."""
 
-    projection: ClassVar = "orthographic"
+    _projection: ClassVar = "orthographic"
 
 
 @dataclass(frozen=True)

@@ -199,15 +199,19 @@ class Parameter:
         Raises:
             UsageError: The message says where, what is wanted and what it got.
         """
-        if value is None and not self.required:
-            return
+        if value is not None or self.required:
+            self.check_given(value, where)
+
+    def check_given(self, value: Any, where: str) -> None:
+        """Refuses a value of Python that is none of its values, and None."""
         match self.kind:
             case "number":
                 self._check_number(value, where)
-            case "whole":
+            case "whole" if self.high < math.inf:
                 self._check_whole(value, where)
             case "choice" if value not in self.choices:
                 words = (" or " if len(self.choices) == 2 else ", ").join(self.choices)
+                words = self.wants or words
                 raise UsageError(
                     f"{where}: wanted {words}, got {value!r}{suggest(str(value), self.choices)}"
                 )

@@ -73,6 +73,27 @@ class Table:
                 values[name] = row.default
         return values
 
+    def filled(self, given: Mapping[str, Any], function: str, where: str = "") -> dict[str, Any]:
+        """All parameters by name: values of Python, checked, and defaults for the others.
+
+        Args:
+            given: Keywords of a function.
+            function: Its name.
+            where: Owner of the parameters, for messages; default: the function.
+
+        Raises:
+            TypeError: There is no such parameter.
+            UsageError: None of its values.
+        """
+        for name in given:
+            if name not in self:
+                raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        values = self.defaults() | dict(given)
+        for row in self.rows:
+            if values[row.name] is not None or row.default is not None:
+                row.check_given(values[row.name], f"{where or function}: {row.name}")
+        return values
+
     def default(self, name: str) -> Any:
         """Default of a parameter; None: not given."""
         return self[name].default

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from .parameter import Parameter, fill
 from .table import Table
@@ -16,7 +16,9 @@ PAGE = "cli.md"
 HEAD = "| flag | unit | meaning |\n|---|---|---|"
 
 
-def attributes(table: Table, names: Iterable[str], indent: str = " " * 8) -> str:
+def attributes(
+    table: Table | Mapping[str, Parameter], names: Iterable[str], indent: str = " " * 8
+) -> str:
     """The attributes of a docstring, in the order of ``names``."""
     return "".join(_attribute(table[name], indent) for name in names)
 

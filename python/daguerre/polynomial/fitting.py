@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Unpack
 
 import daguerre._core as _core
 from daguerre import lenses
-from daguerre.checks import number, numbers, short, whole
+from daguerre.checks import numbers, short, whole
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import focused
-from daguerre.lenses.setting import By, LensSetting
+from daguerre.lenses.setting import LensSetting
+from daguerre.parameters.keywords import takes
 
 from .lens_fit import LensFit
+from .parameters import FIT, FitKeywords
 from .setting import FitSetting, iris_shape
 
 #: The highest degree that is fitted.
@@ -21,34 +24,14 @@ MAX_DEGREE = 13
 FILM_MARGIN = 1.02
 
 
-def fit(
-    lens: lenses.Lens | str,
-    degree: int = 7,
-    *,
-    f_stop: float | None = None,
-    focus: float = math.inf,
-    focus_by: By = "paraxial",
-    film: tuple[float, float] | None = None,
-    zoom: float | None = None,
-    segments: int = 1,
-    terms: int | None = None,
-    iris: _core.Iris | None = None,
-) -> LensFit:
+@takes(FIT, FitKeywords)
+def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords]) -> LensFit:
     """Fits polynomials from film rays to scene rays.
 
     Args:
         lens: A lens, or the name of one in the library or of a file.
         degree: Degree of the polynomials in the ray's four coordinates: odd, 1 to 13.
-        f_stop: F-stop; default: wide open.
-        focus: Distance from the entrance pupil, m.
-        focus_by: The paraxial image, or the smallest spot on the axis: ``best``.
-        film: Width and height, mm; the format of the lens's file if None, else 36 x 24 mm.
-        zoom: Focal length of a zoom, mm; as it stands if None.
-        segments: Parts of the film by radius, each with polynomials of its own; the worst part is
-            halved until there are as many. Lenses without axial symmetry have one.
-        terms: Coefficients of each vector, chosen one by one (orthogonal matching pursuit); the
-            complete basis if None.
-        iris: Shape of the iris; round if None.
+        {keywords}
 
     Returns:
         The fit, with its error on rays that it was not fitted to.
@@ -62,21 +45,18 @@ def fit(
     whole(degree, "lens fit: degree", 1, MAX_DEGREE)
     if degree % 2 == 0:
         raise UsageError(f"lens fit: degree: wanted an odd number from 1 to 13, got {degree}")
-    whole(segments, "lens fit: segments", 1, 16)
-    if terms is not None:
-        whole(terms, "lens fit: terms", 1, 10000)
-    width, height = _film(lens, film)
-    if f_stop is not None:
-        number(f_stop, "lens fit: f_stop", 0.1, 1000)
-    sharp = focused(lens, LensSetting(f_stop, focus, zoom, focus_by))
+    asked = FIT.filled(keywords, "fit", "lens fit")
+    f_stop, focus, iris = asked["f_stop"], asked["focus"], asked["iris"]
+    width, height = _film(lens, asked["film"])
+    sharp = focused(lens, LensSetting(f_stop, focus, asked["zoom"], asked["focus_by"]))
     request = _core.LensFitRequest(
         film_z_mm=sharp.film_z_mm,
         film_radius_mm=FILM_MARGIN * math.hypot(width, height) / 2,
         film_half_mm=(FILM_MARGIN * width / 2, FILM_MARGIN * height / 2),
         iris=iris or _core.Iris(),
         degree=degree,
-        segments=segments,
-        terms=terms or 0,
+        segments=asked["segments"],
+        terms=asked["terms"] or 0,
     )
     with reported(lens.source):
         core = _core.LensFit.fit(sharp.lens.prescription, f_stop or 0.0, request)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,25 +14,19 @@ from daguerre.checks import doubles, number, short, whole
 from daguerre.errors import InputError, UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import Focused
-from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens, check_wavelength
+from daguerre.lenses.lens import Lens, check_wavelength
 from daguerre.lenses.library import load
+from daguerre.parameters.keywords import takes
 
-from .elements import AXIS, checked
+from .elements import checked
+from .parameters import EXPANSION, ExpansionKeywords
 from .system import System
 from .wavelengths import nodes_of
 
 
+@takes(EXPANSION, ExpansionKeywords)
 def from_lens(
-    lens: Lens | Focused | str | Path,
-    degree: int = 5,
-    *,
-    ghost: tuple[int, int] | None = None,
-    wavelength: ArrayLike = DESIGN_WAVELENGTH_NM,
-    reverse: bool = False,
-    to_iris: int | None = None,
-    object_z: float = 0.0,
-    film_z: float | None = None,
-    about: ArrayLike = AXIS,
+    lens: Lens | Focused | str | Path, degree: int = 5, **keywords: Unpack[ExpansionKeywords]
 ) -> System:
     """Expands a lens as a polynomial, from a plane before it to the film.
 
@@ -40,16 +35,7 @@ def from_lens(
     Args:
         lens: Lens, alone or focused; or its name or file.
         degree: 1 to 15.
-        ghost: Two surfaces at which light is reflected on its way, in either order: at the one
-            farther along first.
-        wavelength: One, or nodes between which the coefficients follow the wavelength, nm, shape
-            () or (W,); see ``wavelength_nodes``.
-        reverse: From the film to the plane before the lens.
-        to_iris: End at the iris instead: at the crossing of this number, 0 for the first, -1 for
-            the last (a ghost may cross it three times). Points are those of the iris's own frame.
-        object_z: The plane before the lens, z in the lens frame, mm: 0 touches the first vertex.
-        film_z: The film, mm; not given: as the lens is focused, else its image plane.
-        about: Base ray, x, y and cosines on the plane where light starts, shape (4,).
+        {keywords}
 
     Returns:
         x and y are those of the lens frame on all planes, and both ways.
@@ -61,21 +47,23 @@ def from_lens(
     """
     own_film = lens.film_z_mm if isinstance(lens, Focused) else None
     prescribed = load(lens.lens if isinstance(lens, Focused) else lens)
+    asked = EXPANSION.filled(keywords, "from_lens")
+    object_z, film_z, to_iris = (asked[name] for name in ("object_z", "film_z", "to_iris"))
+    ghost, reverse = asked["ghost"], asked["reverse"]
     if film_z is None:
         film_z = prescribed.image_z if own_film is None else own_film
-    ray = _ray(about)
-    planes = number(object_z, "from_lens: object_z"), number(film_z, "from_lens: film_z")
+    ray = _ray(asked["about"])
+    planes = float(object_z), number(film_z, "from_lens: film_z")
     if reverse:
         planes = planes[::-1]
     pair = None if ghost is None else _pair(ghost)
-    if to_iris is not None:
-        to_iris = whole(to_iris, "from_lens: to_iris", -1, 2)
-    nm = nodes_of(wavelength)
+    crossing = None if to_iris is None else int(to_iris)
+    nm = nodes_of(asked["wavelength"])
     check_wavelength(np.asarray(nm))
     degree = checked(degree)
     with reported(prescribed.source):
         core = _core.polynomial_of_lens(
-            prescribed.prescription, degree, nm, planes, pair, not reverse, to_iris, ray
+            prescribed.prescription, degree, nm, planes, pair, not reverse, crossing, ray
         )
     pupil = None
     if not reverse and ghost is None:

@@ -1,24 +1,11 @@
-"""Keywords of a render for type checkers, and the signatures that people see.
-
-``Session``, ``render`` and their kin take every parameter of ``RenderSettings`` as a keyword. Type
-checkers read :class:`SettingsKeywords`; ``help()`` and ``inspect.signature`` get theirs from the
-table, so that a parameter is written down once.
-"""
+"""Keywords of a render for type checkers: every parameter of ``RenderSettings``."""
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Iterable
-from typing import Any, TypedDict, TypeVar
-
-from daguerre.parameters.table import Table
-from daguerre.parameters.texts import attributes
+from typing import Any, TypedDict
 
 from .diffraction import Diffraction
-from .parameters import ROWS, TABLE
 from .settings import OverscanLike, RenderSettings
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class ViewKeywords(TypedDict, total=False):
@@ -65,41 +52,6 @@ class RigKeywords(ViewKeywords, total=False):
 
     spp: int | None
     noise: float | None
-
-
-def takes(keywords: Any, *, without: Iterable[str] = ()) -> Callable[[Function], Function]:
-    """Shows the keywords of a TypedDict in the signature and the docstring of a function.
-
-    They stand where the function has ``**keywords``, and where its docstring says ``{keywords}``.
-    """
-    types = {n: kind for n, kind in keywords.__annotations__.items() if n not in without}
-
-    def decorate(function: Function) -> Function:
-        signature = inspect.signature(function)
-        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-        made = [
-            inspect.Parameter(
-                name, inspect.Parameter.KEYWORD_ONLY,
-                default=TABLE[name].default, annotation=kind.__forward_arg__,
-            )
-            for name, kind in types.items()
-        ]  # fmt: skip
-        shown = signature.replace(parameters=[*own, *made])
-        function.__signature__ = shown  # type: ignore[attr-defined]
-        function.__doc__ = with_rows(function.__doc__, types)
-        return function
-
-    return decorate
-
-
-def with_rows(text: str | None, names: Iterable[str]) -> str | None:
-    """A docstring with a line of each parameter in the place of ``{keywords}``."""
-    if text is None or "{keywords}" not in text:
-        return text
-    line = next(line for line in text.splitlines() if "{keywords}" in line)
-    indent = line[: len(line) - len(line.lstrip())]
-    rows = attributes(Table(ROWS), names, indent).rstrip("\n")
-    return text.replace(line, rows)
 
 
 def settings_of(given: RenderSettings | None, keywords: Any) -> RenderSettings:

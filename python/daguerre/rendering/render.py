@@ -9,11 +9,13 @@ from typing import Unpack
 
 from daguerre.camera.camera import Camera
 from daguerre.frame.frame import Frame
+from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene
 
 from .checkpoint import Checkpoint
-from .keywords import RenderKeywords, settings_of, takes
+from .keywords import RenderKeywords, settings_of
 from .loop import Loop
+from .parameters import TABLE
 from .progress import Status
 from .reporter import Control, Reporter
 from .rounds import rounds
@@ -25,7 +27,7 @@ from .settings import RenderSettings
 Progress = Callable[[Status], bool | None]
 
 
-@takes(RenderKeywords)
+@takes(TABLE, RenderKeywords)
 def render(
     scene: Scene,
     camera: Camera | str | None = None,
@@ -97,7 +99,7 @@ def _draw(session: Session, checkpoint: Checkpoint, watch: _Watch) -> None:
         checkpoint.save(session)
 
 
-@takes(RenderKeywords)
+@takes(TABLE, RenderKeywords)
 def iter_render(
     scene: Scene,
     camera: Camera | str | None = None,

@@ -12,18 +12,20 @@ from daguerre.camera.camera import Camera
 from daguerre.checks import number, short
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
+from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
 from daguerre.setup.straight import straight_focal_px
 
-from .keywords import RigKeywords, settings_of, takes
+from .keywords import RigKeywords, settings_of
+from .parameters import TABLE
 from .render import finish
 from .session import Session
 from .settings import RenderSettings
 
 
-@takes(RigKeywords)
+@takes(TABLE, RigKeywords)
 def render_rig(
     scene: Scene,
     cameras: Mapping[str, Camera | str],

@@ -15,6 +15,7 @@ from daguerre.camera.camera import Camera
 from daguerre.checks import MAX_SAMPLES, whole
 from daguerre.errors import InputError, MismatchError, UsageError, core_errors
 from daguerre.frame.frame import Frame
+from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 
@@ -22,8 +23,9 @@ from . import identity
 from .adaptive import Round
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
-from .keywords import SettingsKeywords, settings_of, takes
+from .keywords import SettingsKeywords, settings_of
 from .light_plan import new_film, plan_light
+from .parameters import TABLE
 from .picture_truth import ground_truth, truth_planes
 from .prepare import prepare
 from .ranges import join_ranges
@@ -33,7 +35,7 @@ from .truth import GroundTruth, Moment
 Progress = Callable[[float], bool]
 
 
-@takes(SettingsKeywords)
+@takes(TABLE, SettingsKeywords)
 class Session:
     """A render in progress: scene, camera and a film of exact sums.
 

@@ -9,31 +9,25 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import (
-    array,
-    as_readonly,
-    freeze_in_place,
-    matrix,
-    optional_array,
-    short,
-    to_numbers,
-)
+from daguerre.checks import as_readonly, matrix, short, to_numbers
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
+from daguerre.parameters.keywords import takes
 
 from .illuminance import scale_for
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
+from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
 from .parts import Environment, Instance, Mesh, Texture, vertices_of
 from .point_cache import PointCache, steps_of
@@ -171,19 +165,14 @@ class Scene(Value):
         self.materials.append(shown)
         return len(self.materials) - 1
 
+    @takes(MESH, MeshKeywords)
     def add_mesh(
         self,
         positions: ArrayLike | Dynamic,
         indices: ArrayLike,
         normals: ArrayLike | Dynamic | None = None,
         uv: ArrayLike | None = None,
-        *,
-        uv1: ArrayLike | None = None,
-        tangents: ArrayLike | None = None,
-        colors: ArrayLike | None = None,
-        steps: Dynamic | tuple[ArrayLike, ArrayLike] | None = None,
-        motion: Dynamic | None = None,
-        name: str = "",
+        **keywords: Unpack[MeshKeywords],
     ) -> int:
         """Adds triangles; returns the index of the mesh.
 
@@ -193,54 +182,21 @@ class Scene(Value):
             normals: Unit normals, shape (N, 3); default: flat shading. Normals that do not change
                 belong to ``positions`` at the scene's time, and turn with the surface.
             uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
-            uv1: Texture coordinates, set 1.
-            tangents: Tangents, shape (N, 4), w is the handedness.
-            colors: Vertex colors, linear RGB or RGBA, shape (N, 3) or (N, 4).
-            steps: Vertices over time: (times (S,) in s, positions (S, N, 3)) or a value over time;
-                ``positions`` then are those to which the normals belong.
-            motion: All vertices over time, as :class:`daguerre.scene.motion.Vertices`; the arrays
-                then are those of the scene's time.
-            name: For messages.
+            {keywords}
 
         Raises:
             InputError: A shape, an index or a number is wrong; the message names it.
         """
+        given = MESH.filled(keywords, "Scene.add_mesh")
+        name, steps, motion = (given.pop(key) for key in ("name", "steps", "motion"))
         where = f"mesh {name or len(self.meshes)!r}"
         moving = _dynamic(positions) if steps is None else steps_of(steps, where)
         moving_normals = _dynamic(normals)
-        points = array(self._now(positions), where, "positions", 3)
-        triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
-        if triangles.dtype.kind not in "iu":
-            raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
-        if triangles.size % 3:
-            raise InputError(f"{where}: indices: wanted a multiple of 3, got {triangles.size}")
-        if triangles.ndim != 1 and triangles.shape[1:] != (3,):
-            raise InputError(f"{where}: indices: wanted shape (M, 3), got {triangles.shape}")
-        triangles = triangles.reshape(-1, 3)
-        if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
-            raise InputError(
-                f"{where}: indices: wanted 0 .. {len(points) - 1}, "
-                f"got {triangles.min()} .. {triangles.max()}"
-            )
-        if colors is not None and np.shape(colors)[-1:] == (3,):
-            rgb = array(colors, where, "colors", 3)
-            colors = freeze_in_place(
-                np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
-            )
-        n = len(points)
-        mesh = Mesh(
-            points,
-            as_readonly(triangles, np.uint32),
-            optional_array(self._now(normals), where, "normals", 3, n),
-            optional_array(uv, where, "uv", 2, n),
-            optional_array(uv1, where, "uv1", 2, n),
-            optional_array(tangents, where, "tangents", 4, n),
-            optional_array(colors, where, "colors", 4, n),
-            name,
-        )
+        given |= {"normals": self._now(normals), "uv": uv}
+        mesh = mesh_of(self._now(positions), indices, given, where, name)
         if moving is not None or moving_normals is not None:
             rest = vertices_of(mesh)
-            path = moving or Composite(points)
+            path = moving or Composite(mesh.positions)
             cache = PointCache(path, moving_normals, rest, mesh.indices, where)
             mesh, motion = replace(mesh, **vars(cache.at(self.time))), cache
         if motion is not None:

@@ -1,4 +1,4 @@
-"""``daguerre lens NAME --export FILE``: the lens as polynomials, in another program's language."""
+"""Files of ``daguerre lens``; with ``--export`` the lens in another program's language."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli.drawings import check_drawing
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.errors import UsageError
+from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 from daguerre.units import SENSORS
 
@@ -24,60 +26,73 @@ WORTH_TELLING = 20.0
 #: Parts of the film by radius: as few as keep the error below that.
 SEGMENTS = (1, 2, 4)
 
-
-FILES = "Files written"
 _BLADES = ("blades", "blade_rotation", "blade_curvature")
-_EXPORT = Table(
+# fmt: off
+_FIT = (
     replace(CAMERA["degree"], meaning="Degree of the exported polynomials, odd, 1 to 13"),
     replace(
-        CAMERA["sensor_size"],
-        meaning="Size of the film for --export and --flare, mm",
-        flags=("--sensor",),
-        metavar="WxH|" + "|".join(SENSORS),
-        tells_default=False,
+        CAMERA["sensor_size"], meaning="Size of the film for --export and --flare, mm",
+        flags=("--sensor",), metavar="WxH|" + "|".join(SENSORS), tells_default=False,
         default_words="the lens's format",
     ),
     replace(
-        CAMERA["blades"],
-        meaning="Blades of the exported lens's iris; 0 is round",
+        CAMERA["blades"], meaning="Blades of the exported lens's iris; 0 is round",
         tells_default=True,
     ),
     replace(
-        CAMERA["blade_rotation"],
-        meaning="Rotation of the exported lens's iris blades, degrees",
+        CAMERA["blade_rotation"], meaning="Rotation of the exported lens's iris blades, degrees",
         tells_default=True,
     ),
     replace(
-        CAMERA["blade_curvature"],
-        meaning="Curvature of its iris blades, -1 to 1; 1 is round",
+        CAMERA["blade_curvature"], meaning="Curvature of its iris blades, -1 to 1; 1 is round",
         tells_default=True,
     ),
 )
+_FILES = Table(
+    Parameter(
+        "plot", "Data sheet of one page; with --psf its pictures. Extra `plot`", kind="file",
+        flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
+    ),
+    Parameter(
+        "drawing", "Section with rays of three fields; .png, .pdf: extra `plot`", kind="file",
+        flags=("--drawing",), metavar="FILE.svg|png|pdf",
+    ),
+    Parameter(
+        "export", "The lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy, data",
+        kind="file", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
+    ),
+    _FIT,
+)
+# fmt: on
 
 
-@made_of(_EXPORT, panel=FILES)
-class Export(TableFlags):
-    """The flags that say what is fitted; None: not given."""
+@made_of(_FILES, panel="Files written")
+class FileFlags(TableFlags):
+    """The files, and what is fitted for ``--export``; None: not given."""
 
-    sensor: str | None
+    plot: Path | None
+    drawing: Path | None
+    export: Path | None
 
-    def check(self, path: Path | None, *, film_serves: bool) -> None:
+    def check(self, *, film_serves: bool) -> None:
         """Says what is wrong before anything is computed.
 
         Args:
-            path: File of ``--export``, if any.
             film_serves: Whether ``--sensor`` serves another flag.
         """
-        if path is None:
-            for name, given in vars(self).items():
-                if given is not None and not (film_serves and name == "sensor"):
-                    raise UsageError(f"--{name.replace('_', '-')}: needs --export FILE")
+        check_drawing("--plot", self.plot)
+        check_drawing("--drawing", self.drawing, plotted=False)
+        if self.export is None:
+            for row in _FIT:
+                served = film_serves and row.name == "sensor_size"
+                if getattr(self, row.field) is not None and not served:
+                    raise UsageError(f"{row.flag}: needs --export FILE")
             return
         from daguerre.export import check_suffix
         from daguerre.files.atomic import check_writable
 
-        check_suffix(path, "--export")
-        check_writable(path)
+        check_suffix(self.export, "--export")
+        check_writable(self.export)
 
     def write(self, item: Lens, path: Path, setting: dict[str, Any]) -> None:
         """Fits the lens and writes the file; one line to stderr says how good the fit is."""

@@ -3,110 +3,105 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli.flags.from_table import TableFlags, made_of
+from daguerre.cli.flags.setting import BENCH
 from daguerre.errors import UsageError
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
 from daguerre.units import angle_deg, numbers
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench
     from daguerre.analysis.ghosts import Ghost, Ghosts
 
+    from .export import FileFlags
+
 SHOWN = 20
 
 
-class Flare:
-    """The flags of ``--flare``, checked.
-
-    Raises:
-        UsageError: A value that is none, or a flag that wants ``--flare``.
-    """
-
-    def __init__(
-        self,
-        angle: str | None,
-        ghost: str | None,
-        cover_glass: str | None,
-        reflectance: float | None,
-        film: tuple[float, float] | None,
-    ) -> None:
-        self.wanted = angle is not None
-        others = {
-            "--ghost": ghost,
-            "--cover-glass": cover_glass,
-            "--sensor-reflectance": reflectance,
-        }
-        for flag, value in others.items():
-            if value is not None and angle is None:
-                raise UsageError(f"{flag}: needs --flare ANGLE")
-        if angle is None:
-            return
-        self.angle = angle_deg("--flare", angle)
-        if not (math.isfinite(self.angle) and abs(self.angle) < 90):
-            raise UsageError(f"--flare: wanted an angle below 90 degrees, got {angle!r}")
-        self.film = film
-        self.ghost = None if ghost is None else _surfaces(ghost)
-        self.glass = None
-        if cover_glass is not None:
-            self.glass = CAMERA["cover_glass"].from_text(cover_glass)
-        self.reflectance = reflectance or 0.0
-
-    def show(self, bench: Bench, *, plot: Path | None, drawing: Path | None, json: bool) -> int:
-        """Prints and draws."""
-        from daguerre.camera.camera import Camera
-        from daguerre.setup.body import stack_of
-
-        body = Camera(cover_glass=self.glass, sensor_reflectance=self.reflectance)
-        files = {"plot": plot, "drawing": drawing}
-        stack = stack_of(body)
-        return show_flare(
-            bench, self.angle, film=self.film, stack=stack, which=self.ghost, json=json, **files
-        )
+def _angle(flag: str, text: str) -> float:
+    angle = angle_deg(flag, text)
+    if not (math.isfinite(angle) and abs(angle) < 90):
+        raise UsageError(f"{flag}: wanted an angle below 90 degrees, got {text!r}")
+    return angle
 
 
-def _surfaces(text: str) -> tuple[int, int]:
-    first, second = numbers("--ghost", text, 2, "4,1")
+def _surfaces(flag: str, text: str) -> tuple[int, int]:
+    first, second = numbers(flag, text, 2, "4,1")
     if first != int(first) or second != int(second):
-        raise UsageError(f"--ghost: wanted two indices of surfaces such as 4,1, got {text!r}")
+        raise UsageError(f"{flag}: wanted two indices of surfaces such as 4,1, got {text!r}")
     return int(first), int(second)
 
 
-def show_flare(
-    bench: Bench,
-    angle_deg: float,
-    *,
-    film: tuple[float, float] | None,
-    stack: Any,
-    which: tuple[int, int] | None,
-    plot: Path | None,
-    drawing: Path | None,
-    json: bool,
-) -> int:
-    """Prints the ghosts, and draws what is asked for.
+# fmt: off
+_FLARE = Table(
+    Parameter(
+        "angle", "Ghosts of light from this angle (deg), brightest first; --drawing draws one, "
+        "--plot all on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
+    ),
+    Parameter(
+        "ghost", "Surfaces of the ghost that --drawing shows", default_words="the brightest",
+        flags=("--ghost",), metavar="I,J", parse=_surfaces,
+    ),
+    replace(
+        CAMERA["cover_glass"],
+        meaning="Cover glass before the sensor, for --flare: thickness, gap (mm), index",
+    ),
+    replace(
+        CAMERA["sensor_reflectance"],
+        meaning="Reflectance of the sensor, 0 to 1, for --flare",
+    ),
+)
+# fmt: on
 
-    Args:
-        bench: The lens.
-        angle_deg: Angle of the source from the axis.
-        film: Width and height of the film, mm; None: those of the lens's image circle.
-        stack: Reflecting parts of the body.
-        which: The ghost that is drawn; None: the brightest.
-        plot: File of all ghosts on the film, or None.
-        drawing: File of the section with rays of one ghost, or None.
-        json: One JSON object rather than lines.
-    """
-    from daguerre.analysis.ghosts import Ghosts
 
-    ghosts = Ghosts(bench, angle_deg, film=film, stack=stack)
-    if drawing is not None:
-        _write_drawing(ghosts, ghosts.find(which) if which else _brightest(ghosts), drawing)
-    if plot is not None:
-        from daguerre.files.atomic import write_bytes
-        from daguerre.plots.ghost_plot import plot_ghosts
+@made_of(_FLARE, panel=BENCH)
+class FlareFlags(TableFlags):
+    """The flags of ``--flare``."""
 
-        write_bytes(plot, plot_ghosts(ghosts, plot.suffix.lower()[1:]))
-    if json:
+    flare: str | None
+
+    @property
+    def wanted(self) -> bool:
+        """Whether ghosts are asked for."""
+        return self.flare is not None
+
+    def check(self) -> None:
+        """Refuses a value that is none, or a flag that wants ``--flare``.
+
+        Raises:
+            UsageError: The message names the flag.
+        """
+        for row in _FLARE:
+            if getattr(self, row.field) is not None and not self.wanted:
+                raise UsageError(f"{row.flag}: needs --flare ANGLE")
+        self.given()
+
+    def show(self, bench: Bench, files: FileFlags, *, json: bool) -> int:
+        """Prints the ghosts, and draws what is asked for."""
+        from daguerre.analysis.ghosts import Ghosts
+        from daguerre.camera.camera import Camera
+        from daguerre.setup.body import stack_of
+
+        given = self.given()
+        angle, which = given.pop("angle"), given.pop("ghost", None)
+        ghosts = Ghosts(bench, angle, film=files.film, stack=stack_of(Camera(**given)))
+        if files.drawing is not None:
+            shown = ghosts.find(which) if which else _brightest(ghosts)
+            _write_drawing(ghosts, shown, files.drawing)
+        if files.plot is not None:
+            from daguerre.files.atomic import write_bytes
+            from daguerre.plots.ghost_plot import plot_ghosts
+
+            write_bytes(files.plot, plot_ghosts(ghosts, files.plot.suffix.lower()[1:]))
+        if not json:
+            _print(ghosts)
+            return 0
         from json import dumps
 
         facts = {
@@ -114,13 +109,11 @@ def show_flare(
             "f_stop": bench.f_stop,
             "film_z": bench.film_z,
             "film_mm": list(ghosts.film),
-            "angle_deg": angle_deg,
+            "angle_deg": angle,
             "ghosts": ghosts.facts(),
         }
         print(dumps(facts, indent=2))
-    else:
-        _print(ghosts)
-    return 0
+        return 0
 
 
 def _brightest(ghosts: Ghosts) -> Ghost:

@@ -6,7 +6,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daguerre.errors import InputError
+from daguerre.cli.flags.from_table import TableFlags, made_of
+from daguerre.cli.flags.setting import BENCH
+from daguerre.errors import InputError, UsageError
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+from daguerre.units import angle_deg, distance_m, length_mm
 
 if TYPE_CHECKING:
     from daguerre.analysis import Bench, Pencil
@@ -14,53 +19,84 @@ if TYPE_CHECKING:
 STEPS = 9  # films of a series through focus
 
 
-def show_psf(
-    bench: Bench,
-    field: float,
-    is_angle: bool,
-    distance_m: float,
-    *,
-    plot: Path | None,
-    json: bool,
-    through_focus: bool,
-) -> int:
-    """Prints figures of the PSF, and writes its pictures.
+def _point(flag: str, text: str) -> tuple[float, bool, float]:
+    """Field, whether it is an angle (deg), distance (m)."""
+    field, comma, distance = text.partition(",")
+    if not comma:
+        raise UsageError(f"{flag}: wanted FIELD,DISTANCE such as 10mm,inf or 15deg,3, got {text!r}")
+    is_angle = field.strip().lower().endswith(("deg", "rad"))
+    value = angle_deg(flag, field) if is_angle else length_mm(flag, field)
+    metres = distance_m(flag, distance)
+    if not metres > 0 or not math.isfinite(value):
+        raise UsageError(f"{flag}: wanted a field and a distance above 0, got {text!r}")
+    return value, is_angle, metres
 
-    Args:
-        bench: The lens.
-        field: Image height, mm, or angle, degrees.
-        is_angle: Which of them it is.
-        distance_m: Distance of the point, m, or inf.
-        plot: File of the pictures, or None.
-        json: One JSON object rather than lines.
-        through_focus: On a series of films.
-    """
-    from daguerre.analysis.through_focus import series
 
-    light = _light(bench, field, is_angle, distance_m)
-    made = series(light, STEPS if through_focus else 1)
-    if plot is not None:
-        from daguerre.files.atomic import write_bytes
-        from daguerre.plots.through_focus import pictures
+# fmt: off
+_PSF = Table(
+    Parameter(
+        "psf", "Point spread function: image height (mm) or angle (deg), distance (m) or inf",
+        flags=("--psf",), metavar="FIELD,DISTANCE", parse=_point,
+    ),
+    Parameter(
+        "through_focus", "Show the PSF on nine films around the focus", kind="flag",
+        flags=("--through-focus",),
+    ),
+)
+# fmt: on
 
-        write_bytes(plot, pictures(light, made, plot.suffix.lower()[1:]))
-    rows = [step.facts for step in made]
-    where = {
-        "name": bench.lens.name,
-        "f_stop": bench.f_stop,
-        "film_z": bench.film_z,
-        "focus_m": None if math.isinf(bench.focus_mm) else bench.focus_mm / 1e3,
-        "height_mm": float(light.film[1]),
-        "angle_deg": math.degrees(light.angle),
-        "distance_m": None if math.isinf(distance_m) else distance_m,
-    }
-    if json:
-        from json import dumps
 
-        print(dumps({**where, "films": rows}, indent=2))
-    else:
-        _print(where, rows)
-    return 0
+@made_of(_PSF, panel=BENCH)
+class PsfFlags(TableFlags):
+    """The flags of ``--psf``."""
+
+    psf: str | None
+
+    def check(self) -> None:
+        """Refuses a value that is none, and ``--through-focus`` alone.
+
+        Raises:
+            UsageError: The message names the flag.
+        """
+        given = self.given()
+        if given.get("through_focus") and "psf" not in given:
+            raise UsageError("--through-focus: needs --psf FIELD,DISTANCE")
+
+    @property
+    def wanted(self) -> bool:
+        """Whether a PSF is asked for."""
+        return self.psf is not None
+
+    def show(self, bench: Bench, *, plot: Path | None, json: bool) -> int:
+        """Prints figures of the PSF, and writes its pictures."""
+        from daguerre.analysis.through_focus import series
+
+        given = self.given()
+        field, is_angle, distance_m = given["psf"]
+        light = _light(bench, field, is_angle, distance_m)
+        made = series(light, STEPS if given.get("through_focus") else 1)
+        if plot is not None:
+            from daguerre.files.atomic import write_bytes
+            from daguerre.plots.through_focus import pictures
+
+            write_bytes(plot, pictures(light, made, plot.suffix.lower()[1:]))
+        rows = [step.facts for step in made]
+        where = {
+            "name": bench.lens.name,
+            "f_stop": bench.f_stop,
+            "film_z": bench.film_z,
+            "focus_m": None if math.isinf(bench.focus_mm) else bench.focus_mm / 1e3,
+            "height_mm": float(light.film[1]),
+            "angle_deg": math.degrees(light.angle),
+            "distance_m": None if math.isinf(distance_m) else distance_m,
+        }
+        if json:
+            from json import dumps
+
+            print(dumps({**where, "films": rows}, indent=2))
+        else:
+            _print(where, rows)
+        return 0
 
 
 def _light(bench: Bench, field: float, is_angle: bool, distance_m: float) -> Pencil:

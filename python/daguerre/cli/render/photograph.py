@@ -41,7 +41,7 @@ def photograph_of(
     if look is not None:
         from daguerre.development.develop import Recipe
 
-        Recipe(look=look)
+        Recipe.of(look=look)
     return Photograph(
         asked,
         sensor,

@@ -1,0 +1,95 @@
+"""Parameters of development: one row each, from which keywords, checks and flags come."""
+
+from __future__ import annotations
+
+from typing import Any, TypedDict
+
+from daguerre.camera.parameters import typed
+from daguerre.color.spaces import COLOR_SPACES
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+
+HIGHLIGHTS = ("clip", "blend", "reconstruct")
+SENSOR, LOOK, FILE = "The sensor (of IN.exr)", "The picture", "The file"
+
+
+class RecipeKeywords(TypedDict, total=False):
+    """Keywords of ``develop``."""
+
+    wb: Any
+    look: str
+    exposure: float
+    colour_space: str
+    sharpen: float
+    grain: float
+    highlights: str
+    demosaic: str
+    colour_noise: int
+    seed: int
+
+
+# fmt: off
+DEVELOP = Table(
+    Parameter(
+        "seed", "Seed of noise and grain", default=0, kind="whole",
+        flags=("--seed",), metavar="N", panel=SENSOR, tells_default=True,
+        in_python="Seed of the grain.",
+    ),
+    Parameter(
+        "exposure", "Exposure compensation, EV: on the sensor with --sensor, else in development",
+        "EV", 0.0, low=-64, high=64,
+        parse=typed.number("an exposure in EV such as -0.5"),
+        flags=("--ev",), metavar="EV", panel=LOOK, in_python="Exposure compensation, EV.",
+    ),
+    Parameter(
+        "wb", "White that becomes neutral", kind="value",
+        flags=("--wb",), metavar="as-shot|auto|K|X,Y", panel=LOOK, default_words="as-shot",
+        in_python='The white that becomes neutral: "as-shot" (None), "auto", a temperature in K, '
+        "or a chromaticity (x, y).",
+    ),
+    Parameter(
+        "look", "Tone curve [neutral]; OCIO: extra `color`", default="neutral", kind="text",
+        flags=("--look",), metavar="neutral|standard|film|filmic|ocio:VIEW", panel=LOOK,
+        in_python="``neutral``: light in proportion, up to white; ``standard``, ``film``, "
+        "``filmic``: curves with shoulder and toe; ``ocio:VIEW``: a view of OpenColorIO's ACES "
+        "configuration (extra ``color``).",
+    ),
+    Parameter(
+        "highlights", "Treatment of saturated channels", default="clip", kind="choice",
+        choices=HIGHLIGHTS, wants=f"one of {', '.join(HIGHLIGHTS)}",
+        flags=("--highlights",), panel=LOOK, tells_default=True,
+        in_python="``clip``: saturated is white; ``blend``: highlights keep their differences and "
+        "lose colour; ``reconstruct``: a saturated channel is guessed from the others.",
+    ),
+    Parameter(
+        "sharpen", "Strength of an unsharp mask", default=0.0, low=0, high=10,
+        flags=("--sharpen",), metavar="X", panel=LOOK, tells_default=True,
+        in_python="Strength of an unsharp mask: 0 none, 0.5 about that of a camera.",
+    ),
+    Parameter(
+        "grain", "Diameter of the film's grains, um", "um", 0.0, low=0, high=1000,
+        parse=typed.number("a diameter in um such as 2"),
+        flags=("--grain",), metavar="UM", panel=LOOK, tells_default=True,
+        in_python="Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` "
+        "in the metadata, or a raw picture.",
+    ),
+    Parameter(
+        "demosaic", "Demosaicing method, or one of LibRaw's by name", default="good", kind="text",
+        flags=("--demosaic",), metavar="best|good|fast", panel=LOOK, tells_default=True,
+        in_python="``best``, ``good`` or ``fast``, or a method of LibRaw by name.",
+    ),
+    Parameter(
+        "colour_noise", "Passes of a median filter over color differences, for raw pictures",
+        default=0, kind="whole", low=0, high=20,
+        flags=("--colour-noise",), metavar="N", panel=LOOK, tells_default=True,
+        in_python="Passes of a median filter over the differences of colours, for the coloured "
+        "specks of high ISO; 0 none, 2 to 5 are usual. For raw pictures with colours.",
+    ),
+    Parameter(
+        "colour_space", "Color space of the file", default="srgb", kind="choice",
+        choices=tuple(COLOR_SPACES), wants=f"one of {', '.join(COLOR_SPACES)}",
+        flags=("--colorspace",), panel=FILE, tells_default=True,
+        in_python="``srgb``, ``p3`` or ``rec2020``.",
+    ),
+)
+# fmt: on

@@ -1,0 +1,95 @@
+"""Meshes made of a user's arrays, each checked, and the keywords of ``Scene.add_mesh``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.checks import array, as_readonly, freeze_in_place, optional_array, to_numbers
+from daguerre.errors import InputError
+from daguerre.motion.values import Dynamic
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+
+from .parts import Mesh
+
+#: Numbers that each vertex has.
+COLUMNS = {"normals": 3, "uv": 2, "uv1": 2, "tangents": 4, "colors": 4}
+
+
+class MeshKeywords(TypedDict, total=False):
+    """Keywords of ``Scene.add_mesh``."""
+
+    uv1: ArrayLike | None
+    tangents: ArrayLike | None
+    colors: ArrayLike | None
+    steps: Dynamic | tuple[ArrayLike, ArrayLike] | None
+    motion: Dynamic | None
+    name: str
+
+
+# fmt: off
+MESH = Table(
+    Parameter("uv1", "Texture coordinates, set 1", kind="value"),
+    Parameter("tangents", "Tangents, shape (N, 4), w is the handedness", kind="value"),
+    Parameter(
+        "colors", "Vertex colors, linear RGB or RGBA, shape (N, 3) or (N, 4)", kind="value",
+    ),
+    Parameter(
+        "steps", "Vertices over time: (times (S,) in s, positions (S, N, 3)) or a value over time; "
+        "``positions`` then are those to which the normals belong", kind="value",
+    ),
+    Parameter(
+        "motion", "All vertices over time", kind="value",
+        in_python="All vertices over time, as :class:`daguerre.scene.motion.Vertices`; the arrays "
+        "then are those of the scene's time.",
+    ),
+    Parameter("name", "For messages", default="", kind="text"),
+)
+# fmt: on
+
+
+def mesh_of(
+    positions: Any, indices: ArrayLike, attributes: Mapping[str, Any], where: str, name: str
+) -> Mesh:
+    """The mesh of these arrays; ``attributes`` are those in ``COLUMNS``, or None.
+
+    Raises:
+        InputError: A shape, an index or a number is wrong; the message names it.
+    """
+    points = array(positions, where, "positions", 3)
+    triangles = as_readonly(_triangles(indices, where, len(points)), np.uint32)
+    given = {**attributes, "colors": _with_alpha(attributes["colors"], where)}
+    made = {
+        key: optional_array(given[key], where, key, columns, len(points))
+        for key, columns in COLUMNS.items()
+    }
+    return Mesh(points, triangles, **made, name=name)
+
+
+def _triangles(indices: ArrayLike, where: str, count: int) -> NDArray[Any]:
+    """Indices below the number of vertices, shape (M, 3)."""
+    triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
+    if triangles.dtype.kind not in "iu":
+        raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
+    if triangles.size % 3:
+        raise InputError(f"{where}: indices: wanted a multiple of 3, got {triangles.size}")
+    if triangles.ndim != 1 and triangles.shape[1:] != (3,):
+        raise InputError(f"{where}: indices: wanted shape (M, 3), got {triangles.shape}")
+    triangles = triangles.reshape(-1, 3)
+    if triangles.size and (triangles.min() < 0 or triangles.max() >= count):
+        raise InputError(
+            f"{where}: indices: wanted 0 .. {count - 1}, got {triangles.min()} .. {triangles.max()}"
+        )
+    return triangles
+
+
+def _with_alpha(colors: ArrayLike | None, where: str) -> ArrayLike | None:
+    """Colours without alpha are opaque; others stay as they are."""
+    if colors is None or np.shape(colors)[-1:] != (3,):
+        return colors
+    rgb = array(colors, where, "colors", 3)
+    return freeze_in_place(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))
