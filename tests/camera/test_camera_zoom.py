@@ -12,9 +12,9 @@ import pytest
 
 import daguerre as dg
 from daguerre import lenses
-from daguerre.analysis.camera_facts import camera_facts
 from daguerre.cli.info import camera_rows
 from daguerre.setup.camera import set_up
+from daguerre.setup.camera_facts import camera_facts
 from daguerre.setup.metadata import facts_of
 from tests.camera.test_lens_models import LENS
 from tests.support import scenes

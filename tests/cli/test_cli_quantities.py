@@ -8,9 +8,9 @@ from collections.abc import Callable
 import pytest
 
 from daguerre import units as q
-from daguerre.analysis import camera_facts as info
 from daguerre.camera.camera import Camera
 from daguerre.errors import UsageError
+from daguerre.setup import camera_facts as info
 
 GOOD: list[tuple[Callable[[str, str], object], str, object]] = [
     (q.length_mm, "50", 50.0),

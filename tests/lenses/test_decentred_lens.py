@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import _core, lenses
-from daguerre.analysis.camera_facts import camera_facts
 from daguerre.io.exr.write import attributes
 from daguerre.setup.camera import set_up
+from daguerre.setup.camera_facts import camera_facts
 from tests.camera.test_lens_models import LENS
 from tests.support import scenes
 from tests.support.statistical import batch_means, differences

@@ -12,6 +12,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 import typer
@@ -19,51 +20,52 @@ import typer
 from daguerre.errors import DaguerreError, suggest
 
 from . import console
-from .calibrate import calibrate
-from .chart import chart
-from .develop import develop
-from .info import info
-from .lens.command import lens
-from .lenses import lenses
-from .merge import merge
-from .post import post
-from .render.command import render
-from .sensor import sensor
-from .sensors import sensors
-from .stocks import stocks
-from .version import version
 
 INTERNAL = 70
 INTERRUPTED = 75
 
-app = typer.Typer(
-    name="daguerre",
-    help="Renders what a real camera would have recorded.",
-    add_completion=False,
-    no_args_is_help=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-commands = (
-    render,
-    merge,
-    post,
-    develop,
-    info,
-    lenses,
-    lens,
-    sensors,
-    sensor,
-    stocks,
-    chart,
-    calibrate,
-)
-for command in (*commands, version):
-    app.command(name=command.__name__)(command)
+#: Commands in the order of the help, with their modules, which are loaded when they are asked for.
+COMMANDS = {
+    "render": ".render.command",
+    "merge": ".merge",
+    "post": ".post",
+    "develop": ".develop",
+    "info": ".info",
+    "lenses": ".lenses",
+    "lens": ".lens.command",
+    "sensors": ".sensors",
+    "sensor": ".sensor",
+    "stocks": ".stocks",
+    "chart": ".chart",
+    "calibrate": ".calibrate",
+    "version": ".version",
+}
 
 
-@app.callback(invoke_without_command=True)
+def program(*names: str) -> typer.Typer:
+    """The program with some of its commands; default: all."""
+    app = typer.Typer(
+        name="daguerre",
+        help="Renders what a real camera would have recorded.",
+        add_completion=False,
+        no_args_is_help=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(_top)
+    for name in names or COMMANDS:
+        app.command(name=name)(getattr(import_module(COMMANDS[name], __name__), name))
+    return app
+
+
+def __getattr__(name: str) -> Any:
+    """The whole program as ``app``, for who reads its help."""
+    if name == "app":
+        return program()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 def _top(
     context: typer.Context,
     version: bool = typer.Option(False, "--version", help="Print the version."),
@@ -84,7 +86,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     console.argv = list(sys.argv[1:] if arguments is None else arguments)
     console.quiet, console.writer = False, None
     try:
-        code = _program()(args=console.argv, prog_name="daguerre", standalone_mode=False)
+        first = console.argv[0] if console.argv else ""
+        code = _command(first)(args=console.argv, prog_name="daguerre", standalone_mode=False)
         sys.stdout.flush()
         return int(code or 0)
     except DaguerreError as error:
@@ -102,9 +105,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 @cache
-def _program() -> Any:
-    """Reads the commands' signatures once, however often `main` runs in a process."""
-    return typer.main.get_command(app)
+def _command(first: str) -> Any:
+    """Makes the program, with one command alone if the first argument names it.
+
+    Signatures are read once, however often `main` runs in a process.
+    """
+    names = {"--version": ("version",)}.get(first, (first,) if first in COMMANDS else ())
+    return typer.main.get_command(program(*names))
 
 
 def _usage(error: Any) -> str:
@@ -112,7 +119,7 @@ def _usage(error: Any) -> str:
     text = str(error.format_message()).strip().rstrip(".")
     unknown = re.match(r"No such command '(.*)'$", text)
     if unknown:  # older releases of Typer suggest nothing
-        text += suggest(unknown[1], [str(c.name) for c in app.registered_commands])
+        text += suggest(unknown[1], COMMANDS)
     context = getattr(error, "ctx", None)
     where = context.command_path if context is not None else "daguerre"
     return f"{text[:1].lower()}{text[1:]} (see `{where} --help`)"

@@ -18,7 +18,7 @@ from .flags.shutter import ShutterFlags
 from .render.views import Cameras
 
 if TYPE_CHECKING:
-    from daguerre.analysis.camera_facts import Facts
+    from daguerre.setup.camera_facts import Facts
 
 
 @with_flags(
@@ -45,8 +45,8 @@ def info(
 
     Camera flags change the cameras that are shown, so that a lens or a stop can be tried.
     """
-    from daguerre.analysis import camera_facts as facts_of
     from daguerre.camera.camera import Camera
+    from daguerre.setup import camera_facts as facts_of
     from daguerre.setup.scene import build
 
     changes = camera_flags.changes() | shutter_flags.changes()

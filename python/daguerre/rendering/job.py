@@ -109,7 +109,7 @@ class Job:
 
     def open(self, picture: Picture) -> Session:
         """The session of a picture, checked and not drawn; warnings of a camera come once."""
-        from daguerre.analysis.camera_facts import camera_warnings, lit
+        from daguerre.setup.camera_facts import camera_warnings, lit
 
         from .session import Session
 

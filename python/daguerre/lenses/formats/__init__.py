@@ -4,23 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from daguerre.lenses.errors import LensError
 
-from . import optical_bench, pbrt, seq, zmx
-from .text import decoded
-
 Parse = Callable[[str, str], tuple[dict[str, Any], list[str]]]
 
-#: Formats by suffix, if the text does not say otherwise.
-SUFFIXES: dict[str, Parse | None] = {
-    ".zmx": zmx.parse,
-    ".seq": seq.parse,
-    ".txt": None,
-    ".dat": None,
-}
+#: Formats by suffix, if the text does not say otherwise. Their modules load when a file needs them.
+SUFFIXES = {".zmx": "zmx", ".seq": "seq", ".txt": None, ".dat": None}
 _ZEMAX = re.compile(r"^\s*SURF\s+\d", re.MULTILINE)
 _BENCH = re.compile(r"^\s*\[lens data\]", re.MULTILINE | re.IGNORECASE)
 _CODE_V = re.compile(r"^\s*(S[O0]\s+[-+.\d]|RDM\b|LEN\b)", re.MULTILINE | re.IGNORECASE)
@@ -37,23 +30,28 @@ def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
     Raises:
         LensError: With the line, and the surface where there is one.
     """
+    from .text import decoded
+
     text = decoded(data, str(path))
-    return _parser(text, path)(text, str(path))
+    parse_text: Parse = import_module(f".{_format(text, path)}", __name__).parse
+    return parse_text(text, str(path))
 
 
-def _parser(text: str, path: Path) -> Parse:
-    """By what the text says, else by the suffix: names of files are often wrong."""
+def _format(text: str, path: Path) -> str:
+    """Module of a file by its text, else by its suffix: names of files are often wrong."""
+    from .pbrt import looks_like
+
     if _BENCH.search(text):
-        return optical_bench.parse
+        return "optical_bench"
     if _ZEMAX.search(text):
-        return zmx.parse
+        return "zmx"
     of_suffix = SUFFIXES.get(path.suffix.lower())
     if of_suffix is not None:
         return of_suffix
     if _CODE_V.search(text):
-        return seq.parse
-    if path.suffix.lower() == ".dat" or pbrt.looks_like(text):
-        return pbrt.parse
+        return "seq"
+    if path.suffix.lower() == ".dat" or looks_like(text):
+        return "pbrt"
     raise LensError(
         f"{path}: lens file: wanted text of Zemax (SURF), CODE V (SO, S, SI), the Optical Bench "
         "([lens data]) or pbrt (rows of four numbers), got none of them",
