@@ -124,7 +124,7 @@ bool survives_roulette(Walk& walk, float u) {
 /// One path: its state, what it has found, and the steps from vertex to vertex.
 class Path {
   public:
-    Path(const Scene& scene, const PathSettings& settings, Wavelengths& wavelengths, PathSampler& sampler,
+    Path(const Scene& scene, const PathSettings& settings, const Wavelengths& wavelengths, PathSampler& sampler,
          FirstHit* first_hit)
         : scene_(scene), settings_(settings), wavelengths_(wavelengths), sampler_(sampler), first_hit_(first_hit) {}
     Path(const Path&) = delete;
@@ -153,7 +153,7 @@ class Path {
 
     const Scene& scene_;
     const PathSettings& settings_;
-    Wavelengths& wavelengths_;
+    Wavelengths wavelengths_;   // a copy: what a path ends of them ends for its own light alone
     PathSampler& sampler_;
     FirstHit* first_hit_;
     Walk walk_;
@@ -327,7 +327,7 @@ void Path::record_first_hit(const Material& material, const SurfaceHit& hit) {
 
 }  // namespace
 
-Radiance radiance(const Scene& scene, Ray ray, Wavelengths& wavelengths, PathSampler& sampler,
+Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first) {
     Path path(scene, settings, wavelengths, sampler, hit);

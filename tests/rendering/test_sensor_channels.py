@@ -81,6 +81,18 @@ def test_a_white_world_is_one_in_each_channel(lens: str) -> None:
     np.testing.assert_allclose(frame.channels.mean(axis=(0, 1)), 1, atol=2e-3)
 
 
+def test_glass_that_disperses_is_as_bright_to_a_sensor_as_to_the_eye() -> None:
+    glass = dg.Gltf(metallic=0, roughness=0, transmission=1, ior=1.5, thickness=1, dispersion=5)
+    through, bare = (
+        drawn(camera(lens="pinhole", f_stop=None), 256, scenes.furnace(material), bands=5).frame()
+        for material in (dg.Material(glass), None)
+    )
+    middle = slice(10, 14), slice(15, 21)  # where the ball is
+    for name in ("channels", "bands", "rgb"):
+        lit, world = (getattr(frame, name)[middle].mean(axis=(0, 1)) for frame in (through, bare))
+        np.testing.assert_allclose(lit, world, rtol=0.03, err_msg=name)
+
+
 @pytest.mark.parametrize("emission", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0.2, 3.0, 0.7)])
 @pytest.mark.parametrize("sensor", [BODY, gaussians((580, 4))], ids=["body", "narrow"])
 def test_light_is_weighed_by_quantum_efficiency(sensor: Sensor, emission: Any) -> None:
