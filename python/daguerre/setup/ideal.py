@@ -83,13 +83,14 @@ def _projection(framing: Framing, projection: Projection) -> ResolvedLens:
 
 def _all_sharp(framing: Framing, model: str) -> ResolvedLens:
     f = framing.camera.focal_length or DEFAULT_FOCAL_LENGTH
-    core = _core_of(framing, model, f, 0.0, math.inf)
+    core = core_of(framing, model, f, 0.0, math.inf)
     return ResolvedLens(core, model, model, focal_length_mm=f, pinhole_focal_length_mm=f)
 
 
-def _core_of(
+def core_of(
     framing: Framing, model: str, film_mm: float, radius_mm: float, focus_m: float
 ) -> _core.Camera:
+    """Makes the core's camera of an ideal kind of lens, with iris and tilt of the camera."""
     camera, kind = framing.camera, IDEAL[model]
     lens = IdealLens(
         framing.pose,
@@ -116,7 +117,7 @@ def _with_iris(framing: Framing, model: str) -> ResolvedLens:
         distance = _from_pupil(distance, f)
     film = _film_distance(camera, f, distance)
     return ResolvedLens(
-        core=_core_of(framing, model, film, diameter / 2, distance),
+        core=core_of(framing, model, film, diameter / 2, distance),
         model=model,
         name=model,
         focal_length_mm=f,

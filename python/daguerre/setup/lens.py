@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.camera import Camera
-from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS, IdealLens
+from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.lenses.checking import frame_notes
 from daguerre.lenses.errors import LensError, reported
@@ -27,7 +27,7 @@ from .body import parts_of, stack_of
 from .fit import DEFAULT_DEGREE, FitQuality, judged
 from .focus import Directions, ideal_direction
 from .framing import Framing
-from .ideal import DEFAULT_F_STOP
+from .ideal import DEFAULT_F_STOP, core_of
 from .imperfections import imperfect
 from .iris import iris_of, mask_of
 from .resolved import Glass, ResolvedLens
@@ -245,7 +245,7 @@ def _traced(framing: Framing, model: str, sharp: _InFocus) -> _Drawn:
 
 def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn:
     """Makes the camera of a model without surfaces."""
-    camera, pose = framing.camera, framing.pose
+    camera = framing.camera
     with reported(sharp.lens.source):
         thick = _core.ThickLens(
             sharp.lens.prescription,
@@ -256,17 +256,9 @@ def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn
             tilt_deg=camera.tilt,
         )
     if model == "thick":
-        return _Drawn(_core.Camera.thick(pose, thick), thick.h0)
-    numbers = IdealLens(
-        pose,
-        film,
-        sharp.order.efl / sharp.f_stop / 2,
-        sharp.distance,
-        iris_of(camera),
-        camera.natural_vignetting,
-        camera.tilt,
-    )
-    return _Drawn(IDEAL[model].make(numbers), thick.h0)
+        return _Drawn(_core.Camera.thick(framing.pose, thick), thick.h0)
+    radius = sharp.order.efl / sharp.f_stop / 2
+    return _Drawn(core_of(framing, model, film, radius, sharp.distance), thick.h0)
 
 
 def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Directions:
