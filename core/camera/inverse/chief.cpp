@@ -74,6 +74,14 @@ Vec3d direction_of(const auto& lens, Vec2d film_mm) {
     return std::optional<Vec3d>(lens.chief_direction(film_mm)).value_or(Vec3d{0, 0, 0});
 }
 
+/// Most kinds see something from every film point, and are not asked.
+bool has_chief(const auto& lens, Vec2d film_mm) {
+    if constexpr (requires { lens.chief_direction(film_mm).has_value(); })
+        return lens.chief_direction(film_mm).has_value();
+    else
+        return true;
+}
+
 template <typename L>
 std::optional<Vec2d> film_point_of(const L& lens, Vec3d p, double w) {
     if constexpr (HasFilmPoint<L>)
@@ -171,7 +179,10 @@ ChiefRay ChiefRays::at(Vec2d film_mm) const {
 }
 
 ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
-    if (straight_) return length(at(film_mm).direction) > 0 ? Lit::yes : Lit::no;
+    if (straight_) {
+        const bool seen = std::visit([&](const auto& lens) { return has_chief(lens, film_mm); }, *straight_);
+        return seen ? Lit::yes : Lit::no;
+    }
     if (grid_) return grid_->lit(film_mm);
     if (!ends_) return Lit::yes;
     const double last = step_mm_ * (table_.size() - 1), radius = length(film_mm);
