@@ -94,6 +94,7 @@ def run(command: list[str], folder: Path) -> str:
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
 def test_a_singlet_is_sharp_on_a_bowl(measured: Any) -> None:
     found = measured["bundles"]
     assert found["depths"] == pytest.approx(found["wanted"], rel=1e-4)
@@ -102,6 +103,7 @@ def test_a_singlet_is_sharp_on_a_bowl(measured: Any) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
 @pytest.mark.parametrize("state", ["still", "focusing"])
 def test_light_finds_its_way_back_through_a_singlet(measured: Any, state: str) -> None:
     (seen, *seen_at), (sent, *sent_at) = measured[state]
@@ -112,10 +114,12 @@ def test_light_finds_its_way_back_through_a_singlet(measured: Any, state: str) -
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
 def test_a_roof_has_its_slope(measured: Any) -> None:
     assert measured["slope"] == pytest.approx([30, 30], abs=1e-3)
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
 def test_what_a_kind_does_not_take_is_refused(measured: Any) -> None:
     assert measured["refusal"] == "camera: tilt: wanted none of a singlet, got (3, 0)"

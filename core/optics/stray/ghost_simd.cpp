@@ -60,13 +60,13 @@ HWY_INLINE M onward(const LaneRays& r, const LaneHit& hit) {
 }
 
 template <int kSign>
-HWY_INLINE void take_step(const GhostLens& ghosts, const GhostStep& step, bool first, LaneRays& a,
+HWY_INLINE void take_step(const GhostLens& ghosts, const GhostStep& step, bool mirrored, LaneRays& a,
                           LaneRays& b) {
     const LensTables& lens = ghosts.tables();
     const int i = step.surface;
     LaneHit hit[2];
     meet_any<kSign>(lens, i, a, b, hit);
-    if (!first) {
+    if (mirrored) {
         hit[0].ok = hn::And(hit[0].ok, onward(a, hit[0]));
         hit[1].ok = hn::And(hit[1].ok, onward(b, hit[1]));
     }
@@ -94,11 +94,12 @@ HWY_INLINE bool lanes_by_mirrors(const GhostLens& ghosts, const std::vector<Ghos
     const D d;
     a.n = index_of(lens, 0, a.l), b.n = index_of(lens, 0, b.l);
     start_transmittance(a), start_transmittance(b);
+    bool mirrored = false;
     for (const GhostStep& step : steps) {
         const V gap = constant(step.gap);
         a.z = hn::Sub(a.z, gap), b.z = hn::Sub(b.z, gap);
-        const bool first = &step == steps.data();
-        step.sign > 0 ? take_step<1>(ghosts, step, first, a, b) : take_step<-1>(ghosts, step, first, a, b);
+        step.sign > 0 ? take_step<1>(ghosts, step, mirrored, a, b) : take_step<-1>(ghosts, step, mirrored, a, b);
+        mirrored = step.reflects;
         if (opening && step.surface == lens.stop) {
             pass_leaf(lens, hn::Load(d, opening), a);
             pass_leaf(lens, hn::Load(d, opening + hn::Lanes(d)), b);

@@ -102,8 +102,11 @@ int Tracer::follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
     for (std::size_t k = 0; k < path.size(); ++k) {
         const LensRay from = ray.ray;
         if (!cross(path[k], n, clip, ray)) return int(k);
-        // A mirror may be so steep that the light never comes to the surface that is next.
-        if (k > 0 && dot(ray.ray.origin - from.origin, from.direction) < -kOverlap) return int(k);
+        // A mirror may be so steep that the light never comes to the surface that is next. Elsewhere the
+        // iris of a real prescription may lie within the bulge of its neighbour.
+        if (k > 0 && path[k - 1].reflects &&
+            dot(ray.ray.origin - from.origin, from.direction) < -kOverlap)
+            return int(k);
     }
     return -1;
 }

@@ -7,6 +7,7 @@
 
 #include "optics/first_order/paraxial.h"
 #include "optics/lens/test_lenses.h"
+#include "optics/trace/lens_path.h"
 
 using namespace dg;
 
@@ -154,6 +155,27 @@ TEST_CASE("clear apertures and the iris stop rays; total reflection does") {
                                inside.at(550), {}));
     CHECK(inside.to_film({{0, 0, -1}, {std::sin(0.7), 0, std::cos(0.7)}}, inside.at(550),
                          {}));
+}
+
+TEST_CASE("an iris within the bulge of its neighbour passes light, and mirrored light, by any path") {
+    const Prescription lens = test::lens_from_rows("bulge", {{40, 3, 1.6, 0, 12},
+                                                             {25, 0.8, 1, 0, 10},
+                                                             {0, 3, 1, 0, 9, true},
+                                                             {60, 3, 1.6, 0, 12},
+                                                             {-60, 40, 1, 0, 12}});
+    const Tracer t(lens);
+    const LensIndices n = t.at(550);
+    const LensPath straight = straight_path(5, true), ghost = ghost_path(5, 3, 4, true);
+    for (double y = 0; y < 8; y += 0.5) {
+        const LensRay ray{{0, y, -5}, {0, 0, 1}};
+        const auto plain = t.to_film(ray, n, {});
+        REQUIRE(plain);
+        TracedRay traced{ray};
+        CHECK(t.follow(traced, straight, n, {}) == -1);
+        CHECK(traced.ray.origin.y == plain->ray.origin.y);
+        traced = TracedRay{ray};
+        CHECK(t.follow(traced, ghost, n, {}) == -1);
+    }
 }
 
 TEST_CASE("random prescriptions and rays give points or nothing, never NaN") {
