@@ -28,6 +28,7 @@ constexpr int kLook = 256;            // where cells should lie
 constexpr std::size_t kMostPairs = 4096;    // that are looked at for the last time
 constexpr int kLeastAcross = 8, kMostAcross = 64;   // cells
 constexpr int kPerCell = 2, kRounds = 4;   // rays of a cell; of the last look
+constexpr int kGrowths = 6;   // of what is looked at
 
 class Learner {
   public:
@@ -47,6 +48,7 @@ class Learner {
     FlareFound search(FlareFound found) const;
     FlareRectangle narrow(const FlareFound& wide) const;
     FlareFound look_closely(const FlareFound& wide, const FlareTiles& tiles, int across) const;
+    FlareFound look_into(const FlareProbe& what, const FlareTiles& tiles, int across) const;
     FlareCells cells_of(const FlareFound& wide, const FlareFound& fine, const FlareWeights& weights) const;
     void pool(std::vector<double>& weights) const;
     std::vector<double> blind() const;
@@ -161,9 +163,21 @@ FlareRectangle Learner::narrow(const FlareFound& wide) const {
     return probe.where;
 }
 
-/// In rounds: thin rings of light are followed from where they were hit by chance.
+/// Looks again over more, as long as light comes in at the edge of what is looked at: what lies beyond would be left
+/// to the few blind paths, each of them a spark.
 FlareFound Learner::look_closely(const FlareFound& wide, const FlareTiles& tiles, int across) const {
-    FlareFound found{{wide.probe.source, wide.probe.ghost, 0, narrow(wide)}};
+    FlareRectangle where = narrow(wide);
+    for (int i = 0;; ++i) {
+        FlareFound found = look_into({wide.probe.source, wide.probe.ghost, 0, where}, tiles, across);
+        const FlareRectangle grown = found.grown(across);
+        if (i == kGrowths || grown.area() <= where.area()) return found;
+        where = grown;
+    }
+}
+
+/// In rounds: thin rings of light are followed from where they were hit by chance.
+FlareFound Learner::look_into(const FlareProbe& what, const FlareTiles& tiles, int across) const {
+    FlareFound found{what};
     std::vector<double> rays(std::size_t(across) * across);
     const int total = kPerCell * int(rays.size());
     for (int round = 0; round < kRounds; ++round) {

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "render/flare/flare_probe.h"
 #include "render/flare/flare_scenes.h"
 
 using namespace dg;
@@ -30,6 +31,21 @@ std::shared_ptr<const Scene> bright_scene() {
     d.instances = {{"hides", 0, 0, at({0.03f, 0.02f, -0.5f}, 0.03f)}, {"lamp", 0, 1, at({-0.3f, -0.1f, -0.9f}, 0.1f)}};
     d.lights = {SphereLight{{{0.25f, -0.1f, -1.1f}, 0.08f}, {50, 30, 20}}};
     return Scene::build(std::move(d));
+}
+
+/// Share of the ghosts' light that comes in outside of the cells that a guide learns.
+double share_outside(const Scene& scene, const Camera& camera) {
+    const FlareAim aim(scene, camera, settings(1, 100));
+    const FlareKnowledge known = learn_flare(aim, 2);
+    double all = 0, outside = 0;
+    for (int g = 0; g < aim.ghosts(); ++g) {
+        const FlareCells& cells = known.cells[std::size_t(known.cells_of_pair[g])];
+        if (cells.weights.empty()) continue;   // nothing of it was found on the frame
+        for (const FlareFound::Hit& hit : probe_flare(aim, {0, g, 1 << 15}).hits)
+            all += hit.luminance, outside += cells.inner.holds(hit.at) ? 0 : hit.luminance;
+    }
+    REQUIRE(all > 0);
+    return outside / all;
 }
 
 }  // namespace
@@ -64,6 +80,18 @@ TEST_CASE("what is drawn by what was learned is what is drawn by nothing") {
     const Blocks learned = forward(*scene, camera, 8, 40000), plain = forward(*scene, camera, 8, 100000, false);
     INFO(show(learned) << show(plain));
     CHECK(equality(learned, plain) > 1e-3);
+}
+
+TEST_CASE("the part of the front that is drawn densely holds the light of ghosts") {
+    double outside = 0;   // share, summed
+    for (const Vec3f at : {Vec3f{100, 60, -1000}, Vec3f{20, 200, -1000}, Vec3f{-250, 100, -1000}}) {
+        SceneDescription far;
+        far.lights = {SphereLight{{at, 4.6f}, {1000, 1000, 1000}}};
+        const auto scene = Scene::build(std::move(far));
+        for (const Prescription& lens : {test::wide_angle(), test::telephoto(), test::fisheye()})
+            outside += share_outside(*scene, camera_with(lens));
+    }
+    CHECK(outside < 0.02);   // 0.75 before the part grew where light comes in at its edge
 }
 
 TEST_CASE("from a near light rays are as dense as solid angles of the square tell") {

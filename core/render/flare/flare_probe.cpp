@@ -8,6 +8,7 @@
 namespace dg {
 namespace {
 
+constexpr float kGrowth = 0.25f;   // of the size, at a side where light comes in
 constexpr int kSequence = -3;   // where pixels have their row, in the sampler's scramble
 
 /// A batch of rays by one ghost.
@@ -117,6 +118,17 @@ void FlareFound::share(const std::vector<double>& rays, int across) {
 void FlareFound::reach(const FlareFound& other) {
     low = {std::min(low.x, other.low.x), std::min(low.y, other.low.y)};
     high = {std::max(high.x, other.high.x), std::max(high.y, other.high.y)};
+}
+
+FlareRectangle FlareFound::grown(int across) const {
+    const FlareRectangle& old = probe.where;
+    const Vec2f cell = old.size * (1 / float(across)), more = old.size * kGrowth;
+    Vec2f from = old.low, to = old.low + old.size;
+    if (low.x < from.x + cell.x) from.x = std::max(-1.f, from.x - more.x);
+    if (low.y < from.y + cell.y) from.y = std::max(-1.f, from.y - more.y);
+    if (high.x > to.x - cell.x) to.x = std::min(1.f, to.x + more.x);
+    if (high.y > to.y - cell.y) to.y = std::min(1.f, to.y + more.y);
+    return {from, to - from};
 }
 
 FlareRectangle FlareFound::narrowed() const {

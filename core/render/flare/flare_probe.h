@@ -39,6 +39,8 @@ struct FlareFound {
     void share(const std::vector<double>& rays, int across);
     /// Hits of another look are to be held as well.
     void reach(const FlareFound& other);
+    /// A larger rectangle, at the sides where hits lie in the last of so many cells; within the square.
+    FlareRectangle grown(int across) const;
     /// A rectangle that holds what was found to let light in, and as much around it as the rays may have missed.
     FlareRectangle narrowed() const;
 };
