@@ -9,6 +9,7 @@ namespace dg {
 struct PathSettings {
     int max_depth = 16;      // surface vertices
     int roulette_depth = 2;  // vertices before Russian roulette of weak paths
+    int splits = 2;          // smooth clear interfaces, seen from where the path starts, of which it takes both ways
     enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
     bool caustics = true;    // with what mirrors and smooth glass throw on rough surfaces
     bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
@@ -32,7 +33,7 @@ struct FirstHit {
 class FirstRay;   // first_ray.h
 
 /// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
-/// sampling. `hit`, if given, receives the first surface; `first`, if given, says which share of what emitters
+/// sampling. At the first smooth clear interfaces that it sees, a path goes both ways. `hit`, if given, receives the first surface; `first`, if given, says which share of what emitters
 /// send straight along the ray is left to this path.
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
