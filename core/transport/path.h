@@ -32,9 +32,9 @@ struct FirstHit {
 
 class FirstRay;   // first_ray.h
 
-/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance
-/// sampling. At the first smooth clear interfaces that it sees, a path goes both ways. `hit`, if given, receives the first surface; `first`, if given, says which share of what emitters
-/// send straight along the ray is left to this path.
+/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance sampling. At
+/// the first smooth clear interfaces that it sees, a path goes both ways. `hit`, if given, receives the first surface;
+/// `first`, if given, says which share of what emitters send straight along the ray is left to this path.
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first = nullptr);
