@@ -84,7 +84,7 @@ def test_a_white_world_is_one_in_each_channel(lens: str) -> None:
 def test_glass_that_disperses_is_as_bright_to_a_sensor_as_to_the_eye() -> None:
     glass = dg.Gltf(metallic=0, roughness=0, transmission=1, ior=1.5, thickness=1, dispersion=5)
     through, bare = (
-        drawn(camera(lens="pinhole", f_stop=None), 256, scenes.furnace(material), bands=5).frame()
+        drawn(camera(lens="pinhole", f_stop=None), 2048, scenes.furnace(material), bands=5).frame()
         for material in (dg.Material(glass), None)
     )
     middle = slice(10, 14), slice(15, 21)  # where the ball is
