@@ -4,12 +4,18 @@
 // tree's estimate.
 #include "light/light_split.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace dg {
 namespace {
 
 constexpr int kBins = 12;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Of more lights than this not all are looked at to find the cut.
+constexpr std::size_t kLooks = 2048;
 
 Vec3f component_min(Vec3f a, Vec3f b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
@@ -23,11 +29,10 @@ void merge_cones(const LightBounds& a, const LightBounds& b, LightBounds& out) {
     const LightBounds& wide = a.spread >= b.spread ? a : b;
     const LightBounds& narrow = a.spread >= b.spread ? b : a;
     out.axis = wide.axis;
+    out.spread = wide.spread;
+    if (wide.spread >= kPi) return;
     const float between = std::acos(std::clamp(dot(wide.axis, narrow.axis), -1.f, 1.f));
-    if (std::min(between + narrow.spread, kPi) <= wide.spread) {
-        out.spread = wide.spread;
-        return;
-    }
+    if (std::min(between + narrow.spread, kPi) <= wide.spread) return;
     out.spread = (wide.spread + between + narrow.spread) / 2;
     const Vec3f side = narrow.axis - wide.axis * dot(narrow.axis, wide.axis);
     if (out.spread >= kPi || length(side) < 1e-6f) {
@@ -38,122 +43,157 @@ void merge_cones(const LightBounds& a, const LightBounds& b, LightBounds& out) {
     out.axis = normalize(wide.axis * std::cos(turn) + normalize(side) * std::sin(turn));
 }
 
-/// Solid angle into which the group shines, weakened by the cosine: the integral over a
-/// cone of normals and their falloff.
-float orientation_measure(const LightBounds& b) {
-    const float o = b.spread, w = std::min(o + b.falloff, kPi);
-    const float one_side =
-        2 * kPi * (1 - std::cos(o)) + kPi / 2 *
-                                          (2 * w * std::sin(o) - std::cos(o - 2 * w) -
-                                           2 * o * std::sin(o) + std::cos(o));
-    return std::min(b.two_sided ? 2 * one_side : one_side, 4 * kPi);
-}
-
-float cost(const LightBounds& b) {
-    return b.intensity * orientation_measure(b) * length_squared(b.max - b.min);
-}
-
 Vec3f twice_center(const LightBounds& b) {
     return b.min + b.max;
 }
 
 struct Cut {
-    float cost = std::numeric_limits<float>::infinity();
+    float cost = kInfinity;
     int axis = 0, bin = 0;  // bins up to here are the first group
 };
 
-/// Lights by the place of their centres along the axes.
-struct Bins {
-    Vec3f low, high;
+/// Bins by the place of centres along the axes.
+struct Grid {
+    Vec3f low, high;   // of twice the centres
 
-    int of(const LightBounds& b, int axis) const {
-        const float extent = high[axis] - low[axis];
-        const float x = (twice_center(b)[axis] - low[axis]) / extent * kBins;
+    int bin(const LightBounds& b, int axis) const {
+        const float x = (twice_center(b)[axis] - low[axis]) / (high[axis] - low[axis]) * kBins;
         return std::clamp(static_cast<int>(x), 0, kBins - 1);
     }
 };
 
-/// The cheapest cut along one axis.
-Cut best_cut(std::span<const LightBounds> lights, std::span<const std::int32_t> order,
-             const Bins& bins, int axis) {
-    std::array<LightBounds, kBins> group;
-    std::array<bool, kBins> filled{};
-    for (std::int32_t i : order) {
-        const int b = bins.of(lights[i], axis);
-        group[b] = filled[b] ? merge(group[b], lights[i]) : lights[i];
-        filled[b] = true;
+/// Lights of a bin, or of several.
+struct Bin {
+    Vec3f min{kInfinity, kInfinity, kInfinity}, max = -min;
+    Vec3f heading;   // sum of LightItem::heading
+    float intensity = 0;
+    bool two_sided = false;
+
+    void add(const LightItem& item) {
+        const LightBounds& b = item.bounds;
+        add({b.min, b.max, item.heading, b.intensity, b.two_sided});
     }
+    void add(const Bin& b) {
+        min = component_min(min, b.min);
+        max = component_max(max, b.max);
+        heading = heading + b.heading;
+        intensity += b.intensity;
+        two_sided |= b.two_sided;
+    }
+    bool empty() const { return intensity == 0; }
+    /// Solid angle into which the group shines, weakened by the cosine: pi of normals that are one, 4 pi of normals all
+    /// around. Between them within 7 % of the integral over a cap of normals, whose mean is heading / intensity.
+    float orientation_measure() const {
+        const float r2 = length_squared(heading) / (intensity * intensity);
+        const float one_side = kPi * (4 - 3 * r2 * r2);
+        return std::min(two_sided ? 2 * one_side : one_side, 4 * kPi);
+    }
+    float cost() const { return intensity * orientation_measure() * length_squared(max - min); }
+};
+using BinRow = std::array<Bin, kBins>;
+
+/// The cheapest cut along one axis. At an empty bin the groups are those of the cut before.
+Cut best_cut(const BinRow& bins, int axis) {
     std::array<float, kBins> above{};  // cost of all bins beyond
-    bool any = false;
-    LightBounds all;
+    Bin all;
     for (int b = kBins - 1; b > 0; --b) {
-        if (filled[b]) all = any ? merge(all, group[b]) : group[b];
-        any = any || filled[b];
-        above[b - 1] = any ? cost(all) : 0;
+        above[b - 1] = above[b];
+        if (bins[b].empty()) continue;
+        all.add(bins[b]);
+        above[b - 1] = all.cost();
     }
     Cut best{.axis = axis};
-    any = false;
+    all = {};
     for (int b = 0; b < kBins - 1; ++b) {
-        if (filled[b]) all = any ? merge(all, group[b]) : group[b];
-        any = any || filled[b];
-        const float sum = any ? cost(all) + above[b] : best.cost;
-        if (sum < best.cost) best = {sum, axis, b};
+        if (bins[b].empty()) continue;
+        all.add(bins[b]);
+        if (const float sum = all.cost() + above[b]; sum < best.cost) best = {sum, axis, b};
+    }
+    return best;
+}
+
+/// The cheapest cut of all.
+Cut best_cut(std::span<const LightItem> lights, const Grid& grid) {
+    std::array<BinRow, 3> bins;
+    const Vec3f size = grid.high - grid.low;
+    const std::size_t step = (lights.size() + kLooks - 1) / kLooks;
+    for (std::size_t i = 0; i < lights.size(); i += step)
+        for (int axis = 0; axis < 3; ++axis)
+            if (size[axis] > 0) bins[axis][grid.bin(lights[i].bounds, axis)].add(lights[i]);
+    Cut best;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(size[axis] > 0)) continue;
+        Cut cut = best_cut(bins[axis], axis);
+        cut.cost *= max_component(size) / size[axis];  // no thin slices
+        if (cut.cost < best.cost) best = cut;
     }
     return best;
 }
 
 /// At the median of the longer side of the box of centres.
-std::size_t halve_lights(std::span<const LightBounds> lights,
-                         std::span<std::int32_t> order, const Bins& bins) {
-    const Vec3f size = bins.high - bins.low;
+std::size_t halve_lights(std::span<LightItem> lights, const Grid& grid) {
+    const Vec3f size = grid.high - grid.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t half = order.size() / 2;
-    std::nth_element(order.begin(), order.begin() + half, order.end(),
-                     [&](std::int32_t a, std::int32_t b) {
-                         const float ca = twice_center(lights[a])[axis],
-                                     cb = twice_center(lights[b])[axis];
-                         return ca != cb ? ca < cb : a < b;  // one order on every machine
+    const std::size_t half = lights.size() / 2;
+    std::nth_element(lights.begin(), lights.begin() + std::ptrdiff_t(half), lights.end(),
+                     [&](const LightItem& a, const LightItem& b) {
+                         const float ca = twice_center(a.bounds)[axis], cb = twice_center(b.bounds)[axis];
+                         return ca != cb ? ca < cb : a.light < b.light;  // one order on every machine
                      });
     return half;
+}
+
+/// Those of the first group to the front; both keep their order.
+template <typename IsFirst>
+std::size_t part(std::span<LightItem> lights, std::span<LightItem> room, const IsFirst& is_first) {
+    std::size_t first = 0, second = 0;
+    for (const LightItem& item : lights) {
+        const bool front = is_first(item);
+        (front ? lights[first] : room[second]) = item;
+        ++(front ? first : second);
+    }
+    std::ranges::copy(room.first(second), lights.begin() + std::ptrdiff_t(first));
+    return first;
 }
 
 }  // namespace
 
 LightBounds merge(const LightBounds& a, const LightBounds& b) {
     LightBounds r;
+    merge_cones(a, b, r);
     r.min = component_min(a.min, b.min);
     r.max = component_max(a.max, b.max);
-    merge_cones(a, b, r);
     r.falloff = std::max(a.falloff, b.falloff);
     r.intensity = a.intensity + b.intensity;
     r.two_sided = a.two_sided || b.two_sided;
     return r;
 }
 
-std::size_t split_lights(std::span<const LightBounds> lights,
-                         std::span<std::int32_t> order, bool halve) {
-    Bins bins{twice_center(lights[order[0]]), twice_center(lights[order[0]])};
-    for (std::int32_t i : order) {
-        bins.low = component_min(bins.low, twice_center(lights[i]));
-        bins.high = component_max(bins.high, twice_center(lights[i]));
+LightItem::LightItem(const LightBounds& bounds, std::int32_t light)
+    : bounds(bounds), heading(bounds.axis * (0.5f * bounds.intensity * (1 + std::cos(bounds.spread)))), light(light) {}
+
+LightBounds box_of(std::span<const LightItem> lights) {
+    LightBounds all = lights[0].bounds;
+    for (const LightItem& item : lights.subspan(1)) {
+        all.min = component_min(all.min, item.bounds.min);
+        all.max = component_max(all.max, item.bounds.max);
+        all.intensity += item.bounds.intensity;
     }
-    if (halve || order.size() <= 2) return halve_lights(lights, order, bins);
-    Cut best;
-    const Vec3f size = bins.high - bins.low;
-    const float longest = max_component(size);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(size[axis] > 0)) continue;
-        Cut cut = best_cut(lights, order, bins, axis);
-        cut.cost *= longest / size[axis];  // no thin slices
-        if (cut.cost < best.cost) best = cut;
+    return all;
+}
+
+std::size_t split_lights(std::span<LightItem> lights, std::span<LightItem> room, bool halve) {
+    Grid grid{twice_center(lights[0].bounds), twice_center(lights[0].bounds)};
+    for (const LightItem& item : lights) {
+        grid.low = component_min(grid.low, twice_center(item.bounds));
+        grid.high = component_max(grid.high, twice_center(item.bounds));
     }
-    const auto second =
-        std::stable_partition(order.begin(), order.end(), [&](std::int32_t i) {
-            return size[best.axis] > 0 && bins.of(lights[i], best.axis) <= best.bin;
-        });
-    const auto first = static_cast<std::size_t>(second - order.begin());
-    if (first == 0 || first == order.size()) return halve_lights(lights, order, bins);
-    return first;
+    if (halve || lights.size() <= 2) return halve_lights(lights, grid);
+    const Cut cut = best_cut(lights, grid);
+    if (!(cut.cost < kInfinity)) return halve_lights(lights, grid);
+    const std::size_t first =
+        part(lights, room, [&](const LightItem& item) { return grid.bin(item.bounds, cut.axis) <= cut.bin; });
+    return first == 0 || first == lights.size() ? halve_lights(lights, grid) : first;
 }
 
 }  // namespace dg

@@ -1,7 +1,7 @@
-// light_tree.h -- a binary tree of lights with a place, from which one is chosen for a
-// shaded point with a probability close to the illuminance that it may bring there; O(log
-// n). Source: Conty Estevez and Kulla 2018, Importance Sampling of Many Lights with
-// Adaptive Tree Splitting.
+// light_tree.h -- a tree of lights with a place, from which one is chosen for a shaded point with a probability
+// close to the illuminance that it may bring there; O(log n). Source: Conty Estevez and Kulla 2018, Importance
+// Sampling of Many Lights with Adaptive Tree Splitting. Four children lie side by side in three lines of the cache
+// and are weighed at once: a binary tree loads six times as many lines, and waits for them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,6 +13,24 @@
 
 namespace dg {
 
+/// Facts that the estimate of a light or a group needs.
+struct LightEmission {
+    Vec3f center;       // of the sphere around the box, m
+    float radius;       // m
+    Vec3f axis;
+    float intensity;    // cd; 0: none there
+    float cos_spread, cos_falloff;
+    float reach;        // m; what lies farther behind the centre along the axis is dark. -1: shines along -axis as well
+};
+
+/// Four lights or groups.
+struct alignas(64) LightNode {
+    static constexpr int kWide = 4;
+    static constexpr std::size_t kFacts = sizeof(LightEmission) / sizeof(float);
+    float facts[kFacts][kWide] = {};
+    std::int32_t next[kWide] = {};   // node of a group, or ~light
+};
+
 class LightTree {
   public:
     LightTree() = default;
@@ -20,11 +38,10 @@ class LightTree {
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const { return nodes_.empty(); }
-    /// Illuminance that the nodes of the cut bring to a point; the sum is an estimate of the
-    /// illuminance (lux) by all lights together.
-    static constexpr std::size_t kCutSize = 8;
+    /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
+    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together.
     struct Weights {
-        std::array<float, kCutSize> of_cut;
+        std::array<float, 2 * LightNode::kWide> of;
         float sum;
     };
     Weights weigh(Vec3f position) const;
@@ -33,49 +50,17 @@ class LightTree {
         int light;
         float probability;
     };
-    /// Empty where no light shines. A light that can reach the position has probability >
-    /// 0.
-    std::optional<Choice> sample(Vec3f position, float u) const {
-        return sample(weigh(position), position, u);
-    }
+    /// Empty where no light shines. A light that can reach the position has probability > 0.
+    std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
     /// The same with weigh(position) at hand.
     std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
+    /// Choice::probability of sample(), to the bit.
     float probability(Vec3f position, int light) const;
 
   private:
-    /// Facts that the importance needs.
-    struct Emission {
-        Vec3f center;
-        float radius2, radius;  // of the sphere around the box, m
-        Vec3f axis;
-        float back;  // -1: shines along -axis as well; else 1
-        float cos_spread, sin_spread, cos_falloff;
-        float intensity;
-        float reach;  // m; what lies farther behind the centre along the axis is dark
-    };
-    struct Node : Emission {
-        std::int32_t parent = -1, left = -1, right = -1;  // left < 0: a leaf
-        std::int32_t light = -1;
-        bool in_cut = false;
-        float importance(Vec3f position) const;
-    };
-    /// Four nodes side by side, weighed at once; those that are missing have no
-    /// intensity.
-    struct alignas(16) FourNodes {
-        float of[sizeof(Emission) / sizeof(float)][4];
-    };
-    static float estimate(const Emission& e, Vec3f position);
-    static Node make_node(const LightBounds& b);
-    /// Appends the tree of the lights in `order`; returns the index of its root.
-    std::int32_t build(std::span<const LightBounds> lights, std::span<std::int32_t> order,
-                       int depth, LightBounds& bounds);
-    void choose_cut();
-    void pack_cut();
-
-    std::vector<Node> nodes_;                       // parents before children
-    std::vector<std::int32_t> leaf_of_;             // by light
-    std::vector<std::int32_t> cut_;                 // nodes that are weighed one by one
-    std::array<FourNodes, kCutSize / 4> packed_{};  // the same
+    std::vector<LightNode> nodes_;       // those of a subtree follow each other
+    std::vector<std::int32_t> parent_;   // by node: its place, node * kWide + which; -1: one of the first two
+    std::vector<std::int32_t> place_;    // by light
 };
 
 }  // namespace dg

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <numeric>
+
 #include "light/direction_test.h"
 
 using namespace dg;
@@ -75,9 +77,7 @@ TEST_CASE("samples follow the probabilities: chi-square, and 2 % would be notice
             continue;
         }
         observed[choice->light] += 1;
-        if (i < 1000)
-            CHECK(choice->probability ==
-                  doctest::Approx(tree.probability(p, choice->light)).epsilon(1e-4));
+        if (i < 1000) CHECK(choice->probability == tree.probability(p, choice->light));
     }
     for (int i = 0; i < n; ++i) {
         expected[i] = draws * double(tree.probability(p, i));
@@ -87,6 +87,25 @@ TEST_CASE("samples follow the probabilities: chi-square, and 2 % would be notice
     CHECK(chi_square_test(observed, expected).p_value > 1e-3);
     for (int i = 0; i < n; ++i) expected[i] *= i % 2 ? 1.02 : 0.98;
     CHECK(chi_square_test(observed, expected).p_value < 1e-6);
+}
+
+TEST_CASE("many lights: a choice weighed by its probability sums them all up, and has it to the bit") {
+    const int n = 60000, draws = 200000;   // so many that branches grow side by side
+    const auto lights = random_lights(n);
+    const LightTree tree(lights);
+    const Vec3f p{9, 2, -1};
+    std::vector<double> brought(n);
+    for (int i = 0; i < n; ++i) brought[i] = LightTree(std::span(lights).subspan(i, 1)).importance(p);
+    const double sum = std::accumulate(brought.begin(), brought.end(), 0.);
+    std::vector<double> estimates(draws, 0);
+    for (int i = 0; i < draws; ++i)
+        if (const auto choice = tree.sample(p, float(hash_uniform(9, i)))) {
+            REQUIRE(choice->probability == tree.probability(p, choice->light));
+            estimates[i] = brought[choice->light] / double(choice->probability) / sum;
+        }
+    const SampleMoments found = moments(estimates);
+    CHECK(welch_p_value(found, {1, 0, 2}) > 1e-3);
+    CHECK(welch_p_value(found, {1.01, 0, 2}) < 1e-3);
 }
 
 TEST_CASE("a near lamp wins over a far one") {
