@@ -54,7 +54,7 @@ LightBounds emitter_bounds(const SphereLight& light) {
 }
 
 LightBounds emitter_bounds(const TriangleLight& light) {
-    const Vec3f n = TriangleSampler(light).normal;
+    const Vec3f n = TriangleSampler(light).normal();
     LightBounds b;
     b.min = {std::min({light.a.x, light.b.x, light.c.x}),
              std::min({light.a.y, light.b.y, light.c.y}),

@@ -60,7 +60,7 @@ std::optional<EmissionPoint> point_on(const TriangleSampler& triangle, Vec2f u) 
     if (!(triangle.area > 0)) return std::nullopt;
     const Vec2f b = warp_triangle(u);
     return EmissionPoint{.position = triangle.a + triangle.to_b * b.x + triangle.to_c * b.y,
-                         .normal = triangle.normal * (0.5f / triangle.area),
+                         .normal = triangle.normal() * (0.5f / triangle.area),
                          .pdf = 1 / triangle.area,
                          .barycentric = b};
 }

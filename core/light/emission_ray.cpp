@@ -65,7 +65,7 @@ struct SurfaceEmission {
 };
 
 SurfaceEmission surface(const EmissionAim& aim, const TriangleSampler& t, Vec3f from) {
-    return {aim, from, t.normal * (0.5f / t.area), t.two_sided};
+    return {aim, from, t.normal() * (0.5f / t.area), t.two_sided};
 }
 SurfaceEmission surface(const EmissionAim& aim, const SphereLight& s, Vec3f from) {
     return {aim, from, normalize(from - s.shape.center)};

@@ -43,9 +43,9 @@ LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environ
     : lights_(std::move(lights)),
       environment_(std::move(environment)),
       motion_(std::move(motion)) {
+    std::string where;   // one for all: a million of them take a while
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-        const std::string where =
-            "light " + std::to_string(i) + " (" + kind_name(lights_[i]) + ")";
+        ((((where = "light ") += std::to_string(i)) += " (") += kind_name(lights_[i])) += ")";
         std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
         const auto keys = motion_.keys.find(std::uint32_t(i));
         if (keys != motion_.keys.end()) check_keys(keys->second.values, where);
@@ -81,6 +81,7 @@ LightBounds LightSet::bounds_of(std::size_t light) const {
 
 void LightSet::build_groups(LightChoice choice) {
     std::vector<LightBounds> bounds;
+    bounds.reserve(lights_.size()), triangles_.reserve(lights_.size());
     std::vector<double> weights;
     tree_index_.assign(lights_.size(), kNone);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -95,13 +96,8 @@ void LightSet::build_groups(LightChoice choice) {
         if (!(b.intensity > 0) || !std::isfinite(b.intensity)) continue;
         if (choice != LightChoice::tree)
             b = placeless(choice == LightChoice::power ? b.intensity : 1);
-        tree_index_[i] = static_cast<std::int32_t>(bounds.size());
-        tree_lights_.push_back(static_cast<std::uint32_t>(i));
         bounds.push_back(b);
-        const auto* triangle = std::get_if<TriangleLight>(&lights_[i]);
-        triangles_.push_back(triangle ? TriangleSampler(*triangle) : TriangleSampler());
-        triangles_.back().moves = motion_.triangles.contains(std::uint32_t(i));
-        if (triangles_.back().moves) triangles_.back().area = 0;
+        add_local(i);
     }
     tree_ = LightTree(bounds);
 
@@ -122,6 +118,17 @@ void LightSet::build_groups(LightChoice choice) {
     if (!weights.empty() && infinite_lights_.back() == kEnvironment) {
         environment_pmf_ = infinite_.pmf(infinite_.size() - 1);
     }
+}
+
+/// The next of the tree's lights.
+void LightSet::add_local(std::size_t light) {
+    const auto* triangle = std::get_if<TriangleLight>(&lights_[light]);
+    tree_index_[light] = static_cast<std::int32_t>(triangles_.size());
+    TriangleSampler& sampler = triangles_.emplace_back();
+    if (triangle) sampler = TriangleSampler(*triangle);
+    sampler.light = static_cast<std::uint32_t>(light);
+    sampler.moves = motion_.triangles.contains(std::uint32_t(light));
+    if (sampler.moves) sampler.area = 0;
 }
 
 void LightSet::build_lookup() {
@@ -225,8 +232,8 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     const float rest = (u_select - p_infinite) / (1 - p_infinite);
     const auto choice = tree_.sample(weights, position, std::min(rest, 0x1.fffffep-1f));
     if (!choice) return std::nullopt;
-    const std::uint32_t light = tree_lights_[choice->light];
     const TriangleSampler& triangle = triangles_[choice->light];
+    const std::uint32_t light = triangle.light;
     EmitterSample s;
     if (triangle.area > 0) {
         if (!triangle.sample(u, position, s)) return std::nullopt;
@@ -301,7 +308,7 @@ float LightSet::pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance
     const auto triangle = triangle_at(light, time);
     if (!triangle) return 0;
     const TriangleSampler sampler(*triangle);
-    const float cosine = dot(wi, sampler.normal) / (2 * sampler.area);
+    const float cosine = dot(wi, sampler.normal()) / (2 * sampler.area);
     return sampler.area > 0 ? chosen * sampler.pdf(distance, cosine) : 0;
 }
 

@@ -160,6 +160,7 @@ class LightSet {
     static constexpr std::int32_t kNone = -2;
     void build_changes();
     void build_groups(LightChoice choice);
+    void add_local(std::size_t light);
     void build_lookup();
     float infinite_probability(Vec3f position) const;
     float infinite_share(float local) const;
@@ -179,8 +180,7 @@ class LightSet {
     LightMotion motion_;
     std::vector<const Keyed<Light>*> keys_;  // by light, into motion_; empty: none changes
     LightTree tree_;
-    std::vector<std::uint32_t> tree_lights_;  // light by tree index
-    std::vector<TriangleSampler> triangles_;  // by tree index
+    std::vector<TriangleSampler> triangles_;  // by tree index, and the number of any light there
     std::vector<std::int32_t> tree_index_;    // and back; kNone: dark
     DiscreteDistribution infinite_;
     std::vector<std::int32_t> infinite_lights_;  // light, or kEnvironment

@@ -157,7 +157,7 @@ TEST_CASE("a triangle that turns: sampled where it is, with the density it has t
             if (!s || s->light != 0) continue;
             ++seen;
             const TriangleLight now = *set.triangle_at(0, time);
-            const float cosine = dot(normalize(TriangleSampler(now).normal), s->wi);
+            const float cosine = dot(normalize(TriangleSampler(now).normal()), s->wi);
             CHECK(s->pdf == doctest::Approx(set.pdf_triangle(3, 7, s->distance, cosine, p, time)).epsilon(1e-3));
         }
     }

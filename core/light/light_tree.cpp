@@ -44,28 +44,20 @@ inline float estimate(const LightEmission& e, Vec3f position) {
     return behind ? 0.f : some;
 }
 
-inline void weigh_node(const LightNode& node, Vec3f position, float* weights) {
+/// Weights of a node's children; their sum.
+inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
     const auto& n = node.facts;
     for (int i = 0; i < kWide; ++i)
         weights[i] = estimate({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i], n[8][i],
                                n[9][i], n[10][i]},
                               position);
+    return (weights[0] + weights[1]) + (weights[2] + weights[3]);
 }
-
-/// Weights of one node and their sum.
-struct Four {
-    std::array<float, kWide> of;
-    float sum;
-    Four(const LightNode& node, Vec3f position) {
-        weigh_node(node, position, of.data());
-        sum = (of[0] + of[1]) + (of[2] + of[3]);
-    }
-};
 
 /// One of them by its weight; leaves u for the next choice. Counted, not searched: which one it is cannot be foreseen
 /// by the processor.
 template <std::size_t n>
-std::size_t choose(const std::array<float, n>& weights, float sum, float& u) {
+std::size_t choose(const float* weights, float sum, float& u) {
     const float target = u * sum;
     float before = 0, below = 0;
     std::size_t chosen = 0;
@@ -88,37 +80,32 @@ LightTree::LightTree(std::span<const LightBounds> lights) {
     nodes_ = std::move(tree.nodes);
     parent_ = std::move(tree.parent);
     place_.resize(lights.size());
-    for (std::size_t place = 0; place < nodes_.size() * kWide; ++place) {
-        const LightNode& node = nodes_[place / kWide];
-        const bool present = node.facts[7][place % kWide] > 0;
-        if (const std::int32_t next = node.next[place % kWide]; present && next < 0)
-            place_[~next] = std::int32_t(place);
-    }
+    for (std::size_t node = 0; node < nodes_.size(); ++node)
+        for (int i = 0; i < kWide; ++i)
+            if (const std::int32_t next = nodes_[node].next[i]; next < 0)
+                place_[~next] = std::int32_t(node) * kWide + i;
 }
 
 LightTree::Weights LightTree::weigh(Vec3f position) const {
-    Weights w{};
-    const Four first(nodes_[0], position);
-    std::ranges::copy(first.of, w.of.begin());
-    w.sum = first.sum;
-    if (nodes_.size() == 1 || parent_[1] >= 0) return w;
-    const Four second(nodes_[1], position);
-    std::ranges::copy(second.of, w.of.begin() + kWide);
-    w.sum += second.sum;
+    Weights w;
+    w.sum = weigh_node(nodes_[0], position, w.of.data());
+    if (has_second()) w.sum += weigh_node(nodes_[1], position, w.of.data() + kWide);
     return w;
 }
 
 std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f position, float u) const {
     if (!(top.sum > 0)) return std::nullopt;
-    const std::size_t first = choose(top.of, top.sum, u);
+    const std::size_t first = has_second() ? choose<2 * kWide>(top.of.data(), top.sum, u)
+                                           : choose<kWide>(top.of.data(), top.sum, u);
     float probability = top.of[first] / top.sum;
     std::int32_t next = nodes_[first / kWide].next[first % kWide];
     while (next >= 0) {
         const LightNode& node = nodes_[next];
-        const Four weights(node, position);
-        if (!(weights.sum > 0)) return std::nullopt;
-        const std::size_t chosen = choose(weights.of, weights.sum, u);
-        probability *= weights.of[chosen] / weights.sum;
+        float weights[kWide];
+        const float sum = weigh_node(node, position, weights);
+        if (!(sum > 0)) return std::nullopt;
+        const std::size_t chosen = choose<kWide>(weights, sum, u);
+        probability *= weights[chosen] / sum;
         next = node.next[chosen];
     }
     return Choice{~next, probability};
@@ -133,9 +120,10 @@ float LightTree::probability(Vec3f position, int light) const {
     float probability = top.of[way[--depth]] / top.sum;
     while (depth > 0 && probability > 0) {
         const std::int32_t place = way[--depth];
-        const Four weights(nodes_[place / kWide], position);
-        if (!(weights.sum > 0)) return 0;
-        probability *= weights.of[place % kWide] / weights.sum;
+        float weights[kWide];
+        const float sum = weigh_node(nodes_[place / kWide], position, weights);
+        if (!(sum > 0)) return 0;
+        probability *= weights[place % kWide] / sum;
     }
     return probability;
 }

@@ -58,6 +58,8 @@ class LightTree {
     float probability(Vec3f position, int light) const;
 
   private:
+    bool has_second() const { return nodes_.size() > 1 && parent_[1] < 0; }
+
     std::vector<LightNode> nodes_;       // those of a subtree follow each other
     std::vector<std::int32_t> parent_;   // by node: its place, node * kWide + which; -1: one of the first two
     std::vector<std::int32_t> place_;    // by light

@@ -1,17 +1,17 @@
-// triangle_sampler.h -- a triangle light as the loop wants it: edges, normal and area are
-// found once, not at every sample.
+// triangle_sampler.h -- a triangle light as the loop wants it: edges and area are found
+// once, not at every sample.
 #pragma once
 #include "light/emitter.h"
 #include "math/warp.h"
 
 namespace dg {
 
-struct TriangleSampler {
+struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps each is a miss
     Vec3f a, to_b, to_c;  // m
-    Vec3f normal;         // along the front side; twice the area long
     Rgb luminance;        // cd/m2, mean
     float area = 0;       // m2; 0: not a triangle
-    bool two_sided = false, even = false;
+    std::uint32_t light = 0;   // its number, for a list of some
+    bool two_sided = false, even = false, mirrored = false;
     bool moves = false;  // and has no place of its own: area 0
 
     TriangleSampler() = default;
@@ -19,13 +19,14 @@ struct TriangleSampler {
         : a(t.a),
           to_b(t.b - t.a),
           to_c(t.c - t.a),
-          normal(cross(to_b, to_c)),
           luminance(t.mean_luminance),
           two_sided(t.two_sided),
-          even(t.even) {
-        if (t.mirrored) normal = -normal;
-        area = 0.5f * length(normal);
+          even(t.even),
+          mirrored(t.mirrored) {
+        area = 0.5f * length(normal());
     }
+    /// Along the front side; twice the area long.
+    Vec3f normal() const { return mirrored ? -cross(to_b, to_c) : cross(to_b, to_c); }
 
     /// Uniform over the area. False where the point shows its dark side.
     bool sample(Vec2f u, Vec3f position, EmitterSample& out) const {
@@ -33,7 +34,7 @@ struct TriangleSampler {
         const Vec3f to = a + to_b * b.x + to_c * b.y - position;
         const float d2 = length_squared(to);
         if (!(d2 > 0)) return false;
-        const float facing = -dot(to, normal);  // cos * distance * 2 area
+        const float facing = -dot(to, normal());  // cos * distance * 2 area
         if (two_sided ? facing == 0 : facing <= 0) return false;
         const float d = std::sqrt(d2);
         const Vec3f wi = to * (1 / d);
@@ -48,5 +49,6 @@ struct TriangleSampler {
         return projected > 0 ? t * t / projected : 0;
     }
 };
+static_assert(sizeof(TriangleSampler) == 64);
 
 }  // namespace dg
