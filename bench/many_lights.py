@@ -26,6 +26,7 @@ import daguerre as dg
 from daguerre.rendering.session import Session
 from daguerre.setup import built_scene
 from daguerre.setup.scene import _add_all
+from daguerre.setup.scene_motion import MovingParts
 
 QUAD = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
 FACES = [(0, 1, 2), (0, 2, 3)]
@@ -154,7 +155,11 @@ def measure(name: str, lamps: int, choice: str, spp: int) -> dict[str, float]:
 def build(scene: dg.Scene, choice: str) -> _core.Scene:
     """Builds like daguerre.setup.scene.build, with another way to choose among the lights."""
     builder = _core.SceneBuilder()
-    _add_all(builder, scene)
+    moment = (scene.time, scene.time)
+    builder.set_interval(*moment)
+    moving = MovingParts(scene, moment, [])
+    _add_all(builder, scene, moving)
+    moving.finish()
     return builder.build(choice)
 
 
