@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBins = 12;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Of more lights than this not all are looked at to find the cut.
+// Lights that are looked at to find the cut, at most.
 constexpr std::size_t kLooks = 2048;
 
 Vec3f component_min(Vec3f a, Vec3f b) {

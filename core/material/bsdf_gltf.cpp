@@ -247,9 +247,13 @@ Evaluation GltfBsdf::evaluate_through(const Mix& m, Vec3f wi, float cos_i,
 
 Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     const Facing side(ns, ng, wo);
-    const float cos_i = dot(side.ns, wi);
     if (side.cos_o <= 0) return {};
-    const Mix m = mix(wo, side.cos_o);
+    return evaluate_with_pdf(side, mix(wo, side.cos_o), wo, wi);
+}
+
+Evaluation GltfBsdf::evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f wo,
+                                       Vec3f wi) const {
+    const float cos_i = dot(side.ns, wi);
     const float specular = 1 - m.diffuse_probability;
     if (side.reflects(wi)) {
         if (cos_i <= 0) return {};
@@ -314,7 +318,7 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         }
     }
     if (side.reflects(s.wi) == s.transmitted) return std::nullopt;
-    const Evaluation e = evaluate_with_pdf(wo, s.wi);
+    const Evaluation e = evaluate_with_pdf(side, m, wo, s.wi);
     if (!(e.pdf > 0)) return std::nullopt;
     s.weight = e.f_cos / e.pdf;
     s.pdf = e.pdf;

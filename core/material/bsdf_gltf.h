@@ -143,6 +143,8 @@ struct GltfBsdf {
         float diffuse_probability, interface;  // E_c(wo)
     };
     Mix mix(Vec3f wo, float cos_o) const;
+    /// With what is known of wo.
+    Evaluation evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f wo, Vec3f wi) const;
     Evaluation evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const;
     LobeAlbedo lobe_albedo(Vec3f w, float cos_w) const {
         return stretched ? stretched_row(w).at(cos_w) : row.at(cos_w);
