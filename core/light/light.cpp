@@ -45,7 +45,7 @@ LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environ
       motion_(std::move(motion)) {
     std::string where;   // one for all: a million of them take a while
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-        ((((where = "light ") += std::to_string(i)) += " (") += kind_name(lights_[i])) += ")";
+        where.assign("light ").append(std::to_string(i)).append(" (").append(kind_name(lights_[i])).append(")");
         std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
         const auto keys = motion_.keys.find(std::uint32_t(i));
         if (keys != motion_.keys.end()) check_keys(keys->second.values, where);

@@ -10,7 +10,7 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
     Vec3f a, to_b, to_c;  // m
     Rgb luminance;        // cd/m2, mean
     float area = 0;       // m2; 0: not a triangle
-    std::uint32_t light = 0;   // its number, for a list of some
+    std::uint32_t light = 0;   // number among all lights, for a list of some
     bool two_sided = false, even = false, mirrored = false;
     bool moves = false;  // and has no place of its own: area 0
 
