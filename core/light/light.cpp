@@ -223,7 +223,8 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     if (empty()) return std::nullopt;
     LightTree::Weights weights;
     weights.sum = 0;
-    if (!tree_.empty()) weights = tree_.weigh(position);
+    const bool asked = !tree_.lone() || !infinite_.empty();
+    if (!tree_.empty() && asked) weights = tree_.weigh(position);
     const float p_infinite = infinite_share(weights.sum);
     if (u_select < p_infinite) {
         const float rest = std::min(u_select / p_infinite, 0x1.fffffep-1f);

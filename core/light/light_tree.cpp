@@ -94,6 +94,7 @@ LightTree::Weights LightTree::weigh(Vec3f position) const {
 }
 
 std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f position, float u) const {
+    if (lone()) return Choice{0, 1};
     if (!(top.sum > 0)) return std::nullopt;
     const std::size_t first = has_second() ? choose<2 * kWide>(top.of.data(), top.sum, u)
                                            : choose<kWide>(top.of.data(), top.sum, u);
@@ -112,6 +113,7 @@ std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f pos
 }
 
 float LightTree::probability(Vec3f position, int light) const {
+    if (lone()) return 1;
     std::array<std::int32_t, kLightTreeDepth> way;   // places, the light's first
     int depth = 0;
     for (std::int32_t place = place_[light]; place >= 0; place = parent_[place / kWide]) way[depth++] = place;

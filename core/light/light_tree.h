@@ -38,6 +38,8 @@ class LightTree {
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const { return nodes_.empty(); }
+    /// One light alone: it is chosen without a look, wherever it shines.
+    bool lone() const { return place_.size() == 1; }
     /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
     /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together.
     struct Weights {
@@ -52,7 +54,7 @@ class LightTree {
     };
     /// Empty where no light shines. A light that can reach the position has probability > 0.
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
-    /// The same with weigh(position) at hand.
+    /// The same with weigh(position) at hand, which a lone light has no use for.
     std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
     /// Choice::probability of sample(), to the bit.
     float probability(Vec3f position, int light) const;

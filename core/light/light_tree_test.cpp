@@ -58,6 +58,8 @@ TEST_CASE("probabilities: they add to 1, and no light that shines has none") {
                 any = true;
                 CHECK(probability > 0);
             }
+            if (const auto choice = tree.sample(p, float(hash_uniform(5, k))))
+                CHECK(choice->probability == tree.probability(p, choice->light));
             // The missing part belongs to branches whose light turned out to face away.
             CHECK(sum < 1.0001);
             if (any && n == 1) CHECK(sum == doctest::Approx(1));
