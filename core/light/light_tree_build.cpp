@@ -110,6 +110,9 @@ LightBounds fill(std::int32_t node, std::span<const std::optional<Group>> groups
         tbb::parallel_for(std::size_t(0), groups.size(), [&](std::size_t i) {
             if (apart(i)) bounds[i] = grow(*groups[i], depth, grown[i], -1);
         });
+    std::size_t nodes = branch.nodes.size();
+    for (const LightBranch& own : grown) nodes += own.nodes.size();
+    branch.nodes.reserve(nodes), branch.parent.reserve(nodes);
     for (std::size_t i = 0; i < groups.size(); ++i) {
         const std::span<LightItem> lights = groups[i]->lights;
         const std::int32_t place = node * kWide + std::int32_t(i);
