@@ -1,0 +1,291 @@
+"""How time and memory grow with a scene, a lens, a picture, and the work that is asked for.
+
+    python bench/scale.py [--only lamps ...] [--most 1e6] [--json] [--plot scale.svg]
+
+Each point is a process of its own: its peak memory is that of the render above the imported
+package. Time is CPU time of one thread, but for ``threads``, where it is wall-clock time. A law
+is the exponent of the growth from the first point to the last: 0 does not grow, 1 grows in
+proportion. Pictures are 320 x 180 of 16 samples but for ``pixels`` and ``samples``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import daguerre as dg
+from daguerre.rendering.session import Session
+
+SIZE, SPP = (320, 180), 16
+Facts = dict[str, float]
+
+
+def memory_mb() -> float:
+    """Peak memory of this process, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def place(at: Any, size: float = 1.0) -> np.ndarray:
+    """World from local: scaled, at a point."""
+    m = np.eye(4)
+    m[:3, :3] *= size
+    m[:3, 3] = at
+    return m
+
+
+def camera(lens: str = "thin") -> dg.Camera:
+    """Looks down at the ground from 2.2 m, a quarter turn from the horizon."""
+    c = math.cos(math.radians(-50)), math.sin(math.radians(-50))
+    m = place((0, 2.2, 1.8))
+    m[1:3, 1:3] = [[c[0], -c[1]], [c[1], c[0]]]
+    focal = {"focal_length": 28.0} if lens == "thin" else {}
+    return dg.Camera(transform=m, lens=lens, f_stop=4, focus_distance=2.8, **focal)
+
+
+def relief(triangles: int) -> tuple[np.ndarray, np.ndarray]:
+    """Hills on 4 x 4 m, as so many triangles."""
+    side = max(1, round(math.sqrt(triangles / 2)))
+    line = np.linspace(-2, 2, side + 1, dtype=np.float32)
+    x, z = np.meshgrid(line, line)
+    y = 0.1 * np.sin(5 * x) * np.cos(7 * z) + 0.01 * np.sin(91 * x + 57 * z)
+    at = np.arange((side + 1) ** 2, dtype=np.uint32).reshape(side + 1, side + 1)
+    a, b, c, d = (q.ravel() for q in (at[:-1, :-1], at[1:, :-1], at[:-1, 1:], at[1:, 1:]))
+    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([c, b, d], 1)])
+    return np.stack([x, y, z], 2).reshape(-1, 3).astype(np.float32), faces
+
+
+def ground(scene: dg.Scene) -> None:
+    """Adds a plane."""
+    positions, faces = relief(2)
+    scene.add_instance(scene.add_mesh(positions, faces), dg.Material(dg.Diffuse((0.5,) * 3)))
+
+
+def lit(scene: dg.Scene) -> dg.Scene:
+    """Adds one lamp."""
+    scene.add_light(dg.SphereLight((900.0,) * 3, 0.1), place((1, 2.5, 0)))
+    return scene
+
+
+def of_triangles(count: int) -> dg.Scene:
+    """One mesh."""
+    scene = dg.Scene()
+    positions, faces = relief(count)
+    scene.add_instance(scene.add_mesh(positions, faces), dg.Material(dg.Diffuse((0.5,) * 3)))
+    return lit(scene)
+
+
+def of_instances(count: int) -> dg.Scene:
+    """One mesh of 200 triangles, many times, side by side."""
+    scene = dg.Scene()
+    ground(scene)
+    mesh = scene.add_mesh(*relief(200))
+    side = math.ceil(math.sqrt(count))
+    at = np.arange(count)
+    matrices = np.tile(np.eye(4), (count, 1, 1))
+    matrices[:, :3, :3] *= 0.9 / side
+    matrices[:, 0, 3] = (at % side + 0.5) * 4 / side - 2
+    matrices[:, 2, 3] = (at // side + 0.5) * 4 / side - 2
+    matrices[:, 1, 3] = 0.15
+    scene.add_instances(mesh, scene.add_material(dg.Diffuse((0.4, 0.5, 0.6))), matrices)
+    return lit(scene)
+
+
+def of_lamps(count: int) -> dg.Scene:
+    """Small emissive triangles, of the same power together, above a ground."""
+    scene = dg.Scene()
+    ground(scene)
+    rng = np.random.default_rng(5)
+    middle = rng.uniform((-2, 0.4, -2), (2, 1.4, 2), (count, 3))
+    size = 0.3 / math.sqrt(count)
+    corners = middle[:, None] + rng.uniform(-size, size, (count, 3, 3))
+    faces = np.arange(3 * count).reshape(-1, 3)
+    glow = dg.Gltf(base_color=(0, 0, 0), emissive=(60.0,) * 3)
+    mesh = scene.add_mesh(corners.reshape(-1, 3).astype(np.float32), faces)
+    scene.add_instance(mesh, dg.Material(glow))
+    return scene
+
+
+def drawn(
+    scene: dg.Scene,
+    view: dg.Camera | None = None,
+    size: tuple[int, int] = SIZE,
+    spp: int = SPP,
+    **options: Any,
+) -> Facts:
+    """Set-up and drawing of a picture: CPU seconds, and what it took in memory."""
+    before, start = memory_mb(), time.process_time()
+    session = Session(scene, view or camera(), resolution=size, threads=1, **options)
+    ready, wall = time.process_time(), time.perf_counter()
+    session.draw(0, spp)
+    cpu, samples = time.process_time() - ready, size[0] * size[1] * spp
+    return {
+        "us_per_sample": 1e6 * cpu / samples,
+        "us_per_ray": 1e6 * cpu / max(1, session.counters.rays),
+        "set_up_s": ready - start,
+        "wall_s": time.perf_counter() - wall,
+        "memory_mb": memory_mb() - before,
+    }
+
+
+LENSES = {
+    10: "double-gauss-50mm-f2",
+    20: "canon-ts-e-90mm-f2.8-macro",
+    28: "sigma-17-40mm-f1.8",
+    40: "nikon-af-s-70-200mm-f2.8",
+}
+
+
+def surfaces(count: int) -> Facts:
+    """Rays through a lens of so many surfaces, to an even sky."""
+    scene = dg.Scene()
+    scene.set_environment(color=(1.0, 1.0, 1.0))
+    return drawn(scene, dg.Camera(lens=LENSES[count], f_stop=5.6), spp=64)
+
+
+def samples(count: int) -> Facts:
+    """Error of so many samples, of two seeds."""
+    scene = of_triangles(10_000)
+    pictures = []
+    for seed in (1, 2):
+        session = Session(scene, camera(), resolution=SIZE, threads=1, seed=seed)
+        session.draw(0, count)
+        pictures.append(session.frame().rgb.astype(np.float64))
+    a, b = pictures
+    mean = (a + b) / 2
+    error = ((a - b) ** 2 / 2 / (mean**2 + 0.01 * mean.mean() ** 2)).mean()
+    return {**drawn(scene, spp=count), "relmse": float(error)}
+
+
+def threads(count: int) -> Facts:
+    """Wall-clock time on so many threads."""
+    session = Session(of_triangles(100_000), camera(), resolution=(640, 360), threads=count)
+    wall = time.perf_counter()
+    session.draw(0, SPP)
+    seconds = time.perf_counter() - wall
+    return {"wall_s": seconds, "us_per_sample": 1e6 * seconds / (640 * 360 * SPP)}
+
+
+def frames(count: int) -> Facts:
+    """A sequence of so many pictures of one scene, the camera on its way."""
+    scene, start = of_triangles(10_000), time.process_time()
+    before = memory_mb()
+    for i in range(count):
+        view = camera()
+        moved = replace(view, transform=place((0.01 * i, 0, 0)) @ view.transform)
+        session = Session(scene, moved, resolution=SIZE, threads=1)
+        session.draw(0, 4)
+    seconds = time.process_time() - start
+    return {
+        "us_per_sample": 1e6 * seconds / (count * SIZE[0] * SIZE[1] * 4),
+        "s_per_frame": seconds / count,
+        "memory_mb": memory_mb() - before,
+    }
+
+
+def pixels(count: int) -> Facts:
+    """A picture of about so many pixels, one sample of each."""
+    width = 16 * round(math.sqrt(count * 16 / 9) / 16)
+    size = (width, width * 9 // 16)
+    return drawn(of_triangles(10_000), size=size, spp=1)
+
+
+#: By name: what measures a point, the points, and the unit to which memory and time are told.
+KINDS: dict[str, tuple[Callable[[int], Facts], tuple[int, ...]]] = {
+    "triangles": (
+        lambda n: drawn(of_triangles(n)),
+        (10_000, 100_000, 1_000_000, 5_000_000, 20_000_000),
+    ),
+    "instances": (lambda n: drawn(of_instances(n)), (100, 1_000, 10_000, 100_000, 1_000_000)),
+    "lamps": (lambda n: drawn(of_lamps(n)), (1, 10, 1_000, 10_000, 100_000, 1_000_000)),
+    "surfaces": (surfaces, tuple(LENSES)),
+    "pixels": (pixels, (250_000, 1_000_000, 4_000_000, 16_000_000, 64_000_000)),
+    "samples": (samples, (1, 4, 16, 64, 256)),
+    "threads": (threads, (1, 2, 4, 8, 16)),
+    "frames": (frames, (1, 4, 16, 64)),
+}
+
+
+def measure(kind: str, count: int) -> Facts | None:
+    """Measures one point in a process of its own; None if that failed."""
+    command = [sys.executable, __file__, "--point", kind, str(count)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        print(f"{kind} {count}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+        return None
+    found: Facts = json.loads(done.stdout)
+    return found
+
+
+def law(points: list[tuple[int, Facts]], name: str) -> float:
+    """Exponent of a fact's growth from the first point to the last."""
+    (n0, first), (n1, last) = points[0], points[-1]
+    if n1 == n0 or not (first.get(name, 0) > 0 and last.get(name, 0) > 0):
+        return math.nan
+    return math.log(last[name] / first[name]) / math.log(n1 / n0)
+
+
+def table(kind: str, points: list[tuple[int, Facts]]) -> str:
+    """Rows of Markdown, the laws last."""
+    names = list(points[0][1])
+    rows = [[kind, *names], ["---"] * (len(names) + 1)]
+    rows += [[f"{n:,}", *(f"{facts[k]:.3g}" for k in names)] for n, facts in points]
+    rows.append(["exponent", *(f"{law(points, k):.2f}" for k in names)])
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+def plot(path: Path, found: dict[str, list[tuple[int, Facts]]]) -> None:
+    """Draws time per sample over each count."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(2, 4, figsize=(14, 6), layout="constrained")
+    for axis, (kind, points) in zip(axes.flat, found.items(), strict=False):
+        counts = [n for n, _ in points]
+        axis.loglog(counts, [facts["us_per_sample"] for _, facts in points], "o-")
+        axis.set(xlabel=kind, ylabel="us per sample", title=kind)
+        axis.set_ylim(bottom=min(0.1, *axis.get_ylim()))
+        axis.grid(alpha=0.3)
+    figure.savefig(path)
+
+
+def main() -> None:
+    """Prints a table for each kind, or JSON."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--most", type=float, default=math.inf, help="largest count that is tried")
+    parser.add_argument("--point", nargs=2, metavar=("KIND", "COUNT"), help="measure one, here")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--plot", type=Path, help="picture of the laws")
+    arguments = parser.parse_args()
+    if arguments.point:
+        kind, count = arguments.point
+        print(json.dumps(KINDS[kind][0](int(count))))
+        return
+    found: dict[str, list[tuple[int, Facts]]] = {}
+    for kind in arguments.only:
+        counts = [n for n in KINDS[kind][1] if n <= arguments.most]
+        points = [(n, facts) for n in counts if (facts := measure(kind, n)) is not None]
+        if not points:
+            continue
+        found[kind] = points
+        if not arguments.json:
+            print(table(kind, points), flush=True)
+            print()
+    if arguments.json:
+        print(json.dumps(found, indent=2))
+    if arguments.plot:
+        plot(arguments.plot, found)
+
+
+if __name__ == "__main__":
+    main()
