@@ -2,10 +2,11 @@
 
     python bench/scale.py [--only lamps ...] [--most 1e6] [--json] [--plot scale.svg]
 
-Each point is a process of its own: its peak memory is that of the render above the imported
-package. Time is CPU time of one thread, but for ``threads``, where it is wall-clock time. A law
-is the exponent of the growth from the first point to the last: 0 does not grow, 1 grows in
-proportion. Pictures are 320 x 180 of 16 samples but for ``pixels`` and ``samples``.
+Each point is a process of its own: its memory is the peak above the imported package, with the
+arrays of which a scene is made. Time is CPU time of one thread, but for ``threads``, where it is
+wall-clock time. A law is the exponent of the growth from the first point to the last: 0 does not
+grow, 1 grows in proportion. Pictures are 320 x 180 of 16 samples but for ``pixels`` and
+``samples``.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from many_lights import look, place
+from peers import relative_mse
 
 import daguerre as dg
 from daguerre.rendering.session import Session
@@ -31,26 +34,18 @@ SIZE, SPP = (320, 180), 16
 Facts = dict[str, float]
 
 
-def memory_mb() -> float:
+def peak_mb() -> float:
     """Peak memory of this process, MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
-def place(at: Any, size: float = 1.0) -> np.ndarray:
-    """World from local: scaled, at a point."""
-    m = np.eye(4)
-    m[:3, :3] *= size
-    m[:3, 3] = at
-    return m
+IMPORTED_MB = peak_mb()
 
 
-def camera(lens: str = "thin") -> dg.Camera:
-    """Looks down at the ground from 2.2 m, a quarter turn from the horizon."""
-    c = math.cos(math.radians(-50)), math.sin(math.radians(-50))
-    m = place((0, 2.2, 1.8))
-    m[1:3, 1:3] = [[c[0], -c[1]], [c[1], c[0]]]
-    focal = {"focal_length": 28.0} if lens == "thin" else {}
-    return dg.Camera(transform=m, lens=lens, f_stop=4, focus_distance=2.8, **focal)
+def camera() -> dg.Camera:
+    """Looks down at the ground from 2.2 m, through a thin lens."""
+    view = look((0, 2.2, 1.8), (0, 0, 0.3), 28)
+    return replace(view, lens="thin", f_stop=4, focus_distance=2.8)
 
 
 def relief(triangles: int) -> tuple[np.ndarray, np.ndarray]:
@@ -124,7 +119,7 @@ def drawn(
     **options: Any,
 ) -> Facts:
     """Set-up and drawing of a picture: CPU seconds, and what it took in memory."""
-    before, start = memory_mb(), time.process_time()
+    start = time.process_time()
     session = Session(scene, view or camera(), resolution=size, threads=1, **options)
     ready, wall = time.process_time(), time.perf_counter()
     session.draw(0, spp)
@@ -134,7 +129,7 @@ def drawn(
         "us_per_ray": 1e6 * cpu / max(1, session.counters.rays),
         "set_up_s": ready - start,
         "wall_s": time.perf_counter() - wall,
-        "memory_mb": memory_mb() - before,
+        "memory_mb": peak_mb() - IMPORTED_MB,
     }
 
 
@@ -161,10 +156,8 @@ def samples(count: int) -> Facts:
         session = Session(scene, camera(), resolution=SIZE, threads=1, seed=seed)
         session.draw(0, count)
         pictures.append(session.frame().rgb.astype(np.float64))
-    a, b = pictures
-    mean = (a + b) / 2
-    error = ((a - b) ** 2 / 2 / (mean**2 + 0.01 * mean.mean() ** 2)).mean()
-    return {**drawn(scene, spp=count), "relmse": float(error)}
+    error = relative_mse(*pictures)
+    return {**drawn(scene, spp=count), "relmse": error}
 
 
 def threads(count: int) -> Facts:
@@ -179,7 +172,6 @@ def threads(count: int) -> Facts:
 def frames(count: int) -> Facts:
     """A sequence of so many pictures of one scene, the camera on its way."""
     scene, start = of_triangles(10_000), time.process_time()
-    before = memory_mb()
     for i in range(count):
         view = camera()
         moved = replace(view, transform=place((0.01 * i, 0, 0)) @ view.transform)
@@ -189,7 +181,7 @@ def frames(count: int) -> Facts:
     return {
         "us_per_sample": 1e6 * seconds / (count * SIZE[0] * SIZE[1] * 4),
         "s_per_frame": seconds / count,
-        "memory_mb": memory_mb() - before,
+        "memory_mb": peak_mb() - IMPORTED_MB,
     }
 
 
@@ -200,7 +192,7 @@ def pixels(count: int) -> Facts:
     return drawn(of_triangles(10_000), size=size, spp=1)
 
 
-#: By name: what measures a point, the points, and the unit to which memory and time are told.
+#: By name: what measures a point, and the counts that are measured.
 KINDS: dict[str, tuple[Callable[[int], Facts], tuple[int, ...]]] = {
     "triangles": (
         lambda n: drawn(of_triangles(n)),
