@@ -75,6 +75,7 @@ void bind_layout(nb::module_& m) {
         .def_rw("aovs", &FilmLayout::aovs, "Auxiliary channels, FILM_AOVS.")
         .def_rw("splats", &FilmLayout::splats, "Light paths may add to any pixel.")
         .def_rw("flare", &FilmLayout::flare, "Ghosts may add to any pixel.")
+        .def_rw("halves", &FilmLayout::halves, "The picture of every other sample beside that of all.")
         .def_rw("bands", &FilmLayout::bands, "Bands of equal width over all wavelengths.")
         .def_rw("channels", &FilmLayout::channels, "Channels of a sensor (Film.set_responses).");
     m.attr("FILM_AOVS") = dg::bind::names_of(dg::kAovChannels);
@@ -98,8 +99,15 @@ void bind_film(nb::module_& m) {
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
+        .def("splats_rgb", [](const Film& f) { return triples(f, to_rgb(f.layer_xyz(Film::Layer::splats))); },
+             "Linear Rec.709 (H, W, 3) that light paths brought; ValueError without a layer of splats.")
         .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
              "Light that ghosts added to it.")
+        .def("half_rgb",
+             [](const Film& f, bool odd, bool by_light_paths) {
+                 return triples(f, to_rgb(f.half_xyz(odd ? Film::Half::odd : Film::Half::even, by_light_paths)));
+             },
+             "odd"_a, "by_light_paths"_a, "The picture of the samples with even, or odd, indices, without ghosts.")
         .def("mean_bands", [](const Film& f) { return stacks(f, f.mean_bands(), f.layout().bands); },
              "Mean radiance of each band, (H, W, bands).")
         .def("mean_channels",

@@ -16,6 +16,7 @@ struct AovSample {
     Vec3f position, normal, albedo;
     std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
     float alpha = 1;              // 1 where something was hit
+    Vec3f seen_albedo, seen_normal;   // guides for a denoiser, through mirrors and glass; 0: nothing
 };
 
 struct AovChannel {
@@ -35,6 +36,14 @@ inline constexpr std::array kAovChannels{
     AovChannel{"albedo.R", false, [](const AovSample& s) { return s.albedo.x; }},
     AovChannel{"albedo.G", false, [](const AovSample& s) { return s.albedo.y; }},
     AovChannel{"albedo.B", false, [](const AovSample& s) { return s.albedo.z; }},
+    // Like the picture: means over all that passed, so what is blurred by lens or motion is blurred here, and an edge
+    // before the sky fades.
+    AovChannel{"denoise_albedo.R", false, [](const AovSample& s) { return s.seen_albedo.x; }},
+    AovChannel{"denoise_albedo.G", false, [](const AovSample& s) { return s.seen_albedo.y; }},
+    AovChannel{"denoise_albedo.B", false, [](const AovSample& s) { return s.seen_albedo.z; }},
+    AovChannel{"denoise_normal.X", false, [](const AovSample& s) { return s.seen_normal.x; }},
+    AovChannel{"denoise_normal.Y", false, [](const AovSample& s) { return s.seen_normal.y; }},
+    AovChannel{"denoise_normal.Z", false, [](const AovSample& s) { return s.seen_normal.z; }},
     AovChannel{"alpha", false, [](const AovSample& s) { return s.alpha; }},
 };
 

@@ -50,6 +50,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.aovs) aovs_.resize(pixels);
     if (layout.splats) splats_.resize(pixels);
     if (layout.flare) flare_.resize(pixels);
+    if (layout.halves) halves_.resize(pixels);
     if (layout.splats || layout.flare) row_locks_.resize(std::size_t(kLockStride) * layout.height);
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
@@ -84,14 +85,14 @@ void Film::mark_bad(Pixel& pixel, std::uint32_t sample) {
 
 void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
-    if (i >= 0 && !add_to(pixels_[i], xyz)) mark_bad(pixels_[i], sample);
+    if (i >= 0 && !add_to(pixels_[i], half(i, sample), xyz)) mark_bad(pixels_[i], sample);
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const Lock lock(pixels_[i].lock);
-    if (!add_to(pixels_[i], xyz)) mark_bad(pixels_[i], sample);
+    if (!add_to(pixels_[i], half(i, sample), xyz)) mark_bad(pixels_[i], sample);
 }
 
 Film::Sums& Film::sums_of(Layer layer, std::size_t i) {
@@ -112,7 +113,7 @@ void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> 
     const Lock lock(row_lock(y));
     for (std::size_t k = 0; k < xyz.size(); ++k) {
         if (xyz[k] == Vec3f{0, 0, 0} && channels.empty()) continue;
-        if (add_to(sums[k], xyz[k])) {
+        if (add_to(sums[k], half(first + k, sample, layer), xyz[k])) {
             if (!channels.empty()) add_channels(channel_splats_, first + k, channels[k]);
             continue;
         }
@@ -139,7 +140,7 @@ void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelength
     if (layout_.bands && (layout_.splats || layout_.flare))   // they share the sums of bands
         return add_shared(x, y, sample, wavelengths, radiance);
     const std::int64_t i = find(x, y);
-    if (i >= 0 && add_light(pixels_[i], i, sample, wavelengths, radiance) && layout_.channels)
+    if (i >= 0 && add_light(pixels_[i], half(i, sample), i, sample, wavelengths, radiance) && layout_.channels)
         add_channels(channels_, i, responses_.of(wavelengths, radiance));
 }
 
@@ -148,7 +149,7 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const Lock lock(pixels_[i].lock);
-    if (add_light(pixels_[i], i, sample, wavelengths, radiance) && layout_.channels)
+    if (add_light(pixels_[i], half(i, sample), i, sample, wavelengths, radiance) && layout_.channels)
         add_channels(channels_, i, responses_.of(wavelengths, radiance));
 }
 
@@ -164,15 +165,15 @@ void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& waveleng
     }
     {
         const Lock lock(pixels_[i].lock);
-        if (!add_light(sums_of(layer, i), i, sample, wavelengths, radiance)) return;
+        if (!add_light(sums_of(layer, i), half(i, sample, layer), i, sample, wavelengths, radiance)) return;
     }
     const Lock lock(row_lock(y));
     add_channels(channel_splats_, i, channels);
 }
 
-bool Film::add_light(Sums& sums, std::size_t i, std::uint32_t sample,
+bool Film::add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample,
                      const Wavelengths& wavelengths, Spectrum radiance) {
-    if (!add_to(sums, wavelengths.to_xyz(radiance))) {
+    if (!add_to(sums, half, wavelengths.to_xyz(radiance))) {
         mark_bad(pixels_[i], sample);
         return false;
     }
@@ -194,21 +195,32 @@ void Film::add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum
         if (fits_film(values[c])) channels[i * layout_.channels + c].add(values[c]);
 }
 
-bool Film::add_to(Sums& sums, Vec3f xyz) const {
+ValueSum* Film::half(std::size_t i, std::uint32_t sample) {
+    return halves_.empty() || sample % 2 ? nullptr : halves_[i].own;
+}
+
+ValueSum* Film::half(std::size_t i, std::uint32_t sample, Layer layer) {
+    return halves_.empty() || sample % 2 || layer != Layer::splats ? nullptr : halves_[i].splats;
+}
+
+bool Film::add_to(Sums& sums, ValueSum* half, Vec3f xyz) const {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) return false;
     const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
     sums.xyz[0].add(xyz.x);
     sums.xyz[1].add(xyz.y);
     sums.xyz[2].add(xyz.z);
+    if (half) half[0].add(xyz.x), half[1].add(xyz.y), half[2].add(xyz.z);
     sums.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
     sums.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
     sums.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
     return true;
 }
 
-void Film::count(int x, int y) {
+void Film::count(int x, int y, std::uint32_t sample) {
     const std::int64_t i = find(x, y);
-    if (i >= 0) ++pixels_[i].count;
+    if (i < 0) return;
+    ++pixels_[i].count;
+    if (!halves_.empty() && sample % 2 == 0) ++halves_[i].count;
 }
 
 void Film::add_aov(int x, int y, std::uint32_t sample, const AovSample& aov) {
@@ -244,6 +256,7 @@ void Film::merge(const Film& other) {
                    std::to_string(l.offset_y) + ")" +
                    (l.aovs ? " with aovs" : " without aovs") +
                    (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "") +
+                   (l.halves ? ", with halves" : "") +
                    (l.bands ? ", " + std::to_string(l.bands) + " bands" : "") +
                    (l.channels ? ", " + std::to_string(l.channels) + " channels" : "");
         };
@@ -259,6 +272,12 @@ void Film::merge(const Film& other) {
     }
     for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
     for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
+    for (std::size_t i = 0; i < halves_.size(); ++i) {
+        HalfPixel& a = halves_[i];
+        const HalfPixel& b = other.halves_[i];
+        for (int k = 0; k < 3; ++k) a.own[k].add(b.own[k]), a.splats[k].add(b.splats[k]);
+        a.count += b.count;
+    }
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);
     for (std::size_t i = 0; i < channel_splats_.size(); ++i)

@@ -29,6 +29,7 @@ struct FilmLayout {
     bool aovs = false;
     bool splats = false;             // light paths may add to any pixel (Film::splat)
     bool flare = false;              // and so may ghosts
+    bool halves = false;             // with the picture of every other sample beside that of all, without ghosts
     int bands = 0;                   // of equal width over all wavelengths, kept beside XYZ
     int channels = 0;                // of a sensor, likewise (Film::set_responses)
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
@@ -41,7 +42,7 @@ struct PixelBox {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
-/// 112 bytes per pixel; 192 more with aovs, 96 with splats, 96 with flare, 16 with each band, 16 with each
+/// 112 bytes per pixel; 288 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with each band, 16 with each
 /// channel and as much again if there are splats or flare.
 class Film {
   public:
@@ -65,7 +66,7 @@ class Film {
     /// Values that are not finite: counted as bad, nothing added.
     void add_aov(int x, int y, std::uint32_t sample, const AovSample& aov);
     /// To be called once per camera sample and pixel: the divisor of the mean.
-    void count(int x, int y);
+    void count(int x, int y, std::uint32_t sample = 0);
     /// The same from any thread at any time, as dispersion sends wavelengths to the pixels of other
     /// tiles; a pixel that may be written like this must not be written by add() meanwhile.
     void add_shared(int x, int y, std::uint32_t sample, Vec3f xyz);
@@ -96,8 +97,14 @@ class Film {
     /// Mean CIE XYZ per pixel, float32 rows from the top, size 3*width*height; 0 without
     /// samples.
     std::vector<float> mean_xyz() const;
-    /// The share of it that ghosts brought; Error without a layer of flare.
-    std::vector<float> flare_xyz() const;
+    /// The share of it that light paths or ghosts brought; Error without that layer.
+    std::vector<float> layer_xyz(Layer layer) const;
+    std::vector<float> flare_xyz() const { return layer_xyz(Layer::flare); }
+    /// The picture of the samples with even indices, and that of the others: two that have no sample in common, whose
+    /// difference tells what noise both have. What light paths brought is apart, and ghosts are in neither. 0 without
+    /// samples; Error without halves.
+    enum class Half { even, odd };
+    std::vector<float> half_xyz(Half half, bool by_light_paths = false) const;
     /// Mean radiance of each band, all that was added, size bands*width*height; D65 of luminance 1 has
     /// some 1 in each. Throws Error for a film without bands.
     std::vector<float> mean_bands() const;
@@ -123,9 +130,9 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs", "splats", "flare", "bands", "channels" and "channel_splats" if there are any, so many
+    /// "sums", and "aovs", "splats", "flare", "halves", "bands", "channels" and "channel_splats" if there are any, so many
     /// bytes per pixel (per band or channel).
-    static constexpr std::size_t kSumBytes = 112, kSplatBytes = 96, kBandBytes = 16;
+    static constexpr std::size_t kSumBytes = 112, kSplatBytes = 96, kHalfBytes = 112, kBandBytes = 16;
     static constexpr std::size_t kAovBytes = 16 * (kAovChannels.size() + 1);
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
@@ -144,6 +151,10 @@ class Film {
         std::uint32_t count = 0, bad = 0, first_bad = kNone;
         std::uint32_t lock = 0;   // of add_shared; 0 at rest
     };
+    struct HalfPixel {   // of the samples with even indices
+        ValueSum own[3], splats[3];
+        std::uint32_t count = 0, unused[3] = {};
+    };
     struct AovPixel {
         std::array<ValueSum, kAovChannels.size()> sums;   // in their order
         std::uint32_t passed = 0, hits = 0, object_sample = kNone, object_id = 0;
@@ -153,10 +164,13 @@ class Film {
     std::int64_t find(int x, int y) const;
     /// Those of a pixel's splats; the layout has that layer.
     Sums& sums_of(Layer layer, std::size_t i);
-    /// To a pixel's own sums, or to those of its splats; false if the sample is bad.
-    bool add_to(Sums& sums, Vec3f xyz) const;
+    /// Sums of X, Y, Z that a sample goes to beside the pixel's own, or beside those of its splats; null: none.
+    ValueSum* half(std::size_t i, std::uint32_t sample);
+    ValueSum* half(std::size_t i, std::uint32_t sample, Layer layer);
+    /// To a pixel's own sums, or to those of its splats, and to half of them if there are any; false if the sample is bad.
+    bool add_to(Sums& sums, ValueSum* half, Vec3f xyz) const;
     /// To XYZ and bands. Splats and samples share the sums of bands: under the pixel's lock. False if bad.
-    bool add_light(Sums& sums, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
+    bool add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance);
     void add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const;
     void add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum values) const;
@@ -179,6 +193,7 @@ class Film {
     std::vector<Pixel> pixels_;
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
+    std::vector<HalfPixel> halves_;
     // Locks of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;

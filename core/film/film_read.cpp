@@ -37,13 +37,32 @@ std::vector<float> Film::mean_xyz() const {
     return mean;
 }
 
-std::vector<float> Film::flare_xyz() const {
-    if (!layout_.flare) throw Error("film: this film was made without a layer of flare");
+std::vector<float> Film::layer_xyz(Layer layer) const {
+    const std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
+    if (sums.empty())
+        throw Error(std::string("film: this film was made without a layer of ") +
+                    (layer == Layer::splats ? "light paths" : "flare"));
     std::vector<float> mean;
     mean.reserve(3 * pixels_.size());
     for (std::size_t i = 0; i < pixels_.size(); ++i)
-        for (const ValueSum& sum : flare_[i].xyz)
+        for (const ValueSum& sum : sums[i].xyz)
             mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
+    return mean;
+}
+
+std::vector<float> Film::half_xyz(Half half, bool by_light_paths) const {
+    if (halves_.empty()) throw Error("film: this film was made without halves");
+    std::vector<float> mean(3 * pixels_.size());
+    if (by_light_paths && splats_.empty()) return mean;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const HalfPixel& even = halves_[i];
+        const std::uint32_t n = half == Half::even ? even.count : pixels_[i].count - even.count;
+        const ValueSum* const part = by_light_paths ? even.splats : even.own;
+        const ValueSum* const all = by_light_paths ? splats_[i].xyz : pixels_[i].xyz;
+        for (int k = 0; k < 3 && n; ++k)
+            mean[3 * i + k] =
+                float((half == Half::even ? part[k].value() : all[k].value() - part[k].value()) / n);
+    }
     return mean;
 }
 

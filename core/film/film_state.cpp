@@ -15,6 +15,7 @@ std::vector<std::string> Film::state_parts() const {
     if (layout_.aovs) parts.push_back("aovs");
     if (layout_.splats) parts.push_back("splats");
     if (layout_.flare) parts.push_back("flare");
+    if (layout_.halves) parts.push_back("halves");
     if (layout_.bands) parts.push_back("bands");
     if (layout_.channels) parts.push_back("channels");
     if (!channel_splats_.empty()) parts.push_back("channel_splats");
@@ -23,11 +24,13 @@ std::vector<std::string> Film::state_parts() const {
 
 std::span<const std::byte> Film::state(const std::string& part) const {
     static_assert(sizeof(Pixel) == kSumBytes && sizeof(AovPixel) == kAovBytes &&
-                  sizeof(Sums) == kSplatBytes && sizeof(ValueSum) == kBandBytes);
+                  sizeof(Sums) == kSplatBytes && sizeof(HalfPixel) == kHalfBytes &&
+                  sizeof(ValueSum) == kBandBytes);
     if (part == "sums") return std::as_bytes(std::span(pixels_));
     if (part == "aovs" && layout_.aovs) return std::as_bytes(std::span(aovs_));
     if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
     if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
+    if (part == "halves" && layout_.halves) return std::as_bytes(std::span(halves_));
     if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
     if (part == "channels" && layout_.channels) return std::as_bytes(std::span(channels_));
     if (part == "channel_splats" && !channel_splats_.empty())

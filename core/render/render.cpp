@@ -94,7 +94,7 @@ class CameraPass {
         std::size_t passed = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const Sample& sample = work.samples[i];
-            film_.count(sample.pixel.x, sample.pixel.y);
+            film_.count(sample.pixel.x, sample.pixel.y, sample.index);
             if (work.rays[i].weight > 0) draw_sample(work, i, passed++);
         }
         work.counters.camera_rays += n;
@@ -158,7 +158,8 @@ class CameraPass {
 
     void add_aov(const Sample& sample, float time, const FirstHit& hit) const {
         AovSample aov{.hit = hit.found, .position = hit.position, .normal = hit.normal, .albedo = hit.albedo,
-                      .object_id = hit.found ? hit.instance + 1 : 0, .alpha = hit.found ? 1.f : 0.f};
+                      .object_id = hit.found ? hit.instance + 1 : 0, .alpha = hit.found ? 1.f : 0.f,
+                      .seen_albedo = hit.seen_albedo, .seen_normal = hit.seen_normal};
         if (hit.found) {
             const Affine3d camera = camera_.world_from_camera.at(time);
             aov.depth = float(-dot(to_double(hit.position) - camera.origin, camera.z));

@@ -34,6 +34,7 @@ struct Walk {
     PathMis* bounces = nullptr;        // while light paths may find what comes next
     bool bent_alone = false;           // it goes the hero's way, behind a dispersive interface
     int splits = 0;                    // interfaces at which both ways were taken
+    bool seen = false;                 // a surface that is not smooth was met: what the lens sees
 };
 
 constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to way: more than the longest path has
@@ -174,7 +175,7 @@ class Path {
     Spectrum sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const;
     float emission_weight(float light_pdf) const;
     float bounced_share(std::int64_t light, float distance, float light_pdf) const;
-    void record_first_hit(const Material& material, const SurfaceHit& hit);
+    void record_first_hit(const Material& material, const SurfaceHit& hit, bool smooth);
 
     const Scene& scene_;
     const PathSettings& settings_;
@@ -236,7 +237,7 @@ bool Path::scatter(const Material& material, SurfaceHit& hit, int vertex) {
     const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths_);
     std::optional<PathMis::Vertex> both;
     if (walk_.bounces) both.emplace(scene_, material, bare, wavelengths_, bsdf);
-    if (first_hit_ && !first_hit_->found) record_first_hit(material, hit);
+    if (first_hit_ && !walk_.seen) record_first_hit(material, hit, is_specular(bsdf));
     return std::visit(
         [&](const auto& kind) { return leave(kind, hit, vertex, both ? &*both : nullptr); }, bsdf);
 }
@@ -376,8 +377,17 @@ Spectrum Path::surface_emission(const Material& material, const SurfaceHit& hit)
     return wavelengths_.emission(luminance) * (share * emission_weight(pdf));
 }
 
-void Path::record_first_hit(const Material& material, const SurfaceHit& hit) {
-    *first_hit_ = {true, hit.position, hit.ns, albedo(material, scene_.textures(), hit), hit.instance};
+/// The first surface; and on the way on by mirrors and glass alone, the first that is not smooth.
+void Path::record_first_hit(const Material& material, const SurfaceHit& hit, bool smooth) {
+    FirstHit& first = *first_hit_;
+    if (first.found && smooth) return;
+    const Rgb color = albedo(material, scene_.textures(), hit);
+    if (!first.found) first = {true, hit.position, hit.ns, color, hit.instance, {}, {}};
+    if (smooth) return;
+    const float share = walk_.throughput.average();
+    first.seen_albedo = first.seen_albedo + color * share;
+    first.seen_normal = first.seen_normal + hit.ns * share;
+    walk_.seen = true;
 }
 
 }  // namespace

@@ -23,11 +23,14 @@ struct Radiance {
     Spectrum sum() const { return shared + hero; }
 };
 
-/// The first surface on the way.
+/// The first surface on the way, and guides for a denoiser: albedo and normal of what is seen in it. Mirrors and smooth
+/// glass show what lies behind them, each way with the share of light that takes it; nothing is 0. So the documentation
+/// of Open Image Denoise (Albedos, Normals) recommends it.
 struct FirstHit {
     bool found = false;
     Vec3f position, normal, albedo;   // m, world; unit
     std::uint32_t instance = 0;
+    Vec3f seen_albedo, seen_normal;   // of the first surface that is not smooth, times that share
 };
 
 class FirstRay;   // first_ray.h

@@ -20,7 +20,7 @@ import daguerre
 from daguerre import _core
 from daguerre.cli import console, main
 from daguerre.rendering.schedule import pass_size
-from tests.support import fake_session
+from tests.support import fake_denoiser, fake_session
 
 SMALL = ["--res", "8x6"]
 
@@ -554,38 +554,38 @@ def test_denoising_without_the_extra_says_how_to_get_it(
 
 
 def test_denoising_needs_the_picture_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A stand-in for the library checks what it is given: its own rules, from its documentation."""
-    import types
-
-    def stand_in(color, albedo=None, normal=None, *, hdr=False):  # type: ignore[no-untyped-def]
-        assert hdr
-        for image in (color, albedo, normal):
-            assert image.dtype == np.float32
-            assert image.shape == (6, 8, 3)
-        assert color.min() >= 0
-        assert albedo.max() <= 1
-        return color * 0 + 0.5
-
-    monkeypatch.setitem(sys.modules, "pyoidn", types.SimpleNamespace(denoise=stand_in))  # type: ignore[arg-type]
-    monkeypatch.setattr("daguerre.rendering.denoise.find_spec", lambda name: True)
-    monkeypatch.setattr("daguerre.rendering.denoise.version", lambda name: "2.5.1")
+    library = fake_denoiser.install(monkeypatch.setitem, monkeypatch.setattr)
     assert main(["render", "s.glb", "-o", "a.exr", "--denoise", "--spp", "2", *SMALL]) == 0
+    assert [sorted(images) for images in library.runs] == [
+        ["albedo"],
+        ["normal"],
+        ["albedo", "color", "normal"],
+    ]
     planes = pixels(tmp_path / "a.exr")
     assert (planes["R"] == 0.5).all()
-    assert "albedo.R" not in planes
+    assert not [name for name in planes if "albedo" in name]
     with OpenEXR.File(str(tmp_path / "a.exr"), header_only=True) as file:
-        assert file.header()["daguerre:denoised"] == "pyoidn 2.5.1"
+        assert file.header()["daguerre:denoised"] == "mitsuba-oidn 0.1.2"
+        assert "daguerre:denoised_noise" not in file.header()
 
 
-def test_real_denoiser_lowers_the_error() -> None:
-    pytest.importorskip("pyoidn")
-    from daguerre.frame.frame import Frame
-    from daguerre.rendering.denoise import denoise
+def test_the_picture_before_denoising_can_be_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake_denoiser.install(monkeypatch.setitem, monkeypatch.setattr)
+    run = ["render", "s.glb", "-o", "a.exr", "--spp", "2", *SMALL]
+    assert main([*run, "--denoise", "--noisy", "b.exr"]) == 0
+    assert "a.exr, b.exr" in capsys.readouterr().err
+    assert main([*run[:3], "c.exr", *run[4:]]) == 0
+    noisy, plain = pixels(tmp_path / "b.exr"), pixels(tmp_path / "c.exr")
+    assert (pixels(tmp_path / "a.exr")["R"] == 0.5).all()
+    np.testing.assert_array_equal(noisy["R"], plain["R"])
+    assert set(noisy) == set(plain)
 
-    clean = np.full((64, 64, 3), (0.2, 0.5, 3.0), np.float32)
-    noise = np.random.default_rng(1).exponential(1, (64, 64, 1)).astype(np.float32)
-    frame = denoise(Frame(clean * noise))
-    assert ((frame.rgb - clean) ** 2).mean() < 0.05 * ((clean * noise - clean) ** 2).mean()
+
+def test_a_noisy_picture_needs_a_clean_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["render", "s.glb", "-o", "a.exr", "--noisy", "b.exr", *SMALL]) == 2
+    assert "--noisy: wanted --denoise too" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])

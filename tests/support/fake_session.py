@@ -103,7 +103,8 @@ class FakeSession:
         aovs = {}
         if self.settings.film.aovs:
             names = ["depth.Z", *(f"{g}.{c}" for g in "PN" for c in "XYZ")]
-            aovs = dict.fromkeys([*names, "albedo.R", "albedo.G", "albedo.B"], grey)
+            names += [f"{group}.{c}" for group in ("albedo", "denoise_albedo") for c in "RGB"]
+            aovs = dict.fromkeys([*names, *(f"denoise_normal.{c}" for c in "XYZ")], grey)
             aovs["object_id"] = np.full(self.shape, 4_000_000_000, np.uint32)
         return Frame(
             rgb=np.stack([grey] * 3, axis=2),

@@ -15,6 +15,7 @@ class Source(Enum):
     """Producers of channels."""
 
     FILM = "means over the samples"
+    GUIDES = "means over the samples, for a denoiser"
     TRUTH = "ground truth"
     MEANS = "ground truth of means alone"
     MOTION = "ground truth of two moments"
@@ -59,6 +60,8 @@ TABLE = (
     Aov("P", "XYZ", "m", (Source.FILM, Source.TRUTH), ("position",)),
     Aov("N", "XYZ", "", (Source.FILM, Source.TRUTH), ("normal",)),
     Aov("albedo", "RGB", "", (Source.FILM,)),
+    Aov("denoise_albedo", "RGB", "", (Source.GUIDES,)),
+    Aov("denoise_normal", "XYZ", "", (Source.GUIDES,)),
     Aov("object_id", "", "", (Source.FILM, Source.TRUTH), ("id",)),
     Aov("distance", "Z", "m", (Source.TRUTH,)),
     Aov("material_id", "", "", (Source.TRUTH,)),
@@ -91,7 +94,7 @@ def names_of(*sources: Source) -> tuple[str, ...]:
 #: Every row, by each name that it may be asked for.
 BY_NAME = {name: row for row in TABLE for name in (row.name, *row.aliases)}
 #: Names in files: a film's channels, those of ground truth at one moment, and those of means.
-FILM_CHANNELS = channels_of(Source.FILM)
+FILM_CHANNELS = channels_of(Source.FILM, Source.GUIDES)
 TRUTH_CHANNELS = channels_of(Source.TRUTH)
 MEANS_CHANNELS = channels_of(Source.TRUTH, Source.MEANS)
 #: Groups that only ground truth has, so asking for one asks for it.

@@ -36,6 +36,9 @@ class Frame(Value):
         alpha: Share of the samples that hit something, shape (H, W); default: 1.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
+        splats: Light that light paths brought to ``rgb``, shape (H, W, 3), beside ``aovs``.
+        halves: Pictures of the samples with even and with odd indices, each in two parts that add
+            up: by the camera, and by light paths; shape (H, W, 2, 2, 3), if they were kept.
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
@@ -58,6 +61,8 @@ class Frame(Value):
     flare: NDArray[np.float32] | None = None
     channels: NDArray[np.float32] | None = None
     bands: NDArray[np.float32] | None = None
+    splats: NDArray[np.float32] | None = None
+    halves: NDArray[np.float32] | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 

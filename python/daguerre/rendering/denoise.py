@@ -1,8 +1,12 @@
-"""Noise removal by Intel Open Image Denoise, guided by albedo and normal. An extra."""
+"""Noise removal by Intel Open Image Denoise, guided by what the lens sees. An extra.
+
+``docs/denoise.md`` says what it is given and why, what it costs in detail, and how its error is
+known.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -14,8 +18,16 @@ from numpy.typing import NDArray
 from daguerre.color.spectra import xyz_of
 from daguerre.errors import InputError, UsageError
 
+from .adaptive import DARK
+
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
+
+Image = NDArray[np.float32]
+
+PACKAGE, MODULE = "mitsuba-oidn", "mitsuba_oidn"
+#: Squares of pixels over whose means light is compared that denoising may have moved, px.
+BLOCK = 8
 
 
 def check_available() -> None:
@@ -24,9 +36,9 @@ def check_available() -> None:
     Raises:
         UsageError: It is not installed.
     """
-    if find_spec("pyoidn") is None:
+    if find_spec(MODULE) is None:
         raise UsageError(
-            "denoise: wanted the package pyoidn, which is not installed; "
+            f"denoise: wanted the package {PACKAGE}, which is not installed; "
             'install it with: pip install "daguerre[denoise]"'
         )
 
@@ -34,36 +46,171 @@ def check_available() -> None:
 def denoise(frame: Frame) -> Frame:
     """A copy of the frame with a clean ``rgb``; the other channels stay as they are.
 
-    It has no channels of a sensor and no bands: noisy ones beside a clean picture would be of no
-    use. A sensor is fitted from the colours.
+    Ghosts and scattered light of the lens stay as they were drawn: the guides know nothing of
+    them. The frame has no channels of a sensor and no bands: noisy ones beside a clean picture
+    would be of no use. A sensor is fitted from the colours.
 
     The denoiser wants colours of at least 0, so negative ones (outside Rec.709) become 0.
+
+    The metadata say ``denoised``, by what; and, if the frame has halves, ``denoised_noise``: the
+    relative error that is left, by ``error_left``; ``noise_of`` then says that a wanted noise
+    counted on it.
 
     Raises:
         UsageError: The denoiser is not installed.
         InputError: It failed.
     """
     check_available()
-    pyoidn: Any = import_module("pyoidn")
-    color = np.ascontiguousarray(np.maximum(np.nan_to_num(frame.rgb), 0), np.float32)
-    albedo, normal = _group(frame, "albedo", "RGB"), _group(frame, "N", "XYZ")
-    if albedo is not None:
-        albedo = np.clip(albedo, 0, 1)
-    if normal is not None:
-        normal = np.clip(normal, -1, 1)
-    try:
-        # A normal alone is not accepted by the library; it guides only beside an albedo.
-        clean = pyoidn.denoise(
-            color, albedo=albedo, normal=normal if albedo is not None else None, hdr=True
+    cleaner = Cleaner.of(frame)
+    scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
+    clean = cleaner(scene)
+    facts: dict[str, Any] = {"denoised": f"{PACKAGE} {version(PACKAGE)}"}
+    if (left := _error_left(frame, cleaner, scene, clean)) is not None:
+        facts["denoised_noise"] = left
+        if "noise" in frame.metadata:
+            facts["noise_of"] = "denoised"
+    rgb = clean if frame.flare is None else clean + np.asarray(frame.flare, np.float32)
+    return replace(
+        frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None,
+        metadata={**frame.metadata, **facts},
+    )  # fmt: skip
+
+
+def noise_after(frame: Frame) -> float | None:
+    """The relative error that denoising this frame would leave; None: it cannot be known."""
+    cleaner = Cleaner.of(frame)
+    scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
+    return _error_left(frame, cleaner, scene, cleaner(scene))
+
+
+@dataclass(frozen=True)
+class Cleaner:
+    """The denoiser of a frame: takes pictures (H, W, 3) of its scene.
+
+    Light of light paths is cleaned by itself: their discs of lamps out of focus have edges that no
+    guide knows, over a scene that has other noise.
+
+    Attributes:
+        guides: Albedo and normal, without noise; None: there are none.
+        splats: Light that light paths brought; None: there is none, or it is not known.
+    """
+
+    guides: tuple[Image, Image] | None = None
+    splats: Image | None = None
+
+    @classmethod
+    def of(cls, frame: Frame) -> Cleaner:
+        """The denoiser of a frame, whose guides are made clean once."""
+        albedo, normal = (
+            _group(frame, "denoise_albedo", "RGB"),
+            _group(frame, "denoise_normal", "XYZ"),
         )
-    except (RuntimeError, OSError) as error:
+        splats = None if frame.splats is None else np.maximum(_finite(frame.splats), 0)
+        if albedo is None or normal is None:
+            return cls(splats=splats)
+        guides = (
+            _run(albedo=np.clip(albedo, 0, 1)),
+            _run(normal=np.clip(normal, -1, 1)),
+        )
+        return cls(guides, splats)
+
+    def __call__(self, scene: Image) -> Image:
+        """The scene without noise."""
+        return self._clean(_without(scene, self.splats), self.splats)
+
+    def half(self, parts: Image) -> Image:
+        """A picture of half the samples without noise, from what camera and light paths brought.
+
+        Args:
+            parts: Shape (H, W, 2, 3).
+        """
+        by_camera, by_light = (_without(parts[:, :, k], None) for k in (0, 1))
+        return self._clean(by_camera, None if self.splats is None else by_light)
+
+    def _clean(self, by_camera: Image, by_light: Image | None) -> Image:
+        images: dict[str, Image] = {"color": by_camera}
+        if self.guides is not None:
+            images |= dict(zip(("albedo", "normal"), self.guides, strict=True))
+        clean = _run(**images)
+        return clean if by_light is None else clean + _run(color=by_light)
+
+
+def _run(**images: Image) -> Image:
+    """Filters the picture, by guides that are clean, or a guide alone."""
+    library: Any = import_module(MODULE)
+    given = {name: np.ascontiguousarray(image, np.float32) for name, image in images.items()}
+    made = np.empty_like(next(iter(given.values())))
+    try:
+        # The processor has the same bits for any number of threads; a graphics card has others.
+        run = library.Device(library.DeviceType.CPU).new_filter("RT")
+        for name, image in (*given.items(), ("output", made)):
+            run.set_image(name, image)
+        # The largest network is for the picture: guides are nearly clean.
+        color = "color" in given
+        run.quality = library.Quality.High if color else library.Quality.Balanced
+        run.hdr = color
+        run.clean_aux = len(given) > 1
+        run.execute()
+    except (RuntimeError, OSError, library.Error) as error:
         raise InputError(f"denoise: Open Image Denoise failed: {error}") from error
-    metadata = {**frame.metadata, "denoised": f"pyoidn {version('pyoidn')}"}
-    rgb = np.asarray(clean, np.float32)
-    return replace(frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None, metadata=metadata)
+    return made
 
 
-def _group(frame: Frame, name: str, parts: str) -> NDArray[np.float32] | None:
+def _error_left(frame: Frame, cleaner: Cleaner, scene: Image, clean: Image) -> float | None:
+    # Ghosts keep their own noise, and diffraction comes after the halves.
+    if frame.halves is None or frame.flare is not None or "diffraction" in frame.metadata:
+        return None
+    even, odd = (cleaner.half(frame.halves[:, :, k]) for k in (0, 1))
+    variance = np.zeros_like(scene) if frame.variance is None else frame.variance
+    return error_left(even, odd, clean - scene, variance)
+
+
+def error_left(even: Image, odd: Image, moved: Image, variance: Image) -> float:
+    """The relative error of a denoised picture, as far as its own samples tell.
+
+    Like ``noise`` of a frame: the root mean square over pixels and channels of
+    error / sqrt(value^2 + 0.01). It has two parts:
+
+    - noise that is left: two pictures that have no sample in common, each denoised, differ by
+      twice the error of their mean, whatever the noise is like;
+    - light that was moved further than ``BLOCK`` pixels: means of squares of pixels before and
+      after, less what noise of the picture before explains.
+
+    It cannot know of smaller detail that the filter takes, nor of light that no sample has met.
+    The value is the smaller of the two, so that a spark in one of them does not hide its own error.
+
+    Args:
+        even: Denoised picture of a half of the samples, (H, W, 3).
+        odd: That of the others.
+        moved: Denoised picture of all less the noisy one.
+        variance: Variance of the noisy one.
+    """
+    value = np.minimum(even, odd).astype(np.float64)
+    weight = 1 / (value**2 + DARK)
+    left = float(((even - odd).astype(np.float64) ** 2 * weight).mean()) / 4
+    offset = _blocks(moved * np.sqrt(weight)) ** 2 - _blocks(variance * weight) / BLOCK**2
+    return float(np.sqrt(left + max(float(offset.mean()), 0)))
+
+
+def _blocks(image: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+    """Means over squares of pixels; what is left at the edges is left out, unless it is all."""
+    height, width = (max(side // BLOCK, 1) for side in image.shape[:2])
+    rows, columns = (min(side, BLOCK) for side in image.shape[:2])
+    cut = image[: height * rows, : width * columns]
+    return np.asarray(cut.reshape(height, rows, width, columns, -1).mean((1, 3)))
+
+
+def _without(image: Image, layer: Image | None) -> Image:
+    """A picture without a layer of it, at least 0."""
+    rest = image if layer is None else image - layer
+    return np.ascontiguousarray(np.maximum(_finite(rest), 0), np.float32)
+
+
+def _finite(image: Image) -> Image:
+    return np.asarray(np.nan_to_num(image), np.float32)
+
+
+def _group(frame: Frame, name: str, parts: str) -> Image | None:
     planes = [frame.aovs.get(f"{name}.{part}") for part in parts]
     if any(plane is None for plane in planes):
         return None

@@ -72,9 +72,17 @@ def frame_of(
         metadata=metadata,
         bad_samples=(int(film.bad_sample_count), list(film.bad_samples)),
         flare=film.flare_rgb() if "flare" in parts else None,
+        splats=film.splats_rgb() if aovs and "splats" in parts else None,
+        halves=_halves(film) if "halves" in parts else None,
         channels=channels,
         bands=bands,
     )
+
+
+def _halves(film: Any) -> NDArray[np.float32]:
+    """The pictures of even and odd samples, by the camera and by light paths, (H, W, 2, 2, 3)."""
+    halves = [[film.half_rgb(odd, splats) for splats in (False, True)] for odd in (False, True)]
+    return np.stack([np.stack(half, axis=2) for half in halves], axis=2)
 
 
 def _plane(film: Any, name: str) -> NDArray[Any]:

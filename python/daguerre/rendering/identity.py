@@ -118,6 +118,8 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
         out["pupils"] = _hash_json(one.pupils)
     if one.sensor is not None:
         out["sensor"] = one.sensor.hash
+    if settings.film.halves:
+        out["halves"] = True
     if settings.film.bands:
         out["bands"] = settings.film.bands
     if one.overscan:

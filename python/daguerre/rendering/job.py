@@ -157,7 +157,8 @@ class Drawing:
         self.picture, self.output, self.session = picture, picture.output, session
         self.tell, self.control, self.setup_s = job.reporter, job.control, setup_s
         self.checkpoint = Checkpoint(self.output.checkpoint, job.interval_s)
-        work = work_of(session, picture.wanted, picture.settings.sampling.noise)
+        noise = picture.settings.sampling.noise
+        work = work_of(session, picture.wanted, noise, self.output.judge)
         self.loop = Loop(session, work, self.checkpoint, self.tell, self.control, self._snapshot)
 
     def run(self, *, resume: bool) -> bool:
@@ -177,6 +178,7 @@ class Drawing:
         try:
             frame = self.output.frame(self.session, self.loop.work.done(), self.tell)
             self.output.write(self.session, frame, self.output.paths, self.tell)
+            self.output.write_noisy(self.session, self.loop.work.done(), self.output.noisy)
         except BaseException:
             # Hours of work must not die with a full disk, or with a channel that cannot be made.
             if not self.checkpoint.exists:

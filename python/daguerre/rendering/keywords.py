@@ -14,6 +14,7 @@ class ViewKeywords(TypedDict, total=False):
     seed: int
     filter: str
     aovs: bool
+    halves: bool
     gt_time: str | None
     gt_lens: str
     gt_rays: int | None

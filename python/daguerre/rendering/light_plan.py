@@ -90,6 +90,7 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         aovs=film.aovs,
         splats=plan.followed,
         flare=plan.flare > 0 or plan.scatter > 0,
+        halves=film.halves,
         bands=film.bands if waves is None else waves.bands,
         channels=0 if curves is None else len(curves),
     )

@@ -16,6 +16,7 @@ from .reporter import Reporter
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
+    from .rounds import Judge
     from .session import Session
 
 (DISPARITY,) = names_of(Source.STEREO)
@@ -30,6 +31,7 @@ class Output:
         paths: Files to write, .exr, .png and so on; of a bracket each stands for several.
         aovs: Groups of channels to keep, see ``daguerre.frame.aovs``.
         denoise: Whether the picture is denoised.
+        noisy: Files of the picture before that.
         tone: Curve of pictures that are not developed.
         photograph: How pictures are exposed and developed.
         is_pass: Whether an .exr keeps the sums, so that it can be merged.
@@ -40,6 +42,7 @@ class Output:
     paths: tuple[Path, ...] = ()
     aovs: tuple[str, ...] = ()
     denoise: bool = False
+    noisy: tuple[Path, ...] = ()
     tone: str = "srgb"
     photograph: Photograph = field(default_factory=Photograph)
     is_pass: bool = False
@@ -54,7 +57,8 @@ class Output:
     @property
     def files(self) -> tuple[Path, ...]:
         """All that is written: of a bracket each exposure."""
-        return tuple(file for path in self.paths for file, _ in self.photograph.files(path))
+        paths = (*self.paths, *self.noisy)
+        return tuple(file for path in paths for file, _ in self.photograph.files(path))
 
     @property
     def written(self) -> tuple[Path, ...]:
@@ -63,8 +67,9 @@ class Output:
 
     def renamed(self, name: Callable[[Path], Path]) -> Output:
         """The same into other files."""
-        paths, beside = (tuple(map(name, given)) for given in (self.paths, self.beside))
-        return replace(self, paths=paths, beside=beside)
+        given = (self.paths, self.noisy, self.beside)
+        paths, noisy, beside = (tuple(map(name, files)) for files in given)
+        return replace(self, paths=paths, noisy=noisy, beside=beside)
 
     @property
     def checkpoint(self) -> Path:
@@ -72,6 +77,15 @@ class Output:
         if not self.paths:
             raise OutputError("output: wanted a file, got none")
         return self.paths[0].with_suffix(".checkpoint.exr")
+
+    @property
+    def judge(self) -> Judge | None:
+        """The error that a denoised picture will have, on which ``noise`` counts; None: its own."""
+        if not self.denoise:
+            return None
+        from .denoise import noise_after
+
+        return lambda session: noise_after(session.frame(truth=False))
 
     def check(self, metadata: dict[str, Any], tell: Reporter) -> None:
         """Refuses a camera that cannot give what is asked for, before anything is drawn."""
@@ -112,6 +126,12 @@ class Output:
             truth = frame.exposure_truth(self.photograph.sensor)
             frame = replace(frame, aovs=frame.aovs | truth)
         return only(frame, self.aovs)
+
+    def write_noisy(self, session: Session, samples: float, paths: Sequence[Path]) -> None:
+        """Writes the picture before it was denoised."""
+        if paths:
+            plain, silent = replace(self, denoise=False), Reporter()
+            plain.write(session, plain.frame(session, samples, silent), paths, silent)
 
     def write(self, session: Session, frame: Frame, paths: Sequence[Path], tell: Reporter) -> None:
         """Writes the picture to these files."""

@@ -101,7 +101,8 @@ SAMPLING_ROWS = (
         normal=lambda value, where: number(value, where, high=1.0, above=0.0),
         flags=("--noise",), metavar="X", panel=SAMPLING,
         more="0.05 is grainy, 0.01 clean: the root mean square over pixels and channels of "
-        "standard error / sqrt(value^2 + 0.01). Pixels then get as many samples as each needs",
+        "standard error / sqrt(value^2 + 0.01). Pixels then get as many samples as each needs. "
+        "Of a denoised picture it is the error that is left",
     ),
     Setting(
         "seed", "Seed of the random numbers", default=0, kind="whole", low=0, high=MAX_SEED,
@@ -137,6 +138,11 @@ FILM_ROWS = (
     Setting(
         "aovs", "Whether to keep depth, normal, position, albedo and object id", default=False,
         kind="flag", normal=_switch("True or False (all of them or none)"),
+    ),
+    Setting(
+        "halves", "Whether to keep the picture of every other sample beside that of all, by which "
+        "a denoised picture knows its error", default=False, kind="flag",
+        normal=_switch("True or False"),
     ),
     Setting(
         "bands", f"Number of wavelength bands to keep, {LEAST_BANDS} to {MOST_BANDS}, from which "

@@ -46,7 +46,9 @@ if TYPE_CHECKING:
 State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
 ROUND = "round"
-STATE_PARTS = (SUMS, "aovs", "splats", "flare", "bands", "channels", "channel_splats", ROUND)
+STATE_PARTS = (
+    SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", ROUND,
+)  # fmt: skip
 ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from .session import Session
 
 
+#: Relative error that the picture of a session will have; None: it cannot know.
+Judge = Callable[["Session"], float | None]
+
+
 def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[Round]:
     """Draws round after round, and yields each, until the noise or ``spp`` is reached."""
     noise, ceiling = check_noise(noise, spp)
@@ -24,8 +28,14 @@ def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[R
         yield session.round
 
 
-def plan_round(session: Session, noise: float, ceiling: int) -> bool:
+def plan_round(session: Session, noise: float, ceiling: int, judge: Judge | None = None) -> bool:
     """Decides what is drawn next, unless a round is under way.
+
+    Args:
+        session: Session that draws.
+        noise: Wanted relative error.
+        ceiling: Most samples of a pixel.
+        judge: Says what error the picture will have, where something comes after the samples.
 
     Returns:
         False if nothing: the noise is reached, or no pixel may have more.
@@ -42,6 +52,8 @@ def plan_round(session: Session, noise: float, ceiling: int) -> bool:
         return True
     variance = session.relative_variance(DARK)
     reached = noise_of(variance, counts)
+    if judge is not None and reached > noise:
+        reached = min(reached, judge(session) or reached)
     more, expected = np.zeros_like(counts), float(counts.mean())
     if reached > noise:
         more, expected = next_counts(variance, counts, (noise / reached) ** 2, ceiling)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from .adaptive import Round
     from .passes import Pass
+    from .rounds import Judge
     from .session import Session
 
 
@@ -95,8 +96,10 @@ class Range:
 class Rounds:
     """Adaptive sampling down to a noise, with at most ``ceiling`` samples of any pixel."""
 
-    def __init__(self, session: Session, noise: float, ceiling: int) -> None:
-        self.session, self.noise, self.ceiling = session, noise, ceiling
+    def __init__(
+        self, session: Session, noise: float, ceiling: int, judge: Judge | None = None
+    ) -> None:
+        self.session, self.noise, self.ceiling, self.judge = session, noise, ceiling, judge
         self._until = 0
 
     def check(self, saved: Pass) -> None:
@@ -110,7 +113,7 @@ class Rounds:
         """A part of the round under way, or of the next one."""
         from . import adaptive
 
-        if not rounds.plan_round(self.session, self.noise, self.ceiling):
+        if not rounds.plan_round(self.session, self.noise, self.ceiling, self.judge):
             return 0.0
         now = self._round
         part = float(now.count.mean()) / adaptive.PARTS
@@ -146,9 +149,11 @@ class Rounds:
         return self.session.round
 
 
-def work_of(session: Session, wanted: tuple[int, int], noise: float | None) -> Work:
+def work_of(
+    session: Session, wanted: tuple[int, int], noise: float | None, judge: Judge | None = None
+) -> Work:
     """Samples [begin, end) of each pixel, or rounds until a noise with ``end`` of each at most."""
-    return Range(session, wanted) if noise is None else Rounds(session, noise, wanted[1])
+    return Range(session, wanted) if noise is None else Rounds(session, noise, wanted[1], judge)
 
 
 def pass_size(missing: tuple[int, int], limit: float) -> int:

@@ -54,6 +54,7 @@ class Film(_Group):
     crop: tuple[int, int, int, int] | None = DEFAULT["crop"]
     overscan: OverscanLike | None = DEFAULT["overscan"]
     aovs: bool = DEFAULT["aovs"]
+    halves: bool = DEFAULT["halves"]
     bands: int = DEFAULT["bands"]
 
 
@@ -106,7 +107,7 @@ class RenderSettings:
 
     Attributes:
         sampling: Samples: spp, noise, seed, filter.
-        film: Pixels: resolution, crop, overscan, aovs, bands.
+        film: Pixels: resolution, crop, overscan, aovs, halves, bands.
         light: Light transport: max_depth, light_paths, flare, scatter, diffraction and more.
         truth: Ground truth: gt_time, gt_lens, gt_rays, motion.
         reference: Switches for checks: strategy, technique, dispersion.

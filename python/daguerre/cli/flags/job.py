@@ -109,6 +109,15 @@ class JobFlags:
     denoise: Annotated[
         bool, option("--denoise", help="Denoise the picture. Extra `denoise`.", panel=OUTPUT)
     ] = False
+    noisy: Annotated[
+        list[Path] | None,
+        option(
+            "--noisy",
+            metavar="FILE",
+            help="File for the picture before --denoise; repeatable.",
+            panel=OUTPUT,
+        ),
+    ] = None
     frames: Annotated[
         Text,
         option(

@@ -32,6 +32,10 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
         raise UsageError("-o: wanted a file for the picture, since maps alone draw nothing")
     if flags.samples and ".exr" not in formats:
         raise UsageError("--samples: a pass keeps its sums in an .exr; got none with -o")
+    if flags.noisy and not flags.denoise:
+        raise UsageError("--noisy: wanted --denoise too; without it -o has that picture")
+    for path in flags.noisy or ():
+        check_format(path, (".dng",))
     if flags.denoise:
         from daguerre.rendering.denoise import check_available
 
@@ -73,6 +77,7 @@ def settings_of(
     more: dict[str, Any] = {
         "resolution": size,
         "aovs": bool(groups) or flags.denoise,
+        "halves": flags.denoise and "noise" in rows.given(),
         "motion": any(name in groups for name in names_of(Source.MOTION)),
     }
     if any(name in groups for name in (*EXACT_ONLY, DISPARITY)):

@@ -57,8 +57,9 @@ def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Camer
     checks.check_truth(groups, rows, maps)
     numbers = frame_numbers("--frames", flags.frames) if flags.frames is not None else None
     maps.check()
-    check_names([*flags.paths, *maps.files], numbers)
-    check_places([*flags.paths, *maps.files], views)
+    files = [*flags.paths, *(flags.noisy or ()), *maps.files]
+    check_names(files, numbers)
+    check_places(files, views)
     output = replace(_output(flags, groups, settings[0], cameras), beside=tuple(maps.files))
     made = [
         Picture(view.view(cameras), how, _output_of(output, view, how), samples)
@@ -82,7 +83,8 @@ def _output(
     if photograph.develops and flags.tone != "srgb":
         raise UsageError(f"--tone {flags.tone}: these pictures are developed; wanted --look")
     is_pass = flags.samples is not None
-    return Output(flags.paths, tuple(groups), flags.denoise, flags.tone, photograph, is_pass)
+    noisy = tuple(flags.noisy or ())
+    return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)
 
 
 def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:

@@ -40,12 +40,14 @@ VECTORS = (
 MATRICES = ("worldToCamera", "worldToNDC")
 RATIONALS = ("captureRate",)
 OWN_NUMBERS = (
-    "samples", "samples_min", "samples_max", "noise", "seed", "h0", "luminance_exposure",
-    "exposure_compensation", "time", "bad_samples", "motion_missing", "gt_rays", "bands",
+    "samples", "samples_min", "samples_max", "noise", "denoised_noise", "seed", "h0",
+    "luminance_exposure", "exposure_compensation", "time", "bad_samples", "motion_missing",
+    "gt_rays", "bands",
 )  # fmt: skip
 OWN_STRINGS = (
-    "version", "scene_hash", "filter", "denoised", "gt_time", "gt_lens", "light_paths", "flare",
-    "scatter", "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan",
+    "version", "scene_hash", "filter", "denoised", "noise_of", "gt_time", "gt_lens",
+    "light_paths", "flare", "scatter",
+    "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
 
