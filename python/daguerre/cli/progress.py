@@ -43,7 +43,7 @@ class Lines(Silent):
     period_s = 10.0
 
     def __init__(self, which: Which) -> None:
-        self._which = _named(which)
+        self._which = named(which)
         self._next = time.monotonic() + self.period_s
 
     def update(self, status: AnyStatus) -> None:
@@ -83,7 +83,7 @@ class Bar(Silent):
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
 
-        self._which = _named(which)
+        self._which = named(which)
         screen = Console(stderr=True)
         self._progress = Progress(
             TextColumn("[progress.percentage]{task.percentage:>3.0f}%"),
@@ -133,7 +133,7 @@ def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:
     return Bar(one) if sys.stderr.isatty() else Lines(one)
 
 
-def _named(which: Which) -> str:
+def named(which: Which) -> str:
     """Such as ``frame 7, camera left:``, or nothing."""
     return ", ".join(f"{name} {value}" for name, value in which.items()) + ": " * bool(which)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
+from daguerre.errors import DaguerreError
 from daguerre.scene.scene import Scene
 
 from .checkpoint import INTERVAL_S, Checkpoint
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
 
     from .session import Session
+
+#: Share of the time that previews may take.
+PREVIEW_SHARE = 0.1
 
 #: Called with a picture and the session that draws it.
 Hook = Callable[[Picture, "Session"], None]
@@ -139,7 +143,22 @@ class Job:
         files = all(path.exists() for path in picture.output.written)
         return files and not one and not picture.output.checkpoint.exists()
 
+    def _first_look(self, picture: Picture) -> None:
+        """Shows a coarse picture before the set-up of the fine one."""
+        from .coarse import coarse
+
+        scene, camera = self.scene_of(picture), self.camera_of(picture)
+        try:
+            frame, self._built = coarse(scene, camera, picture.settings, self._built)
+        except DaguerreError:  # the session will say it, if it is one for the picture, too
+            return
+        output = picture.output
+        shown = output.photograph.metered(frame, output.paths, Reporter())
+        self.reporter.preview(output.look(shown))
+
     def _render(self, picture: Picture, began: float, *, resume: bool) -> bool:
+        if self.reporter.previews and not resume:
+            self._first_look(picture)
         session = self.open(picture)
         self.opened(picture, session)
         setup_s = time.monotonic() - began
@@ -159,7 +178,10 @@ class Drawing:
         self.checkpoint = Checkpoint(self.output.checkpoint, job.interval_s)
         noise = picture.settings.sampling.noise
         work = work_of(session, picture.wanted, noise, self.output.judge)
-        self.loop = Loop(session, work, self.checkpoint, self.tell, self.control, self._snapshot)
+        self.loop = Loop(
+            session, work, self.checkpoint, self.tell, self.control, self._snapshot, self._preview
+        )
+        self._preview_took = self._previewed_at = 0.0
 
     def run(self, *, resume: bool) -> bool:
         """Draws and writes; False if the control stopped it."""
@@ -185,6 +207,8 @@ class Drawing:
                 self.loop.save(rescued=True)
             raise
         self.checkpoint.remove()
+        if self.tell.previews:
+            self.tell.preview(self.output.look(frame, complete=True))
         loop, seconds = self.loop, time.monotonic() - self.loop.started
         self.tell.finished(
             Finished(
@@ -206,6 +230,16 @@ class Drawing:
         self.output.write(self.session, frame, paths, self.tell)
         names = ", ".join(map(str, paths))
         self.tell.note(f"snapshot: {names} ({self._samples()} samples per pixel)")
+
+    def _preview(self) -> None:
+        """Shows the picture so far, as long as that takes a small share of the time."""
+        began = time.monotonic()
+        waited = began - self._previewed_at
+        if not self.tell.previews or waited * PREVIEW_SHARE < self._preview_took:
+            return
+        self.tell.preview(self.output.look(self.output.unfinished(self.session)))
+        self._previewed_at = time.monotonic()
+        self._preview_took = self._previewed_at - began
 
     def _samples(self) -> str:
         return shown(self.loop.work.done())

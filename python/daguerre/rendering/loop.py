@@ -32,6 +32,7 @@ class Loop:
         reporter: Told how far it is.
         control: Decides when to stop.
         snapshot: Writes the picture so far under another name.
+        preview: Shows the picture so far; called after each pass but the last.
     """
 
     def __init__(
@@ -42,9 +43,11 @@ class Loop:
         reporter: Reporter,
         control: Control,
         snapshot: Callable[[], None] = lambda: None,
+        preview: Callable[[], None] = lambda: None,
     ) -> None:
         self.session, self.work, self.checkpoint = session, work, checkpoint
-        self.reporter, self.control, self.snapshot = reporter, control, snapshot
+        self.reporter, self.control = reporter, control
+        self.snapshot, self.preview = snapshot, preview
         self.started = time.monotonic()
         self.drawn_here = 0.0
 
@@ -68,6 +71,8 @@ class Loop:
             limit = size * min(2.0, PASS_S / seconds)
             if self.control.snapshot():
                 self.snapshot()
+            if self.work.done() < self.work.total():
+                self.preview()
             interval = self.checkpoint.interval_s
             due = interval > 0 and time.monotonic() - saved_at >= interval
             if due and self.work.done() < self.work.total():

@@ -11,7 +11,7 @@ from daguerre.errors import OutputError
 from daguerre.frame.aovs import Source, names_of
 
 from .photograph import Photograph
-from .reporter import Reporter
+from .reporter import Look, Reporter
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -126,6 +126,29 @@ class Output:
             truth = frame.exposure_truth(self.photograph.sensor)
             frame = replace(frame, aovs=frame.aovs | truth)
         return only(frame, self.aovs)
+
+    def unfinished(self, session: Session) -> Frame:
+        """The picture so far as it is shown meanwhile: not denoised, and not diffracted."""
+        frame = session.frame(truth=False, waves=False)
+        facts = {"resolution": (session.width, session.height), "crop": session.crop}
+        frame = replace(frame, metadata={**frame.metadata, **facts}, aovs={})
+        return self.photograph.metered(frame, self.paths, Reporter())
+
+    def look(self, frame: Frame, *, complete: bool = False) -> Look:
+        """A picture in the making, developed as the one that comes."""
+        one = replace(self.photograph, bracket=())
+
+        def write(path: Path) -> None:
+            one.write(frame, [path], self.tone, Reporter())
+
+        return Look(frame, self.preview, write, complete)
+
+    @property
+    def preview(self) -> Path:
+        """File of a picture that is not complete."""
+        return self.checkpoint.with_name(
+            self.checkpoint.name.removesuffix(".checkpoint.exr") + ".preview.png"
+        )
 
     def write_noisy(self, session: Session, samples: float, paths: Sequence[Path]) -> None:
         """Writes the picture before it was denoised."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,8 +56,30 @@ class Stopped:
     saved: bool
 
 
+@dataclass(frozen=True)
+class Look:
+    """A picture in the making.
+
+    Attributes:
+        frame: The samples so far.
+        path: File for it beside the output.
+        write: Writes it to a file for the eye, whole or not at all.
+        complete: Whether it is the picture itself.
+    """
+
+    frame: Frame
+    path: Path
+    write: Callable[[Path], None]
+    complete: bool = False
+
+
 class Reporter:
     """Says nothing; front ends say what they like."""
+
+    @property
+    def previews(self) -> bool:
+        """Whether it shows pictures that are not complete."""
+        return False
 
     def drawing(self, facts: Mapping[str, Any]) -> AbstractContextManager[Any]:
         """Surrounds the drawing of a picture, named by its ``frame`` and ``camera`` if several."""
@@ -65,6 +87,9 @@ class Reporter:
 
     def progress(self, status: Status) -> None:
         """Shows how far the picture is; called several times a second."""
+
+    def preview(self, look: Look) -> None:
+        """Shows a picture that is not complete, and at the end the one that is."""
 
     def note(self, text: str) -> None:
         """Says what is good to know."""

@@ -155,6 +155,14 @@ class JobFlags:
             "--checkpoint", metavar="S", help="Time between checkpoints, s [60].", panel=SAMPLING
         ),
     ] = "60"
+    preview: Annotated[
+        bool,
+        option(
+            "--preview",
+            help="Show the picture as it grows: in terminals that can (Kitty, iTerm2, Sixel), "
+            "else in OUT.preview.png.",
+        ),
+    ] = False
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False
     json_progress: Annotated[
         bool, option("--json-progress", help="Print progress as JSON lines on stdout.")

@@ -27,7 +27,14 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
     if tone not in TONES:
         raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}{suggest(tone, TONES)}")
     groups = _groups(flags.aov or [], everything=flags.aovs)
-    drawn = (flags.aov, flags.aovs, flags.samples, "noise" in rows.given(), flags.denoise)
+    drawn = (
+        flags.aov,
+        flags.aovs,
+        flags.samples,
+        "noise" in rows.given(),
+        flags.denoise,
+        flags.preview,
+    )
     if not formats and any(drawn):
         raise UsageError("-o: wanted a file for the picture, since maps alone draw nothing")
     if flags.samples and ".exr" not in formats:
@@ -129,6 +136,8 @@ def check_writable(output: Output) -> None:
         raise UsageError("-o: the same file is named twice")
     if output.paths and output.checkpoint.resolve() in names:
         raise UsageError(f"-o {output.checkpoint}: this name is kept for the checkpoint")
+    if output.paths and output.preview.resolve() in names:
+        raise UsageError(f"-o {output.preview}: this name is kept for --preview")
     for path in output.written:
         check(path)
 

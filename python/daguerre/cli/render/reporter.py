@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from daguerre.cli import console, progress
+from daguerre.cli.preview.preview import Preview
+from daguerre.cli.preview.screen import Screen
 from daguerre.rendering.job import shown
 from daguerre.rendering.progress import Status
-from daguerre.rendering.reporter import Finished, Reporter, Stopped
+from daguerre.rendering.reporter import Finished, Look, Reporter, Stopped
 
 
 class ConsoleReporter(Reporter):
@@ -20,18 +23,43 @@ class ConsoleReporter(Reporter):
         quiet: Value of the flag.
         as_json: Whether progress is JSON lines.
         stats: Whether counts and times are told.
+        preview: Whether pictures are shown as they grow.
     """
 
-    def __init__(self, *, quiet: bool, as_json: bool, stats: bool) -> None:
+    def __init__(self, *, quiet: bool, as_json: bool, stats: bool, preview: bool = False) -> None:
         self._quiet, self._as_json, self._stats = quiet, as_json, stats
         self._shown = progress.Silent()
+        self._preview = Preview(in_terminal=not (quiet or as_json)) if preview else None
+        self._screen: Screen | None = None
+
+    @property
+    def previews(self) -> bool:
+        """Whether pictures are shown as they grow."""
+        return self._preview is not None and self._preview.works
+
+    def preview(self, look: Look) -> None:
+        """Shows one, in the terminal or in a file."""
+        if self._preview is None or not self._preview.works:
+            return
+        if self._preview.way is not None and self._screen is None:
+            self._screen = Screen(self._preview.way, sys.stderr)
+            self._screen.__enter__()  # lines of the set-up are said below it
+        self._preview.show(look, self._screen)
 
     @contextmanager
     def drawing(self, facts: Mapping[str, Any]) -> Iterator[None]:
         """Shows progress of a picture."""
-        self._shown = progress.choose(quiet=self._quiet, as_json=self._as_json, which=dict(facts))
-        with self._shown:
-            yield
+        which = dict(facts)
+        if self._screen is not None:
+            self._screen.which = progress.named(which)
+            self._shown = self._screen
+        else:
+            self._shown = progress.choose(quiet=self._quiet, as_json=self._as_json, which=which)
+        try:
+            with self._shown:
+                yield
+        finally:
+            self._screen = None
 
     def progress(self, status: Status) -> None:
         """Shows how far it is."""

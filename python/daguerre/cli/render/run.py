@@ -90,7 +90,9 @@ def _facts(job: Job, picture: Picture, path: Path) -> dict[str, Any]:
 
 def _job(plan: Plan, scene: Scene, path: Path) -> Job:
     flags = plan.flags
-    told = ConsoleReporter(quiet=flags.quiet, as_json=flags.json_progress, stats=flags.stats)
+    told = ConsoleReporter(
+        quiet=flags.quiet, as_json=flags.json_progress, stats=flags.stats, preview=flags.preview
+    )
     job = Job(scene, plan.pictures, told, Signals(), plan.interval_s)
     job.name = str(path)
     return job

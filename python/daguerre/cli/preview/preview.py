@@ -1,0 +1,71 @@
+"""``--preview``: shows the picture as it grows, in the terminal where that can, else in a file."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from daguerre.cli import console
+from daguerre.errors import DaguerreError
+from daguerre.rendering.reporter import Look
+
+from .protocols import Pixels
+from .screen import Screen
+from .terminal import Way, way_of
+
+
+class Preview:
+    """Shows pictures that are not complete, until that fails.
+
+    Args:
+        in_terminal: Whether the terminal may be asked whether it shows pictures.
+
+    Attributes:
+        way: How the terminal shows pictures; None: a file does.
+    """
+
+    def __init__(self, *, in_terminal: bool) -> None:
+        self.way: Way | None = None
+        if in_terminal:
+            self.way = way_of(sys.stdin, sys.stderr, os.environ)
+        self.works = True
+        self._told: set[Path] = set()
+
+    def show(self, look: Look, screen: Screen | None) -> None:
+        """Shows a picture; one that cannot be shown is the last, and no reason to stop drawing.
+
+        Args:
+            look: The picture.
+            screen: Terminal that shows it; None: a file does, until the picture is complete.
+        """
+        try:
+            if screen is not None:
+                screen.picture(_pixels(look))
+            elif look.complete:
+                look.path.unlink(missing_ok=True)
+            else:
+                self._write(look)
+        except (DaguerreError, OSError) as error:
+            self.works = False
+            console.warn(f"--preview: {error}; no more previews")
+
+    def _write(self, look: Look) -> None:
+        look.write(look.path)
+        if look.path not in self._told:
+            self._told.add(look.path)
+            console.note(f"preview: {look.path}")
+
+
+def _pixels(look: Look) -> Pixels:
+    """The picture as it would be in a file, (H, W, 3)."""
+    import OpenImageIO as oiio
+
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "preview.png"
+        look.write(path)
+        pixels = np.asarray(oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8), np.uint8)
+    return np.ascontiguousarray(pixels[:, :, :3])
