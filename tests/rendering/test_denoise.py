@@ -186,6 +186,10 @@ def test_what_cannot_be_known_is_not_said(library: fake_denoiser.Library) -> Non
     frame = session.frame()
     assert noise_after(frame) is not None
     assert denoise(frame).metadata["denoised_noise"] == noise_after(frame)
+    assert "noise" not in denoise(frame).metadata
+    wanted = denoise(replace(frame, metadata=frame.metadata | {"noise": 0.9})).metadata
+    assert wanted["noise"] == wanted["denoised_noise"] < 0.9
+    assert wanted["noise_of"] == "denoised"
     for unknown in (
         replace(frame, halves=None),
         replace(frame, flare=frame.rgb * 0),

@@ -53,8 +53,8 @@ def denoise(frame: Frame) -> Frame:
     The denoiser wants colours of at least 0, so negative ones (outside Rec.709) become 0.
 
     The metadata say ``denoised``, by what; and, if the frame has halves, ``denoised_noise``: the
-    relative error that is left, by ``error_left``; ``noise_of`` then says that a wanted noise
-    counted on it.
+    relative error that is left, by ``error_left``. Where a noise was wanted, that is its ``noise``,
+    and ``noise_of`` says so.
 
     Raises:
         UsageError: The denoiser is not installed.
@@ -68,7 +68,7 @@ def denoise(frame: Frame) -> Frame:
     if (left := _error_left(frame, cleaner, scene, clean)) is not None:
         facts["denoised_noise"] = left
         if "noise" in frame.metadata:
-            facts["noise_of"] = "denoised"
+            facts |= {"noise": left, "noise_of": "denoised"}
     rgb = clean if frame.flare is None else clean + np.asarray(frame.flare, np.float32)
     return replace(
         frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None,
