@@ -16,7 +16,7 @@ struct AovSample {
     Vec3f position, normal, albedo;
     std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
     float alpha = 1;              // 1 where something was hit
-    Vec3f seen_albedo, seen_normal;   // guides for a denoiser, through mirrors and glass; 0: nothing
+    Vec3f seen_albedo{}, seen_normal{};   // guides for a denoiser, through mirrors and glass; 0: nothing
 };
 
 struct AovChannel {

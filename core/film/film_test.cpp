@@ -324,6 +324,29 @@ TEST_CASE(
     CHECK_THROWS_AS(bare.aov("alpha"), Error);
 }
 
+TEST_CASE("halves share no sample, make up the picture, and have no ghosts") {
+    Film film(FilmLayout{.width = 1, .height = 1, .splats = true, .flare = true, .halves = true}), more(film.layout());
+    const auto draw = [](Film& to, std::uint32_t sample) {
+        const float v = float(sample + 1);
+        to.count(0, 0, sample);
+        to.add(0, 0, sample, {v, 2 * v, 3 * v});
+        to.splat(0, 0, sample, {8 * v, 0, 0});
+        to.splat(0, 0, sample, {99, 99, 99}, Film::Layer::flare);
+    };
+    for (const std::uint32_t sample : {0, 1, 2}) draw(film, sample);
+    for (const std::uint32_t sample : {3, 4}) draw(more, sample);
+    film.merge(more);
+    // Samples 0, 2 and 4 are 1, 3 and 5; samples 1 and 3 are 2 and 4.
+    CHECK(film.half_xyz(Film::Half::even) == std::vector<float>{3, 6, 9});
+    CHECK(film.half_xyz(Film::Half::odd) == std::vector<float>{3, 6, 9});
+    CHECK(film.half_xyz(Film::Half::even, true) == std::vector<float>{24, 0, 0});
+    draw(film, 5);
+    CHECK(film.half_xyz(Film::Half::odd) == std::vector<float>{4, 8, 12});
+    CHECK(film.half_xyz(Film::Half::odd, true) == std::vector<float>{32, 0, 0});
+    CHECK(film.half_xyz(Film::Half::even) == std::vector<float>{3, 6, 9});
+    CHECK_THROWS_AS(Film(FilmLayout{1, 1}).half_xyz(Film::Half::even), Error);
+}
+
 TEST_CASE("films of different layout do not merge") {
     Film a(FilmLayout{2, 2, 0, 0, false});
     CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 1, 0, false})), Error);

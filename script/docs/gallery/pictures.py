@@ -47,7 +47,7 @@ PICTURES = [
         "night_table",
         "The scene of the demo through a double Gauss at f/2.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --res 900x600 --spp 256",
+        f"{GAUSS} --f-stop 2 --res 900x600 --spp 96 --denoise",
     ),
     Picture(
         "pinhole", "A pinhole: everything is sharp.", NIGHT, "--lens pinhole --spp 64 --denoise"
