@@ -132,6 +132,11 @@ def test_ghosts_are_kept_as_they_were_drawn(library: fake_denoiser.Library) -> N
     library.filter = lambda images: images["color"] * 0
     np.testing.assert_array_equal(denoise(frame).rgb, ghost)
     assert library.runs[0]["color"].max() == pytest.approx(0.5)
+    both = replace(frame, metadata={"flare": "1", "scatter": "1"})
+    np.testing.assert_array_equal(denoise(both).rgb, ghost)
+    alone = replace(frame, metadata={"scatter": "1"})  # smooth, and no ghost's edge to keep
+    np.testing.assert_array_equal(denoise(alone).rgb, ghost * 0)
+    np.testing.assert_array_equal(library.runs[-1]["color"], ghost)
 
 
 def test_light_paths_are_cleaned_apart_from_the_scene(library: fake_denoiser.Library) -> None:

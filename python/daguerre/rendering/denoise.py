@@ -6,6 +6,7 @@ known.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.metadata import version
@@ -46,9 +47,9 @@ def check_available() -> None:
 def denoise(frame: Frame) -> Frame:
     """A copy of the frame with a clean ``rgb``; the other channels stay as they are.
 
-    Ghosts and scattered light of the lens stay as they were drawn: the guides know nothing of
-    them. The frame has no channels of a sensor and no bands: noisy ones beside a clean picture
-    would be of no use. A sensor is fitted from the colours.
+    Ghosts of the lens stay as they were drawn: the guides know nothing of them. Scattered light
+    without ghosts is cleaned by itself. The frame has no channels of a sensor and no bands: noisy
+    ones beside a clean picture would be of no use. A sensor is fitted from the colours.
 
     The denoiser wants colours of at least 0, so negative ones (outside Rec.709) become 0.
 
@@ -69,11 +70,18 @@ def denoise(frame: Frame) -> Frame:
         facts["denoised_noise"] = left
         if "noise" in frame.metadata:
             facts |= {"noise": left, "noise_of": "denoised"}
-    rgb = clean if frame.flare is None else clean + np.asarray(frame.flare, np.float32)
+    rgb = clean if frame.flare is None else clean + _by_the_lens(frame.flare, frame.metadata)
     return replace(
         frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None,
         metadata={**frame.metadata, **facts},
     )  # fmt: skip
+
+
+def _by_the_lens(flare: Image, facts: Mapping[str, Any]) -> Image:
+    """Light that the lens brought: ghosts as drawn; scattered light alone is smooth, so clean."""
+    drawn = np.asarray(flare, np.float32)
+    alone = "scatter" in facts and "flare" not in facts
+    return _run(color=np.maximum(_finite(drawn), 0)) if alone else drawn
 
 
 def noise_after(frame: Frame) -> float | None:
