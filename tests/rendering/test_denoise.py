@@ -218,6 +218,18 @@ def test_a_wanted_noise_counts_on_what_comes_after_it() -> None:
     assert drawn[1] < drawn[0] == drawn[2]
 
 
+def test_nobody_asks_what_denoising_brings_before_there_is_hope() -> None:
+    asked = []
+    session = room(light_paths="off")
+    assert rounds.plan_round(session, 1e-3, 4096, lambda session: asked.append(session) or 1e-4)
+    session.draw_round(rounds.PARTS)
+    assert rounds.plan_round(session, 1e-3, 4096, lambda session: asked.append(session) or 1e-4)
+    assert not asked
+    reached = session.round.noise
+    session.draw_round(rounds.PARTS)
+    assert not rounds.plan_round(session, reached / 8, 4096, lambda session: reached / 9)
+
+
 # The library ------------------------------------------------------------------------------------
 
 
