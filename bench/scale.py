@@ -151,7 +151,7 @@ def surfaces(count: int) -> Facts:
 def lamps(count: int) -> Facts:
     """Samples among so many lamps; the same with light paths, and with the same triangles dark.
 
-    As lamps get too small to be met, light paths buy more for their time than samples do, so a
+    Where lamps are too small to be met, light paths buy more for their time than samples do, so a
     sample with them is another thing than one without.
     """
     found = drawn(of_lamps(count), light_paths="off")

@@ -115,10 +115,12 @@ Material glossy() {
 
 TEST_CASE("few lights are sampled one at a time") {
     std::vector<Light> lights(4, PointLight{{0, 1, 0}, {1, 1, 1}});
-    CHECK(light_tries(LightSet{}) == 0);
-    CHECK(light_tries(LightSet(lights, std::nullopt)) == 1);
+    CHECK(light_tries(LightSet{}, true) == 0);
+    CHECK(light_tries(LightSet(lights, std::nullopt), true) == 1);
     lights.push_back(DirectionalLight{{0, -1, 0}, {1, 1, 1}});
-    CHECK(light_tries(LightSet(lights, std::nullopt)) > 1);
+    const LightSet many(lights, std::nullopt);
+    CHECK(light_tries(many, true) > light_tries(many, false));
+    CHECK(light_tries(many, false) > 1);
 }
 
 TEST_CASE("picked light is the light that following the BSDF finds, at every depth") {

@@ -244,7 +244,7 @@ bool Path::scatter(const Material& material, SurfaceHit& hit, int vertex) {
 template <typename BsdfKind>
 bool Path::leave(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex, PathMis::Vertex* both) {
     const bool last = vertex == settings_.max_depth;
-    const int tries = light_tries(scene_.lights());
+    const int tries = light_tries(scene_.lights(), walk_.in_view);
     const VertexRandom u = draw_vertex(bsdf, tries, sampler_);
     const auto seen = seen_from(bsdf, hit.wo);
     if (!last && !bsdf.is_specular()) {
