@@ -107,7 +107,7 @@ struct GltfBsdf {
 
     GltfBsdf(const GltfSurface& surface, Vec3f ns, Vec3f ng);
 
-    /// What wo alone decides; wi is asked for several times.
+    /// Facts that wo alone decides, for whoever asks for several wi.
     struct Seen {
         Vec3f wo;
         Facing side;

@@ -43,7 +43,7 @@ class LightPick {
         Evaluation seen;
         float weight;   // of f L V
     };
-    /// Of `tries` samples. `shared`: whether BSDF sampling finds the same light. `evaluate` gives the BSDF toward a
+    /// One of `tries` samples. `shared`: whether BSDF sampling finds the same light. `evaluate` gives the BSDF toward a
     /// light, `throughput` how its wavelengths count.
     template <typename Evaluate>
     static std::optional<Found> pick(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths,
