@@ -96,8 +96,8 @@ def of_instances(count: int) -> dg.Scene:
     return lit(scene)
 
 
-def of_lamps(count: int) -> dg.Scene:
-    """Small emissive triangles, of the same power together, above a ground."""
+def of_lamps(count: int, dark: bool = False) -> dg.Scene:
+    """Small emissive triangles, of the same power together, over a ground; or dark, and a lamp."""
     scene = dg.Scene()
     ground(scene)
     rng = np.random.default_rng(5)
@@ -105,10 +105,10 @@ def of_lamps(count: int) -> dg.Scene:
     size = 0.3 / math.sqrt(count)
     corners = middle[:, None] + rng.uniform(-size, size, (count, 3, 3))
     faces = np.arange(3 * count).reshape(-1, 3)
-    glow = dg.Gltf(base_color=(0, 0, 0), emissive=(60.0,) * 3)
+    glow = dg.Gltf(base_color=(0, 0, 0), emissive=(0.0 if dark else 60.0,) * 3)
     mesh = scene.add_mesh(corners.reshape(-1, 3).astype(np.float32), faces)
     scene.add_instance(mesh, dg.Material(glow))
-    return scene
+    return lit(scene) if dark else scene
 
 
 def drawn(
@@ -146,6 +146,18 @@ def surfaces(count: int) -> Facts:
     scene = dg.Scene()
     scene.set_environment(color=(1.0, 1.0, 1.0))
     return drawn(scene, dg.Camera(lens=LENSES[count], f_stop=5.6), spp=64)
+
+
+def lamps(count: int) -> Facts:
+    """Samples among so many lamps; the same with light paths, and with the same triangles dark.
+
+    Where lamps are too small to be met, light paths buy more for their time than samples do, so a
+    sample with them is another thing than one without.
+    """
+    found = drawn(of_lamps(count), light_paths="off")
+    found["with_light_paths"] = drawn(of_lamps(count))["us_per_sample"]
+    found["dark"] = drawn(of_lamps(count, dark=True), light_paths="off")["us_per_sample"]
+    return found
 
 
 def samples(count: int) -> Facts:
@@ -199,7 +211,7 @@ KINDS: dict[str, tuple[Callable[[int], Facts], tuple[int, ...]]] = {
         (10_000, 100_000, 1_000_000, 5_000_000, 20_000_000),
     ),
     "instances": (lambda n: drawn(of_instances(n)), (100, 1_000, 10_000, 100_000, 1_000_000)),
-    "lamps": (lambda n: drawn(of_lamps(n)), (1, 10, 1_000, 10_000, 100_000, 1_000_000)),
+    "lamps": (lamps, (1, 10, 1_000, 10_000, 100_000, 1_000_000)),
     "surfaces": (surfaces, tuple(LENSES)),
     "pixels": (pixels, (250_000, 1_000_000, 4_000_000, 16_000_000, 64_000_000)),
     "samples": (samples, (1, 4, 16, 64, 256)),

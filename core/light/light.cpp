@@ -15,6 +15,15 @@ constexpr float kLeastShare = 0.1f;
 // Nor any one light from infinity less than this share of their group.
 constexpr double kLeastInfiniteShare = 0.05;
 
+constexpr float kAlmostOne = 0x1.fffffep-1f;
+
+/// The next of some points that are spread over the unit square, wherever the first one is. Source: Roberts 2018,
+/// The Unreasonable Effectiveness of Quasirandom Sequences (R2).
+Vec2f turned(Vec2f u) {
+    u = {u.x + 0.75487767f, u.y + 0.56984029f};
+    return {u.x < 1 ? u.x : u.x - 1, u.y < 1 ? u.y : u.y - 1};
+}
+
 const char* kind_name(const Light& light) {
     constexpr const char* names[] = {"point", "spot", "directional", "sphere",
                                      "triangle"};
@@ -227,31 +236,69 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     if (!tree_.empty() && asked) weights = tree_.weigh(position);
     const float p_infinite = infinite_share(weights.sum);
     if (u_select < p_infinite) {
-        const float rest = std::min(u_select / p_infinite, 0x1.fffffep-1f);
+        const float rest = std::min(u_select / p_infinite, kAlmostOne);
         return sample_infinite(rest, p_infinite, u, time, wavelengths);
     }
     const float rest = (u_select - p_infinite) / (1 - p_infinite);
-    const auto choice = tree_.sample(weights, position, std::min(rest, 0x1.fffffep-1f));
-    if (!choice) return std::nullopt;
-    const TriangleSampler& triangle = triangles_[choice->light];
+    const auto choice = tree_.sample(weights, position, std::min(rest, kAlmostOne));
+    std::optional<LightSample> found(std::in_place);
+    if (!choice || !sample_local(*choice, 1 - p_infinite, u, position, time, wavelengths, *found)) found.reset();
+    return found;
+}
+
+void LightSet::sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
+                              std::span<LightSample> found) const {
+    LightTree::Weights weights;
+    weights.sum = 0;
+    if (!tree_.empty()) weights = tree_.weigh(position);
+    const float p_infinite = infinite_share(weights.sum), share = 1 / float(found.size());
+    std::array<float, kMostSamples> select;
+    std::array<LightTree::Choice, kMostSamples> choices;
+    std::size_t far = 0;   // the first ones come from infinity
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        select[i] = std::min((u_select + float(i)) * share, kAlmostOne);
+        if (select[i] < p_infinite)
+            ++far;
+        else
+            select[i] = std::min((select[i] - p_infinite) / (1 - p_infinite), kAlmostOne);
+    }
+    const std::span<LightTree::Choice> near(choices.data() + far, found.size() - far);
+    if (!near.empty()) tree_.sample(weights, position, std::span(select).subspan(far, near.size()), near);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        found[i].pdf = 0;
+        if (i < far) {
+            const float rest = std::min(select[i] / p_infinite, kAlmostOne);
+            if (const auto one = sample_infinite(rest, p_infinite, u, time, wavelengths)) found[i] = *one;
+        } else if (choices[i].probability > 0) {
+            sample_local(choices[i], 1 - p_infinite, u, position, time, wavelengths, found[i]);
+        }
+        u = turned(u);
+    }
+}
+
+/// False, and pdf as it was, where the light does not shine there.
+bool LightSet::sample_local(const LightTree::Choice& choice, float p_local, Vec2f u, Vec3f position, float time,
+                            const Wavelengths& wavelengths, LightSample& out) const {
+    const TriangleSampler& triangle = triangles_[choice.light];
     const std::uint32_t light = triangle.light;
     EmitterSample s;
     if (triangle.area > 0) {
-        if (!triangle.sample(u, position, s)) return std::nullopt;
+        if (!triangle.sample(u, position, s)) return false;
     } else {
         const auto found = sample_other(light, u, position, time);
-        if (!found) return std::nullopt;
+        if (!found) return false;
         s = *found;
     }
     const bool is_triangle = triangle.area > 0 || triangle.moves;
-    return LightSample{s.wi,
-                       s.distance,
-                       wavelengths.emission(s.value),
-                       s.pdf * ((1 - p_infinite) * choice->probability),
-                       s.delta,
-                       std::int32_t(light),
-                       s.barycentric,
-                       is_triangle && !triangle.even};
+    out = {s.wi,
+           s.distance,
+           wavelengths.emission(s.value),
+           s.pdf * (p_local * choice.probability),
+           s.delta,
+           std::int32_t(light),
+           s.barycentric,
+           is_triangle && !triangle.even};
+    return true;
 }
 
 std::optional<LightSample> LightSet::sample_infinite(

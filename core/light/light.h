@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -112,6 +113,12 @@ class LightSet {
     /// light the position.
     std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position, float time,
                                       const Wavelengths& wavelengths) const;
+    static constexpr std::size_t kMostSamples = LightTree::kMostAtOnce;
+    /// Several samples of the same law, spread over the lights: some of `found` are without light (pdf 0).
+    void sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
+                        std::span<LightSample> found) const;
+    /// Lights among which one is chosen.
+    std::size_t choices() const { return tree_.size() + infinite_lights_.size(); }
     /// Solid-angle density (selection included) with which sample() would have chosen the
     /// direction from `position` that met this triangle at `t` metres under |cos| at the
     /// light. 0 for triangles that are not lights. Two-sided or not is the caller's
@@ -164,6 +171,8 @@ class LightSet {
     void build_lookup();
     float infinite_probability(Vec3f position) const;
     float infinite_share(float local) const;
+    bool sample_local(const LightTree::Choice& choice, float p_local, Vec2f u, Vec3f position, float time,
+                      const Wavelengths& wavelengths, LightSample& out) const;
     std::optional<LightSample> sample_infinite(float u_select, float p_infinite, Vec2f u,
                                                float time,
                                                const Wavelengths& wavelengths) const;

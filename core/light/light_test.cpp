@@ -219,6 +219,22 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
     CHECK(set.pdf_triangle(7, 0, 1, 1, {}, 0) == 0);
 }
 
+namespace {
+
+/// The mean of several samples at once in place of one.
+double illuminance_by_several(const LightSet& lights, Vec3f position, Vec3f normal, int n) {
+    double sum = 0;
+    std::array<LightSample, LightSet::kMostSamples> found;
+    for (int i = 0; i < n; ++i) {
+        lights.sample_several(float((i + 0.5) / n), uniform_2d(i), position, 0, rgb_lanes(), found);
+        for (const LightSample& s : found)
+            if (s.pdf > 0) sum += s.radiance[3] * std::max(0.f, dot(normal, s.wi)) / s.pdf;
+    }
+    return sum / (double(n) * found.size());
+}
+
+}  // namespace
+
 TEST_CASE("the sum of many lights and a sky is the sum of each") {
     std::vector<Light> lights;
     double expected = kPiD * 0.2;
@@ -236,6 +252,7 @@ TEST_CASE("the sum of many lights and a sky is the sum of each") {
     const LightSet set(lights, Environment::image(even, 1, {}));
     CHECK(illuminance(set, {0, 0, 0}, {0, 1, 0}, 400000) ==
           doctest::Approx(expected).epsilon(0.01));
+    CHECK(illuminance_by_several(set, {0, 0, 0}, {0, 1, 0}, 100000) == doctest::Approx(expected).epsilon(0.01));
 }
 
 TEST_CASE("an even sky is left to the BSDF") {

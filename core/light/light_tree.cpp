@@ -47,6 +47,14 @@ inline float estimate(const LightEmission& e, Vec3f position) {
 /// Weights of a node's children; their sum.
 inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
     const auto& n = node.facts;
+    const bool around = larger(larger(n[8][0], n[8][1]), larger(n[8][2], n[8][3])) <= -1;
+    if (around) {   // bulbs, which need no cosines: estimate() without them, to the bit
+        for (int i = 0; i < kWide; ++i) {
+            const float d2 = length_squared(position - Vec3f{n[0][i], n[1][i], n[2][i]});
+            weights[i] = n[7][i] * (1 / larger(larger(d2, n[3][i] * n[3][i]), 1e-20f));
+        }
+        return (weights[0] + weights[1]) + (weights[2] + weights[3]);
+    }
     for (int i = 0; i < kWide; ++i)
         weights[i] = estimate({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i], n[8][i],
                                n[9][i], n[10][i]},
@@ -93,23 +101,50 @@ LightTree::Weights LightTree::weigh(Vec3f position) const {
     return w;
 }
 
+/// `weights` are of some light.
+LightTree::Descent LightTree::start(const Weights& top, float u) const {
+    const std::size_t first = has_second() ? choose<2 * kWide>(top.of.data(), top.sum, u)
+                                           : choose<kWide>(top.of.data(), top.sum, u);
+    return {nodes_[first / kWide].next[first % kWide], top.of[first] / top.sum, u};
+}
+
+/// A node down. Where nothing shines it ends, with probability 0.
+void LightTree::descend(Descent& d, Vec3f position) const {
+    const LightNode& node = nodes_[d.next];
+    float weights[kWide];
+    const float sum = weigh_node(node, position, weights);
+    if (!(sum > 0)) {
+        d.next = -1, d.probability = 0;
+        return;
+    }
+    const std::size_t chosen = choose<kWide>(weights, sum, d.u);
+    d.probability *= weights[chosen] / sum;
+    d.next = node.next[chosen];
+}
+
 std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f position, float u) const {
     if (lone()) return Choice{0, 1};
     if (!(top.sum > 0)) return std::nullopt;
-    const std::size_t first = has_second() ? choose<2 * kWide>(top.of.data(), top.sum, u)
-                                           : choose<kWide>(top.of.data(), top.sum, u);
-    float probability = top.of[first] / top.sum;
-    std::int32_t next = nodes_[first / kWide].next[first % kWide];
-    while (next >= 0) {
-        const LightNode& node = nodes_[next];
-        float weights[kWide];
-        const float sum = weigh_node(node, position, weights);
-        if (!(sum > 0)) return std::nullopt;
-        const std::size_t chosen = choose<kWide>(weights, sum, u);
-        probability *= weights[chosen] / sum;
-        next = node.next[chosen];
+    Descent d = start(top, u);
+    while (d.next >= 0) descend(d, position);
+    if (!(d.probability > 0)) return std::nullopt;
+    return Choice{~d.next, d.probability};
+}
+
+void LightTree::sample(const Weights& top, Vec3f position, std::span<const float> u,
+                       std::span<Choice> found) const {
+    if (lone() || !(top.sum > 0)) {
+        std::ranges::fill(found, Choice{0, lone() ? 1.f : 0.f});
+        return;
     }
-    return Choice{~next, probability};
+    std::array<Descent, kMostAtOnce> all;
+    for (std::size_t i = 0; i < found.size(); ++i) all[i] = start(top, u[i]);
+    for (bool on = true; on;) {
+        on = false;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (all[i].next >= 0) descend(all[i], position), on = true;
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = {~all[i].next, all[i].probability};
 }
 
 float LightTree::probability(Vec3f position, int light) const {

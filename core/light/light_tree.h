@@ -29,6 +29,10 @@ struct alignas(64) LightNode {
     static constexpr std::size_t kFacts = sizeof(LightEmission) / sizeof(float);
     float facts[kFacts][kWide] = {};
     std::int32_t next[kWide] = {};   // node of a group, or ~light
+
+    LightNode() {   // children that are not there shine with intensity 0, all around as others may
+        for (float& cos_spread : facts[8]) cos_spread = -1;
+    }
 };
 
 class LightTree {
@@ -38,6 +42,7 @@ class LightTree {
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const { return nodes_.empty(); }
+    std::size_t size() const { return place_.size(); }
     /// One light alone: it is chosen without a look, wherever it shines.
     bool lone() const { return place_.size() == 1; }
     /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
@@ -48,6 +53,7 @@ class LightTree {
     };
     Weights weigh(Vec3f position) const;
     float importance(Vec3f position) const { return weigh(position).sum; }
+    static constexpr std::size_t kMostAtOnce = 4;
     struct Choice {
         int light;
         float probability;
@@ -56,10 +62,20 @@ class LightTree {
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
     /// The same with weigh(position) at hand, which a lone light has no use for.
     std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
+    /// Each `u` by itself as sample() would have it, probability 0 where that is empty; side by side, as the processor
+    /// waits for each.
+    void sample(const Weights& weights, Vec3f position, std::span<const float> u, std::span<Choice> found) const;
     /// Choice::probability of sample(), to the bit.
     float probability(Vec3f position, int light) const;
 
   private:
+    /// A light that is being chosen: the node that is next, or ~light.
+    struct Descent {
+        std::int32_t next;
+        float probability, u;
+    };
+    Descent start(const Weights& weights, float u) const;
+    void descend(Descent& d, Vec3f position) const;
     bool has_second() const { return nodes_.size() > 1 && parent_[1] < 0; }
 
     std::vector<LightNode> nodes_;       // those of a subtree follow each other

@@ -110,6 +110,28 @@ TEST_CASE("many lights: a choice weighed by its probability sums them all up, an
     CHECK(welch_p_value(found, {1.01, 0, 2}) < 1e-3);
 }
 
+TEST_CASE("several at once are those that come one by one, to the bit") {
+    for (const int n : {1, 3, 8, 700}) {
+        const auto lights = random_lights(n);
+        const LightTree tree(lights);
+        for (int i = 0; i < 200; ++i) {
+            const Vec3f p = random_vector(6, i) * 12;
+            const LightTree::Weights weights = tree.weigh(p);
+            std::array<float, LightTree::kMostAtOnce> u;
+            std::array<LightTree::Choice, LightTree::kMostAtOnce> found;
+            for (std::size_t k = 0; k < u.size(); ++k) u[k] = float(hash_uniform(7 + k, i));
+            tree.sample(weights, p, u, found);
+            for (std::size_t k = 0; k < u.size(); ++k) {
+                const auto alone = tree.sample(p, u[k]);
+                REQUIRE(alone.has_value() == (found[k].probability > 0));
+                if (!alone) continue;
+                REQUIRE(found[k].light == alone->light);
+                REQUIRE(found[k].probability == alone->probability);
+            }
+        }
+    }
+}
+
 TEST_CASE("a near lamp wins over a far one") {
     std::vector<LightBounds> lights(2);
     for (LightBounds& b : lights) b.intensity = 1;

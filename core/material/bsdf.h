@@ -24,6 +24,16 @@ namespace dg {
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf>;
 
+/// A BSDF as it looks from wo, for whoever asks for several wi: some know things of wo that take a while to find.
+/// To be given to evaluate_with_pdf() and sample() in place of wo.
+template <typename BsdfKind>
+auto seen_from(const BsdfKind& bsdf, Vec3f wo) {
+    if constexpr (requires { bsdf.seen_from(wo); })
+        return bsdf.seen_from(wo);
+    else
+        return wo;
+}
+
 inline Evaluation evaluate_with_pdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi) {
     return std::visit([&](const auto& b) { return b.evaluate_with_pdf(wo, wi); }, bsdf);
 }

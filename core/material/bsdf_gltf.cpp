@@ -214,13 +214,16 @@ Spectrum GltfBsdf::straight(Vec3f wo) const {
         .transmitted;
 }
 
-GltfBsdf::Mix GltfBsdf::mix(Vec3f wo, float cos_o) const {
-    if (diffuse_albedo == 0) return {0, 0};
-    if (!has_specular) return {1, 0};
-    const LobeAlbedo albedo = lobe_albedo(wo, cos_o);
-    const float e = weigh(albedo, coupling);
-    const float d = diffuse_albedo * (1 - e);
-    return {d / (d + weigh(albedo, specular_albedo)), e};
+GltfBsdf::Seen GltfBsdf::seen_from(Vec3f wo) const {
+    Seen seen{wo, Facing(ns, ng, wo)};
+    if (seen.side.cos_o <= 0 || diffuse_albedo == 0) return seen;
+    seen.diffuse_probability = 1;
+    if (!has_specular) return seen;
+    const LobeAlbedo albedo = lobe_albedo(wo, seen.side.cos_o);
+    seen.interface = weigh(albedo, coupling);
+    const float d = diffuse_albedo * (1 - seen.interface);
+    seen.diffuse_probability = d / (d + weigh(albedo, specular_albedo));
+    return seen;
 }
 
 float GltfBsdf::albedo_estimate(Vec3f wo) const {
@@ -229,35 +232,31 @@ float GltfBsdf::albedo_estimate(Vec3f wo) const {
     return specular + diffuse_albedo * (1 - weigh(albedo, coupling));
 }
 
-Evaluation GltfBsdf::evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const {
-    if (m.diffuse_probability == 0) return {};
+Evaluation GltfBsdf::evaluate_diffuse(const Seen& seen, Vec3f wi, float cos_i) const {
+    if (seen.diffuse_probability == 0) return {};
     const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;
-    return {diffuse * ((1 - m.interface) * (1 - e_i) * cos_i / kPi),
-            m.diffuse_probability * (1 - through_share) * cos_i / kPi};
+    return {diffuse * ((1 - seen.interface) * (1 - e_i) * cos_i / kPi),
+            seen.diffuse_probability * (1 - through_share) * cos_i / kPi};
 }
 
 /// cos_i > 0 is that of wi with the normal of its own side.
-Evaluation GltfBsdf::evaluate_through(const Mix& m, Vec3f wi, float cos_i,
+Evaluation GltfBsdf::evaluate_through(const Seen& seen, Vec3f wi, float cos_i,
                                       float eta) const {
     const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;
-    const float f = (1 - m.interface) * (1 - e_i) * cos_i / (kPi * eta * eta);
+    const float f = (1 - seen.interface) * (1 - e_i) * cos_i / (kPi * eta * eta);
     return {through * (disperses ? hero_alone() * f : Spectrum(f)),
-            m.diffuse_probability * through_share * cos_i / kPi, disperses};
+            seen.diffuse_probability * through_share * cos_i / kPi, disperses};
 }
 
-Evaluation GltfBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
-    const Facing side(ns, ng, wo);
+Evaluation GltfBsdf::evaluate_with_pdf(const Seen& seen, Vec3f wi) const {
+    const Vec3f wo = seen.wo;
+    const Facing& side = seen.side;
     if (side.cos_o <= 0) return {};
-    return evaluate_with_pdf(side, mix(wo, side.cos_o), wo, wi);
-}
-
-Evaluation GltfBsdf::evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f wo,
-                                       Vec3f wi) const {
     const float cos_i = dot(side.ns, wi);
-    const float specular = 1 - m.diffuse_probability;
+    const float specular = 1 - seen.diffuse_probability;
     if (side.reflects(wi)) {
         if (cos_i <= 0) return {};
-        Evaluation e = evaluate_diffuse(m, wi, cos_i);
+        Evaluation e = evaluate_diffuse(seen, wi, cos_i);
         if (smooth || !has_specular) return e;
         const Facet f = reflecting(side, wo, wi, cos_i);
         const Split p = split(f.cos_h, eta(side.front));
@@ -268,7 +267,7 @@ Evaluation GltfBsdf::evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f w
     if (cos_i >= 0) return {};
     const float n = eta(side.front);
     const Evaluation diffused =
-        through_share > 0 ? evaluate_through(m, wi, -cos_i, n) : Evaluation{};
+        through_share > 0 ? evaluate_through(seen, wi, -cos_i, n) : Evaluation{};
     if (smooth || clear == Clear::none) return diffused;
     const Vec3f mirrored = wi - side.ns * (2 * cos_i);
     const Facet f = clear == Clear::thin ? reflecting(side, wo, mirrored, -cos_i)
@@ -278,14 +277,14 @@ Evaluation GltfBsdf::evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f w
             diffused.pdf + specular * (1 - p.reflect_probability) * f.pdf, disperses};
 }
 
-std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) const {
-    const Facing side(ns, ng, wo);
+std::optional<BsdfSample> GltfBsdf::sample(const Seen& seen, float u_lobe, Vec2f u) const {
+    const Vec3f wo = seen.wo;
+    const Facing& side = seen.side;
     if (side.cos_o <= 0) return std::nullopt;
-    const Mix m = mix(wo, side.cos_o);
     BsdfSample s;
-    if (u_lobe < m.diffuse_probability) {
+    if (u_lobe < seen.diffuse_probability) {
         s.wi = sample_cosine(side.ns, u);
-        s.transmitted = u_lobe < m.diffuse_probability * through_share;
+        s.transmitted = u_lobe < seen.diffuse_probability * through_share;
         if (s.transmitted) {
             s.wi = -s.wi;
             s.eta = eta(side.front);
@@ -293,8 +292,8 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         }
     } else {
         if (!has_specular) return std::nullopt;  // black
-        const float specular = 1 - m.diffuse_probability, n = eta(side.front);
-        u_lobe = (u_lobe - m.diffuse_probability) / specular;
+        const float specular = 1 - seen.diffuse_probability, n = eta(side.front);
+        u_lobe = (u_lobe - seen.diffuse_probability) / specular;
         const Vec3f h = smooth ? side.ns : sample_facet(side.ns, wo, u);
         const float cos_h = dot(wo, h);
         const Split p = split(cos_h, n);
@@ -318,7 +317,7 @@ std::optional<BsdfSample> GltfBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) cons
         }
     }
     if (side.reflects(s.wi) == s.transmitted) return std::nullopt;
-    const Evaluation e = evaluate_with_pdf(side, m, wo, s.wi);
+    const Evaluation e = evaluate_with_pdf(seen, s.wi);
     if (!(e.pdf > 0)) return std::nullopt;
     s.weight = e.f_cos / e.pdf;
     s.pdf = e.pdf;

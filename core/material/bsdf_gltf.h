@@ -107,8 +107,18 @@ struct GltfBsdf {
 
     GltfBsdf(const GltfSurface& surface, Vec3f ns, Vec3f ng);
 
-    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const;
-    std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const;
+    /// Facts that wo alone decides, for whoever asks for several wi.
+    struct Seen {
+        Vec3f wo;
+        Facing side;
+        float diffuse_probability = 0, interface = 0;  // E_c(wo)
+    };
+    Seen seen_from(Vec3f wo) const;
+    Evaluation evaluate_with_pdf(const Seen& seen, Vec3f wi) const;
+    std::optional<BsdfSample> sample(const Seen& seen, float u_lobe, Vec2f u) const;
+
+    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(seen_from(wo), wi); }
+    std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const { return sample(seen_from(wo), u_lobe, u); }
     Spectrum evaluate(Vec3f wo, Vec3f wi) const {
         return evaluate_with_pdf(wo, wi).f_cos;
     }
@@ -139,18 +149,12 @@ struct GltfBsdf {
     float eta(bool front) const {
         return !bends ? 1.f : front ? ior : 1 / ior;
     }
-    struct Mix {
-        float diffuse_probability, interface;  // E_c(wo)
-    };
-    Mix mix(Vec3f wo, float cos_o) const;
-    /// With what is known of wo.
-    Evaluation evaluate_with_pdf(const Facing& side, const Mix& m, Vec3f wo, Vec3f wi) const;
-    Evaluation evaluate_diffuse(const Mix& m, Vec3f wi, float cos_i) const;
+    Evaluation evaluate_diffuse(const Seen& seen, Vec3f wi, float cos_i) const;
     LobeAlbedo lobe_albedo(Vec3f w, float cos_w) const {
         return stretched ? stretched_row(w).at(cos_w) : row.at(cos_w);
     }
     GgxAlbedo::Row stretched_row(Vec3f w) const;
-    Evaluation evaluate_through(const Mix& m, Vec3f wi, float cos_i, float eta) const;
+    Evaluation evaluate_through(const Seen& seen, Vec3f wi, float cos_i, float eta) const;
     void set_through(const GltfSurface& surface, float weight, float entering);
 };
 

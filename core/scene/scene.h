@@ -103,6 +103,8 @@ class Scene {
                                             float time,
                                             const Wavelengths& wavelengths) const;
 
+    void resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const;
+
     /// Emission (cd/m2) of a point of an emitter `toward` (unit) where it is seen from, as a ray that hits it
     /// would find it on average; `width` (m) of its cone there, across it.
     Rgb emission(const EmissionPoint& point, Vec3f toward, float time, float width = 0) const;

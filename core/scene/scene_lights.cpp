@@ -47,9 +47,13 @@ std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f po
                                                const Wavelengths& wavelengths) const {
     auto sample = lights_.sample(u_select, u, position, time, wavelengths);
     if (!sample || !sample->uneven) return sample;
-    const Rgb rgb = triangle_emission(sample->light, sample->barycentric, -sample->wi, time);
-    sample->radiance = wavelengths.emission(rgb);
+    resolve(*sample, time, wavelengths);
     return sample;
+}
+
+void Scene::resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const {
+    const Rgb rgb = triangle_emission(sample.light, sample.barycentric, -sample.wi, time);
+    sample.radiance = wavelengths.emission(rgb);
 }
 
 Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward, float time,

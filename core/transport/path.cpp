@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "transport/light_pick.h"
 #include "transport/path_mis.h"
 
 namespace dg {
@@ -13,18 +14,13 @@ namespace {
 constexpr float kRouletteThreshold = 0.3f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
-float power_heuristic(float pdf, float other) {
-    const float ratio = other / pdf;   // a ratio, as the square of a large pdf overflows
-    return 1.f / (1.f + ratio * ratio);
-}
-
 /// State of the path from vertex to vertex.
 struct Walk {
     Ray ray;
     Spectrum throughput{1.f};
     Vec3f previous;              // where the ray left from, for the density of light sampling
     float bsdf_pdf = 0;
+    int tries = 1;               // light samples that the last vertex picked one of
     bool from_delta = true;      // camera, or a mirror: light sampling cannot have found this
     bool in_view = true;         // straight from the camera, or by way of mirrors and smooth glass alone
     float straight = 0;          // m from there to the ray's origin, through clear sheets
@@ -65,23 +61,23 @@ RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit
 struct VertexRandom {
     float select = 0;      // which light
     Vec2f light;           // where on it
-    float lobe = 0;        // which lobe of the BSDF
+    float lobe = 0;        // which lobe of the BSDF, and which of several light samples
     Vec2f direction;
 };
 
 /// Every vertex takes the same four dimensions, so that stratification stays; those that this BSDF has
 /// no use for are left out.
 template <typename BsdfKind>
-VertexRandom draw_vertex(const BsdfKind& bsdf, bool lit, PathSampler& sampler) {
+VertexRandom draw_vertex(const BsdfKind& bsdf, int tries, PathSampler& sampler) {
     VertexRandom u;
     const bool specular = bsdf.is_specular();
-    if (lit && !specular) {
+    if (tries > 0 && !specular) {
         u.select = sampler.next_1d();
         u.light = sampler.next_2d();
     } else {
         sampler.skip(2);
     }
-    if constexpr (BsdfKind::kOneLobe)
+    if (BsdfKind::kOneLobe && tries < 2)
         sampler.skip(1);
     else
         u.lobe = sampler.next_1d();
@@ -166,9 +162,12 @@ class Path {
     bool split(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex);
     template <typename BsdfKind>
     void go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample, PathMis::Vertex* both);
+    template <typename BsdfKind, typename Seen>
+    Spectrum direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
+                          const VertexRandom& u, PathMis::Vertex* both, bool& hero_only);
     template <typename BsdfKind>
-    Spectrum direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
-                          PathMis::Vertex* both, bool& hero_only);
+    Spectrum arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
+                      PathMis::Vertex* both);
 
     Spectrum environment_emission() const;
     Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;
@@ -246,17 +245,20 @@ bool Path::scatter(const Material& material, SurfaceHit& hit, int vertex) {
 template <typename BsdfKind>
 bool Path::leave(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex, PathMis::Vertex* both) {
     const bool last = vertex == settings_.max_depth;
-    const VertexRandom u = draw_vertex(bsdf, !scene_.lights().empty(), sampler_);
+    const int tries = light_tries(scene_.lights(), walk_.in_view);
+    const VertexRandom u = draw_vertex(bsdf, tries, sampler_);
+    const auto seen = seen_from(bsdf, hit.wo);
     if (!last && !bsdf.is_specular()) {
         bool hero_only = false;
-        const Spectrum direct = walk_.throughput * direct_light(bsdf, hit, u, both, hero_only);
+        const Spectrum direct = walk_.throughput * direct_light(bsdf, seen, tries, hit, u, both, hero_only);
         (hero_only ? light_.hero : gathered()) += direct;
     }
     if constexpr (!BsdfKind::kOneLobe)
         if (!last && walk_.in_view && walk_.splits < settings_.splits && split(bsdf, hit, vertex)) return true;
-    const auto sample = bsdf.sample(hit.wo, u.lobe, u.direction);
+    const auto sample = bsdf.sample(seen, u.lobe, u.direction);
     if (!sample || sample->weight.is_black()) return false;
     go(bsdf, hit, *sample, both);
+    if (walk_.straight == 0) walk_.tries = tries;   // else a window: light was sampled where the ray came from
     return !last || walk_.straight > 0;
 }
 
@@ -297,25 +299,40 @@ void Path::go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sam
 }
 
 /// Next-event estimation at one vertex. hero_only: see Evaluation.
-template <typename BsdfKind>
-Spectrum Path::direct_light(const BsdfKind& bsdf, const SurfaceHit& hit, const VertexRandom& u,
-                            PathMis::Vertex* both, bool& hero_only) {
+template <typename BsdfKind, typename Seen>
+Spectrum Path::direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
+                            const VertexRandom& u, PathMis::Vertex* both, bool& hero_only) {
     using Strategy = PathSettings::Strategy;
+    const bool shared = settings_.strategy != Strategy::light, by_bsdf = settings_.strategy == Strategy::bsdf;
+    if (tries > 1 && !by_bsdf) {
+        const auto picked =
+            LightPick::pick(scene_, hit, wavelengths_, tries, shared, {u.select, u.light, u.lobe}, walk_.throughput,
+                            [&](Vec3f wi) { return bsdf.evaluate_with_pdf(seen, wi); });
+        if (!picked) return 0.f;
+        hero_only = picked->seen.hero_only;
+        return picked->seen.f_cos * arriving(bsdf, hit, picked->light, picked->weight, both);
+    }
     const auto light = scene_.sample_light(u.select, u.light, hit.position, hit.time, wavelengths_);
     if (!light || light->pdf <= 0) return 0.f;
-    if (settings_.strategy == Strategy::bsdf && !light->delta) return 0.f;
-    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(hit.wo, light->wi);
+    if (by_bsdf && !light->delta) return 0.f;
+    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(seen, light->wi);
     if (f_cos.is_black()) return 0.f;
     hero_only = alone_bent;
+    const float share = light->delta || !shared ? 1.f : power_heuristic(light->pdf, pdf);
+    return f_cos * arriving(bsdf, hit, *light, share / light->pdf, both);
+}
+
+/// A light's radiance with its weight, where nothing is in its way.
+template <typename BsdfKind>
+Spectrum Path::arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
+                        PathMis::Vertex* both) {
     ++rays_;
     const Spectrum visible =
-        scene_.visibility(spawn_ray(hit, light->wi, walk_.ray.time), light->distance, light->delta,
-                          medium_after(walk_, hit, bsdf, light->wi), wavelengths_);
+        scene_.visibility(spawn_ray(hit, light.wi, walk_.ray.time), light.distance, light.delta,
+                          medium_after(walk_, hit, bsdf, light.wi), wavelengths_);
     if (visible.is_black()) return 0.f;
-    const bool alone = light->delta || settings_.strategy == Strategy::light;
-    float weight = alone ? 1.f : power_heuristic(light->pdf, pdf);
-    if (both) weight *= walk_.bounces->of_sample(scene_, *both, *light, wavelengths_);
-    return f_cos * light->radiance * visible * (weight / light->pdf);
+    if (both) weight *= walk_.bounces->of_sample(scene_, *both, light, wavelengths_);
+    return light.radiance * visible * weight;
 }
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
@@ -323,7 +340,7 @@ float Path::emission_weight(float light_pdf) const {
     using Strategy = PathSettings::Strategy;
     if (walk_.from_delta || light_pdf <= 0 || settings_.strategy == Strategy::bsdf) return 1;
     if (settings_.strategy == Strategy::light) return 0;
-    return power_heuristic(walk_.bsdf_pdf, light_pdf);
+    return power_heuristic(walk_.bsdf_pdf, float(walk_.tries) * light_pdf);
 }
 
 /// Share of an emitter that the path has met, which light paths leave.
