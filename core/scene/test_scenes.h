@@ -27,6 +27,15 @@ inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float dist
     return scene.visibility(test_ray(from, direction), distance, false, {}, wavelengths).is_black();
 }
 
+/// Adds a mesh where it is, with a material of its own.
+inline void add(SceneDescription& d, Mesh mesh, Material material) {
+    const auto i = std::uint32_t(d.meshes.size());
+    mesh.name = "mesh";
+    d.meshes.push_back(std::move(mesh));
+    d.materials.push_back(std::move(material));
+    d.instances.push_back({"it", i, i, {}});
+}
+
 /// [-1,1]^2 at z = 0, facing +z; u along +x, v along -y, as a picture hangs.
 inline Mesh quad_mesh() {
     Mesh mesh;

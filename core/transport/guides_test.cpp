@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scene/test_scenes.h"
 #include "transport/path.h"
 
 namespace dg {
@@ -19,13 +20,6 @@ Mesh square(float z, float s, bool turned = false) {
     mesh.positions = {{-x, -s, z}, {x, -s, z}, {x, s, z}, {-x, s, z}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
-}
-
-void add(SceneDescription& d, Mesh mesh, Material material) {
-    const auto i = std::uint32_t(d.meshes.size());
-    d.meshes.push_back(std::move(mesh));
-    d.materials.push_back(std::move(material));
-    d.instances.push_back({"it", i, i, {}});
 }
 
 /// A wall at z = -5, and before it what `front` adds.

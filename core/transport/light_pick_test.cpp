@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "math/statistics.h"
+#include "scene/test_scenes.h"
 #include "transport/path.h"
 
 namespace dg {
@@ -11,14 +12,6 @@ namespace {
 
 using Strategy = PathSettings::Strategy;
 constexpr Vec3f kMiddle{0.1f, 0, 0.5f};
-
-void add(SceneDescription& d, Mesh mesh, Material material) {
-    const auto i = std::uint32_t(d.meshes.size());
-    mesh.name = "mesh";
-    d.meshes.push_back(std::move(mesh));
-    d.materials.push_back(std::move(material));
-    d.instances.push_back({"it", i, i, {}});
-}
 
 /// Faces up.
 Mesh floor() {

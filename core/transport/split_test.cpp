@@ -2,18 +2,11 @@
 #include <doctest/doctest.h>
 
 #include "math/statistics.h"
+#include "scene/test_scenes.h"
 #include "transport/path.h"
 
 namespace dg {
 namespace {
-
-void add(SceneDescription& d, Mesh mesh, Material material) {
-    const auto i = std::uint32_t(d.meshes.size());
-    mesh.name = "mesh";
-    d.meshes.push_back(std::move(mesh));
-    d.materials.push_back(std::move(material));
-    d.instances.push_back({"it", i, i, {}});
-}
 
 Mesh cube(float size, Vec3f middle) {
     Mesh mesh;

@@ -5,6 +5,7 @@
 #include "material/fresnel.h"
 #include "math/hash.h"
 #include "math/statistics.h"
+#include "scene/test_scenes.h"
 #include "transport/path.h"
 
 namespace dg {
@@ -22,13 +23,6 @@ Mesh plate(float size, float y, bool up = true) {
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     if (!up) mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
     return mesh;
-}
-
-void add(SceneDescription& d, Mesh mesh, Material material) {
-    const auto i = std::uint32_t(d.meshes.size());
-    d.meshes.push_back(std::move(mesh));
-    d.materials.push_back(std::move(material));
-    d.instances.push_back({"it", i, i, {}});
 }
 
 /// A white floor at y = 0.
