@@ -98,6 +98,8 @@ def main() -> None:
     parser.add_argument("--reference", type=Path, help="picture as .npy, made if it is not there")
     parser.add_argument("--reference-spp", type=int, default=2048)
     options = parser.parse_args()
+    if options.seeds < 2 or options.seeds % 2:
+        parser.error(f"--seeds: wanted an even number, got {options.seeds}")
     scene, camera = loaded()
     true = reference(scene, camera, options)
     pictures, seconds = [], []
