@@ -25,7 +25,14 @@ class Silent:
     def event(self, name: str, **facts: Any) -> None:
         """Something that happened once: done, checkpoint, interrupted."""
 
+    def start(self) -> None:
+        """Takes its place on the screen."""
+
+    def stop(self) -> None:
+        """Leaves the screen as it was."""
+
     def __enter__(self) -> Self:
+        self.start()
         return self
 
     def __exit__(
@@ -34,6 +41,7 @@ class Silent:
         value: BaseException | None,
         tb: TracebackType | None,
     ) -> None:
+        self.stop()
         console.writer = None
 
 
@@ -99,22 +107,17 @@ class Bar(Silent):
         text = self._which + describe(status, percent=False)
         self._progress.update(self._task, completed=status.fraction, description=text)
 
-    def __enter__(self) -> Self:
+    def start(self) -> None:
+        """Shows the bar; lines that are said make room for it."""
         self._progress.start()
         screen = self._progress.console
         console.writer = lambda line: screen.print(
             line, markup=False, highlight=False, soft_wrap=True
         )
-        return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        tb: TracebackType | None,
-    ) -> None:
+    def stop(self) -> None:
+        """Takes the bar away."""
         self._progress.stop()
-        super().__exit__(kind, value, tb)
 
 
 def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:

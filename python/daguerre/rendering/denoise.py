@@ -62,11 +62,9 @@ def denoise(frame: Frame) -> Frame:
         InputError: It failed.
     """
     check_available()
-    cleaner = Cleaner.of(frame)
-    scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
-    clean = cleaner(scene)
+    clean, left = _cleaned(frame)
     facts: dict[str, Any] = {"denoised": f"{PACKAGE} {version(PACKAGE)}"}
-    if (left := _error_left(frame, cleaner, scene, clean)) is not None:
+    if left is not None:
         facts["denoised_noise"] = left
         if "noise" in frame.metadata:
             facts |= {"noise": left, "noise_of": "denoised"}
@@ -86,9 +84,15 @@ def _by_the_lens(flare: Image, facts: Mapping[str, Any]) -> Image:
 
 def noise_after(frame: Frame) -> float | None:
     """The relative error that denoising this frame would leave; None: it cannot be known."""
+    return _cleaned(frame)[1]
+
+
+def _cleaned(frame: Frame) -> tuple[Image, float | None]:
+    """The scene without noise and without ghosts, and the error that is left; None: not known."""
     cleaner = Cleaner.of(frame)
     scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
-    return _error_left(frame, cleaner, scene, cleaner(scene))
+    clean = cleaner(scene)
+    return clean, _error_left(frame, cleaner, scene, clean)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from base64 import b64encode
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.png_chunks import checksum
+from daguerre.io.png_chunks import encoded
 
 from .terminal import Way
 
@@ -51,8 +51,7 @@ def png(pixels: Pixels) -> bytes:
     lines[:, 1:] = pixels.reshape(height, -1)
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     parts = ((b"IHDR", header), (b"IDAT", zlib.compress(lines.tobytes(), 1)), (b"IEND", b""))
-    chunks = (struct.pack(">I", len(d)) + kind + d + checksum(kind, d) for kind, d in parts)
-    return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)
+    return b"\x89PNG\r\n\x1a\n" + b"".join(encoded(kind, data) for kind, data in parts)
 
 
 def sixel(pixels: Pixels) -> bytes:

@@ -8,8 +8,7 @@ import struct
 import termios
 import time
 from dataclasses import dataclass
-from types import TracebackType
-from typing import Self, TextIO
+from typing import TextIO
 
 import numpy as np
 
@@ -90,18 +89,13 @@ class Screen(Silent):
         self._write(b"\r\x1b[K" + line.encode() + b"\n")
         self._below += 1 + max(len(line) - 1, 0) // Cells.of(self._out).columns
 
-    def __enter__(self) -> Self:
+    def start(self) -> None:
+        """Says lines below the picture."""
         console.writer = self.say
-        return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        tb: TracebackType | None,
-    ) -> None:
+    def stop(self) -> None:
+        """Takes the line of progress away."""
         self._write(b"\r\x1b[K")
-        super().__exit__(kind, value, tb)
 
     def _write(self, data: bytes) -> None:
         self._out.flush()

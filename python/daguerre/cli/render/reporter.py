@@ -43,7 +43,7 @@ class ConsoleReporter(Reporter):
             return
         if self._preview.way is not None and self._screen is None:
             self._screen = Screen(self._preview.way, sys.stderr)
-            self._screen.__enter__()  # lines of the set-up are said below it
+            self._screen.start()  # lines of the set-up are said below it
         self._preview.show(look, self._screen)
 
     @contextmanager
