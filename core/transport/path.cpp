@@ -156,6 +156,9 @@ class Path {
     Spectrum& gathered() { return walk_.bent_alone ? light_.hero : light_.shared; }
     bool step(int vertex);
     bool scatter(const Material& material, SurfaceHit& hit, int vertex);
+    bool scatter_shared(const Material& material, SurfaceHit& hit, int vertex);
+    bool leave_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
+                       PathMis::Vertex* both);
     template <typename BsdfKind>
     bool leave(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex, PathMis::Vertex* both);
     template <typename BsdfKind>
@@ -231,14 +234,24 @@ bool Path::step(int vertex) {
 
 /// At a surface: its BSDF, and the way on. False: the path ends.
 bool Path::scatter(const Material& material, SurfaceHit& hit, int vertex) {
-    SurfaceHit bare;
-    if (walk_.bounces) bare = hit;
+    if (walk_.bounces) return scatter_shared(material, hit, vertex);
     const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths_);
-    std::optional<PathMis::Vertex> both;
-    if (walk_.bounces) both.emplace(scene_, material, bare, wavelengths_, bsdf);
+    return leave_by_kind(bsdf, material, hit, vertex, nullptr);
+}
+
+/// The same, where light paths may find what comes next. By itself, as gcc clears room for a vertex that may be
+/// absent (bug 86173): 1.7 kB at each surface that has none.
+bool Path::scatter_shared(const Material& material, SurfaceHit& hit, int vertex) {
+    const SurfaceHit bare = hit;
+    const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths_);
+    PathMis::Vertex both(scene_, material, bare, wavelengths_, bsdf);
+    return leave_by_kind(bsdf, material, hit, vertex, &both);
+}
+
+bool Path::leave_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
+                         PathMis::Vertex* both) {
     if (first_hit_ && !walk_.seen) record_first_hit(material, hit, is_specular(bsdf));
-    return std::visit(
-        [&](const auto& kind) { return leave(kind, hit, vertex, both ? &*both : nullptr); }, bsdf);
+    return std::visit([&](const auto& kind) { return leave(kind, hit, vertex, both); }, bsdf);
 }
 
 /// Direct light, and a direction to go on in. False: the path ends.
