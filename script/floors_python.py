@@ -16,7 +16,7 @@ from pathlib import Path
 FLOORS = [
     {"errors"},
     {"checks"},
-    {"units", "files"},
+    {"units", "memory", "files"},
     {"parameters"},
     {"color", "motion", "convolution"},
     {"lenses", "sensors"},

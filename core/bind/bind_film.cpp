@@ -88,6 +88,7 @@ void bind_film(nb::module_& m) {
     bind_layout(m);
     nb::class_<Film>(m, "Film")
         .def(nb::init<FilmLayout>(), "layout"_a)
+        .def_static("pixel_bytes", &Film::pixel_bytes, "layout"_a, "Bytes of the sums of one pixel.")
         .def("set_responses",
              [](Film& f, const Curves& curves) {
                  f.set_responses(Responses(std::span(curves.data(), curves.size())));

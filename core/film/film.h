@@ -46,6 +46,8 @@ struct PixelBox {
 /// channel and as much again if there are splats or flare.
 class Film {
   public:
+    /// Bytes of the sums of one pixel.
+    static std::size_t pixel_bytes(const FilmLayout& layout);
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, bands is 0 .. kMostBands and
     /// channels is 0 .. Responses::kMost.
     explicit Film(FilmLayout layout);

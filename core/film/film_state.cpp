@@ -10,6 +10,12 @@ namespace dg {
 static_assert(std::endian::native == std::endian::little,
               "files hold the words of a sum as they lie in memory, lowest first");
 
+std::size_t Film::pixel_bytes(const FilmLayout& l) {
+    const bool lit = l.splats || l.flare;   // channels have sums of their own for that
+    return kSumBytes + (l.aovs ? kAovBytes : 0) + (l.splats ? kSplatBytes : 0) + (l.flare ? kSplatBytes : 0) +
+           (l.halves ? kHalfBytes : 0) + kBandBytes * std::size_t(l.bands + l.channels * (lit ? 2 : 1));
+}
+
 std::vector<std::string> Film::state_parts() const {
     std::vector<std::string> parts{"sums"};
     if (layout_.aovs) parts.push_back("aovs");

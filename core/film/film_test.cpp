@@ -513,3 +513,16 @@ TEST_CASE("a film that is placed elsewhere keeps its sums and takes other pixels
     CHECK(film.sample_counts() == std::vector<std::uint32_t>{2, 0, 0, 0, 0, 1});
     CHECK(film.mean_xyz()[1] == 1);
 }
+
+TEST_CASE("bytes of a pixel are those of its parts, whatever the film keeps") {
+    for (int which = 0; which < 16; ++which)
+        for (int channels : {0, 3}) {
+            FilmLayout l{.width = 3, .height = 2};
+            l.aovs = which & 1, l.splats = which & 2, l.flare = which & 4, l.halves = which & 8;
+            l.channels = channels, l.bands = 5 * (which % 3);
+            const Film film(l);
+            std::size_t bytes = 0;
+            for (const std::string& part : film.state_parts()) bytes += film.state(part).size();
+            CHECK(bytes == 6 * Film::pixel_bytes(l));
+        }
+}

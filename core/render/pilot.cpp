@@ -11,8 +11,9 @@
 namespace dg {
 namespace {
 
-constexpr int kLeast = 3, kMost = 6;        // px of the picture along a side of a pilot's pixel
+constexpr int kLeast = 3, kMost = 6;        // px along a side of a pilot's pixel, of pictures up to 9 MP
 constexpr double kBlocks = 600;             // of a small picture
+constexpr double kMostBlocks = 1 << 18;     // of a large one, so that the pilot does not grow with it: as many as paths
 constexpr std::uint32_t kSamples = 2;       // of each: the fewest that tell a variance
 constexpr int kPixelsPerPath = 16;
 constexpr std::uint64_t kFewestPaths = 2048, kMostPaths = 1 << 18;
@@ -34,7 +35,9 @@ double price_of(const LensKind& lens) {     // one sample through it, all wavele
 
 /// Side of a block, px.
 int block_side(const Sensor& sensor) {
-    return std::clamp(int(std::sqrt(sensor.width * (sensor.height / kBlocks))), kLeast, kMost);
+    const double pixels = double(sensor.width) * sensor.height;
+    const int side = std::clamp(int(std::sqrt(pixels / kBlocks)), kLeast, kMost);
+    return std::max(side, int(std::ceil(std::sqrt(pixels / kMostBlocks))));
 }
 
 /// The picture in larger pixels.

@@ -1,4 +1,4 @@
-"""``daguerre merge``: adds passes of one picture, exactly, in any order."""
+"""``daguerre merge``: adds passes of one picture, exactly, in any order; or joins its crops."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from .flags.groups import option
 
 def merge(
     passes: Annotated[
-        list[Path], typer.Argument(metavar="PASS.exr...", help="Passes by `render --samples`.")
+        list[Path],
+        typer.Argument(metavar="PASS.exr...", help="Passes by `render --samples`, or crops."),
     ],
     output: Annotated[
         list[Path],
@@ -36,9 +37,10 @@ def merge(
     ] = "srgb",
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
-    """Adds passes to one picture, with the bits of a render in one go."""
+    """Adds passes to one picture, with the bits of a render in one go; or joins its crops."""
     from daguerre.files import atomic
     from daguerre.frame.frame import TONES, check_format
+    from daguerre.io.exr.crops import are_crops
     from daguerre.rendering import merged, merging
 
     console.quiet = quiet
@@ -53,6 +55,8 @@ def merge(
         from daguerre.rendering.denoise import check_available
 
         check_available()
+    if are_crops(passes):
+        return _join(passes, output, plain=not (strict or keep_sums or denoise))
     frame, total = merging.merge(passes)
     if strict:
         merged.refuse_gaps(total)
@@ -72,4 +76,17 @@ def merge(
         console.warn(bad_samples(count, places))
     names = ", ".join(map(str, output))
     console.note(f"wrote {names} (samples {show_ranges(total.ranges)})")
+    return 0
+
+
+def _join(crops: list[Path], output: list[Path], *, plain: bool) -> int:
+    """Joins crops, which may be larger than memory, row by row."""
+    from daguerre.io.exr.crops import join_crops
+
+    if not plain or [path.suffix.lower() for path in output] != [".exr"]:
+        raise UsageError(
+            "merge: crops: wanted one .exr output, without --strict, --keep-sums or --denoise"
+        )
+    x0, y0, x1, y1 = join_crops(crops, output[0])
+    console.note(f"wrote {output[0]} ({x1 - x0} x {y1 - y0} px of {len(crops)} crops)")
     return 0

@@ -12,6 +12,7 @@ from daguerre.errors import DaguerreError
 from daguerre.scene.scene import Scene
 
 from .checkpoint import INTERVAL_S, Checkpoint
+from .film_memory import check_denoised, check_picture
 from .loop import Loop
 from .picture import Picture
 from .reporter import Control, Finished, Reporter, Stopped
@@ -126,6 +127,9 @@ class Job:
         session = Session(scene, camera, settings=picture.settings, built=self._built)
         self._built = session.built
         picture.output.check(session.metadata, self.reporter)
+        if picture.output.denoise:
+            x0, y0, x1, y1 = session.crop
+            check_denoised((x1 - x0, y1 - y0))
         if first and not lit(scene):
             self.reporter.warning(
                 f"{self.name}: the scene has no lights, so the picture will be black; "
@@ -147,6 +151,7 @@ class Job:
         """Shows a coarse picture before the set-up of the fine one."""
         from .coarse import coarse
 
+        check_picture(picture.settings.film.crop, picture.settings.film.resolution)
         scene, camera = self.scene_of(picture), self.camera_of(picture)
         try:
             frame, self._built = coarse(scene, camera, picture.settings, self._built)

@@ -14,6 +14,7 @@ from daguerre.setup.camera import set_up
 from daguerre.setup.checks import check_surfaces
 from daguerre.setup.resolved import ResolvedCamera
 
+from .film_memory import check_film
 from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
 from .pixels import parse_filter
@@ -94,6 +95,7 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         bands=film.bands if waves is None else waves.bands,
         channels=0 if curves is None else len(curves),
     )
+    check_film(layout, truth=one.settings.truth.moment is not None)
     made = _core.Film(layout)
     if curves is not None:
         made.set_responses(curves)

@@ -1,0 +1,68 @@
+"""Memory that a picture takes, held against what the machine has before anything is drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import daguerre._core as _core
+from daguerre import memory
+from daguerre.errors import InputError
+from daguerre.frame.aovs import FILM_CHANNELS
+
+if TYPE_CHECKING:
+    from .pixels import Box
+
+#: Bytes per pixel of a frame beside its film: colours, XYZ, variance, alpha, counts, and what is at
+#: hand while it is written. Measured: bench/film_memory.py.
+FRAME = 52
+TRUTH = 108  # ground truth and its rays
+FLOAT = 4
+#: The frame of a denoised picture and what the denoiser takes: per pixel, and for itself.
+DENOISED, DENOISER = 450, 950_000_000
+
+
+def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False) -> int:
+    """Memory of a pixel at its peak, when the frame is made and written."""
+    planes = 3 * (layout.flare + layout.splats * layout.aovs) + 12 * layout.halves
+    planes += len(FILM_CHANNELS) * layout.aovs
+    planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
+    return _core.Film.pixel_bytes(layout) + FRAME + FLOAT * planes + TRUTH * truth
+
+
+def check_film(layout: _core.FilmLayout, *, truth: bool = False, free: int | None = None) -> None:
+    """Refuses a picture for which the machine has too little memory.
+
+    Args:
+        layout: Layout of the film.
+        truth: Whether the frame gets ground truth.
+        free: Bytes that there are; None: as the machine tells.
+
+    Raises:
+        InputError: The message tells how many pixels there is room for.
+    """
+    size = layout.width, layout.height
+    _check(size, pixel_bytes(layout, truth=truth), 0, "keep fewer channels", free)
+
+
+def check_picture(crop: Box | None, resolution: tuple[int, int]) -> None:
+    """The same of a picture of which no more than its size is known, so that it keeps the least."""
+    x0, y0, x1, y1 = crop or (0, 0, *resolution)
+    check_film(_core.FilmLayout(width=x1 - x0, height=y1 - y0))
+
+
+def check_denoised(size: tuple[int, int], *, free: int | None = None) -> None:
+    """The same of what comes beside a film of that size when the picture is denoised."""
+    _check(size, DENOISED, DENOISER, "leave out --denoise", free)
+
+
+def _check(size: tuple[int, int], each: int, fixed: int, advice: str, free: int | None) -> None:
+    free = memory.free_bytes() if free is None else free
+    (width, height), shown = size, memory.shown
+    if free is None or (needed := each * width * height + fixed) <= free:
+        return
+    most = max((free - fixed) // each, 1)
+    raise InputError(
+        f"picture: memory: wanted at most the {shown(free)} that are free, got {width} x {height} "
+        f"px of {each} bytes: {shown(needed)}; draw it in parts of at most {most:,} pixels "
+        f"(--crop) and join them (daguerre merge), {advice}, or draw fewer pixels"
+    )
