@@ -372,7 +372,8 @@ void def_time(nb::class_<Builder>& c) {
 /// From parts to a scene.
 void def_build(nb::class_<Builder>& c) {
     c.def("build",
-             [](Builder& b, const std::string& light_choice) {
+             [](Builder& b, const std::string& light_choice, std::uint64_t free_memory) {
+                 b.description.free_memory = free_memory;
                  b.description.light_choice =
                      choose<LightChoice>("light_choice", light_choice,
                                          {{"tree", LightChoice::tree},
@@ -382,9 +383,9 @@ void def_build(nb::class_<Builder>& c) {
                  nb::gil_scoped_release release;
                  return std::const_pointer_cast<Scene>(Scene::build(std::move(b.description)));
              },
-             "light_choice"_a = "tree",
+             "light_choice"_a = "tree", "free_memory"_a = 0,
              "Checks everything, finds emissive triangles and builds the ray tracer; the builder is "
-             "empty afterwards.");
+             "empty afterwards. free_memory: bytes that there are for it; 0: not known.");
 }
 
 }  // namespace

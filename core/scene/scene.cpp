@@ -7,6 +7,7 @@
 
 #include "math/hash.h"
 #include "scene/footprint.h"
+#include "scene/memory_need.h"
 #include "scene/pyramids.h"
 #include "scene/validate.h"
 
@@ -73,6 +74,7 @@ Scene::~Scene() = default;
 std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     for (Instance& instance : description.instances) place_in(instance, description.interval);
     validate(description);
+    check_memory(description);
     build_pyramids(description.textures, description.materials);
     Changes changes = take_changes(description);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));

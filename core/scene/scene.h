@@ -40,6 +40,8 @@ struct SceneDescription {
     /// Exposed interval of the picture, s: the first moment of any row of the film to the last. Inside
     /// the scene time is the fraction of it, 0 .. 1.
     TimeInterval interval;
+    /// Bytes that the machine has left to build it in; 0: nobody knows.
+    std::uint64_t free_memory = 0;
     /// Changes over time (s), by index; what is not named stays as it is above.
     std::map<std::uint32_t, Keyed<Material, double>> material_keys;
     std::map<std::uint32_t, Keyed<Light, double>> light_keys;

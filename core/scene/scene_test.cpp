@@ -1,4 +1,5 @@
 // scene_test.cpp -- building, hits in the world frame, shadows, bad input.
+#include "scene/memory_need.h"
 #include "scene/scene.h"
 
 #include <doctest/doctest.h>
@@ -57,6 +58,28 @@ TEST_CASE("bad input is named") {
     d = one_quad();
     std::get<GltfMaterial>(d.materials[0].kind).base_color_texture.index = 0;
     CHECK(build_error(d).find("material") == 0);
+}
+
+TEST_CASE("a scene that does not fit into memory is refused with what it needs") {
+    GltfMaterial glowing;
+    glowing.emissive = {1, 1, 1};
+    SceneDescription d = describe(quad_mesh(), glowing);
+    for (int i = 1; i < 1000; ++i) d.instances.push_back(d.instances[0]);   // of one mesh of 2 triangles
+    d.materials.push_back({"dark", GltfMaterial{}});
+    const std::uint64_t needed = 2 * MemoryNeed::kTriangle + 2000 * MemoryNeed::kLamp;
+    CHECK(MemoryNeed(d).bytes() == needed);
+    d.free_memory = needed;
+    CHECK(build_error(d) == "");
+    d.free_memory = needed - 1;
+    CHECK(build_error(d) ==
+          "memory: 2 triangles of 50 bytes and 2000 emissive ones of 400: wanted at most the 0.0008 GB that are free, "
+          "got 0.0008 GB");
+    for (Instance& instance : d.instances) instance.material = 1;
+    CHECK(build_error(d) == "");
+    // One that shines at some time only is a light all the time.
+    Keyed<Material, double> keys{{0, 1}, {d.materials[1], d.materials[0]}};
+    d.material_keys[1] = keys;
+    CHECK(MemoryNeed(d).bytes() == needed);
 }
 
 TEST_CASE("a hit: position, normal, distance, side, uv and colour") {

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import daguerre._core as _core
+from daguerre import memory
 from daguerre.checks import as_readonly, short
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.motion.subdivision import samples
@@ -42,7 +43,8 @@ def build(
         moving = MovingParts(scene, seen, [] if notes is None else notes)
         _add_all(builder, scene, moving)
         moving.finish()
-        return builder.build()
+        free = memory.free_bytes()
+        return builder.build(free_memory=0 if free is None else max(free, 1))
 
 
 def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> None:
