@@ -1,11 +1,13 @@
 """How time and memory grow with a scene, a lens, a picture, and the work that is asked for.
 
-    python bench/scale.py [--only lamps ...] [--most 1e6] [--json] [--plot scale.svg]
+    python bench/scale.py [--only lamps ...] [--most 1e6] [--json] [--keep FILE] [--plot scale.svg]
+    python bench/scale.py --kept FILE --plot scale.svg
 
 Each point is a process of its own: its memory is the peak above the imported package, with the
 arrays of which a scene is made. Time is CPU time of one thread, but for ``threads``, where it is
 wall-clock time. A law is the exponent of the growth from the first point to the last: 0 does not
-grow, 1 grows in proportion. Pictures are 320 x 180 of 16 samples but for ``pixels`` and
+grow, 1 grows in proportion; "each" is what one more takes between them, of set-up (us) and memory
+(bytes). Pictures are 320 x 180 of 16 samples but for ``pixels`` and
 ``samples``.
 """
 
@@ -133,6 +135,24 @@ def drawn(
     }
 
 
+def of_textures(count: int) -> dg.Scene:
+    """So many textures of 4096 x 4096 RGB in 8 bits, each on a square of its own."""
+    scene = dg.Scene()
+    side = math.ceil(math.sqrt(count))
+    points, faces = relief(2)
+    points[:, 1] = 0
+    mesh = scene.add_mesh(points, faces, uv=points[:, [0, 2]] / 4 + 0.5)
+    rng = np.random.default_rng(5)
+    for i in range(count):
+        pixels = rng.integers(0, 256, (4096, 4096, 3), np.uint8)
+        slot = dg.TextureSlot(scene.add_texture(pixels, srgb=True))
+        material = scene.add_material(dg.Gltf(base_color_texture=slot))
+        matrix = np.diag([0.9 / side, 1, 0.9 / side, 1])
+        matrix[[0, 2], 3] = (np.array([i % side, i // side]) + 0.5) * 4 / side - 2
+        scene.add_instance(mesh, material, matrix)
+    return lit(scene)
+
+
 LENSES = {
     10: "double-gauss-50mm-f2",
     20: "canon-ts-e-90mm-f2.8-macro",
@@ -210,12 +230,13 @@ KINDS: dict[str, tuple[Callable[[int], Facts], tuple[int, ...]]] = {
         lambda n: drawn(of_triangles(n)),
         (10_000, 100_000, 1_000_000, 5_000_000, 20_000_000),
     ),
+    "textures": (lambda n: drawn(of_textures(n)), (1, 10, 100)),
     "instances": (lambda n: drawn(of_instances(n)), (100, 1_000, 10_000, 100_000, 1_000_000)),
     "lamps": (lamps, (1, 10, 1_000, 10_000, 100_000, 1_000_000)),
     "surfaces": (surfaces, tuple(LENSES)),
     "pixels": (pixels, (250_000, 1_000_000, 4_000_000, 16_000_000, 64_000_000)),
     "samples": (samples, (1, 4, 16, 64, 256)),
-    "threads": (threads, (1, 2, 4, 8, 16)),
+    "threads": (threads, (1, 2, 4)),
     "frames": (frames, (1, 4, 16, 64)),
 }
 
@@ -239,27 +260,51 @@ def law(points: list[tuple[int, Facts]], name: str) -> float:
     return math.log(last[name] / first[name]) / math.log(n1 / n0)
 
 
+#: What one more takes: the fact, and how many of its units are one of the words.
+EACH = {"set_up_s": (1e6, "us"), "memory_mb": (2**20, "B")}
+
+
+def each(points: list[tuple[int, Facts]], name: str) -> str:
+    """Set-up and memory of one more, from the first point to the last; empty: of other facts."""
+    (n0, first), (n1, last) = points[0], points[-1]
+    if name not in EACH or n0 == n1 or name not in last:
+        return ""
+    scale, unit = EACH[name]
+    return f"{scale * (last[name] - first[name]) / (n1 - n0):.3g} {unit}"
+
+
 def table(kind: str, points: list[tuple[int, Facts]]) -> str:
     """Rows of Markdown, the laws last."""
     names = list(points[0][1])
     rows = [[kind, *names], ["---"] * (len(names) + 1)]
     rows += [[f"{n:,}", *(f"{facts[k]:.3g}" for k in names)] for n, facts in points]
+    rows.append(["each", *(each(points, k) for k in names)])
     rows.append(["exponent", *(f"{law(points, k):.2f}" for k in names)])
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
 
 def plot(path: Path, found: dict[str, list[tuple[int, Facts]]]) -> None:
-    """Draws time per sample over each count."""
+    """Draws time per sample, and memory, over each count."""
+    import matplotlib as mpl
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(2, 4, figsize=(14, 6), layout="constrained")
+    mpl.rcParams.update({"svg.hashsalt": "scale", "svg.fonttype": "none", "font.size": 8})
+    figure, axes = plt.subplots(2, 5, figsize=(13, 5), layout="constrained")
+    for axis in axes.flat[len(found) :]:
+        axis.remove()
     for axis, (kind, points) in zip(axes.flat, found.items(), strict=False):
         counts = [n for n, _ in points]
-        axis.loglog(counts, [facts["us_per_sample"] for _, facts in points], "o-")
-        axis.set(xlabel=kind, ylabel="us per sample", title=kind)
-        axis.set_ylim(bottom=min(0.1, *axis.get_ylim()))
+        axis.loglog(counts, [facts["us_per_sample"] for _, facts in points], "o-", ms=3)
+        axis.set(title=kind, ylabel="us per sample")
+        axis.set_ylim(0.1, max(20, *axis.get_ylim()))
         axis.grid(alpha=0.3)
-    figure.savefig(path)
+        if not all("memory_mb" in facts for _, facts in points):
+            continue
+        other = axis.twinx()
+        other.loglog(counts, [facts["memory_mb"] for _, facts in points], "s--", color="C1", ms=3)
+        other.set_ylim(1, 16_000)
+        other.set_ylabel("MB", color="C1")
+    figure.savefig(path, metadata={"Date": None})
 
 
 def main() -> None:
@@ -269,6 +314,8 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=math.inf, help="largest count that is tried")
     parser.add_argument("--point", nargs=2, metavar=("KIND", "COUNT"), help="measure one, here")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--keep", type=Path, help="JSON file for what is found")
+    parser.add_argument("--kept", type=Path, help="such a file, instead of measuring")
     parser.add_argument("--plot", type=Path, help="picture of the laws")
     arguments = parser.parse_args()
     if arguments.point:
@@ -276,7 +323,9 @@ def main() -> None:
         print(json.dumps(KINDS[kind][0](int(count))))
         return
     found: dict[str, list[tuple[int, Facts]]] = {}
-    for kind in arguments.only:
+    if arguments.kept:
+        found = json.loads(arguments.kept.read_text())
+    for kind in arguments.only if not found else ():
         counts = [n for n in KINDS[kind][1] if n <= arguments.most]
         points = [(n, facts) for n in counts if (facts := measure(kind, n)) is not None]
         if not points:
@@ -287,6 +336,8 @@ def main() -> None:
             print()
     if arguments.json:
         print(json.dumps(found, indent=2))
+    if arguments.keep:
+        arguments.keep.write_text(json.dumps(found, indent=1) + "\n")
     if arguments.plot:
         plot(arguments.plot, found)
 

@@ -8,6 +8,8 @@ import math
 import numpy as np
 import pytest
 
+from daguerre import memory
+from daguerre.errors import InputError
 from daguerre.io import images
 from daguerre.io.gltf import reader as gltf
 from daguerre.scene.materials import Gltf, TextureSlot
@@ -185,6 +187,15 @@ def test_an_image_is_decoded_once_for_all_its_uses(tmp_path, monkeypatch):
     assert len(scene.textures) == 2
     assert scene.textures[0].pixels is scene.textures[1].pixels
     assert value.base_color_texture == value.emissive_texture
+
+
+def test_images_take_a_share_of_the_memory_that_is_free(tmp_path, monkeypatch):
+    b = with_material({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, png(RED))
+    monkeypatch.setattr(memory, "free_bytes", lambda: 10)  # the image has 6 bytes
+    read(b, tmp_path)
+    monkeypatch.setattr(memory, "free_bytes", lambda: 9)
+    with pytest.raises(InputError, match=r"at most 5 bytes of decoded images \(60% of the 9 B"):
+        read(b, tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
 from daguerre.color import srgb as srgb_curve
+from daguerre import memory
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.uris import data_bytes, is_data
@@ -26,8 +27,10 @@ from .accessors import Accessors
 from .file import Document
 from .textures import Plan
 
-#: All images of a file together, decoded; a few kB of JSON could ask for any number of them.
+#: All images of a file together, decoded; a few kB of JSON could ask for any number of them. Where
+#: memory is short, that share of it: coarser levels take a third more, and the picture some.
 _MAX_TOTAL_BYTES = 8 << 30
+_SHARE = 0.6
 
 
 class Images:
@@ -52,7 +55,7 @@ class Images:
     def decode(self, plans: Iterable[Plan], scene: Scene) -> None:
         """Decodes what is planned and adds it to the scene, which has no textures yet."""
         wanted = sorted({plan.image for plan in plans})
-        budget = Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
+        budget = _budget()
 
         def load(index: int) -> NDArray[Any]:
             pixels = images.decode(self._bytes(index), self._where(index))
@@ -124,3 +127,12 @@ def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
     colors = pixels.shape[2] - (pixels.shape[2] in (2, 4))
     linear = srgb_curve.to_linear(pixels[:, :, :colors])
     return np.concatenate([linear, pixels[:, :, colors:]], axis=2)
+
+
+def _budget() -> Budget:
+    """Bytes that images may take, decoded."""
+    free = memory.free_bytes()
+    if free is None or _SHARE * free >= _MAX_TOTAL_BYTES:
+        return Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
+    what = f"bytes of decoded images ({_SHARE:.0%} of the {memory.shown(free)} that are free)"
+    return Budget(int(_SHARE * free), what)
