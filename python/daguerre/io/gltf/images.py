@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre import memory
 from daguerre.checks import freeze_in_place
 from daguerre.color import srgb as srgb_curve
-from daguerre import memory
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.uris import data_bytes, is_data
