@@ -1,6 +1,7 @@
 // scene_lights.cpp -- the lights of a scene: those it was given, and those that its meshes are.
 #include "scene/emission_motion.h"
 #include "scene/emissive_mesh.h"
+#include "scene/memory_need.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -22,7 +23,9 @@ std::vector<Keyed<Sphere>> Scene::spheres() const {
 }
 
 void Scene::build_lights() {
-    std::vector<Light> lights = description_.lights;
+    std::vector<Light> lights;
+    lights.reserve(description_.lights.size() + MemoryNeed(description_).lamps);   // a million would be moved often
+    lights = description_.lights;
     LightMotion motion{changes_.lights, {}, [this](TriangleLight& light, float time) {
                            return place(records_[light.instance], light, time);
                        }};
