@@ -260,7 +260,7 @@ def law(points: list[tuple[int, Facts]], name: str) -> float:
     return math.log(last[name] / first[name]) / math.log(n1 / n0)
 
 
-#: What one more takes: the fact, and how many of its units are one of the words.
+#: Growth by one: the fact, how many of its units are one of the shown unit, and that.
 EACH = {"set_up_s": (1e6, "us"), "memory_mb": (2**20, "B")}
 
 
@@ -296,6 +296,9 @@ def plot(path: Path, found: dict[str, list[tuple[int, Facts]]]) -> None:
         counts = [n for n, _ in points]
         axis.loglog(counts, [facts["us_per_sample"] for _, facts in points], "o-", ms=3)
         axis.set(title=kind, ylabel="us per sample")
+        if counts[-1] < 20 * counts[0]:
+            axis.set_xticks(counts, [str(n) for n in counts])
+            axis.set_xticks([], minor=True)
         axis.set_ylim(0.1, max(20, *axis.get_ylim()))
         axis.grid(alpha=0.3)
         if not all("memory_mb" in facts for _, facts in points):
