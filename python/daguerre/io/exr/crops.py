@@ -141,9 +141,15 @@ def _rows(crops: list[ExrReader], window: Box, top: int, bottom: int) -> dict[st
 
 
 def are_crops(paths: Sequence[str | os.PathLike[str]]) -> bool:
-    """Whether files have different pixels of a picture, so that joining is meant and not adding."""
+    """Whether files have different pixels of a picture, so that joining is meant and not adding.
+
+    What cannot be read is no crop: whoever reads it next says why.
+    """
     boxes = set()
     for path in paths:
-        with ExrReader(path) as reader:
-            boxes.add(box_of(reader))
+        try:
+            with ExrReader(path) as reader:
+                boxes.add(box_of(reader))
+        except InputError:
+            return False
     return len(boxes) > 1
