@@ -381,6 +381,16 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
     }
 }
 
+Vec2f ExactLens::trace_open(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+                            const GhostLens& ghosts, const std::vector<GhostStep>& steps, OpenLandings& out) const {
+    DG_CHECK(rays.size(), ==, wavelength_nm.size());
+    DG_CHECK(rays.size(), <=, std::size_t(kLensBatch));
+    thread_local Buffers b;
+    const int padded = fill(b, rays, wavelength_nm, 0, int(rays.size()));
+    trace_open_ghost(ghosts, steps, b.scene, b.film, out, padded);
+    return film_shift_;
+}
+
 ScatterLens ExactLens::scatter(const SensorStack& stack, const LensScatter& parts) const {
     const State& s = *state_;
     return {s.lens, s.film_plane(), s.settings.iris, s.iris_radius, stack, s.settings.half_diagonal_mm, parts};

@@ -13,7 +13,7 @@
 #include "optics/aim/pupil.h"
 #include "optics/expansion/lens_fit.h"
 #include "optics/first_order/paraxial.h"
-#include "optics/stray/ghost_lens.h"
+#include "optics/stray/open_ghost.h"
 #include "optics/stray/scatter_lens.h"
 
 namespace dg {
@@ -56,6 +56,8 @@ class ExactLens {
     /// value is not in [0, 1].
     ExactLens with_dirt(LensDirt dirt) const;
 
+    bool is_dirty() const { return dirt_ != nullptr; }
+
     /// The same lens, traced surface by surface. Not fitted: itself.
     ExactLens without_fit() const;
     /// The fit that rays are drawn from instead of surfaces, if any; with its errors.
@@ -77,6 +79,11 @@ class ExactLens {
     void reproject(std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                    const GhostLens& ghosts, const std::vector<GhostStep>& steps,
                    std::span<Reprojection> out) const;
+
+    /// Follows up to kLensBatch scene rays, which may start anywhere before the lens, by a ghost that nothing stops.
+    /// Returns what the film's coordinates are taken off from, mm: the picture is upright.
+    Vec2f trace_open(std::span<const CameraRay> rays, std::span<const float> wavelength_nm, const GhostLens& ghosts,
+                     const std::vector<GhostStep>& steps, OpenLandings& out) const;
 
     /// The lens with barrel and blades. Error if those are not known or cannot be (scatter_lens.h).
     ScatterLens scatter(const SensorStack& stack, const LensScatter& parts) const;

@@ -18,6 +18,10 @@ struct Sensor {
         return {float(((mm.x - center_mm.x) / width_mm + 0.5) * width),
                 float((0.5 - (mm.y - center_mm.y) / height_mm) * height)};
     }
+    /// Whether a place is on the frame.
+    bool holds(Vec2f px) const {
+        return px.x >= 0 && px.y >= 0 && px.x < float(width) && px.y < float(height);
+    }
     /// The same in double, for ground truth.
     Vec2d mm_from_px(Vec2d px) const {
         return {(px.x / width - 0.5) * width_mm + center_mm.x,

@@ -241,6 +241,13 @@ double Iris::outer_radius() const {
     return r;
 }
 
+double Iris::inner_radius() const {
+    if (kind_ == Kind::round) return 1;
+    if (kind_ == Kind::image || blades_.edge.empty()) return 0;
+    const double middle = blades_.bend == 0 ? blades_.apothem : blades_.center + blades_.bend * blades_.arc_radius;
+    return std::clamp(middle, 0.0, outer_radius());
+}
+
 RadialOpening::RadialOpening(const Iris& iris) : outer_(iris.outer_radius()) {
     if (iris.kind() == Iris::Kind::round) return;
     constexpr int kRadii = 1024;
