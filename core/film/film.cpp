@@ -122,6 +122,20 @@ void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> 
     }
 }
 
+void Film::add_flare_row(int x, int y, std::span<const FlareSteps> steps, std::span<const Int128> channels) {
+    const std::int64_t first = find(x, y);
+    DG_CHECK(first, >=, 0);
+    Sums* const sums = &sums_of(Layer::flare, first + steps.size() - 1) - (steps.size() - 1);
+    const Lock lock(row_lock(y));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            sums[i].xyz[k].add_steps(steps[i].xyz[k]);
+            sums[i].rgb_squares[k].add_steps(steps[i].squares[k]);
+        }
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        channel_splats_[first * layout_.channels + i].add_steps(channels[i]);
+}
+
 void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) const {
     constexpr std::size_t kLine = 64;   // bytes
     const std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;

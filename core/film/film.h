@@ -88,6 +88,12 @@ class Film {
                     Spectrum radiance);
     void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance, Layer layer = Layer::splats);
+    /// Adds whole steps of the sums to the flare of pixels side by side within the region: of XYZ, of the squares of R, G
+    /// and B, and of the channels, as many per pixel as there are. From any thread at any time.
+    struct FlareSteps {
+        std::array<Int128, 3> xyz{}, squares{};
+    };
+    void add_flare_row(int x, int y, std::span<const FlareSteps> steps, std::span<const Int128> channels);
     /// Before splats to pixels [x0, x1) x [y0, y1): their sums come from memory while other things are done.
     void prefetch(int x0, int x1, int y0, int y1, Layer layer) const;
 

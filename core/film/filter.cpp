@@ -95,6 +95,16 @@ Filter::Filter(FilterKind kind, float radius)
     magnitude_ = DiscreteDistribution(std::span<const double>(magnitudes));
 }
 
+double Filter::variance() const {
+    const double step = 1 / double(steps_per_px_);
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double x = (i + 0.5) * step - radius_;
+        sum += table_[i] * (x * x + step * step / 12) * step;
+    }
+    return sum;
+}
+
 FilterSample Filter::sample(Vec2f u) const {
     if (kind_ == FilterKind::box)   // what the table would give, without looking
         return {{(2 * u.x - 1) * radius_, (2 * u.y - 1) * radius_}, 1};

@@ -52,6 +52,8 @@ class Filter {
     float radius() const { return radius_; }
     /// Integral of the formula as it stands, px^2.
     double integral() const { return integral_; }
+    /// Second moment along one axis, px^2.
+    double variance() const;
     /// Integral of |evaluate|: 1, or more if there are negative lobes.
     double absolute_integral() const { return absolute_ * absolute_; }
 

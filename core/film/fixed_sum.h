@@ -28,6 +28,9 @@ class FixedSum {
         add_bits((Int128(high) << 63) + low);
     }
     void add(const FixedSum& other) { add_bits(other.bits_); }
+    /// Adds whole steps of 2^-kFractionBits.
+    void add_steps(Int128 steps) { add_bits(steps); }
+    static constexpr int kBits = kFractionBits;
 
     /// Nearest double.
     double value() const { return double(bits_) * (1.0 / double(1ull << kFractionBits)); }

@@ -59,6 +59,12 @@ class FilmDensity {
                 std::span<const std::uint32_t> counts = {}, const Shutter* shutter = nullptr)
         : filter_(filter), region_(region), counts_(counts), shutter_(shutter) {}
 
+    /// The same for all times together: each pixel as its counts and its filter have it.
+    FilmDensity without_shutter() const {
+        FilmDensity all = *this;
+        all.shutter_ = nullptr;
+        return all;
+    }
     const Filter& filter() const { return filter_; }
     const FilmLayout& region() const { return region_; }
     bool even() const { return counts_.empty(); }

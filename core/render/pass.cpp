@@ -19,6 +19,8 @@ RenderCounters Passes::draw(int threads, const std::function<bool(double)>& prog
         if (progress && !progress(double(++done) / double(blocks))) stop = true;
     });
     RenderCounters counters;
+    for (const auto& pass : passes_)
+        if (!stop) pass->finish(threads);
     for (const auto& pass : passes_) counters += pass->counters();
     return counters;
 }

@@ -47,6 +47,8 @@ class Pass {
     virtual std::int64_t count() const = 0;
     /// By any thread, each block once.
     virtual void draw(std::int64_t block) = 0;
+    /// Once, after the last block: what is not on the film yet comes there.
+    virtual void finish(int threads) = 0;
     /// Sums over all threads, after the last block.
     virtual RenderCounters counters() const = 0;
 };
@@ -64,6 +66,7 @@ class PassOf final : public Pass {
         const std::uint64_t first = range_[0] + std::uint64_t(block) * D::kBlock;
         drawer_.draw(workspaces_.local(), first, std::min(first + D::kBlock, range_[1]));
     }
+    void finish(int) override {}
     RenderCounters counters() const override {
         RenderCounters sum;
         for (const typename D::Workspace& work : workspaces_) sum += work.counters;
@@ -84,6 +87,7 @@ class Passes {
     void add(IndexRange range, Args&&... args) {
         passes_.push_back(std::make_unique<PassOf<D>>(range, std::forward<Args>(args)...));
     }
+    void add(std::unique_ptr<Pass> pass) { passes_.push_back(std::move(pass)); }
     /// See render().
     RenderCounters draw(int threads, const std::function<bool(double)>& progress);
 
