@@ -97,6 +97,7 @@ constexpr Counter kCounters[]{
     {"flare_paths", &dg::RenderCounters::flare_paths, "Paths of ghosts."},
     {"flare_rays", &dg::RenderCounters::flare_rays, "Their rays, one for each wavelength."},
     {"flare_hits", &dg::RenderCounters::flare_hits, "Those that came to the frame."},
+    {"flare_arrivals", &dg::RenderCounters::flare_arrivals, "Light drawn from maps of ghosts."},
     {"scatter_paths", &dg::RenderCounters::scatter_paths, "Paths of light that the lens's parts scatter."},
     {"scatter_hits", &dg::RenderCounters::scatter_hits, "Those that came to the frame, with some wavelength."},
 };

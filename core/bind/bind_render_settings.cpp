@@ -1,4 +1,5 @@
 // bind_render_settings.cpp -- how a picture is drawn: frame, samples, light transport, references.
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
@@ -136,6 +137,22 @@ void def_flare(Settings& c) {
         .def_prop_rw("flare_learned", [](const RenderSettings& s) { return s.flare.learned; },
                      [](RenderSettings& s, bool learned) { s.flare.learned = learned; },
                      "False: all ghosts and the whole front alike, the plain reference.")
+        .def_prop_rw("flare_maps", [](const RenderSettings& s) { return s.flare.maps; },
+                     [](RenderSettings& s, bool maps) { s.flare.maps = maps; },
+                     "False: paths alone, also for the ghosts of small sources; the reference. A film with bands needs it.")
+        .def_prop_ro("flare_maps_failed",
+                     [](const RenderSettings& s) { return s.flare.guide && s.flare.guide->sheets().failed(); },
+                     "The maps of ghosts were too wrong: there are none, and paths draw all.")
+        .def_prop_ro("flare_ghosts_by_rays",
+                     [](const RenderSettings& s) { return s.flare.guide ? s.flare.guide->sheets().by_rays() : 0; },
+                     "Ghosts whose own map was too wrong: rays alone bring their light.")
+        .def_prop_ro("flare_map_error",
+                     [](const RenderSettings& s) -> std::optional<double> {
+                         const FlareSheets* sheets = s.flare.guide ? &s.flare.guide->sheets() : nullptr;
+                         if (!sheets || (sheets->empty() && !sheets->failed())) return std::nullopt;
+                         return sheets->error();
+                     },
+                     "Error of the maps of ghosts, relative (flare_sheets.h); None: there are none.")
         .def("prepare_flare",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.flare.guide.reset();

@@ -2,6 +2,7 @@
 
 #include "math/error.h"
 #include "render/flare/flare_pass.h"
+#include "render/flare/maps/sheet_pass.h"
 #include "render/flare/scatter_pass.h"
 #include "render/light_pass.h"
 
@@ -35,8 +36,13 @@ void add_emitter_passes(Passes& passes, const Picture& p, const DrawnSamples& dr
         need_exact(p.camera, "flare");
         auto guide = plan.guide ? plan.guide : std::make_shared<const FlareGuide>(aim_of(p), p.settings);
         aim = guide->shared_aim();
-        if (!guide->empty())
-            passes.add<FlarePass>(paths(plan.per_sample), p, plan.per_sample * per_count, std::move(guide));
+        if (!guide->sheets().empty() && p.film.layout().bands > 0)
+            throw input_error("render", "flare maps", "a film without bands, or no maps", "a film with bands");
+        if (!guide->sheets().empty())
+            passes.add(std::make_unique<SheetPass>(p, drawn.indices(), plan.per_sample, per_count, guide));
+        if (const double share = guide->paths_share(); share > 0)
+            passes.add<FlarePass>(paths(share * plan.per_sample), p, share * plan.per_sample * per_count,
+                                  std::move(guide));
     }
     if (const ScatterPlan& plan = p.settings.scatter; plan.per_sample > 0) {
         need_exact(p.camera, "scatter");

@@ -28,6 +28,7 @@ struct FlarePlan {
     int order = 2;   // reflections: 2, or 4 as well
     bool highlights = true;   // of what other things send to the lens, too
     bool learned = true;   // false: all ghosts and the whole front alike, the plain reference
+    bool maps = true;      // of the ghosts of small sources (flare_sheets.h); false: paths for all, the reference
     std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
 };
 

@@ -45,7 +45,7 @@ FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSetting
       times_(camera.lens_motion.times) {
     if (times_.empty()) add_state(camera, std::get<ExactLens>(camera.lens));
     for (const LensKind& lens : camera.lens_motion.lenses) add_state(camera, std::get<ExactLens>(lens));
-    mirrors_ = states_.front().ghosts.two_bounces();
+    mirrors_ = states_.front().ghosts.two_bounces(), pairs_ = int(mirrors_.size());
     if (settings.flare.order >= 4) {
         const auto more = states_.front().ghosts.four_bounces(kMostFour);
         mirrors_.insert(mirrors_.end(), more.begin(), more.end());
@@ -177,6 +177,20 @@ std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, doubl
     path.wavelengths = Wavelengths::at(u.lambda.u, u.lambda.density);
     path.radiance = path.wavelengths.emission(value);
     return path;
+}
+
+std::optional<FlareAim::SourcePoint> FlareAim::point(int source, float select, Vec2f u, float time) const {
+    const Affine3d pose = camera_.world_from_camera.at(time), to_camera = inverse(pose);
+    const Viewpoint view{to_float(pose.origin), float(length(center_) + radius_)};
+    const auto from = sources_.sample(source, select, u, time, view);
+    if (!from) return std::nullopt;
+    const auto way = this->way(*from, {0, 0}, time);
+    if (!way) return std::nullopt;
+    const double density = double(from->point.pdf) / (radius_ * radius_) * way->spread;
+    if (!(density > 0) || !std::isfinite(density)) return std::nullopt;
+    const Vec3d position = to_double(from->point.position);
+    return SourcePoint{from->at_infinity ? to_camera.vector(position) : to_camera.point(position), from->at_infinity,
+                       value_of(*from, *way) * float(1 / density), *from};
 }
 
 Rgb FlareAim::value_of(const EmitterPoint& from, const Way& way) const {

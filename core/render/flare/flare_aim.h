@@ -41,11 +41,20 @@ class FlareAim {
     bool is_of(const Scene& scene, const Camera& camera) const {
         return &scene == &scene_ && &camera == &camera_;
     }
+    const Scene& scene() const { return scene_; }
+    const Camera& camera() const { return camera_; }
     int ghosts() const { return int(mirrors_.size()); }
+    /// Of them by two reflections: the first ones.
+    int pairs() const { return pairs_; }
+    const Mirrors& mirrors(int ghost) const { return mirrors_[ghost]; }
+    /// The lens as it is at first, and a ghost's way through it.
+    const GhostLens& ghost_lens() const { return states_.front().ghosts; }
+    const std::vector<GhostStep>& steps(int ghost) const { return states_.front().steps[ghost]; }
     const EmitterPoints& sources() const { return sources_; }
     /// Bright spots among what other things send to the lens, and how many rays it took to find them.
     int spots() const { return spots_; }
     std::uint64_t survey_rays() const { return survey_rays_; }
+    double front_radius() const { return radius_; }   // m
     const Sensor& sensor() const { return sensor_; }
     const Shutter& shutter() const { return shutter_; }
     /// Reflectance of a ghost's mirrors together, straight on.
@@ -63,6 +72,15 @@ class FlareAim {
     /// Toward a place of the square that holds the front as it is seen from the point, [-1, 1)^2; `pdf`: of
     /// source, ghost and place, per unit of the square. Nothing if the path cannot bring light.
     std::optional<FlareArrival> aim(int source, int ghost, Vec2f at, double pdf, const Random& u) const;
+
+    /// A point of a source as the lens has it: camera frame, m; a unit direction where it is at infinity.
+    struct SourcePoint {
+        Vec3d place;
+        bool at_infinity;
+        Rgb light;   // that it brings to a unit of the square's middle, with the chance by which it was drawn taken out
+        EmitterPoint from;
+    };
+    std::optional<SourcePoint> point(int source, float select, Vec2f u, float time) const;
 
     /// Which of the lens's states is in place at a time.
     std::size_t state_at(float time) const;
@@ -108,6 +126,7 @@ class FlareAim {
     std::vector<float> times_;     // of the states; empty: one
     std::vector<State> states_;
     std::vector<Mirrors> mirrors_;
+    int pairs_ = 0;
     Vec3d center_{};               // camera frame, m: of the front
     double radius_ = 0;
     int spots_ = 0;

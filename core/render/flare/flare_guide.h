@@ -10,17 +10,21 @@
 
 #include "render/flare/flare_aim.h"
 #include "render/flare/flare_learn.h"
+#include "render/flare/maps/flare_sheets.h"
 
 namespace dg {
 
 class FlareGuide {
   public:
-    FlareGuide(std::shared_ptr<const FlareAim> aim, const RenderSettings& settings)
-        : aim_(std::move(aim)),
-          known_(settings.flare.learned ? learn_flare(*aim_, settings.threads) : naive_flare(*aim_)) {}
+    FlareGuide(std::shared_ptr<const FlareAim> aim, const RenderSettings& settings);
 
     /// Nothing shines, or nothing reflects: there is no flare.
-    bool empty() const { return known_.pairs.empty(); }
+    bool empty() const { return !has_paths() && sheets_.empty(); }
+    /// There is something that maps do not have.
+    bool has_paths() const { return !known_.pairs.empty(); }
+    /// Share of all paths that it gets: as its sources have of all light, and some more; 0: there is nothing.
+    double paths_share() const;
+    const FlareSheets& sheets() const { return sheets_; }
     const FlareAim& aim() const { return *aim_; }
     std::shared_ptr<const FlareAim> shared_aim() const { return aim_; }
 
@@ -34,6 +38,7 @@ class FlareGuide {
 
   private:
     std::shared_ptr<const FlareAim> aim_;
+    FlareSheets sheets_;
     FlareKnowledge known_;
 };
 

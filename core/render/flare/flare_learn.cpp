@@ -32,14 +32,19 @@ constexpr int kGrowths = 6;   // of what is looked at
 
 class Learner {
   public:
-    Learner(const FlareAim& aim, int threads)
-        : aim_(aim), threads_(threads), strength_(aim.sources().count()), visible_(strength_.size()),
+    Learner(const FlareAim& aim, int threads, const std::vector<bool>& mapped)
+        : aim_(aim), threads_(threads), mapped_(mapped), strength_(aim.sources().count()), visible_(strength_.size()),
           front_(strength_.size()) {}
     FlareKnowledge learn();
 
   private:
     int sources() const { return aim_.sources().count(); }
     int ghosts() const { return aim_.ghosts(); }
+    /// Another one draws source x ghosts + ghost.
+    bool leaves(std::size_t pair) const {
+        const std::size_t source = pair / std::size_t(ghosts());
+        return source < mapped_.size() && mapped_[source] && int(pair) % ghosts() < aim_.pairs();
+    }
     double count(const Rays& rays) const;
     FlareRectangle scout(int source) const;
     std::vector<FlareFound> look_wide();
@@ -56,6 +61,7 @@ class Learner {
 
     const FlareAim& aim_;
     int threads_;
+    const std::vector<bool>& mapped_;
     std::vector<double> strength_, visible_;   // of sources
     std::vector<FlareRectangle> front_;        // through which they light the frame
 };
@@ -116,11 +122,12 @@ FlareFound Learner::search(FlareFound found) const {
 std::vector<FlareFound> Learner::look_wide() {
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
         visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
-        front_[s] = scout(int(s));
+        if (!leaves(std::size_t(s) * ghosts() + ghosts() - 1)) front_[s] = scout(int(s));
     });
     const double all = std::accumulate(strength_.begin(), strength_.end(), 0.0), total = count(kWide);
     std::vector<FlareFound> found(strength_.size() * std::size_t(ghosts()));
     parallel_tasks(threads_, std::int64_t(found.size()), [&](std::int64_t i) {
+        if (leaves(std::size_t(i))) return;
         const int source = int(i / ghosts()), own = int(total * strength_[source] / all / ghosts());
         const int count = std::clamp(own / 8 * 8, kFewest, kMost);
         found[i] = probe_flare(aim_, {source, int(i % ghosts()), count, front_[source]});
@@ -209,9 +216,12 @@ FlareCells Learner::cells_of(const FlareFound& wide, const FlareFound& fine, con
 std::vector<double> Learner::blind() const {
     std::vector<double> weights;
     for (int s = 0; s < sources(); ++s)
-        for (int g = 0; g < ghosts(); ++g) weights.push_back(aim_.sources().strength(s) * aim_.reflectance(g));
+        for (int g = 0; g < ghosts(); ++g) {
+            const double own = aim_.sources().strength(s) * aim_.reflectance(g);
+            weights.push_back(leaves(weights.size()) ? 0 : own);
+        }
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    for (double& w : weights) w /= sum;
+    for (double& w : weights) w /= sum > 0 ? sum : 1;
     return weights;
 }
 
@@ -224,7 +234,9 @@ void Learner::pool(std::vector<double>& weights) const {
     for (int s = 0; s < sources(); ++s) {
         double* own = weights.data() + std::size_t(s) * ghosts();
         const double sum = std::accumulate(own, own + ghosts(), 0.0);
-        for (int g = 0; g < ghosts(); ++g) own[g] = (1 - kPooled) * own[g] + kPooled * sum * of_ghost[g] / all;
+        for (int g = 0; g < ghosts(); ++g)
+            if (!leaves(std::size_t(s) * ghosts() + g))
+                own[g] = (1 - kPooled) * own[g] + kPooled * sum * of_ghost[g] / all;
     }
 }
 
@@ -244,9 +256,11 @@ DiscreteDistribution Learner::choice(std::vector<double> weights) const {
 
 }  // namespace
 
-FlareKnowledge learn_flare(const FlareAim& aim, int threads) {
-    if (aim.ghosts() == 0 || aim.sources().count() == 0) return {};
-    return Learner(aim, threads).learn();
+FlareKnowledge learn_flare(const FlareAim& aim, int threads, const std::vector<bool>& mapped) {
+    const bool all_mapped = aim.ghosts() == aim.pairs() && int(mapped.size()) == aim.sources().count() &&
+                            std::ranges::all_of(mapped, std::identity{});
+    if (aim.ghosts() == 0 || aim.sources().count() == 0 || all_mapped) return {};
+    return Learner(aim, threads, mapped).learn();
 }
 
 FlareKnowledge naive_flare(const FlareAim& aim) {

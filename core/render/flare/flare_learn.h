@@ -17,8 +17,9 @@ struct FlareKnowledge {
     std::vector<FlareCells> cells;
 };
 
-/// Nothing in it where nothing shines, or nothing reflects.
-FlareKnowledge learn_flare(const FlareAim& aim, int threads);
+/// `mapped`: sources whose ghosts by two reflections are drawn from maps; none of a shorter list. Nothing in it where nothing
+/// shines, or nothing reflects, or maps have all.
+FlareKnowledge learn_flare(const FlareAim& aim, int threads, const std::vector<bool>& mapped = {});
 /// The same without a look: all pairs, all of the square and all wavelengths alike.
 FlareKnowledge naive_flare(const FlareAim& aim);
 

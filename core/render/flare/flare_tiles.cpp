@@ -30,7 +30,7 @@ void FlareTiles::add(Vec2f px, double light) {
 }
 
 void FlareTiles::finish() {
-    const double mean = std::accumulate(light_.begin(), light_.end(), 0.0) / double(light_.size());
+    const double mean = mean_ = std::accumulate(light_.begin(), light_.end(), 0.0) / double(light_.size());
     const double dark = kDarkShare * kDarkShare * mean * mean;
     importance_.assign(light_.size(), 1);
     if (!(mean > 0)) return;

@@ -17,12 +17,20 @@ class FlareTiles {
     /// 1 / sqrt(R^2 + (0.1 mean)^2) with R the light of a pixel: what light is an error there, as the eye has it
     /// and as relMSE does. What is darker than a tenth of the mean need not be exact.
     float importance(Vec2f px) const { return importance_[index(px)]; }
+    /// Of a tile in the mean.
+    double mean() const { return mean_; }
+    std::size_t count() const { return light_.size(); }
+    /// The tile of a place, the nearest of one beside the frame.
+    std::size_t index(Vec2f px) const;
+    float importance(std::size_t tile) const { return importance_[tile]; }
+    /// Pixels of a tile, about.
+    double area() const { return 1 / (double(per_px_) * per_px_); }
 
   private:
-    std::size_t index(Vec2f px) const;
 
     int columns_, rows_;
     float per_px_;
+    double mean_ = 0;
     std::vector<double> light_;
     std::vector<float> importance_;
 };

@@ -1,0 +1,131 @@
+// ghost_map_judge.cpp -- what a first look at a cell of a ghost's map says: whether it may bring light, and is smooth.
+#include <algorithm>
+#include <cmath>
+
+#include "render/flare/maps/cell_blur.h"
+#include "render/flare/maps/ghost_map_maker.h"
+#include "render/flare/maps/ghost_map_nodes.h"
+
+namespace dg {
+namespace {
+
+constexpr float kFar = 1;           // beyond what stops light: nobody asks how it lands
+constexpr float kHalfway = 0.7f;    // from a node to the one beside it: half, and some more
+constexpr float kAlone = 0.3f;      // beyond an edge, of a ray beside which all others end elsewhere
+constexpr float kClear = 0.02f;     // beyond an edge, in cells that are small
+constexpr int kSmall = 2, kSmallLost = 4;   // their levels; where rays are lost
+constexpr float kIrisOff = 2e-3f;   // of its radius
+
+}  // namespace
+
+GhostMapMaker::Verdict GhostMapMaker::judge(const MapLanding* seen, int level, CellBlur& blur) const {
+    const CellRays rays{seen, seen + kSeen, map_.crossings_};
+    blur = cell_blur(rays, rays_.ghosts().iris(), rays_.ghosts().iris_radius());
+    if (dark(seen, level, blur)) return Verdict::dark;
+    if (!std::all_of(seen, seen + kSeen, [](const MapLanding& l) { return l.sound; })) return Verdict::lost;
+    return smooth(seen, blur) ? Verdict::smooth : Verdict::rough;
+}
+
+/// Rays at its corners are all stopped, and by more than that changes from one to the next; or all beside the frame.
+bool GhostMapMaker::dark_square(const MapLanding* const (&corner)[4]) const {
+    Range stop, x, y;
+    bool all_sound = true;
+    for (const MapLanding* l : corner) {
+        stop.add(stopped(*l)), all_sound &= l->sound;
+        if (l->sound) x.add(l->px.x), y.add(l->px.y);
+    }
+    if (stop.low > 0 && stop.low > stop.size()) return true;
+    return all_sound && beside(x, y, std::max(x.size(), y.size()));
+}
+
+/// Boxes of landings, grown by so many px, do not meet the frame.
+bool GhostMapMaker::beside(const Range& x, const Range& y, float more) const {
+    more += reach_;
+    return x.low - more > float(sensor_.width) || x.high + more < 0 || y.low - more > float(sensor_.height) ||
+           y.high + more < 0;
+}
+
+/// Above 0 where an edge or the iris stops light; smooth, but for where one takes over from the other.
+float GhostMapMaker::stopped(const MapLanding& l) const {
+    float most = l.beyond;
+    if (l.sound)
+        for (int k = 0; k < map_.crossings_; ++k) most = std::max(most, length_squared(l.iris[k]) * per_iris2_ - 1);
+    return most;
+}
+
+/// Change of that to the nodes beside one whose rays end at the same surface; from one surface to another it jumps,
+/// which says nothing. Below 0: there are none.
+float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
+    constexpr int side = GhostMap::kSide;
+    float change = -1;
+    for (int m = 0; m < GhostMap::kNodes; ++m) {
+        const bool beside = std::abs(m % side - n % side) <= 1 && std::abs(m / side - n / side) <= 1;
+        if (m == n || !beside || nodes[m].lost_after != nodes[n].lost_after) continue;
+        change = std::max(change, std::abs(stopped(nodes[m]) - stopped(nodes[n])));
+    }
+    return change;
+}
+
+/// Around each node, for all of the source.
+bool GhostMapMaker::surely_stopped(const MapLanding* nodes, float margin) const {
+    for (int n = 0; n < GhostMap::kNodes; ++n) {
+        const float change = change_around(nodes, n);
+        if (!(stopped(nodes[n]) - margin > (change < 0 ? kAlone : kHalfway * change))) return false;
+    }
+    return true;
+}
+
+bool GhostMapMaker::dark(const MapLanding* seen, int level, const CellBlur& blur) const {
+    float least = stopped(seen[0]);
+    Range x, y;
+    bool all_sound = true;
+    for (int i = 0; i < kSeen; ++i) {
+        least = std::min(least, stopped(seen[i])), all_sound &= seen[i].sound;
+        if (seen[i].sound) x.add(seen[i].px.x), y.add(seen[i].px.y);
+    }
+    const MapLanding* const rim = seen + kSeen;
+    const float middle = stopped(seen[kRimNode]);
+    const float margin = std::hypot(stopped(rim[0]) - middle, stopped(rim[1]) - middle);   // over the source
+    if (least > margin && surely_stopped(seen, margin)) return true;
+    if (level >= (all_sound ? kSmall : kSmallLost) && least - margin > kClear) return true;
+    return all_sound && beside(x, y, 0.5f * std::max(x.size(), y.size()) + blur.light);
+}
+
+bool GhostMapMaker::smooth(const MapLanding* seen, const CellBlur& blur) const {
+    Range beyond, x, y;
+    for (int i = 0; i < kSeen; ++i) {
+        if (!seen[i].sound) return false;
+        beyond.add(seen[i].beyond), x.add(seen[i].px.x), y.add(seen[i].px.y);
+    }
+    for (int t = 0; t < kTests; ++t)
+        if (!agree(by_cubics(seen, kTestAt[t]), seen[GhostMap::kNodes + t], {beyond, x, y, blur, 0, 1})) return false;
+    return true;
+}
+
+MapLanding GhostMapMaker::by_cubics(const MapLanding* nodes, Vec2f u) const {
+    const auto wx = cubic_weights(u.x), wy = cubic_weights(u.y);
+    MapLanding map{};
+    map.sound = true;
+    for (int n = 0; n < GhostMap::kNodes; ++n) {
+        const float w = wx[n % GhostMap::kSide] * wy[n / GhostMap::kSide];
+        map.px = map.px + w * nodes[n].px, map.beyond += w * nodes[n].beyond, map.pass += w * nodes[n].pass;
+        for (int k = 0; k < map_.crossings_; ++k) map.iris[k] = map.iris[k] + w * nodes[n].iris[k];
+    }
+    return map;
+}
+
+/// The landing, the edge and the iris; errors of the latter two as they move the picture.
+bool GhostMapMaker::agree(const MapLanding& map, const MapLanding& ray, const Scale& of) const {
+    if (stopped(map) > kFar && stopped(ray) > kFar) return true;
+    if (!ray.sound) return false;
+    if (!(std::abs(map.pass - ray.pass) <= accuracy_.light * (ray.pass + of.light))) return false;
+    const float blur = accuracy_.of_blur * of.slack * of.blur.light;
+    if (!(length(map.px - ray.px) <= std::max(accuracy_.landing_px, blur))) return false;
+    const float extent = std::max(of.x.size(), of.y.size()), edge = std::max(accuracy_.edge_px, 1.5f * blur);
+    if (of.beyond.holds_zero() && std::abs(map.beyond - ray.beyond) * extent > edge * of.beyond.size()) return false;
+    for (int k = 0; k < map_.crossings_; ++k)
+        if (length(map.iris[k] - ray.iris[k]) > kIrisOff * of.slack * float(rays_.ghosts().iris_radius())) return false;
+    return true;
+}
+
+}  // namespace dg

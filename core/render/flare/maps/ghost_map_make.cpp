@@ -1,0 +1,117 @@
+// ghost_map_make.cpp -- where the cells of a ghost's map are, and how small.
+#include <algorithm>
+#include <cmath>
+
+#include "render/flare/maps/ghost_map_maker.h"
+#include "render/flare/maps/ghost_map_nodes.h"
+
+namespace dg {
+namespace {
+
+constexpr int kGrid = 25, kZooms = 4;   // rays across in search of the region; times that it is closed in on
+// Where rays are lost cells of this level are not divided: all of them then take exact rays, or none.
+constexpr int kLastLost = 4;
+
+Vec2f node_at(int n) { return {float(n % GhostMap::kSide) / 3, float(n / GhostMap::kSide) / 3}; }
+
+}  // namespace
+
+GhostMapMaker::GhostMapMaker(GhostMap& map, const MapRays& rays, const Sensor& sensor, float reach,
+                             const GhostMap::Accuracy& accuracy)
+    : map_(map), rays_(rays), sensor_(sensor), reach_(reach), accuracy_(accuracy),
+      per_iris2_(float(1 / std::pow(rays.ghosts().iris_radius() * rays.ghosts().iris().outer_radius(), 2))) {}
+
+void GhostMapMaker::make() {
+    map_.crossings_ = rays_.crossings(), map_.iris_ = &rays_.ghosts().tables().iris;
+    std::vector<Draft> drafts, next;
+    if (!zoom()) return;
+    const float first = 1.f / GhostMap::kFirstAcross;
+    for (int i = 0; i < GhostMap::kFirstAcross * GhostMap::kFirstAcross; ++i)
+        drafts.push_back({{float(i % GhostMap::kFirstAcross) * first, float(i / GhostMap::kFirstAcross) * first}, first, 0});
+    for (; !drafts.empty(); drafts.swap(next)) next.clear(), refine(drafts, next);
+    sort();
+}
+
+/// Cells of one size, all rays of which are traced together.
+void GhostMapMaker::refine(const std::vector<Draft>& drafts, std::vector<Draft>& next) {
+    Rays rays;
+    for (const Draft& d : drafts) look(d, rays);
+    const Landings seen = trace(rays);
+    std::vector<std::size_t> good;
+    std::vector<CellBlur> blurs;
+    rays.clear();
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+        const MapLanding* const own = &seen[i * kLook];
+        CellBlur blur;
+        switch (judge(own, drafts[i].level, blur)) {
+            case Verdict::dark:
+                break;
+            case Verdict::rough:
+                divide(drafts[i], next);
+                break;
+            case Verdict::lost:
+                if (drafts[i].level < kLastLost)
+                    divide(drafts[i], next);
+                else if (std::any_of(own, own + kSeen, [](const MapLanding& l) { return l.sound; }))
+                    give_up(drafts[i]);
+                break;
+            case Verdict::smooth:
+                good.push_back(i), blurs.push_back(blur), complete(drafts[i], rays);
+        }
+    }
+    const Landings more = trace(rays);
+    for (std::size_t k = 0; k < good.size(); ++k)
+        if (!add(drafts[good[k]], &seen[good[k] * kLook], &more[k * std::size_t(kMore)], blurs[k]))
+            divide(drafts[good[k]], next);
+}
+
+/// Closes in on where light may come from; false: from nowhere.
+bool GhostMapMaker::zoom() {
+    for (int round = 0; round < kZooms; ++round) {
+        Rays rays;
+        for (int i = 0; i < kGrid * kGrid; ++i) {
+            const Vec2f u{float(i % kGrid) / (kGrid - 1), float(i / kGrid) / (kGrid - 1)};
+            rays.push_back({map_.region_.at(u), {0, 0}, lambda_node(kMiddle)});
+        }
+        const Landings seen = trace(rays);
+        Vec2f low{1, 1}, high{0, 0};
+        for (int y = 0; y + 1 < kGrid; ++y)
+            for (int x = 0; x + 1 < kGrid; ++x) {
+                const MapLanding* const own = &seen[y * kGrid + x];
+                if (dark_square({own, own + 1, own + kGrid, own + kGrid + 1})) continue;
+                low = {std::min(low.x, float(x) / (kGrid - 1)), std::min(low.y, float(y) / (kGrid - 1))};
+                high = {std::max(high.x, float(x + 1) / (kGrid - 1)), std::max(high.y, float(y + 1) / (kGrid - 1))};
+            }
+        if (!(high.x > low.x)) return false;
+        const FlareRectangle old = map_.region_;
+        map_.region_ = {old.at(low), {old.size.x * (high.x - low.x), old.size.y * (high.y - low.y)}};
+        if (map_.region_.area() > 0.5f * old.area()) break;
+    }
+    return true;
+}
+
+void GhostMapMaker::look(const Draft& d, Rays& rays) const {
+    const float nm = lambda_node(kMiddle);
+    for (int n = 0; n < GhostMap::kNodes; ++n) rays.push_back({at(d, node_at(n)), {0, 0}, nm});
+    for (const Vec2f u : kTestAt) rays.push_back({at(d, u), {0, 0}, nm});
+    for (const Vec2f rim : {Vec2f{1, 0}, Vec2f{0, 1}}) rays.push_back({at(d, node_at(kRimNode)), rim, nm});
+}
+
+void GhostMapMaker::divide(const Draft& d, std::vector<Draft>& next) {
+    if (d.level + 1 == GhostMap::kLevels) return give_up(d);
+    const float half = 0.5f * d.size;
+    for (int k = 0; k < 4; ++k)
+        next.push_back({{d.low.x + float(k % 2) * half, d.low.y + float(k / 2) * half}, half, d.level + 1});
+}
+
+void GhostMapMaker::sort() {
+    const auto middle = [](const GhostMap::Cell& c) { return GhostMap::code(c.low + Vec2f{0.01f, 0.01f} * c.size); };
+    std::ranges::sort(map_.cells_, {}, middle);
+    for (const GhostMap::Cell& c : map_.cells_) map_.codes_.push_back(middle(c));
+}
+
+GhostMap::GhostMap(const MapRays& rays, const Sensor& sensor, float reach, const Accuracy& accuracy) {
+    GhostMapMaker(*this, rays, sensor, reach, accuracy).make();
+}
+
+}  // namespace dg

@@ -1,0 +1,83 @@
+// Maps of ghosts against the exact rays that they are made of, at places and wavelengths between their nodes.
+#include "render/flare/maps/ghost_map.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "render/flare/flare_scenes.h"
+#include "render/flare/maps/cell_numbers.h"
+#include "render/flare/maps/coarse_light.h"
+#include "render/flare/maps/color_table.h"
+#include "render/flare/maps/small_source.h"
+
+using namespace dg;
+
+namespace {
+
+constexpr int kRays = 64;   // of a cell
+
+std::shared_ptr<const Scene> sunny() {
+    SceneDescription d;
+    d.lights = {SphereLight{{normalize(Vec3f{0.12f, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}};
+    return Scene::build(std::move(d));
+}
+
+/// Light of the maps and of the rays at the same places, and how far from each other both land.
+struct Compared {
+    double map = 0, rays = 0, wrong = 0, apart = 0, lit = 0, cells = 0;
+};
+
+void compare(const GhostMap& map, const MapRays& rays, const SmallSource& source, Compared& to) {
+    MapBatch batch{};
+    CellNumbers u;
+    for (const GhostMap::Cell& cell : map.cells()) {
+        if (cell.exact) continue;
+        u.fill(hash64(7, std::uint64_t(to.cells++)), 0, kRays);
+        std::vector<MapRay> exact;
+        for (int i = 0; i < kRays; ++i) {
+            const SmallSource::Point& p = source.point(u.of[CellNumbers::kPoint][i]);
+            const Vec2f at{u.of[CellNumbers::kAcross][i], u.of[CellNumbers::kDown][i]};
+            const float nm = Wavelengths::sample(u.of[CellNumbers::kLambda][i]).nm[0];
+            batch.set(i, at, p.shift, nm, 1);
+            exact.push_back({map.region().at(cell.low + at * cell.size), p.shift, nm});
+        }
+        map.landings(cell, batch, kRays);
+        const std::vector<MapLanding> landings = rays.trace(exact);
+        const double each = double(cell.size) * cell.size * map.region().area();
+        for (int i = 0; i < kRays; ++i) {
+            const double light = each * seen_light(batch.nm[i]), own = rays.passed(landings[i], 1);
+            to.map += light * batch.pass[i], to.rays += light * own;
+            to.wrong += light * std::abs(batch.pass[i] - own);
+            if (!(own > 0 && batch.pass[i] > 0)) continue;
+            const float blur = std::max(1.f, cell.blur.light);   // px
+            to.apart += light * own * double(length(landings[i].px - Vec2f{batch.x[i], batch.y[i]}) / blur);
+            to.lit += light * own;
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("maps have the light of rays, and land it where rays do") {
+    const auto scene = sunny();
+    for (const Prescription& lens : {test::tessar(), test::wide_angle(), test::telephoto()}) {
+        const Camera camera = camera_with(lens);
+        const RenderSettings s = settings(1, 1);
+        const FlareAim aim(*scene, camera, s);
+        const auto source = small_source(aim, 0);
+        REQUIRE(source);
+        CHECK(source->filled == doctest::Approx(1).epsilon(0.15));   // an even disc
+        Compared all;
+        for (int ghost = 0; ghost < aim.pairs(); ++ghost) {
+            const MapRays rays(camera, aim.sensor(), aim.ghost_lens(), aim.steps(ghost), source->shape);
+            compare(GhostMap(rays, aim.sensor(), CoarseLight::reach(4), {}), rays, *source, all);
+        }
+        INFO(lens.name << ": " << all.cells << " cells, map / rays " << all.map / all.rays << ", wrong "
+                       << all.wrong / all.rays << ", apart " << all.apart / all.lit);
+        CHECK(all.cells > 100);
+        CHECK(all.map == doctest::Approx(all.rays).epsilon(0.005));
+        CHECK(all.wrong < 0.03 * all.rays);
+        CHECK(all.apart < 0.02 * all.lit);
+    }
+}

@@ -1,0 +1,78 @@
+#include "render/flare/maps/sheet_level.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/flare/maps/coarse_light.h"
+
+namespace dg {
+namespace {
+
+constexpr double kSharpest = 0.1;              // share of the light
+constexpr float kPitches = 5, kEvenPitches = 8;   // across the blur; in what is even
+constexpr float kBend = 0.02f, kSlope = 0.6f;     // of the variance over the distance from an edge
+constexpr float kVariance = 5 / 12.f;          // of a pitch of 1
+constexpr float kFinest = kVariance, kCoarsest = kVariance * (1 << 2 * CoarseLight::kMostLevel);
+
+/// px2, at a distance from an edge.
+float variance_at(float px) {
+    if (!(px > 0)) return 0;
+    constexpr float kStraight = kSlope / kBend;
+    return px < kStraight ? 0.5f * kBend * px * px : kSlope * (px - 0.5f * kStraight);
+}
+
+/// With which the pitches 2^k and 2^(k+1) have a variance in the mean.
+float level_of(float variance) {
+    const float squared = std::clamp(variance, kFinest, kCoarsest) / kVariance;
+    int k = 0;
+    float own = 1;   // 4^k
+    while (k + 1 < CoarseLight::kMostLevel && squared >= 4 * own) ++k, own *= 4;
+    return float(k) + std::clamp((squared - own) / (3 * own), 0.f, 1.f);
+}
+
+float without_sharpest(std::vector<SheetSmooth::CellLight>& cells, double sharpest, float CellBlur::*value) {
+    std::ranges::sort(cells, {}, [&](const SheetSmooth::CellLight& c) { return c.blur->*value; });
+    double sum = 0;
+    for (const auto& c : cells)
+        if ((sum += c.light) >= sharpest) return c.blur->*value;
+    return 0;
+}
+
+}  // namespace
+
+SheetSmooth SheetSmooth::of(std::vector<CellLight> cells) {
+    double sum = 0;
+    for (const CellLight& c : cells) sum += c.light;
+    return {without_sharpest(cells, kSharpest * sum, &CellBlur::edge),
+            without_sharpest(cells, kSharpest * sum, &CellBlur::even_px)};
+}
+
+float SheetLevel::pitch(const CellBlur& blur) const { return 2 * blur.edge * filled_ / kPitches; }
+
+float SheetLevel::of_rays() const {
+    const float pitch = smooth_.edge * filled_ / kPitches;
+    return std::max(level_of(kVariance * pitch * pitch), 1.f);
+}
+
+/// px; below 0 behind it.
+float SheetLevel::from_edge(const GhostMap::Cell& cell, const MapBatch& b, int i) const {
+    float far = cell.blur.beyond_per_px > 0 ? -b.beyond[i] / cell.blur.beyond_per_px : 1e9f;
+    for (int k = 0; k < map_->crossings(); ++k) {
+        const float r = std::sqrt(b.iris_x[k][i] * b.iris_x[k][i] + b.iris_y[k][i] * b.iris_y[k][i]);
+        far = std::min(far, (apothem_ * b.opening[i] - r) * cell.blur.px_per_mm[std::size_t(k)]);
+    }
+    return far;
+}
+
+/// By the blur; or by how far it is to an edge and how even the light is, as where edges are far away a ghost is smooth
+/// however sharp it is. One goes over into the other without a bend.
+float SheetLevel::of(const GhostMap::Cell& cell, const MapBatch& batch, int i) const {
+    const auto squared = [](float x) { return x * x; };
+    const float edge = std::min(cell.blur.edge, smooth_.edge), even = std::min(cell.blur.even_px, smooth_.even);
+    const float blurred = kVariance * squared(2 * edge * filled_ / kPitches);
+    const float most = std::min(kVariance * squared(even / kEvenPitches), kCoarsest) - blurred;
+    const float far = variance_at(from_edge(cell, batch, i));
+    return level_of(blurred + (most > 0 ? far * most / (far + most) : 0));
+}
+
+}  // namespace dg

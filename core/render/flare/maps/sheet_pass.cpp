@@ -1,0 +1,307 @@
+#include "render/flare/maps/sheet_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/parallel.h"
+
+namespace dg {
+namespace {
+
+// Arrivals for each flare path: from maps; exact rays of what maps have wrong; and of where they have
+// nothing.
+constexpr double kArrivals = 4, kDifferences = 0.125, kDark = 0.005;
+constexpr double kTask = 1 << 16;   // arrivals
+constexpr int kRowsOfTask = 32;     // of the film
+constexpr float kNear = 48;         // px beside the frame from which light may come to it
+constexpr float kVariance = 0.56f;  // of light that is moved by a pitch, over that of the light: of a B-spline of degree 4
+constexpr int kDarkLevel = CoarseLight::kMostLevel;
+constexpr float kMm2 = 1e6f;        // in 1 m2
+
+/// The level that light is added at: drawn, so that levels go over into each other.
+int drawn_level(float level, float u) { return std::min(int(level + u), CoarseLight::kMostLevel); }
+
+std::unique_ptr<CoarseLight> coarse(const Picture& p, int values, int level, double mean) {
+    return std::make_unique<CoarseLight>(p.density.region(), values, level, mean, p.settings.filter.variance());
+}
+
+}  // namespace
+
+SheetPass::SheetPass(const Picture& picture, std::array<double, 2> indices, double per_sample, double per_count,
+                     std::shared_ptr<const FlareGuide> guide)
+    : picture_(picture), indices_(indices), per_sample_(per_sample), per_count_(per_count), guide_(std::move(guide)),
+      density_(picture.density.without_shutter()),
+      colors_(picture.film.responses()) {
+    const Sensor& sensor = picture.settings.sensor;
+    const double mm2_per_px = sensor.width_mm / sensor.width * sensor.height_mm / sensor.height;
+    unit_ = float(kMm2 / std::get<ExactLens>(picture.camera.lens).h0() / mm2_per_px);
+    plan();
+    const double mean = guide_->sheets().mean() * unit_;
+    for (int level = 0; level <= CoarseLight::kMostLevel; ++level)
+        coarse_[level] = coarse(picture, colors_.table.values(), level, mean);
+}
+
+/// Pieces side by side, of about as many arrivals for each task. What is dark goes with the first of them.
+void SheetPass::plan() {
+    const auto& sheets = guide_->sheets().sheets();
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        const auto pieces = std::uint32_t(sheets[s].pieces.size());
+        std::uint32_t first = 0;
+        double arrivals = 0;
+        for (std::uint32_t p = 0; p < pieces; ++p) {
+            arrivals += rate(Kind::map, sheets[s].pieces[p]) * (indices_[1] - indices_[0]);
+            if (arrivals < kTask) continue;
+            tasks_.push_back({s, first, p + 1}), first = p + 1, arrivals = 0;
+        }
+        if (first < pieces || pieces == 0) tasks_.push_back({s, first, pieces});
+    }
+}
+
+double SheetPass::rate(Kind kind, const SheetPiece& piece) const {
+    return (kind == Kind::difference ? piece.doubt * kDifferences : piece.share * kArrivals) * per_sample_;
+}
+
+/// Those of a piece that belong to the samples: parts of the samples have parts of them.
+SheetPass::Range SheetPass::range(Kind kind, std::size_t sheet, std::uint32_t piece, double rate) const {
+    const std::uint64_t seed =
+        hash64(picture_.settings.seed, std::uint64_t(kind) << 56 | std::uint64_t(sheet) << 32 | piece);
+    const double phase = hash_uniform(seed, 0x3f1a);
+    const auto until = [&](double sample) { return std::uint64_t(std::floor(sample * rate + phase)); };
+    return {seed, until(indices_[0]), until(indices_[1])};
+}
+
+float SheetPass::weight(double area, double rate) const { return float(unit_ * area / (rate * per_count_)); }
+
+void SheetPass::draw(std::int64_t block) {
+    auto& local = works_.local();
+    if (!local) local = std::make_unique<Work>();
+    Work& work = *local;
+    const Task& task = tasks_[std::size_t(block)];
+    const Sheet& sheet = guide_->sheets().sheets()[task.sheet];
+    for (std::uint32_t c = task.first; c < task.last; ++c) draw_piece(work, task.sheet, c);
+    trace(work, sheet);
+    if (task.first == 0) draw_dark(work, task.sheet);
+}
+
+void SheetPass::draw_piece(Work& work, std::size_t sheet, std::uint32_t p) {
+    const Sheet& s = guide_->sheets().sheets()[sheet];
+    const SheetPiece& piece = s.pieces[p];
+    const auto draw = [&](Kind kind, auto method) {
+        const double each = rate(kind, piece);
+        const Range r = range(kind, sheet, p, each);
+        if (r.first < r.last) (this->*method)(work, s, piece, r, weight(FlareSheets::area(s, piece), each));
+    };
+    if (s.map.cells()[piece.cell].exact) return draw(Kind::exact, &SheetPass::draw_exact);
+    draw(Kind::map, &SheetPass::draw_map);
+    draw(Kind::difference, &SheetPass::draw_difference);
+}
+
+const CellColor& SheetPass::color_of(Work& work, const Sheet& s, const SheetPiece& piece) const {
+    const bool gray = piece.gray && !guide_->sheets().hidden(s.source);
+    const std::pair wanted(&s.map.cells()[piece.cell], gray);
+    if (work.color_of != wanted) work.color.emplace(s.map, *wanted.first, gray, colors_), work.color_of = wanted;
+    return *work.color;
+}
+
+/// Arrivals of which nothing but the map is asked; and, where something is in the way of some, whether it is of each.
+void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
+    const GhostMap::Cell& cell = s.map.cells()[piece.cell];
+    const SmallSource& small = source(s);
+    const bool hidden = guide_->sheets().hidden(s.source);
+    const CellColor& color = color_of(work, s, piece);
+    const SheetLevel levels = this->levels(s);
+    MapBatch& b = work.batch;
+    const auto& u = work.numbers.of;
+    for (std::uint64_t first = r.first; first < r.last;) {
+        const int count = work.numbers.fill(r.seed, first, r.last);
+        work.from.clear();
+        for (int i = 0; i < count; ++i) {
+            const SmallSource::Point& p = small.point(u[CellNumbers::kPoint][i]);
+            const float u_lambda = u[CellNumbers::kLambda][i];
+            const float nm = color.gray() ? color.nm() : hidden ? Wavelengths::sample(u_lambda).nm[0] : color.nm(u_lambda);
+            const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
+            b.set(i, at, p.shift, nm, p.moment.iris_opening);
+            work.from.push_back(&p);
+        }
+        s.map.landings(cell, b, count);
+        for (int i = 0; i < count; ++i) {
+            if (!(b.left[i] > 0)) continue;
+            const SmallSource::Point& p = *work.from[i];
+            const Vec2f px{b.x[i], b.y[i]};
+            const float times = weight * exposed(small, p, px);
+            const int level = drawn_level(levels.of(cell, b, i), u[CellNumbers::kLevel][i]);
+            if (!hidden) {
+                arrive(work, level, px, color.of(b, i, p.light, times));
+                continue;
+            }
+            const MapRay ray{FlareSheets::place(s, piece, {b.u[i], b.v[i]}), p.shift, b.nm[i]};
+            const float clear = b.pass[i] * seen(work, s, ray, p, u[CellNumbers::kLambda][i]);
+            FilmColor light{};
+            colors_.table.add(light, p.light, b.nm[i], times * clear / wavelength_pdf(b.nm[i]));
+            arrive(work, level, px, light);
+        }
+        work.counters.flare_arrivals += std::uint64_t(count);
+        if (work.arrived > kTask) flush(work);
+        first += std::uint64_t(count);
+    }
+}
+
+/// The same places by the map, each wavelength by itself unless the cell is gray, and by an exact ray.
+void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
+    const GhostMap::Cell& cell = s.map.cells()[piece.cell];
+    const SmallSource& small = source(s);
+    const bool hidden = guide_->sheets().hidden(s.source);
+    const CellColor& color = color_of(work, s, piece);
+    const SheetLevel levels = this->levels(s);
+    MapBatch& b = work.batch;
+    const auto& u = work.numbers.of;
+    for (std::uint64_t first = r.first; first < r.last;) {
+        const int count = work.numbers.fill(r.seed, first, r.last);
+        const std::size_t begin = work.exact.size();
+        for (int i = 0; i < count; ++i) {
+            const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
+            const Exact& e = add_exact(work, s, FlareSheets::place(s, piece, at), i, weight);
+            b.set(i, at, e.ray.shift, color.gray() ? color.nm() : e.ray.nm, e.from->moment.iris_opening);
+        }
+        s.map.landings(cell, b, count);
+        for (int i = 0; i < count; ++i) {
+            Exact& e = work.exact[begin + std::size_t(i)];
+            e.level = std::max(SheetLevel::kDifference, drawn_level(levels.of(cell, b, i), u[CellNumbers::kLevel][i]));
+            if (!(b.left[i] > 0)) continue;
+            e.map.px = {b.x[i], b.y[i]};
+            const float glass =
+                color.gray() ? s.map.glass(cell, {b.u[i], b.v[i]}, b.middle[i], e.ray.nm) : b.glass[i];
+            float pass = glass * b.left[i] * exposed(small, *e.from, e.map.px);
+            if (hidden) pass *= seen(work, s, e.ray, *e.from, e.u_lambda);
+            for (std::size_t k = 0; k < e.light.size(); ++k) e.map.light[k] = -pass * e.light[k];
+        }
+        first += std::uint64_t(count);
+    }
+}
+
+/// A ray by one of the numbers of the work.
+SheetPass::Exact& SheetPass::add_exact(Work& work, const Sheet& s, Vec2f at, int i, float weight) const {
+    const auto& u = work.numbers.of;
+    const SmallSource::Point& p = source(s).point(u[CellNumbers::kPoint][i]);
+    const float u_lambda = u[CellNumbers::kLambda][i], nm = Wavelengths::sample(u_lambda).nm[0];
+    work.exact.push_back({{at, p.shift, nm}, &p, u_lambda, {}, 0});
+    colors_.table.add(work.exact.back().light, p.light, nm, weight / wavelength_pdf(nm));
+    return work.exact.back();
+}
+
+void SheetPass::draw_exact(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
+    const auto& u = work.numbers.of;
+    for (std::uint64_t first = r.first; first < r.last;) {
+        const int count = work.numbers.fill(r.seed, first, r.last);
+        for (int i = 0; i < count; ++i) {
+            const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
+            add_exact(work, s, FlareSheets::place(s, piece, at), i, weight).level =
+                drawn_level(piece.level, u[CellNumbers::kLevel][i]);
+        }
+        first += std::uint64_t(count);
+    }
+}
+
+/// Rays through places from which, for all that the map knows, no light comes. What they find is added far and wide: it is
+/// little, and each ray of it bright.
+void SheetPass::draw_dark(Work& work, std::size_t sheet) {
+    const Sheet& s = guide_->sheets().sheets()[sheet];
+    const double rate = kDark * per_sample_ / double(guide_->sheets().sheets().size());
+    const Range r = range(Kind::dark, sheet, 0, rate);
+    const float weight = float(unit_ * 4 / (rate * per_count_));
+    const auto& u = work.numbers.of;
+    for (std::uint64_t first = r.first; first < r.last;) {
+        const int count = work.numbers.fill(r.seed, first, r.last);
+        for (int i = 0; i < count; ++i) {
+            const Vec2f at{2 * u[CellNumbers::kAcross][i] - 1, 2 * u[CellNumbers::kDown][i] - 1};
+            if (s.is_dark(at)) add_exact(work, s, at, i, weight).level = kDarkLevel;
+        }
+        first += std::uint64_t(count);
+    }
+    trace(work, s);
+}
+
+/// Exact rays that were gathered.
+void SheetPass::trace(Work& work, const Sheet& s) {
+    std::vector<MapRay> rays;
+    for (const Exact& e : work.exact) rays.push_back(e.ray);
+    const std::vector<MapLanding> landings = s.rays.trace(rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Exact& e = work.exact[i];
+        float pass = s.rays.passed(landings[i], e.from->moment.iris_opening);
+        if (pass > 0) pass *= exposed(source(s), *e.from, landings[i].px) * seen(work, s, e.ray, *e.from, e.u_lambda);
+        FilmColor light = e.light;
+        for (float& v : light) v *= pass;
+        arrive(work, e.level, landings[i].px, light, &e.map);
+        work.counters.flare_hits += pass > 0 && picture_.settings.sensor.holds(landings[i].px);
+    }
+    work.counters.flare_rays += rays.size(), work.counters.flare_paths += rays.size();
+    work.exact.clear();
+    flush(work);
+}
+
+void SheetPass::flush(Work& work) {
+    work.arrived = 0;
+    for (int level = 0; level <= CoarseLight::kMostLevel; ++level) {
+        if (!work.arrivals[level].empty()) coarse_[level]->add(work.arrivals[level]);
+        work.arrivals[level].clear();
+    }
+}
+
+/// Visibility of the point along the ray, at its wavelength.
+float SheetPass::seen(Work& work, const Sheet& s, const MapRay& ray, const SmallSource::Point& from,
+                      float u_lambda) const {
+    const auto way = s.rays.to_source(ray, from.moment.time);
+    if (!way) return 0;
+    const Ray shadow = flare_shadow(from.from, to_world(picture_.camera, *way));
+    if (!is_traceable(shadow)) return 0;
+    ++work.counters.rays;
+    return picture_.scene.visibility_along(shadow, Wavelengths::sample(u_lambda))[0];
+}
+
+/// Share of light that the shutter lets pass: over the whole exposure, but of what moves under a shutter that rolls.
+float SheetPass::exposed(const SmallSource& small, const SmallSource::Point& from, Vec2f px) const {
+    const Shutter& shutter = picture_.settings.shutter;
+    if (!shutter.rolls() || !small.moves) return shutter.weight();
+    const Sensor& sensor = picture_.settings.sensor;
+    const bool columns = shutter.scans_columns();
+    const int line = std::clamp(int(std::floor(columns ? px.x : px.y)), 0, (columns ? sensor.width : sensor.height) - 1);
+    return shutter.opening(line, from.moment.time) / float(shutter.any_share());
+}
+
+/// Light at a place, and what is to be taken off at another.
+void SheetPass::arrive(Work& work, int level, Vec2f px, const FilmColor& light, const Taken* map) {
+    const Sensor& sensor = picture_.settings.sensor;
+    const auto counts = [&](Vec2f at, const FilmColor& c) {
+        return (c[0] != 0 || c[1] != 0 || c[2] != 0) && at.x > -kNear && at.y > -kNear &&
+               at.x < float(sensor.width) + kNear && at.y < float(sensor.height) + kNear;
+    };
+    const bool one = counts(px, light), two = map && counts(map->px, map->light);
+    float variance = 1;
+    if (one && two) {
+        const float moved = length(px - map->px) / float(1 << level);
+        variance = std::min(1.f, kVariance * moved * moved);
+    }
+    ++work.arrived;
+    if (one) work.arrivals[level].push_back({px, light, variance});
+    if (two) work.arrivals[level].push_back({map->px, map->light, variance});
+}
+
+void SheetPass::finish(int threads) {
+    const FilmLayout& region = density_.region();
+    const int bands = (region.height + kRowsOfTask - 1) / kRowsOfTask;
+    parallel_tasks(threads, bands, [&](std::int64_t band) {
+        const int first = region.offset_y + int(band) * kRowsOfTask;
+        const int last = std::min(first + kRowsOfTask, region.offset_y + region.height);
+        for (const auto& light : coarse_)
+            if (light) light->to_film(picture_.film, density_, first, last);
+   });
+}
+
+RenderCounters SheetPass::counters() const {
+    RenderCounters sum;
+    for (const auto& work : works_) sum += work->counters;
+    return sum;
+}
+
+}  // namespace dg

@@ -1,0 +1,250 @@
+#include "render/flare/maps/sheet_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "render/flare/maps/cell_numbers.h"
+#include "render/flare/maps/coarse_light.h"
+#include "render/flare/maps/color_table.h"
+
+namespace dg {
+namespace {
+
+constexpr int kLooks = 32, kExactLooks = 16;
+constexpr int kDeepest = 4;             // divisions of a cell
+constexpr float kFarOff = 0.1f;           // of looks that land beside the frame, as the others of their piece may not
+constexpr float kExactShare = 0.8f;      // an exact ray takes longer than an arrival
+constexpr float kSmallest = 12;         // px, of a piece with an edge, in pitches of the edge
+constexpr double kUnseen = 0.05, kSurelyUnseen = 0.005;   // looks that a piece has beside those that saw light
+constexpr double kPixel = 0.2, kBlock = 0.05;   // how much the noise of pixels and that of their blocks count
+constexpr int kTests = 16;              // rays of a cell, that tell how wrong its map is
+constexpr double kLeastWrong = 0.02;    // as a share of the light: at least
+constexpr double kMoved = 0.75;         // error of light that lands a pitch off, as a share of it
+constexpr float kSeen[2] = {430, 650};  // nm: between them most light is seen
+constexpr float kGray = 0.25f;          // pitches that colours of one place are apart at most
+constexpr float kSure = 0.5f;           // how far beyond an edge, over what that changes in the piece
+
+/// From the frame, px: where light may land that comes to it.
+float reach_of(float level) { return CoarseLight::reach(std::max(float(SheetLevel::kDifference), std::ceil(level))); }
+
+}  // namespace
+
+SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSource& source, const Sensor& sensor,
+                         std::uint64_t key)
+    : rays_(rays), map_(map), source_(source), sensor_(sensor), key_(key),
+      per_iris2_(float(1 / std::pow(rays.ghosts().iris_radius() * rays.ghosts().iris().outer_radius(), 2))),
+      smooth_(smoothness()), level_(map, rays.ghosts().iris(), rays.ghosts().iris_radius(), source.filled, smooth_),
+      spread_(map.cells().size(), -1.f),
+      unseen_(map.cells().size()) {
+    for (std::uint32_t c = 0; c < map.cells().size(); ++c) wrong_.push_back(map.cells()[c].exact ? 0.f : wrong(c));
+    for (std::uint32_t c = 0; c < map.cells().size(); ++c) divide({c, {0, 0}, 1, 0}, 0, nullptr);
+}
+
+/// By the light of cells that may come to the frame.
+SheetSmooth SheetPieces::smoothness() const {
+    std::vector<SheetSmooth::CellLight> cells;
+    thread_local MapBatch batch;
+    for (std::uint32_t c = 0; c < map_.cells().size(); ++c) {
+        const GhostMap::Cell& cell = map_.cells()[c];
+        if (cell.exact) continue;
+        draw(batch, {c, {0, 0}, 1, 0}, kTests);
+        map_.landings(cell, batch, kTests);
+        double light = 0;
+        for (int i = 0; i < kTests; ++i)
+            if (near({batch.x[i], batch.y[i]}, float(1 << CoarseLight::kMostLevel))) light += seen_light(batch.nm[i]) * batch.pass[i];
+        cells.push_back({&cell.blur, light * cell.size * cell.size});
+    }
+    return SheetSmooth::of(std::move(cells));
+}
+
+bool SheetPieces::near(Vec2f px, float reach) const {
+    return px.x > -reach && px.y > -reach && px.x < float(sensor_.width) + reach &&
+           px.y < float(sensor_.height) + reach;
+}
+
+/// So many places of a piece, with what else a landing depends on.
+void SheetPieces::draw(MapBatch& batch, const SheetPiece& piece, int count) const {
+    thread_local CellNumbers u;
+    u.fill(hash64(key_, piece.cell), 0, std::uint64_t(count));
+    for (int i = 0; i < count; ++i) {
+        const SmallSource::Point& p = source_.point(u.of[CellNumbers::kPoint][i]);
+        const Vec2f at = piece.at({u.of[CellNumbers::kAcross][i], u.of[CellNumbers::kDown][i]});
+        batch.set(i, at, p.shift, Wavelengths::sample(u.of[CellNumbers::kLambda][i]).nm[0], p.moment.iris_opening);
+    }
+}
+
+/// The rays of a batch.
+std::vector<MapLanding> SheetPieces::trace(const MapBatch& batch, const GhostMap::Cell& cell, int count) const {
+    std::vector<MapRay> rays;
+    for (int i = 0; i < count; ++i)
+        rays.push_back({map_.region().at(cell.low + Vec2f{batch.u[i], batch.v[i]} * cell.size),
+                        {batch.shift_x[i], batch.shift_y[i]}, batch.nm[i]});
+    return rays_.trace(rays);
+}
+
+void SheetPieces::divide(const SheetPiece& piece, int depth, const Looked* whole) {
+    const GhostMap::Cell& cell = map_.cells()[piece.cell];
+    const int count = cell.exact ? kExactLooks : kLooks;
+    const Looked looked = look(piece, count);
+    const bool even = looked.lit == 0 || looked.lit == count;
+    if (even || depth == kDeepest || is_small(piece, looked)) return keep(piece, count, looked, whole);
+    for (int k = 0; k < 4; ++k) {
+        const float half = 0.5f * piece.size;
+        divide({piece.cell, piece.low + Vec2f{float(k % 2), float(k / 2)} * half, half, 0}, depth + 1, &looked);
+    }
+}
+
+bool SheetPieces::is_small(const SheetPiece& piece, const Looked& looked) const {
+    const float edge = level_.pitch(map_.cells()[piece.cell].blur);
+    const float extent = std::max(looked.high.x - looked.low.x, looked.high.y - looked.low.y);
+    return extent < kSmallest * std::max(1.f, edge);
+}
+
+SheetPieces::Looked SheetPieces::look(const SheetPiece& piece, int count) const {
+    Looked looked;
+    map_.cells()[piece.cell].exact ? look_by_rays(piece, count, looked) : look_at_map(piece, count, looked);
+    return looked;
+}
+
+void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) const {
+    thread_local MapBatch batch;
+    draw(batch, piece, count);
+    map_.landings(map_.cells()[piece.cell], batch, count);
+    for (int i = 0; i < count; ++i) {
+        float stop = batch.beyond[i];
+        for (int k = 0; k < map_.crossings(); ++k) {
+            const float x = batch.iris_x[k][i], y = batch.iris_y[k][i];
+            stop = std::max(stop, (x * x + y * y) * per_iris2_ - 1);
+        }
+        const float level = level_.of(map_.cells()[piece.cell], batch, i);
+        to.level += level / float(count);
+        const float seen = seen_light(batch.nm[i]);
+        see(to, {batch.x[i], batch.y[i]}, seen * batch.glass[i], seen * batch.pass[i], stop, level);
+    }
+}
+
+void SheetPieces::look_by_rays(const SheetPiece& piece, int count, Looked& to) const {
+    thread_local MapBatch batch;
+    draw(batch, piece, count);
+    const std::vector<MapLanding> landings = trace(batch, map_.cells()[piece.cell], count);
+    const float level = to.level = level_.of_rays();
+    for (int i = 0; i < count; ++i) {
+        const MapLanding& l = landings[i];
+        float stop = l.beyond;
+        for (int k = 0; k < map_.crossings(); ++k) stop = std::max(stop, dot(l.iris[k], l.iris[k]) * per_iris2_ - 1);
+        const float seen = seen_light(batch.nm[i]);
+        see(to, l.px, l.sound ? seen * l.pass : 0, seen * rays_.passed(l, batch.opening[i]), stop, level);
+    }
+}
+
+void SheetPieces::see(Looked& to, Vec2f px, float glass, float pass, float stop, float level) const {
+    to.lit += pass > 0;
+    to.least_stop = std::min(to.least_stop, stop), to.most_stop = std::max(to.most_stop, stop);
+    if (!(glass > 0)) return;
+    to.low = {std::min(to.low.x, px.x), std::min(to.low.y, px.y)};
+    to.high = {std::max(to.high.x, px.x), std::max(to.high.y, px.y)};
+    const bool here = near(px, reach_of(level));
+    to.seen.push_back({px, here ? pass : 0, here ? glass : kFarOff * glass});
+}
+
+/// A look at the middle of where light lands that comes through what is around it.
+SheetPieces::Looked SheetPieces::in_the_dark(const Looked& whole) {
+    Looked looked = whole;
+    float most = 0;
+    for (const Seen& s : whole.seen) most = std::max(most, s.open);
+    looked.seen = {{0.5f * (whole.low + whole.high), 0, kFarOff * most}};
+    return looked;
+}
+
+/// Far from the frame, for all that looks tell, which are not at the piece's rim.
+bool SheetPieces::beside(const Looked& l) const {
+    const Vec2f more = 0.5f * (l.high - l.low);
+    const float reach = reach_of(float(CoarseLight::kMostLevel));
+    return l.seen.empty() || l.high.x + more.x < -reach || l.high.y + more.y < -reach ||
+           l.low.x - more.x > float(sensor_.width) + reach || l.low.y - more.y > float(sensor_.height) + reach;
+}
+
+/// `whole`: what was seen of what it is a part of. Where no light comes through the glass in all of a cell, the cell is
+/// no better known than what has none.
+void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked* whole) {
+    const bool sure = looked.lit == 0 &&
+                      looked.least_stop > kSure * (looked.most_stop - looked.least_stop);
+    if (looked.seen.empty() && !whole) unseen_[piece.cell] = true;
+    if (looked.seen.empty() && whole) looked = in_the_dark(*whole);
+    if (beside(looked)) return;
+    piece.level = looked.level;
+    double wrong = 0;
+    if (!map_.cells()[piece.cell].exact) {
+        const double apart = spread(piece.cell) * std::exp2(-double(piece.level));
+        piece.gray = apart <= kGray;
+        wrong = std::hypot(wrong_[piece.cell], piece.gray ? 0.5 * kMoved * apart : 0);
+    }
+    pieces_.push_back(piece), looks_.push_back(count);
+    doubt_.push_back({sure ? kSurelyUnseen : kUnseen, sure ? kLeastWrong : wrong});
+    seen_.insert(seen_.end(), looked.seen.begin(), looked.seen.end());
+    end_.push_back(seen_.size());
+}
+
+/// Root of the mean square of what exact rays have else than the map: light, or its place against the pitch there.
+float SheetPieces::wrong(std::uint32_t c) const {
+    const GhostMap::Cell& cell = map_.cells()[c];
+    thread_local MapBatch batch;
+    draw(batch, {c, {0, 0}, 1, 0}, kTests);
+    map_.landings(cell, batch, kTests);
+    const std::vector<MapLanding> exact = trace(batch, cell, kTests);
+    double squares = 0, light = 0;
+    for (int i = 0; i < kTests; ++i) {
+        const double seen = seen_light(batch.nm[i]);
+        const double a = seen * batch.pass[i], b = seen * rays_.passed(exact[i], batch.opening[i]);
+        const double moved = length(exact[i].px - Vec2f{batch.x[i], batch.y[i]}) * std::exp2(-level_.of(cell, batch, i));
+        squares += std::pow(a - b, 2) + a * b * std::pow(std::min(1.0, kMoved * moved), 2), light += std::max(a * a, b * b);
+    }
+    return float(std::max(kLeastWrong, std::sqrt((squares + kUnseen * light / kTests * 0.01) / std::max(light, 1e-30))));
+}
+
+/// How far apart the ends of what is seen land, from the middle of a cell and from near its corners.
+float SheetPieces::spread(std::uint32_t cell) {
+    if (spread_[cell] >= 0) return spread_[cell];
+    thread_local MapBatch batch;
+    constexpr Vec2f kPlaces[] = {{0.5f, 0.5f}, {0.1f, 0.1f}, {0.9f, 0.1f}, {0.1f, 0.9f}, {0.9f, 0.9f}};
+    int count = 0;
+    for (const Vec2f at : kPlaces)
+        for (const float nm : kSeen) batch.set(count++, at, {0, 0}, nm, 1);
+    map_.landings(map_.cells()[cell], batch, count);
+    for (int i = 0; i < count; i += 2)
+        spread_[cell] = std::max(spread_[cell], std::hypot(batch.x[i] - batch.x[i + 1], batch.y[i] - batch.y[i + 1]));
+    return spread_[cell];
+}
+
+double SheetPieces::area(const SheetPiece& piece) const {
+    const double side = double(map_.cells()[piece.cell].size) * piece.size;
+    return side * side * map_.region().area();
+}
+
+void SheetPieces::add_to(FlareTiles& tiles, double times) const {
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+        for (const double each = times * area(pieces_[i]) / looks_[i]; k < end_[i]; ++k)
+            tiles.add(seen_[k].px, each * seen_[k].light);
+}
+
+std::vector<SheetPiece> SheetPieces::weighed(const FlareTiles& tiles, double times) const {
+    std::vector<SheetPiece> pieces;
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        double squares = 0, open = 0;
+        for (; k < end_[i]; ++k) {
+            const double importance = tiles.importance(seen_[k].px);
+            squares += std::pow(seen_[k].light * importance, 2), open += std::pow(seen_[k].open * importance, 2);
+        }
+        const double rms = std::sqrt((squares + doubt_[i].unseen / looks_[i] * open) / looks_[i]);
+        if (!(rms > 0)) continue;
+        pieces.push_back(pieces_[i]);
+        const double each = times * area(pieces_[i]) * std::sqrt(kPixel * std::exp2(-2 * double(pieces_[i].level)) + kBlock);
+        pieces.back().share = each * rms * (map_.cells()[pieces_[i].cell].exact ? kExactShare : 1), pieces.back().doubt = each * doubt_[i].wrong * std::sqrt(open / looks_[i]);
+    }
+    return pieces;
+}
+
+}  // namespace dg
