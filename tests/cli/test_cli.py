@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -496,12 +497,16 @@ def test_stats_count_light_beside_the_frame(
                 flare_paths=100,
                 flare_rays=400,
                 flare_hits=300,
+                flare_arrivals=5000,
             )
+            core = SimpleNamespace(flare_map_error=0.0042, flare_ghosts_by_rays=2)
+            self.light_plan = SimpleNamespace(core=core)
 
     monkeypatch.setattr(sys.modules["daguerre.rendering.session"], "Session", Lit)
     assert main(["render", "s.glb", "-o", "a.exr", "--spp", "4", "--stats", *SMALL]) == 0
     said = capsys.readouterr().err
     assert "light paths: 200 (50,0 per sample), 30 beside the frame" in said
+    assert "flare maps: 5000 arrivals, maps off by 0.4%, 2 ghosts by rays alone" in said
     assert "flare: 100 paths, 75% of their rays on the frame" in said
     assert "highlights: 3 bright spots, by 1000 rays" in said
     assert "stopped: 25.0% of the camera's rays" in said

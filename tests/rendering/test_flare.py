@@ -14,6 +14,7 @@ from daguerre import analysis
 from daguerre.analysis.ghosts import Ghosts
 from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
+from daguerre.rendering.diffraction import Diffraction
 from daguerre.rendering.merging import merge
 from daguerre.rendering.session import Session
 from tests.support import scenes
@@ -60,8 +61,21 @@ def test_the_flare_is_in_the_picture_and_by_itself() -> None:
     assert frame.flare.max() > 0
     # Nothing else shines: a light without size is never seen.
     np.testing.assert_allclose(frame.rgb, frame.flare, atol=1e-6)
-    assert drawn.counters.flare_paths == 2 * PATHS
-    assert drawn.counters.flare_hits > 0.8 * drawn.counters.flare_rays
+    drawn_of_maps = drawn.counters.flare_arrivals + drawn.counters.flare_rays
+    assert drawn_of_maps == pytest.approx(2 * 4 * PATHS, rel=0.1)  # 4 arrivals for each path
+
+
+def test_paths_alone_draw_what_maps_draw() -> None:
+    """A film with bands has no maps: its ghosts are the same but for noise."""
+    maps, paths = session(flare=4 * PATHS), session(flare=40 * PATHS, diffraction=Diffraction(4))
+    for one in (maps, paths):
+        one.draw(0, 1)
+    assert maps.counters.flare_arrivals > 0
+    assert paths.counters.flare_arrivals == 0
+    assert paths.counters.flare_paths == 40 * PATHS
+    assert paths.counters.flare_hits > 0.8 * paths.counters.flare_rays
+    light = [one.frame(waves=False).rgb.mean(axis=(0, 1)) for one in (maps, paths)]
+    np.testing.assert_allclose(light[0], light[1], rtol=0.02)
 
 
 def test_without_flare_nothing_changes() -> None:

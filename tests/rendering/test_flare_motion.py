@@ -26,7 +26,7 @@ from tests.support.motion_scenes import OPEN, TIME, turn
 
 LENS = "tessar-50mm-f2.8"
 SIZE = (6, 4)  # few lines, so that each sees much of what is drawn
-MOMENTS, PATHS = 9, 8000.0
+MOMENTS, PATHS = 9, 16000.0
 SAME, OTHER = 0.075, 0.12  # of the light
 Pictures = NDArray[np.float64]
 

@@ -135,7 +135,7 @@ def test_ghosts_are_diffracted_with_the_picture(tmp_path: Path) -> None:
     """Nothing else shines here, so ghosts are the whole picture; kernels keep their light."""
     eye = test_flare.camera(f_stop=11.0, sensor_size=(1.8, 1.2))
     options = {"seed": 3, "threads": 1}
-    plain = test_flare.session(eye=eye, **options)
+    plain = test_flare.session(eye=eye, bands=8, **options)  # bands: ghosts by paths, as waves need
     waved = test_flare.session(eye=eye, diffraction=Diffraction(8), **options)
     for one in (plain, waved):
         one.draw(0, 2)

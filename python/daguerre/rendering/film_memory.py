@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import daguerre._core as _core
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 #: hand while it is written. Measured: bench/film_memory.py.
 FRAME = 52
 TRUTH = 108  # ground truth and its rays
+#: Nodes of ghosts' maps while they are drawn: sums of a value for each pixel, and a third more.
+NODES = 32 / 3
 FLOAT = 4
 #: The frame of a denoised picture and what the denoiser takes: per pixel, and for itself.
 DENOISED, DENOISER = 450, 950_000_000
@@ -26,7 +29,9 @@ def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False) -> int:
     planes = 3 * (layout.flare + layout.splats * layout.aovs) + 12 * layout.halves
     planes += len(FILM_CHANNELS) * layout.aovs
     planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
-    return _core.Film.pixel_bytes(layout) + FRAME + FLOAT * planes + TRUTH * truth
+    made = FRAME + FLOAT * planes + TRUTH * truth
+    drawn = math.ceil(NODES * (6 + layout.channels)) if layout.flare else 0
+    return _core.Film.pixel_bytes(layout) + max(made, drawn)
 
 
 def check_film(layout: _core.FilmLayout, *, truth: bool = False, free: int | None = None) -> None:

@@ -133,6 +133,9 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
     if not shines:
         notes.append(f"{name}: {DARK[name]}")
         return 0.0
+    if name == "flare" and core.flare_maps_failed:
+        off = f"{core.flare_map_error:.1%}"
+        notes.append(f"flare: maps of ghosts are off by {off}, wanted 1 %; paths draw all of them")
     count = PER_PIXEL[name] * area((0, 0, *one.size)) if paths is None else paths
     setattr(core, name, count)
     return float(count)
@@ -156,4 +159,5 @@ def _options(settings: RenderSettings) -> dict[str, Any]:
         "technique": reference.technique,
         "flare_order": light.flare_order,
         "flare_highlights": light.flare_highlights,
+        "flare_maps": not (settings.film.bands or settings.diffraction),
     }

@@ -63,9 +63,20 @@ def _flare(session: Session) -> dict[str, str]:
         return {}
     share = counters.flare_hits / counters.flare_rays
     return {
+        **_flare_maps(session),
         "flare": f"{counters.flare_paths} paths, {share:.0%} of their rays on the frame",
         "highlights": f"{session.flare_spots} bright spots, by {session.survey_rays} rays",
     }
+
+
+def _flare_maps(session: Session) -> dict[str, str]:
+    """Ghosts drawn from maps, and how far exact rays say that the maps are off."""
+    core, arrivals = session.light_plan.core, session.counters.flare_arrivals
+    if not arrivals:
+        return {}
+    rays = core.flare_ghosts_by_rays
+    beside = f", {rays} ghosts by rays alone" if rays else ""
+    return {"flare maps": f"{arrivals} arrivals, maps off by {core.flare_map_error:.1%}{beside}"}
 
 
 def _scatter(session: Session) -> dict[str, str]:
