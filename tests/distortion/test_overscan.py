@@ -332,4 +332,4 @@ def test_passes_of_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert main([*words, "--samples", "3:4", "--overscan", "5", "-o", str(file)]) == 0
     capsys.readouterr()
     assert main(["merge", str(passes[0]), str(file), "-o", str(whole)]) == 4
-    assert "overscan 5,5,5,5 (wanted 4,4,4,4)" in capsys.readouterr().err
+    assert "overscan (5,5,5,5, wanted 4,4,4,4)" in capsys.readouterr().err

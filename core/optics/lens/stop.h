@@ -31,7 +31,7 @@ class Iris {
     /// Whether that region contains p.
     bool in_sampling_region(Vec2d p, double enlargement) const;
     double outer_radius() const;
-    /// Of a circle all of which passes; 0 for an image.
+    /// Radius of a circle all of which passes; 0 for an image.
     double inner_radius() const;
 
     // Tables, read by the SIMD version.

@@ -44,7 +44,7 @@ class FlareAim {
     const Scene& scene() const { return scene_; }
     const Camera& camera() const { return camera_; }
     int ghosts() const { return int(mirrors_.size()); }
-    /// Of them by two reflections: the first ones.
+    /// Those by two reflections: the first of them.
     int pairs() const { return pairs_; }
     const Mirrors& mirrors(int ghost) const { return mirrors_[ghost]; }
     /// The lens as it is at first, and a ghost's way through it.

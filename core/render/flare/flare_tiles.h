@@ -17,7 +17,7 @@ class FlareTiles {
     /// 1 / sqrt(R^2 + (0.1 mean)^2) with R the light of a pixel: what light is an error there, as the eye has it
     /// and as relMSE does. What is darker than a tenth of the mean need not be exact.
     float importance(Vec2f px) const { return importance_[index(px)]; }
-    /// Of a tile in the mean.
+    /// Light of a tile in the mean.
     double mean() const { return mean_; }
     std::size_t count() const { return light_.size(); }
     /// The tile of a place, the nearest of one beside the frame.

@@ -143,7 +143,7 @@ def _rows(crops: list[ExrReader], window: Box, top: int, bottom: int) -> dict[st
 def are_crops(paths: Sequence[str | os.PathLike[str]]) -> bool:
     """Whether files have different pixels of a picture, so that joining is meant and not adding.
 
-    What cannot be read is no crop: whoever reads it next says why.
+    A file that cannot be read is no crop: whoever reads it next says why.
     """
     boxes = set()
     for path in paths:

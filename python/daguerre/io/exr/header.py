@@ -67,6 +67,8 @@ def read_header(path: Path) -> ExrHeader:
     Raises:
         InputError: It is no OpenEXR file, is cut off, or has deep pixels.
     """
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe might never end
+        raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
     try:
         with path.open("rb") as stream:
             data = stream.read(MAX_HEADER)
