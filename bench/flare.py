@@ -50,8 +50,8 @@ def scene(degrees: tuple[float, float]) -> dg.Scene:
     return made
 
 
-def session(arguments: argparse.Namespace, paths: float, seed: int, way: str = "maps") -> Session:
-    """Ready to draw."""
+def session(arguments: argparse.Namespace, paths: float, seed: int) -> Session:
+    """Ready to draw, from maps."""
     camera = dg.Camera(
         lens=arguments.lens,
         zoom=arguments.zoom,
@@ -61,16 +61,13 @@ def session(arguments: argparse.Namespace, paths: float, seed: int, way: str = "
     )
     size = (arguments.w, arguments.h)
     options = {"flare": paths, "light_paths": "off", "seed": seed, "threads": arguments.threads}
-    made = Session(scene((9.0, 5.0)), camera, resolution=size, **options)
-    if way != "maps":
-        alone(made, way)
-    return made
+    return Session(scene((9.0, 5.0)), camera, resolution=size, **options)
 
 
-def alone(made: Session, way: str) -> None:
+def alone(made: Session, way: str, paths: float) -> None:
     """Paths alone, with what is learned ("paths") or without ("naive")."""
     core = made.light_plan.core
-    core.flare_maps, core.flare_learned = False, way != "naive"
+    core.flare, core.flare_maps, core.flare_learned = paths, False, way != "naive"
     core.prepare_flare(made.prepared.core_scene, made.prepared.setup.core)
 
 
@@ -78,14 +75,12 @@ def drawn(
     arguments: argparse.Namespace, paths: float, seed: int, way: str
 ) -> tuple[Session, Picture, dict[str, float]]:
     """A session with its ghosts, and the seconds that they took, of CPU and of wall-clock."""
-    if way == "paths":  # its set-up is measured without that of the maps
-        made = session(arguments, 1.0, seed)
-        made.light_plan.core.flare = paths
+    made = None if way == "maps" else session(arguments, 1.0, seed)
     cpu, wall = time.process_time(), time.perf_counter()
-    if way == "paths":
-        alone(made, way)
-    else:
-        made = session(arguments, paths, seed, way)
+    if made is None:
+        made = session(arguments, paths, seed)
+    else:  # set-up is that of the paths, without that of maps
+        alone(made, way, paths)
     ready = (time.process_time() - cpu, time.perf_counter() - wall)
     made.draw(0, 1)
     flare = made.frame().flare

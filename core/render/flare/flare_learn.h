@@ -17,7 +17,7 @@ struct FlareKnowledge {
     std::vector<FlareCells> cells;
 };
 
-/// `mapped`: sources whose ghosts by two reflections are drawn from maps; none of a shorter list. Nothing in it where nothing
+/// `mapped`: sources whose ghosts by two reflections are drawn from maps; none of a shorter list. Empty where nothing
 /// shines, or nothing reflects, or maps have all.
 FlareKnowledge learn_flare(const FlareAim& aim, int threads, const std::vector<bool>& mapped = {});
 /// The same without a look: all pairs, all of the square and all wavelengths alike.

@@ -171,14 +171,7 @@ TEST_CASE("flare has the same bits on any number of threads, and ranges of sampl
         s.threads = threads, s.sample_begin = begin, s.sample_end = end;
         draw_flare(*scene, camera, film, s);
     };
-    const FilmLayout layout{.width = kWidth, .height = kHeight, .flare = true};
-    Film one(layout), four(layout), first(layout), second(layout);
-    drawn(1, 0, 5, one), drawn(4, 0, 5, four), drawn(2, 0, 2, first), drawn(3, 2, 5, second);
-    first.merge(second);
-    for (const Film* other : {&four, &first}) {
-        const auto a = one.state("flare"), b = other->state("flare");
-        CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end()));
-    }
+    check_same_bits({.width = kWidth, .height = kHeight, .flare = true}, drawn);
 }
 
 TEST_CASE("most rays of the sun's ghosts come to the film") {

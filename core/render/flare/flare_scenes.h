@@ -135,6 +135,22 @@ struct Backward {
     }
 };
 
+/// The sun alone, within the frame.
+inline std::shared_ptr<const Scene> sunny() {
+    SceneDescription d;
+    d.lights = {SphereLight{{normalize(Vec3f{0.12f, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}};
+    return Scene::build(std::move(d));
+}
+
+/// `drawn(threads, begin, end, film)` brings the same bits of flare with one thread, with four, and in two ranges.
+template <typename Drawn>
+void check_same_bits(const FilmLayout& layout, const Drawn& drawn) {
+    Film one(layout), four(layout), first(layout), second(layout);
+    drawn(1, 0, 5, one), drawn(4, 0, 5, four), drawn(2, 0, 2, first), drawn(3, 2, 5, second);
+    first.merge(second);
+    for (const Film* other : {&four, &first}) CHECK(std::ranges::equal(one.state("flare"), other->state("flare")));
+}
+
 inline std::string show(const Blocks& b) {
     const SampleMoments m = whole(b);
     return std::to_string(m.mean) + " +- " + std::to_string(std::sqrt(m.variance / m.count)) + " ";

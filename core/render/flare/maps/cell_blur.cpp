@@ -36,7 +36,8 @@ struct Derivatives {
 
     template <typename Value>
     Mat2 over_cell(const Value& value) const {
-        return {value(rays.nodes[kRight]) - value(rays.nodes[kLeft]), value(rays.nodes[kBelow]) - value(rays.nodes[kAbove])};
+        return {value(rays.nodes[kRight]) - value(rays.nodes[kLeft]),
+                value(rays.nodes[kBelow]) - value(rays.nodes[kAbove])};
     }
     template <typename Value>
     Mat2 over_source(const Value& value) const {

@@ -17,6 +17,11 @@ class CellNumbers {
 
     /// Fills `of` with points [first, last), or the first of them; returns how many. `seed`: of the cell.
     int fill(std::uint64_t seed, std::uint64_t first, std::uint64_t last);
+    /// Calls draw(first, count) with `of` filled, until all of [first, last) were there.
+    template <typename Draw>
+    void each(std::uint64_t seed, std::uint64_t first, std::uint64_t last, const Draw& draw) {
+        for (int count; first < last; first += std::uint64_t(count)) count = fill(seed, first, last), draw(first, count);
+    }
 };
 
 }  // namespace dg

@@ -64,7 +64,8 @@ CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double
     to_square_steps_ = std::ldexp(square * square, square_bits_ - 4 * level);
 }
 
-/// In nodes, of which node kMargin is at 0, whatever part of the frame this is; on level 0 they lie at the middle of a pixel.
+/// In nodes, of which node kMargin is at 0, whatever part of the frame this is; those of level 0 lie at the middles of
+/// pixels.
 Vec2f CoarseLight::in_nodes(Vec2f px) const {
     const float per_pitch = 1 / float(1 << level_), zero = kMargin - (level_ == 0 ? 0.5f : 0);
     return {px.x * per_pitch + zero, px.y * per_pitch + zero};

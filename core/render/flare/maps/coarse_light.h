@@ -31,8 +31,8 @@ class CoarseLight {
     /// A filter of a larger variance, px2 along an axis, is not drawn on level 0.
     static constexpr double kWidestFilter = 0.6;
 
-    /// Nodes 2^level px apart, up to kMostLevel, over a part of the frame and some more. `values`: how many of a colour there are.
-    /// `mean`: light of a pixel, about, as small parts of which values are rounded. `filter_variance`: px2 along an axis;
+    /// Nodes 2^level px apart, up to kMostLevel, over a part of the frame and some more. `values`: how many of a colour
+    /// there are. `mean`: light of a pixel, about, as small parts of which values are rounded. `filter_variance`: px2 along an axis;
     /// light of level 0, whose nodes are the pixels, is as wide as that filter, and almost of its shape.
     CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance);
 

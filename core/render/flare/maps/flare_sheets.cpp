@@ -41,11 +41,8 @@ bool is_hidden(const FlareAim& aim, const SmallSource& source) {
         PathSampler sampler(source.source, kSequence, std::uint32_t(i), 0);
         const CameraRandom u = sampler.camera();
         const SmallSource::Point& p = source.point(u.time);
-        const auto ray = rays.to_source({u.lens * 2 - Vec2f{1, 1}, p.shift, 0}, p.moment.time);
-        if (!ray) continue;
-        const Ray shadow = flare_shadow(p.from, to_world(aim.camera(), *ray));
-        if (!is_traceable(shadow)) continue;
-        if (aim.scene().visibility_along(shadow, Wavelengths::sample(u.lambda)).min() < 1) return true;
+        const auto shadow = rays.shadow({u.lens * 2 - Vec2f{1, 1}, p.shift, 0}, p.from, p.moment.time);
+        if (shadow && aim.scene().visibility_along(*shadow, Wavelengths::sample(u.lambda)).min() < 1) return true;
     }
     return false;
 }
@@ -71,7 +68,8 @@ void FlareSheets::make_maps(const FlareAim& aim, const RenderSettings& settings)
         const MapRays rays(aim.camera(), aim.sensor(), aim.ghost_lens(), aim.steps(ghost), sources_[source].shape);
         GhostMap::Accuracy accuracy;
         accuracy.of_blur *= sources_[source].filled;
-        all[i].emplace(Sheet{source, ghost, rays, GhostMap(rays, aim.sensor(), CoarseLight::reach(CoarseLight::kMostLevel), accuracy)});
+        GhostMap map(rays, aim.sensor(), CoarseLight::reach(CoarseLight::kMostLevel), accuracy);
+        all[i].emplace(Sheet{source, ghost, rays, std::move(map)});
     });
     for (std::optional<Sheet>& s : all) sheets_.push_back(std::move(*s));
 }

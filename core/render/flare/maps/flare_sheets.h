@@ -43,16 +43,6 @@ class FlareSheets {
     bool has(int source) const;
     /// Something is in the way of some of a source's light.
     bool hidden(int source) const { return hidden_[source]; }
-    /// A unit of the front's square for each unit of a piece.
-    static double area(const Sheet& s, const SheetPiece& p) {
-        const double side = double(s.map.cells()[p.cell].size) * p.size;
-        return side * side * s.map.region().area();
-    }
-    /// The place of the square at a place of a cell.
-    static Vec2f place(const Sheet& s, const SheetPiece& p, Vec2f in_cell) {
-        const GhostMap::Cell& cell = s.map.cells()[p.cell];
-        return s.map.region().at(cell.low + in_cell * cell.size);
-    }
     /// Light of a pixel in the mean, about: of the sources' light times transmittances and unit areas of the square.
     double mean() const { return mean_; }
     /// RMS error of the maps over tiles of the frame, relative to the light of a tile or a tenth of the mean; as far as

@@ -25,12 +25,18 @@ struct alignas(64) MapBatch {
     float x[kSize], y[kSize];                // px
     float beyond[kSize];                     // as of OpenLandings
     float iris_x[kMostCrossings][kSize], iris_y[kMostCrossings][kSize];   // mm
-    float middle[kSize], glass[kSize];       // transmittance of the middle wavelength and of this one, without edges and iris
+    float middle[kSize], glass[kSize];       // transmittance of the middle wavelength and of this one, but for edges, iris
     float left[kSize], pass[kSize];          // what those leave of light, and with the glass; 0: stopped
 
     void set(int i, Vec2f at, Vec2f shift, float wavelength, float iris_opening) {
         u[i] = at.x, v[i] = at.y, shift_x[i] = shift.x, shift_y[i] = shift.y;
         nm[i] = wavelength, opening[i] = iris_opening;
+    }
+    /// One of them; `pass`: what edges and iris let through is left out, as rays have it.
+    MapLanding landing(int i, int crossings) const {
+        MapLanding l{{x[i], y[i]}, beyond[i], glass[i], true, 0, {}};
+        for (int k = 0; k < crossings; ++k) l.iris[std::size_t(k)] = {iris_x[k][i], iris_y[k][i]};
+        return l;
     }
 };
 
@@ -63,14 +69,16 @@ class GhostMap {
     }
     /// The part of the front, out of the square of all of it, that holds the cells.
     const FlareRectangle& region() const { return region_; }
+    /// The place of the square at a place of a cell, [0, 1]^2.
+    Vec2f at(const Cell& cell, Vec2f u) const { return region_.at(cell.low + u * cell.size); }
     /// The cell of a place of the square; null: no light comes from there to the frame.
     const Cell* find(Vec2f at) const;
     /// Landings in a cell that is not exact; fills all but what set() does.
     void landings(const Cell& cell, MapBatch& batch, int count) const;
 
     int crossings() const { return crossings_; }
-    /// Spectrum of a cell that is not exact: its middle's transmittance over wavelengths, relative to that of the middle one; and by
-    /// corner what is to be added, of kSpectrum wavelengths each.
+    /// Spectrum of a cell that is not exact: its middle's transmittance over wavelengths, relative to that of the middle
+    /// one; and by corner what is to be added, of kSpectrum wavelengths each.
     const float* fine(const Cell& cell) const { return values_.data() + cell.data + kNodes * stride(); }
     const float* corners(const Cell& cell) const { return fine(cell) + kFineSpectrum; }
     /// Transmittance of the glass at a place of such a cell, of which `middle` is that of the middle wavelength.

@@ -35,7 +35,10 @@ const int GhostMapMaker::kMore =
 void GhostMapMaker::complete(const Draft& d, Rays& rays) const {
     const float middle = lambda_node(kMiddle);
     const auto nodes = [&](Vec2f shift, float nm) {
-        for (int n = 0; n < GhostMap::kNodes; ++n) rays.push_back({at(d, Vec2f{float(n % GhostMap::kSide), float(n / GhostMap::kSide)} * (1 / 3.f)), shift, nm});
+        for (int n = 0; n < GhostMap::kNodes; ++n) {
+            const Vec2f u{float(n % GhostMap::kSide), float(n / GhostMap::kSide)};
+            rays.push_back({at(d, u * (1 / 3.f)), shift, nm});
+        }
     };
     nodes({0, 0}, lambda_node(0)), nodes({0, 0}, lambda_node(2));
     nodes({1, 0}, middle), nodes({0, 1}, middle);
@@ -97,7 +100,8 @@ void GhostMapMaker::add_nodes(const MapLanding* seen, const MapLanding* more) {
         value([](const MapLanding& m) { return m.px.x; }), value([](const MapLanding& m) { return m.px.y; });
         value([](const MapLanding& m) { return m.beyond; });
         for (int k = 0; k < map_.crossings_; ++k)
-            value([k](const MapLanding& m) { return m.iris[k].x; }), value([k](const MapLanding& m) { return m.iris[k].y; });
+            value([k](const MapLanding& m) { return m.iris[k].x; }),
+                value([k](const MapLanding& m) { return m.iris[k].y; });
     };
     constexpr int kAxes = 2 * GhostMap::kNodes;   // index
     for (int n = 0; n < GhostMap::kNodes; ++n) {
@@ -140,11 +144,8 @@ void GhostMapMaker::add_bends(const MapLanding* star) {
 GhostMapMaker::Landings GhostMapMaker::in_middle(const GhostMap::Cell& cell) {
     for (int t = 0; t < kOffs; ++t) batch_.set(t, {0.5f, 0.5f}, kOff[t].shift, kOff[t].nm, 1);
     map_.landings(cell, batch_, kOffs);
-    Landings landings(kOffs);
-    for (int t = 0; t < kOffs; ++t) {
-        landings[t] = {{batch_.x[t], batch_.y[t]}, batch_.beyond[t], batch_.glass[t], true, 0, {}};
-        for (int k = 0; k < map_.crossings_; ++k) landings[t].iris[k] = {batch_.iris_x[k][t], batch_.iris_y[k][t]};
-    }
+    Landings landings;
+    for (int t = 0; t < kOffs; ++t) landings.push_back(batch_.landing(t, map_.crossings_));
     return landings;
 }
 

@@ -31,7 +31,7 @@ bool GhostMapMaker::dark_square(const MapLanding* const (&corner)[4]) const {
     Range stop, x, y;
     bool all_sound = true;
     for (const MapLanding* l : corner) {
-        stop.add(stopped(*l)), all_sound &= l->sound;
+        stop.add(rays_.stopped(*l)), all_sound &= l->sound;
         if (l->sound) x.add(l->px.x), y.add(l->px.y);
     }
     if (stop.low > 0 && stop.low > stop.size()) return true;
@@ -45,15 +45,7 @@ bool GhostMapMaker::beside(const Range& x, const Range& y, float more) const {
            y.high + more < 0;
 }
 
-/// Above 0 where an edge or the iris stops light; smooth, but for where one takes over from the other.
-float GhostMapMaker::stopped(const MapLanding& l) const {
-    float most = l.beyond;
-    if (l.sound)
-        for (int k = 0; k < map_.crossings_; ++k) most = std::max(most, length_squared(l.iris[k]) * per_iris2_ - 1);
-    return most;
-}
-
-/// Change of that to the nodes beside one whose rays end at the same surface; from one surface to another it jumps,
+/// Change of stopped() to the nodes beside one whose rays end at the same surface; from one surface to another it jumps,
 /// which says nothing. Below 0: there are none.
 float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
     constexpr int side = GhostMap::kSide;
@@ -61,7 +53,7 @@ float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
     for (int m = 0; m < GhostMap::kNodes; ++m) {
         const bool beside = std::abs(m % side - n % side) <= 1 && std::abs(m / side - n / side) <= 1;
         if (m == n || !beside || nodes[m].lost_after != nodes[n].lost_after) continue;
-        change = std::max(change, std::abs(stopped(nodes[m]) - stopped(nodes[n])));
+        change = std::max(change, std::abs(rays_.stopped(nodes[m]) - rays_.stopped(nodes[n])));
     }
     return change;
 }
@@ -70,22 +62,22 @@ float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
 bool GhostMapMaker::surely_stopped(const MapLanding* nodes, float margin) const {
     for (int n = 0; n < GhostMap::kNodes; ++n) {
         const float change = change_around(nodes, n);
-        if (!(stopped(nodes[n]) - margin > (change < 0 ? kAlone : kHalfway * change))) return false;
+        if (!(rays_.stopped(nodes[n]) - margin > (change < 0 ? kAlone : kHalfway * change))) return false;
     }
     return true;
 }
 
 bool GhostMapMaker::dark(const MapLanding* seen, int level, const CellBlur& blur) const {
-    float least = stopped(seen[0]);
+    float least = rays_.stopped(seen[0]);
     Range x, y;
     bool all_sound = true;
     for (int i = 0; i < kSeen; ++i) {
-        least = std::min(least, stopped(seen[i])), all_sound &= seen[i].sound;
+        least = std::min(least, rays_.stopped(seen[i])), all_sound &= seen[i].sound;
         if (seen[i].sound) x.add(seen[i].px.x), y.add(seen[i].px.y);
     }
     const MapLanding* const rim = seen + kSeen;
-    const float middle = stopped(seen[kRimNode]);
-    const float margin = std::hypot(stopped(rim[0]) - middle, stopped(rim[1]) - middle);   // over the source
+    const float middle = rays_.stopped(seen[kRimNode]);
+    const float margin = std::hypot(rays_.stopped(rim[0]) - middle, rays_.stopped(rim[1]) - middle);   // over the source
     if (least > margin && surely_stopped(seen, margin)) return true;
     if (level >= (all_sound ? kSmall : kSmallLost) && least - margin > kClear) return true;
     return all_sound && beside(x, y, 0.5f * std::max(x.size(), y.size()) + blur.light);
@@ -116,7 +108,7 @@ MapLanding GhostMapMaker::by_cubics(const MapLanding* nodes, Vec2f u) const {
 
 /// The landing, the edge and the iris; errors of the latter two as they move the picture.
 bool GhostMapMaker::agree(const MapLanding& map, const MapLanding& ray, const Scale& of) const {
-    if (stopped(map) > kFar && stopped(ray) > kFar) return true;
+    if (rays_.stopped(map) > kFar && rays_.stopped(ray) > kFar) return true;
     if (!ray.sound) return false;
     if (!(std::abs(map.pass - ray.pass) <= accuracy_.light * (ray.pass + of.light))) return false;
     const float blur = accuracy_.of_blur * of.slack * of.blur.light;

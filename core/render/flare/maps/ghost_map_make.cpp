@@ -1,6 +1,5 @@
 // ghost_map_make.cpp -- where the cells of a ghost's map are, and how small.
 #include <algorithm>
-#include <cmath>
 
 #include "render/flare/maps/ghost_map_maker.h"
 #include "render/flare/maps/ghost_map_nodes.h"
@@ -18,16 +17,16 @@ Vec2f node_at(int n) { return {float(n % GhostMap::kSide) / 3, float(n / GhostMa
 
 GhostMapMaker::GhostMapMaker(GhostMap& map, const MapRays& rays, const Sensor& sensor, float reach,
                              const GhostMap::Accuracy& accuracy)
-    : map_(map), rays_(rays), sensor_(sensor), reach_(reach), accuracy_(accuracy),
-      per_iris2_(float(1 / std::pow(rays.ghosts().iris_radius() * rays.ghosts().iris().outer_radius(), 2))) {}
+    : map_(map), rays_(rays), sensor_(sensor), reach_(reach), accuracy_(accuracy) {}
 
 void GhostMapMaker::make() {
     map_.crossings_ = rays_.crossings(), map_.iris_ = &rays_.ghosts().tables().iris;
     std::vector<Draft> drafts, next;
     if (!zoom()) return;
     const float first = 1.f / GhostMap::kFirstAcross;
-    for (int i = 0; i < GhostMap::kFirstAcross * GhostMap::kFirstAcross; ++i)
-        drafts.push_back({{float(i % GhostMap::kFirstAcross) * first, float(i / GhostMap::kFirstAcross) * first}, first, 0});
+    constexpr int across = GhostMap::kFirstAcross;
+    for (int i = 0; i < across * across; ++i)
+        drafts.push_back({{float(i % across) * first, float(i / across) * first}, first, 0});
     for (; !drafts.empty(); drafts.swap(next)) next.clear(), refine(drafts, next);
     sort();
 }

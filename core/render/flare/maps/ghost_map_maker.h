@@ -59,7 +59,6 @@ class GhostMapMaker {
     // ghost_map_judge.cpp
     Verdict judge(const MapLanding* seen, int level, CellBlur& blur) const;
     bool dark_square(const MapLanding* const (&corner)[4]) const;
-    float stopped(const MapLanding& l) const;
     bool surely_stopped(const MapLanding* nodes, float margin) const;
     float change_around(const MapLanding* nodes, int node) const;
     bool dark(const MapLanding* seen, int level, const CellBlur& blur) const;
@@ -81,7 +80,6 @@ class GhostMapMaker {
     const Sensor& sensor_;
     float reach_;
     GhostMap::Accuracy accuracy_;
-    float per_iris2_;
     MapBatch batch_{};
 };
 

@@ -6,22 +6,15 @@
 #include <cmath>
 
 #include "render/flare/flare_scenes.h"
-#include "render/flare/maps/cell_numbers.h"
 #include "render/flare/maps/coarse_light.h"
 #include "render/flare/maps/color_table.h"
-#include "render/flare/maps/small_source.h"
+#include "render/flare/maps/sheet_pieces.h"
 
 using namespace dg;
 
 namespace {
 
 constexpr int kRays = 64;   // of a cell
-
-std::shared_ptr<const Scene> sunny() {
-    SceneDescription d;
-    d.lights = {SphereLight{{normalize(Vec3f{0.12f, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}};
-    return Scene::build(std::move(d));
-}
 
 /// Light of the maps and of the rays at the same places, and how far from each other both land.
 struct Compared {
@@ -31,20 +24,15 @@ struct Compared {
 void compare(const GhostMap& map, const MapRays& rays, const SmallSource& source, Compared& to) {
     MapBatch batch{};
     CellNumbers u;
-    for (const GhostMap::Cell& cell : map.cells()) {
+    for (std::uint32_t c = 0; c < map.cells().size(); ++c) {
+        const GhostMap::Cell& cell = map.cells()[c];
         if (cell.exact) continue;
+        const SheetPiece whole{c, {0, 0}, 1, 0};
         u.fill(hash64(7, std::uint64_t(to.cells++)), 0, kRays);
-        std::vector<MapRay> exact;
-        for (int i = 0; i < kRays; ++i) {
-            const SmallSource::Point& p = source.point(u.of[CellNumbers::kPoint][i]);
-            const Vec2f at{u.of[CellNumbers::kAcross][i], u.of[CellNumbers::kDown][i]};
-            const float nm = Wavelengths::sample(u.of[CellNumbers::kLambda][i]).nm[0];
-            batch.set(i, at, p.shift, nm, 1);
-            exact.push_back({map.region().at(cell.low + at * cell.size), p.shift, nm});
-        }
+        draw_places(batch, whole, source, u, kRays);
         map.landings(cell, batch, kRays);
-        const std::vector<MapLanding> landings = rays.trace(exact);
-        const double each = double(cell.size) * cell.size * map.region().area();
+        const std::vector<MapLanding> landings = rays.trace(rays_of(map, cell, batch, kRays));
+        const double each = area(map, whole);
         for (int i = 0; i < kRays; ++i) {
             const double light = each * seen_light(batch.nm[i]), own = rays.passed(landings[i], 1);
             to.map += light * batch.pass[i], to.rays += light * own;

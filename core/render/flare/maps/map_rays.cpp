@@ -1,8 +1,12 @@
 #include "render/flare/maps/map_rays.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "geometry/ray.h"
 #include "math/across.h"
+#include "render/flare/flare_aim.h"
 
 namespace dg {
 
@@ -26,7 +30,8 @@ Vec2f MapSource::shift_of(Vec3d point) const {
 MapRays::MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& ghosts,
                  const std::vector<GhostStep>& steps, const MapSource& source)
     : lens_(std::get<ExactLens>(camera.lens)), camera_(camera), sensor_(sensor), ghosts_(ghosts), steps_(steps),
-      source_(source), front_(lens_.front_ball()) {}
+      source_(source),
+      per_iris2_(float(1 / std::pow(ghosts.iris_radius() * ghosts.iris().outer_radius(), 2))), front_(lens_.front_ball()) {}
 
 /// The square that stands across the way from the middle of the front to a point of the source.
 MapRays::Front MapRays::front(Vec2f shift) const {
@@ -40,11 +45,20 @@ MapRays::Line MapRays::line(const Front& front, Vec2f at) const {
     return {q, source_.at_infinity ? front.toward : normalize(front.point - q)};
 }
 
-std::optional<Ray> MapRays::to_source(const MapRay& ray, float time) const {
+std::optional<Ray> MapRays::shadow(const MapRay& ray, const EmitterPoint& from, float time) const {
     const Line l = line(front(ray.shift), ray.at);
     const auto start = lens_.start(l.place, l.direction);
     if (!start) return std::nullopt;
-    return Ray{.origin = to_float(*start), .direction = to_float(l.direction), .time = time};
+    const Ray own{.origin = to_float(*start), .direction = to_float(l.direction), .time = time};
+    const Ray shadow = flare_shadow(from, to_world(camera_, own));
+    return is_traceable(shadow) ? std::optional(shadow) : std::nullopt;
+}
+
+float MapRays::stopped(const MapLanding& l) const {
+    float most = l.beyond;
+    if (l.sound)
+        for (int k = 0; k < crossings(); ++k) most = std::max(most, length_squared(l.iris[k]) * per_iris2_ - 1);
+    return most;
 }
 
 float MapRays::passed(const MapLanding& l, float iris_opening) const {
@@ -78,7 +92,8 @@ std::vector<MapLanding> MapRays::trace(std::span<const MapRay> rays) const {
         for (std::size_t i = 0; i < count; ++i) {
             MapLanding& l = landings[begin + i];
             const Vec2f mm = own - Vec2f{open->x[i], open->y[i]} - shift;
-            l = {sensor_.px_from_mm(mm), open->beyond[i], open->pass[i], open->sound[i] > 0, std::int16_t(open->lost_after[i]), {}};
+            l = {sensor_.px_from_mm(mm), open->beyond[i], open->pass[i], open->sound[i] > 0,
+                 std::int16_t(open->lost_after[i]), {}};
             for (int k = 0; k < kMostCrossings; ++k) l.iris[k] = {open->iris_x[k][i], open->iris_y[k][i]};
         }
     }

@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "camera/sensor.h"
+#include "light/emitter_points.h"
 #include "optics/stray/open_ghost.h"
 
 namespace dg {
@@ -50,8 +51,10 @@ class MapRays {
     std::vector<MapLanding> trace(std::span<const MapRay> rays) const;
     /// Share of light that gets through the edges and an iris that is open so far, a share of its radius.
     float passed(const MapLanding& landing, float iris_opening) const;
-    /// The ray as it runs from the front lens to the source, camera frame; nothing if it misses the lens.
-    std::optional<Ray> to_source(const MapRay& ray, float time) const;
+    /// Above 0 where an edge or the iris stops light; smooth, but for where one takes over from the other.
+    float stopped(const MapLanding& landing) const;
+    /// The ray as it runs from the front lens to a point of the source, in the world; nothing if it misses the lens.
+    std::optional<Ray> shadow(const MapRay& ray, const EmitterPoint& from, float time) const;
 
   private:
     struct Line {
@@ -69,6 +72,7 @@ class MapRays {
     const GhostLens& ghosts_;
     const std::vector<GhostStep>& steps_;
     MapSource source_;
+    float per_iris2_;   // 1 / mm2
     ExactLens::Ball front_;
 };
 

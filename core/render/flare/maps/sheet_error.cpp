@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "render/flare/maps/cell_numbers.h"
 #include "render/flare/maps/color_table.h"
 #include "render/parallel.h"
 
@@ -52,22 +51,12 @@ class Grid {
 /// square of the error, without that of chance.
 using Difference = std::array<Grid, 2>;
 
-/// Relative to the light of its surroundings.
-double light_of(const SheetPiece& piece) { return piece.share; }
-
-double all_light(const FlareSheets& sheets) {
-    double sum = 0;
-    for (const FlareSheets::Sheet& s : sheets.sheets())
-        for (const SheetPiece& p : s.pieces) sum += light_of(p);
-    return sum;
-}
-
 class Tester {
   public:
-    Tester(const FlareSheets& sheets, std::size_t index, const Sensor& sensor, double rays)
-        : difference{Grid(sensor), Grid(sensor)}, sheet_(sheets.sheets()[index]), source_(sheets.sources()[std::size_t(sheet_.source)]),
-          luminance_(source_.luminance()), key_(index),
-          rays_(rays), dark_(int(kDarkRays / double(sheets.sheets().size())) + 1) {}
+    Tester(const FlareSheets& sheets, std::size_t index, const Sensor& sensor)
+        : difference{Grid(sensor), Grid(sensor)}, sheet_(sheets.sheets()[index]),
+          source_(sheets.sources()[std::size_t(sheet_.source)]), luminance_(source_.luminance()), key_(index),
+          dark_(int(kDarkRays / double(sheets.sheets().size())) + 1) {}
 
     void test() {
         for (std::size_t i = 0; i < sheet_.pieces.size(); ++i) test(sheet_.pieces[i], i);
@@ -86,7 +75,6 @@ class Tester {
     const SmallSource& source_;
     double luminance_;
     std::uint64_t key_;
-    double rays_;   // for each unit of light_of
     int dark_;
     MapBatch batch_{};
     CellNumbers u_;
@@ -97,34 +85,24 @@ void Tester::test(const SheetPiece& piece, std::size_t index) {
     const GhostMap::Cell& cell = sheet_.map.cells()[piece.cell];
     if (cell.exact) return;
     const std::uint64_t seed = hash64(key_ + 1, index);
-    const double rate = rays_ * light_of(piece), each = luminance_ * FlareSheets::area(sheet_, piece) / rate;
+    const double rate = kRays * piece.share, each = luminance_ * area(sheet_.map, piece) / rate;
     const auto all = std::uint64_t(std::floor(rate + hash_uniform(seed, 0)));
-    for (std::uint64_t first = 0; first < all;) {
-        const int count = u_.fill(seed, first, all);
-        std::vector<MapRay> rays;
-        for (int i = 0; i < count; ++i) {
-            const SmallSource::Point& p = source_.point(u_.of[CellNumbers::kPoint][i]);
-            const Vec2f at = piece.at({u_.of[CellNumbers::kAcross][i], u_.of[CellNumbers::kDown][i]});
-            const float nm = Wavelengths::sample(u_.of[CellNumbers::kLambda][i]).nm[0];
-            batch_.set(i, at, p.shift, nm, p.moment.iris_opening);
-            rays.push_back({FlareSheets::place(sheet_, piece, at), p.shift, nm});
-        }
+    u_.each(seed, 0, all, [&](std::uint64_t first, int count) {
+        draw_places(batch_, piece, source_, u_, count);
         sheet_.map.landings(cell, batch_, count);
-        const std::vector<MapLanding> exact = sheet_.rays.trace(rays);
+        const std::vector<MapLanding> exact = sheet_.rays.trace(rays_of(sheet_.map, cell, batch_, count));
         for (int i = 0; i < count; ++i) {
             const std::uint64_t half = hash64(seed, first + std::uint64_t(i));
             const double light = each * seen_light(batch_.nm[i]);
             add(half, {batch_.x[i], batch_.y[i]}, -light * batch_.pass[i]);
             add(half, exact[i].px, light * sheet_.rays.passed(exact[i], batch_.opening[i]));
         }
-        first += std::uint64_t(count);
-    }
+    });
 }
 
 /// Where the map says that there is no light.
 void Tester::test_dark() {
-    for (int first = 0; first < dark_;) {
-        const int count = u_.fill(hash64(key_, ~0ull), std::uint64_t(first), std::uint64_t(dark_));
+    u_.each(hash64(key_, ~0ull), 0, std::uint64_t(dark_), [&](std::uint64_t, int count) {
         std::vector<MapRay> rays;
         std::vector<float> opening;
         for (int i = 0; i < count; ++i) {
@@ -136,9 +114,9 @@ void Tester::test_dark() {
         }
         const std::vector<MapLanding> exact = sheet_.rays.trace(rays);
         for (std::size_t i = 0; i < rays.size(); ++i)
-            add(i, exact[i].px, luminance_ * 4 / dark_ * seen_light(rays[i].nm) * sheet_.rays.passed(exact[i], opening[i]));
-        first += count;
-    }
+            add(i, exact[i].px,
+                luminance_ * 4 / dark_ * seen_light(rays[i].nm) * sheet_.rays.passed(exact[i], opening[i]));
+    });
 }
 
 /// RMS over places, relative to the light of each: halves that differ in sign are no error.
@@ -158,10 +136,9 @@ SheetErrors sheet_errors(const FlareSheets& sheets, const FlareTiles& tiles, con
     const std::size_t count = sheets.sheets().size();
     SheetErrors errors{0, std::vector<double>(count)};
     if (!(tiles.mean() > 0)) return errors;
-    const double rays = kRays / all_light(sheets);
     std::vector<std::optional<Difference>> of_sheet(count);
     parallel_tasks(settings.threads, std::int64_t(count), [&](std::int64_t i) {
-        const auto tester = std::make_unique<Tester>(sheets, std::size_t(i), settings.sensor, rays);
+        const auto tester = std::make_unique<Tester>(sheets, std::size_t(i), settings.sensor);
         tester->test();
         errors.of_sheet[i] = error_of(tester->difference, tiles);
         of_sheet[i] = std::move(tester->difference);

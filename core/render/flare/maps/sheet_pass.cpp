@@ -8,8 +8,7 @@
 namespace dg {
 namespace {
 
-// Arrivals for each flare path: from maps; exact rays of what maps have wrong; and of where they have
-// nothing.
+// Arrivals for each flare path: from maps; exact rays of what maps have wrong; and of where they have nothing.
 constexpr double kArrivals = 4, kDifferences = 0.125, kDark = 0.005;
 constexpr double kTask = 1 << 16;   // arrivals
 constexpr int kRowsOfTask = 32;     // of the film
@@ -89,7 +88,7 @@ void SheetPass::draw_piece(Work& work, std::size_t sheet, std::uint32_t p) {
     const auto draw = [&](Kind kind, auto method) {
         const double each = rate(kind, piece);
         const Range r = range(kind, sheet, p, each);
-        if (r.first < r.last) (this->*method)(work, s, piece, r, weight(FlareSheets::area(s, piece), each));
+        if (r.first < r.last) (this->*method)(work, s, piece, r, weight(area(s.map, piece), each));
     };
     if (s.map.cells()[piece.cell].exact) return draw(Kind::exact, &SheetPass::draw_exact);
     draw(Kind::map, &SheetPass::draw_map);
@@ -112,13 +111,14 @@ void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, co
     const SheetLevel levels = this->levels(s);
     MapBatch& b = work.batch;
     const auto& u = work.numbers.of;
-    for (std::uint64_t first = r.first; first < r.last;) {
-        const int count = work.numbers.fill(r.seed, first, r.last);
+    work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
         work.from.clear();
         for (int i = 0; i < count; ++i) {
             const SmallSource::Point& p = small.point(u[CellNumbers::kPoint][i]);
             const float u_lambda = u[CellNumbers::kLambda][i];
-            const float nm = color.gray() ? color.nm() : hidden ? Wavelengths::sample(u_lambda).nm[0] : color.nm(u_lambda);
+            const float nm = color.gray() ? color.nm()
+                             : hidden     ? Wavelengths::sample(u_lambda).nm[0]
+                                          : color.nm(u_lambda);
             const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
             b.set(i, at, p.shift, nm, p.moment.iris_opening);
             work.from.push_back(&p);
@@ -134,7 +134,7 @@ void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, co
                 arrive(work, level, px, color.of(b, i, p.light, times));
                 continue;
             }
-            const MapRay ray{FlareSheets::place(s, piece, {b.u[i], b.v[i]}), p.shift, b.nm[i]};
+            const MapRay ray{s.map.at(cell, {b.u[i], b.v[i]}), p.shift, b.nm[i]};
             const float clear = b.pass[i] * seen(work, s, ray, p, u[CellNumbers::kLambda][i]);
             FilmColor light{};
             colors_.table.add(light, p.light, b.nm[i], times * clear / wavelength_pdf(b.nm[i]));
@@ -142,8 +142,7 @@ void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, co
         }
         work.counters.flare_arrivals += std::uint64_t(count);
         if (work.arrived > kTask) flush(work);
-        first += std::uint64_t(count);
-    }
+    });
 }
 
 /// The same places by the map, each wavelength by itself unless the cell is gray, and by an exact ray.
@@ -155,12 +154,11 @@ void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& pi
     const SheetLevel levels = this->levels(s);
     MapBatch& b = work.batch;
     const auto& u = work.numbers.of;
-    for (std::uint64_t first = r.first; first < r.last;) {
-        const int count = work.numbers.fill(r.seed, first, r.last);
+    work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
         const std::size_t begin = work.exact.size();
         for (int i = 0; i < count; ++i) {
             const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
-            const Exact& e = add_exact(work, s, FlareSheets::place(s, piece, at), i, weight);
+            const Exact& e = add_exact(work, s, s.map.at(cell, at), i, weight);
             b.set(i, at, e.ray.shift, color.gray() ? color.nm() : e.ray.nm, e.from->moment.iris_opening);
         }
         s.map.landings(cell, b, count);
@@ -175,8 +173,7 @@ void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& pi
             if (hidden) pass *= seen(work, s, e.ray, *e.from, e.u_lambda);
             for (std::size_t k = 0; k < e.light.size(); ++k) e.map.light[k] = -pass * e.light[k];
         }
-        first += std::uint64_t(count);
-    }
+    });
 }
 
 /// A ray by one of the numbers of the work.
@@ -190,16 +187,15 @@ SheetPass::Exact& SheetPass::add_exact(Work& work, const Sheet& s, Vec2f at, int
 }
 
 void SheetPass::draw_exact(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
+    const GhostMap::Cell& cell = s.map.cells()[piece.cell];
     const auto& u = work.numbers.of;
-    for (std::uint64_t first = r.first; first < r.last;) {
-        const int count = work.numbers.fill(r.seed, first, r.last);
+    work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
         for (int i = 0; i < count; ++i) {
             const Vec2f at = piece.at({u[CellNumbers::kAcross][i], u[CellNumbers::kDown][i]});
-            add_exact(work, s, FlareSheets::place(s, piece, at), i, weight).level =
+            add_exact(work, s, s.map.at(cell, at), i, weight).level =
                 drawn_level(piece.level, u[CellNumbers::kLevel][i]);
         }
-        first += std::uint64_t(count);
-    }
+    });
 }
 
 /// Rays through places from which, for all that the map knows, no light comes. What they find is added far and wide: it is
@@ -210,14 +206,12 @@ void SheetPass::draw_dark(Work& work, std::size_t sheet) {
     const Range r = range(Kind::dark, sheet, 0, rate);
     const float weight = float(unit_ * 4 / (rate * per_count_));
     const auto& u = work.numbers.of;
-    for (std::uint64_t first = r.first; first < r.last;) {
-        const int count = work.numbers.fill(r.seed, first, r.last);
+    work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
         for (int i = 0; i < count; ++i) {
             const Vec2f at{2 * u[CellNumbers::kAcross][i] - 1, 2 * u[CellNumbers::kDown][i] - 1};
             if (s.is_dark(at)) add_exact(work, s, at, i, weight).level = kDarkLevel;
         }
-        first += std::uint64_t(count);
-    }
+    });
     trace(work, s);
 }
 
@@ -251,12 +245,10 @@ void SheetPass::flush(Work& work) {
 /// Visibility of the point along the ray, at its wavelength.
 float SheetPass::seen(Work& work, const Sheet& s, const MapRay& ray, const SmallSource::Point& from,
                       float u_lambda) const {
-    const auto way = s.rays.to_source(ray, from.moment.time);
-    if (!way) return 0;
-    const Ray shadow = flare_shadow(from.from, to_world(picture_.camera, *way));
-    if (!is_traceable(shadow)) return 0;
+    const auto shadow = s.rays.shadow(ray, from.from, from.moment.time);
+    if (!shadow) return 0;
     ++work.counters.rays;
-    return picture_.scene.visibility_along(shadow, Wavelengths::sample(u_lambda))[0];
+    return picture_.scene.visibility_along(*shadow, Wavelengths::sample(u_lambda))[0];
 }
 
 /// Share of light that the shutter lets pass: over the whole exposure, but of what moves under a shutter that rolls.
@@ -293,9 +285,8 @@ void SheetPass::finish(int threads) {
     parallel_tasks(threads, bands, [&](std::int64_t band) {
         const int first = region.offset_y + int(band) * kRowsOfTask;
         const int last = std::min(first + kRowsOfTask, region.offset_y + region.height);
-        for (const auto& light : coarse_)
-            if (light) light->to_film(picture_.film, density_, first, last);
-   });
+        for (const auto& light : coarse_) light->to_film(picture_.film, density_, first, last);
+    });
 }
 
 RenderCounters SheetPass::counters() const {

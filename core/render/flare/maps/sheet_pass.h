@@ -22,8 +22,8 @@ namespace dg {
 
 class SheetPass final : public Pass {
   public:
-    /// Draws sample indices [begin, end). `per_sample`: flare paths per index, in whose time this draws;
-    /// `per_count`: indices per unit of the density's counts.
+    /// Draws sample indices [begin, end). `per_sample`: flare paths per index, each of which stands for
+    /// some arrivals; `per_count`: indices per unit of the density's counts.
     SheetPass(const Picture& picture, std::array<double, 2> indices, double per_sample, double per_count,
               std::shared_ptr<const FlareGuide> guide);
 

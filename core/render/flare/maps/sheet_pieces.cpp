@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "render/flare/maps/cell_numbers.h"
 #include "render/flare/maps/coarse_light.h"
 #include "render/flare/maps/color_table.h"
 
@@ -13,8 +11,8 @@ namespace {
 
 constexpr int kLooks = 32, kExactLooks = 16;
 constexpr int kDeepest = 4;             // divisions of a cell
-constexpr float kFarOff = 0.1f;           // of looks that land beside the frame, as the others of their piece may not
-constexpr float kExactShare = 0.8f;      // an exact ray takes longer than an arrival
+constexpr float kFarOff = 0.1f;         // of looks that land beside the frame, as the others of their piece may not
+constexpr float kExactShare = 0.8f;     // an exact ray takes longer than an arrival
 constexpr float kSmallest = 12;         // px, of a piece with an edge, in pitches of the edge
 constexpr double kUnseen = 0.05, kSurelyUnseen = 0.005;   // looks that a piece has beside those that saw light
 constexpr double kPixel = 0.2, kBlock = 0.05;   // how much the noise of pixels and that of their blocks count
@@ -30,13 +28,31 @@ float reach_of(float level) { return CoarseLight::reach(std::max(float(SheetLeve
 
 }  // namespace
 
+double area(const GhostMap& map, const SheetPiece& piece) {
+    const double side = double(map.cells()[piece.cell].size) * piece.size;
+    return side * side * map.region().area();
+}
+
+void draw_places(MapBatch& batch, const SheetPiece& piece, const SmallSource& source, const CellNumbers& u, int count) {
+    for (int i = 0; i < count; ++i) {
+        const SmallSource::Point& p = source.point(u.of[CellNumbers::kPoint][i]);
+        const Vec2f at = piece.at({u.of[CellNumbers::kAcross][i], u.of[CellNumbers::kDown][i]});
+        batch.set(i, at, p.shift, Wavelengths::sample(u.of[CellNumbers::kLambda][i]).nm[0], p.moment.iris_opening);
+    }
+}
+
+std::vector<MapRay> rays_of(const GhostMap& map, const GhostMap::Cell& cell, const MapBatch& b, int count) {
+    std::vector<MapRay> rays;
+    for (int i = 0; i < count; ++i)
+        rays.push_back({map.at(cell, {b.u[i], b.v[i]}), {b.shift_x[i], b.shift_y[i]}, b.nm[i]});
+    return rays;
+}
+
 SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSource& source, const Sensor& sensor,
                          std::uint64_t key)
     : rays_(rays), map_(map), source_(source), sensor_(sensor), key_(key),
-      per_iris2_(float(1 / std::pow(rays.ghosts().iris_radius() * rays.ghosts().iris().outer_radius(), 2))),
       smooth_(smoothness()), level_(map, rays.ghosts().iris(), rays.ghosts().iris_radius(), source.filled, smooth_),
-      spread_(map.cells().size(), -1.f),
-      unseen_(map.cells().size()) {
+      spread_(map.cells().size(), -1.f), unseen_(map.cells().size()) {
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) wrong_.push_back(map.cells()[c].exact ? 0.f : wrong(c));
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) divide({c, {0, 0}, 1, 0}, 0, nullptr);
 }
@@ -52,7 +68,8 @@ SheetSmooth SheetPieces::smoothness() const {
         map_.landings(cell, batch, kTests);
         double light = 0;
         for (int i = 0; i < kTests; ++i)
-            if (near({batch.x[i], batch.y[i]}, float(1 << CoarseLight::kMostLevel))) light += seen_light(batch.nm[i]) * batch.pass[i];
+            if (near({batch.x[i], batch.y[i]}, float(1 << CoarseLight::kMostLevel)))
+                light += seen_light(batch.nm[i]) * batch.pass[i];
         cells.push_back({&cell.blur, light * cell.size * cell.size});
     }
     return SheetSmooth::of(std::move(cells));
@@ -67,20 +84,12 @@ bool SheetPieces::near(Vec2f px, float reach) const {
 void SheetPieces::draw(MapBatch& batch, const SheetPiece& piece, int count) const {
     thread_local CellNumbers u;
     u.fill(hash64(key_, piece.cell), 0, std::uint64_t(count));
-    for (int i = 0; i < count; ++i) {
-        const SmallSource::Point& p = source_.point(u.of[CellNumbers::kPoint][i]);
-        const Vec2f at = piece.at({u.of[CellNumbers::kAcross][i], u.of[CellNumbers::kDown][i]});
-        batch.set(i, at, p.shift, Wavelengths::sample(u.of[CellNumbers::kLambda][i]).nm[0], p.moment.iris_opening);
-    }
+    draw_places(batch, piece, source_, u, count);
 }
 
-/// The rays of a batch.
+/// The rays of a batch, traced.
 std::vector<MapLanding> SheetPieces::trace(const MapBatch& batch, const GhostMap::Cell& cell, int count) const {
-    std::vector<MapRay> rays;
-    for (int i = 0; i < count; ++i)
-        rays.push_back({map_.region().at(cell.low + Vec2f{batch.u[i], batch.v[i]} * cell.size),
-                        {batch.shift_x[i], batch.shift_y[i]}, batch.nm[i]});
-    return rays_.trace(rays);
+    return rays_.trace(rays_of(map_, cell, batch, count));
 }
 
 void SheetPieces::divide(const SheetPiece& piece, int depth, const Looked* whole) {
@@ -112,15 +121,11 @@ void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) co
     draw(batch, piece, count);
     map_.landings(map_.cells()[piece.cell], batch, count);
     for (int i = 0; i < count; ++i) {
-        float stop = batch.beyond[i];
-        for (int k = 0; k < map_.crossings(); ++k) {
-            const float x = batch.iris_x[k][i], y = batch.iris_y[k][i];
-            stop = std::max(stop, (x * x + y * y) * per_iris2_ - 1);
-        }
         const float level = level_.of(map_.cells()[piece.cell], batch, i);
         to.level += level / float(count);
         const float seen = seen_light(batch.nm[i]);
-        see(to, {batch.x[i], batch.y[i]}, seen * batch.glass[i], seen * batch.pass[i], stop, level);
+        see(to, {batch.x[i], batch.y[i]}, seen * batch.glass[i], seen * batch.pass[i],
+            rays_.stopped(batch.landing(i, map_.crossings())), level);
     }
 }
 
@@ -131,10 +136,8 @@ void SheetPieces::look_by_rays(const SheetPiece& piece, int count, Looked& to) c
     const float level = to.level = level_.of_rays();
     for (int i = 0; i < count; ++i) {
         const MapLanding& l = landings[i];
-        float stop = l.beyond;
-        for (int k = 0; k < map_.crossings(); ++k) stop = std::max(stop, dot(l.iris[k], l.iris[k]) * per_iris2_ - 1);
         const float seen = seen_light(batch.nm[i]);
-        see(to, l.px, l.sound ? seen * l.pass : 0, seen * rays_.passed(l, batch.opening[i]), stop, level);
+        see(to, l.px, l.sound ? seen * l.pass : 0, seen * rays_.passed(l, batch.opening[i]), rays_.stopped(l), level);
     }
 }
 
@@ -168,8 +171,7 @@ bool SheetPieces::beside(const Looked& l) const {
 /// `whole`: what was seen of what it is a part of. Where no light comes through the glass in all of a cell, the cell is
 /// no better known than what has none.
 void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked* whole) {
-    const bool sure = looked.lit == 0 &&
-                      looked.least_stop > kSure * (looked.most_stop - looked.least_stop);
+    const bool sure = looked.lit == 0 && looked.least_stop > kSure * (looked.most_stop - looked.least_stop);
     if (looked.seen.empty() && !whole) unseen_[piece.cell] = true;
     if (looked.seen.empty() && whole) looked = in_the_dark(*whole);
     if (beside(looked)) return;
@@ -198,7 +200,8 @@ float SheetPieces::wrong(std::uint32_t c) const {
         const double seen = seen_light(batch.nm[i]);
         const double a = seen * batch.pass[i], b = seen * rays_.passed(exact[i], batch.opening[i]);
         const double moved = length(exact[i].px - Vec2f{batch.x[i], batch.y[i]}) * std::exp2(-level_.of(cell, batch, i));
-        squares += std::pow(a - b, 2) + a * b * std::pow(std::min(1.0, kMoved * moved), 2), light += std::max(a * a, b * b);
+        squares += std::pow(a - b, 2) + a * b * std::pow(std::min(1.0, kMoved * moved), 2);
+        light += std::max(a * a, b * b);
     }
     return float(std::max(kLeastWrong, std::sqrt((squares + kUnseen * light / kTests * 0.01) / std::max(light, 1e-30))));
 }
@@ -217,15 +220,10 @@ float SheetPieces::spread(std::uint32_t cell) {
     return spread_[cell];
 }
 
-double SheetPieces::area(const SheetPiece& piece) const {
-    const double side = double(map_.cells()[piece.cell].size) * piece.size;
-    return side * side * map_.region().area();
-}
-
 void SheetPieces::add_to(FlareTiles& tiles, double times) const {
     std::size_t k = 0;
     for (std::size_t i = 0; i < pieces_.size(); ++i)
-        for (const double each = times * area(pieces_[i]) / looks_[i]; k < end_[i]; ++k)
+        for (const double each = times * area(map_, pieces_[i]) / looks_[i]; k < end_[i]; ++k)
             tiles.add(seen_[k].px, each * seen_[k].light);
 }
 
@@ -241,8 +239,11 @@ std::vector<SheetPiece> SheetPieces::weighed(const FlareTiles& tiles, double tim
         const double rms = std::sqrt((squares + doubt_[i].unseen / looks_[i] * open) / looks_[i]);
         if (!(rms > 0)) continue;
         pieces.push_back(pieces_[i]);
-        const double each = times * area(pieces_[i]) * std::sqrt(kPixel * std::exp2(-2 * double(pieces_[i].level)) + kBlock);
-        pieces.back().share = each * rms * (map_.cells()[pieces_[i].cell].exact ? kExactShare : 1), pieces.back().doubt = each * doubt_[i].wrong * std::sqrt(open / looks_[i]);
+        SheetPiece& piece = pieces.back();
+        const double pitch2 = std::exp2(2 * double(piece.level));
+        const double each = times * area(map_, piece) * std::sqrt(kPixel / pitch2 + kBlock);
+        piece.share = each * rms * (map_.cells()[piece.cell].exact ? kExactShare : 1);
+        piece.doubt = each * doubt_[i].wrong * std::sqrt(open / looks_[i]);
     }
     return pieces;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/flare/flare_tiles.h"
+#include "render/flare/maps/cell_numbers.h"
 #include "render/flare/maps/ghost_map.h"
 #include "render/flare/maps/sheet_level.h"
 #include "render/flare/maps/small_source.h"
@@ -22,6 +23,14 @@ struct SheetPiece {
 
     Vec2f at(Vec2f u) const { return low + u * size; }   // in the cell
 };
+
+/// A unit of the front's square for each unit of a piece.
+double area(const GhostMap& map, const SheetPiece& piece);
+/// Sets a batch to places of a piece, by numbers, and points of the source.
+void draw_places(MapBatch& batch, const SheetPiece& piece, const SmallSource& source, const CellNumbers& numbers,
+                 int count);
+/// The rays of a batch in a cell.
+std::vector<MapRay> rays_of(const GhostMap& map, const GhostMap::Cell& cell, const MapBatch& batch, int count);
 
 /// Pieces of one sheet, with what looks at them saw.
 class SheetPieces {
@@ -67,14 +76,12 @@ class SheetPieces {
     void keep(SheetPiece piece, int count, Looked looked, const Looked* whole);
     float spread(std::uint32_t cell);
     float wrong(std::uint32_t cell) const;
-    double area(const SheetPiece& piece) const;
 
     const MapRays& rays_;
     const GhostMap& map_;
     const SmallSource& source_;
     const Sensor& sensor_;
     std::uint64_t key_;
-    float per_iris2_;
     SheetSmooth smooth_;
     SheetLevel level_;
     std::vector<float> spread_;          // by cell, px: how far apart colours land; < 0: not known yet
