@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kShare = 0.15;         // of all light, that a source must bring: maps take seconds
 constexpr int kShadows = 256, kSequence = -7;
-constexpr double kMostError = 0.01, kMostOfOne = 0.004;
+constexpr double kMostError = 0.01;     // of all maps
+constexpr double kMostOfOne = 0.004, kLeastOfOne = 0.0004;   // of one; if all have more than they may, half, and half
 
 bool serves(const Camera& camera, const RenderSettings& settings) {
     return camera.lens_motion.times.empty() && camera.setting.values.empty() &&
@@ -87,13 +88,15 @@ void FlareSheets::divide(const RenderSettings& settings) {
     tiles.finish();
     mean_ = tiles.mean() / tiles.area();
     take(pieces, tiles);
-    const SheetErrors errors = sheet_errors(*this, tiles, settings);
+    SheetErrors errors = sheet_errors(*this, tiles, settings);
+    for (double most = kMostOfOne; most > kLeastOfOne; most /= 2) {
+        const int before = by_rays_;
+        for (std::size_t i = 0; i < sheets_.size(); ++i)
+            if (errors.of_sheet[i] > most && sheets_[i].map.give_up()) cut(i), ++by_rays_;
+        if (by_rays_ > before) take(pieces, tiles), errors = sheet_errors(*this, tiles, settings);
+        if (errors.all <= kMostError) break;
+    }
     error_ = errors.all;
-    for (std::size_t i = 0; i < sheets_.size(); ++i)
-        if (errors.of_sheet[i] > kMostOfOne) sheets_[i].map.give_up(), cut(i), ++by_rays_;
-    if (by_rays_ == 0) return;
-    take(pieces, tiles);
-    error_ = sheet_errors(*this, tiles, settings).all;
 }
 
 /// Those that may bring light, and how many of all arrivals each gets.

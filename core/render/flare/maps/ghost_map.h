@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "render/flare/flare_cells.h"
@@ -63,9 +64,11 @@ class GhostMap {
         }
     };
     const std::vector<Cell>& cells() const { return cells_; }
-    /// Makes all of them exact.
-    void give_up() {
-        for (Cell& cell : cells_) cell.exact = true;
+    /// Makes all of them exact; false: they were.
+    bool give_up() {
+        bool changed = false;
+        for (Cell& cell : cells_) changed |= !std::exchange(cell.exact, true);
+        return changed;
     }
     /// The part of the front, out of the square of all of it, that holds the cells.
     const FlareRectangle& region() const { return region_; }

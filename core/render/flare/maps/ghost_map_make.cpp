@@ -25,8 +25,9 @@ void GhostMapMaker::make() {
     if (!zoom()) return;
     const float first = 1.f / GhostMap::kFirstAcross;
     constexpr int across = GhostMap::kFirstAcross;
+    find_sound();
     for (int i = 0; i < across * across; ++i)
-        drafts.push_back({{float(i % across) * first, float(i / across) * first}, first, 0});
+        propose({{float(i % across) * first, float(i / across) * first}, first, 0}, drafts);
     for (; !drafts.empty(); drafts.swap(next)) next.clear(), refine(drafts, next);
     sort();
 }
@@ -89,6 +90,33 @@ bool GhostMapMaker::zoom() {
     return true;
 }
 
+/// Squares of the size of cells of level kLastLost with a sound ray at a corner, or beside such a square.
+void GhostMapMaker::find_sound() {
+    constexpr int across = GhostMap::kFirstAcross << kLastLost;
+    Rays rays;
+    for (int i = 0; i < (across + 1) * (across + 1); ++i) {
+        const Vec2f u{float(i % (across + 1)) / across, float(i / (across + 1)) / across};
+        rays.push_back({map_.region_.at(u), {0, 0}, lambda_node(kMiddle)});
+    }
+    const Landings seen = trace(rays);
+    near_sound_.assign(std::size_t(across) * across, false);
+    for (int i = 0; i < (across + 1) * (across + 1); ++i) {
+        if (!seen[i].sound) continue;
+        const int x = i % (across + 1), y = i / (across + 1);
+        for (int v = std::max(y - 2, 0); v < std::min(y + 2, across); ++v)
+            for (int u = std::max(x - 2, 0); u < std::min(x + 2, across); ++u) near_sound_[v * across + u] = true;
+    }
+}
+
+/// Adds a draft, unless all rays are lost in it and around it.
+void GhostMapMaker::propose(const Draft& d, std::vector<Draft>& to) const {
+    constexpr int across = GhostMap::kFirstAcross << kLastLost;
+    const int x = int(d.low.x * across), y = int(d.low.y * across), size = std::max(int(d.size * across), 1);
+    for (int v = y; v < y + size; ++v)
+        for (int u = x; u < x + size; ++u)
+            if (near_sound_[v * across + u]) return to.push_back(d);
+}
+
 void GhostMapMaker::look(const Draft& d, Rays& rays) const {
     const float nm = lambda_node(kMiddle);
     for (int n = 0; n < GhostMap::kNodes; ++n) rays.push_back({at(d, node_at(n)), {0, 0}, nm});
@@ -100,7 +128,7 @@ void GhostMapMaker::divide(const Draft& d, std::vector<Draft>& next) {
     if (d.level + 1 == GhostMap::kLevels) return give_up(d);
     const float half = 0.5f * d.size;
     for (int k = 0; k < 4; ++k)
-        next.push_back({{d.low.x + float(k % 2) * half, d.low.y + float(k / 2) * half}, half, d.level + 1});
+        propose({{d.low.x + float(k % 2) * half, d.low.y + float(k / 2) * half}, half, d.level + 1}, next);
 }
 
 void GhostMapMaker::sort() {

@@ -51,6 +51,8 @@ class GhostMapMaker {
     Vec2f at(const Draft& d, Vec2f u) const { return map_.region_.at(d.low + u * d.size); }
     // ghost_map_make.cpp
     bool zoom();
+    void find_sound();
+    void propose(const Draft& d, std::vector<Draft>& to) const;
     void look(const Draft& d, Rays& rays) const;
     void refine(const std::vector<Draft>& drafts, std::vector<Draft>& next);
     void give_up(const Draft& d) { map_.cells_.push_back({d.low, d.size, 0, true, {}}); }
@@ -81,6 +83,7 @@ class GhostMapMaker {
     float reach_;
     GhostMap::Accuracy accuracy_;
     MapBatch batch_{};
+    std::vector<bool> near_sound_;   // by square
 };
 
 }  // namespace dg

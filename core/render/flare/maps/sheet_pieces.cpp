@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kLooks = 32, kExactLooks = 16;
 constexpr int kDeepest = 4;             // divisions of a cell
+constexpr float kNoSmaller = 0.75f;     // where a part of a piece lands, of where the piece lands
 constexpr float kFarOff = 0.1f;         // of looks that land beside the frame, as the others of their piece may not
 constexpr float kExactShare = 0.8f;     // an exact ray takes longer than an arrival
 constexpr float kSmallest = 12;         // px, of a piece with an edge, in pitches of the edge
@@ -97,17 +98,20 @@ void SheetPieces::divide(const SheetPiece& piece, int depth, const Looked* whole
     const int count = cell.exact ? kExactLooks : kLooks;
     const Looked looked = look(piece, count);
     const bool even = looked.lit == 0 || looked.lit == count;
-    if (even || depth == kDeepest || is_small(piece, looked)) return keep(piece, count, looked, whole);
+    const bool spread = whole && extent(looked) > kNoSmaller * extent(*whole);   // by source and colours, not by place
+    if (even || spread || depth == kDeepest || is_small(piece, looked)) return keep(piece, count, looked, whole);
     for (int k = 0; k < 4; ++k) {
         const float half = 0.5f * piece.size;
         divide({piece.cell, piece.low + Vec2f{float(k % 2), float(k / 2)} * half, half, 0}, depth + 1, &looked);
     }
 }
 
+/// Longer side of the box where light lands, px.
+float SheetPieces::extent(const Looked& l) { return std::max(l.high.x - l.low.x, l.high.y - l.low.y); }
+
 bool SheetPieces::is_small(const SheetPiece& piece, const Looked& looked) const {
     const float edge = level_.pitch(map_.cells()[piece.cell].blur);
-    const float extent = std::max(looked.high.x - looked.low.x, looked.high.y - looked.low.y);
-    return extent < kSmallest * std::max(1.f, edge);
+    return extent(looked) < kSmallest * std::max(1.f, edge);
 }
 
 SheetPieces::Looked SheetPieces::look(const SheetPiece& piece, int count) const {

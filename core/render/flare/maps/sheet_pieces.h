@@ -68,6 +68,7 @@ class SheetPieces {
     bool beside(const Looked& looked) const;
     void divide(const SheetPiece& piece, int depth, const Looked* whole);
     static Looked in_the_dark(const Looked& whole);
+    static float extent(const Looked& looked);
     bool is_small(const SheetPiece& piece, const Looked& looked) const;
     Looked look(const SheetPiece& piece, int count) const;
     void look_at_map(const SheetPiece& piece, int count, Looked& to) const;
