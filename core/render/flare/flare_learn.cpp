@@ -16,7 +16,8 @@ constexpr float kFewHits = 8;         // a pair with as few is drawn blindly
 constexpr double kPooled = 0.1;       // share of a source's paths that goes to ghosts as those of all sources do
 // Rays of looks, all pairs together: where each source lights the frame at all; by which ghosts and through
 // about which part; and all that is drawn by. Of the last two so many for each pixel, within limits.
-constexpr int kScouts = 4096;
+constexpr double kScouts = 1 << 16;
+constexpr int kFewestScouts = 8, kMostScouts = 256;   // of one pair
 struct Rays {
     double least, most, per_pixel;
 };
@@ -28,7 +29,7 @@ constexpr int kLook = 256;            // where cells should lie
 constexpr std::size_t kMostPairs = 4096;    // that are looked at for the last time
 constexpr int kLeastAcross = 8, kMostAcross = 64;   // cells
 constexpr int kPerCell = 2, kRounds = 4;   // rays of a cell; of the last look
-constexpr int kGrowths = 6;   // of what is looked at
+constexpr int kGrowths = 20;   // of what is looked at
 
 class Learner {
   public:
@@ -46,6 +47,7 @@ class Learner {
         return source < mapped_.size() && mapped_[source] && int(pair) % ghosts() < aim_.pairs();
     }
     double count(const Rays& rays) const;
+    double share_of_pair(int source) const;
     FlareRectangle scout(int source) const;
     std::vector<FlareFound> look_wide();
     FlareTiles tiles_of(const std::vector<FlareFound>& found) const;
@@ -63,6 +65,7 @@ class Learner {
     int threads_;
     const std::vector<bool>& mapped_;
     std::vector<double> strength_, visible_;   // of sources
+    double all_strength_ = 0;
     std::vector<FlareRectangle> front_;        // through which they light the frame
 };
 
@@ -99,9 +102,14 @@ double Learner::count(const Rays& rays) const {
     return std::clamp(rays.per_pixel * aim_.sensor().width * aim_.sensor().height, rays.least, rays.most);
 }
 
+/// Of all rays: by the source's light, and all its ghosts alike.
+double Learner::share_of_pair(int source) const {
+    return all_strength_ > 0 ? strength_[source] / all_strength_ / ghosts() : 0;
+}
+
 /// Where light of a source comes in by any ghost.
 FlareRectangle Learner::scout(int source) const {
-    const int count = std::max(8, kScouts / ghosts());
+    const int count = std::clamp(int(kScouts * share_of_pair(source)), kFewestScouts, kMostScouts);
     FlareFound all{{source, 0, 0}};
     for (int g = 0; g < ghosts(); ++g) all.add(probe_flare(aim_, {source, g, count}));
     return all.hits.empty() ? FlareRectangle{} : all.narrowed();
@@ -122,13 +130,16 @@ FlareFound Learner::search(FlareFound found) const {
 std::vector<FlareFound> Learner::look_wide() {
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
         visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
+    });
+    all_strength_ = std::accumulate(strength_.begin(), strength_.end(), 0.0);
+    parallel_tasks(threads_, sources(), [&](std::int64_t s) {
         if (!leaves(std::size_t(s) * ghosts() + ghosts() - 1)) front_[s] = scout(int(s));
     });
-    const double all = std::accumulate(strength_.begin(), strength_.end(), 0.0), total = count(kWide);
+    const double total = count(kWide);
     std::vector<FlareFound> found(strength_.size() * std::size_t(ghosts()));
     parallel_tasks(threads_, std::int64_t(found.size()), [&](std::int64_t i) {
         if (leaves(std::size_t(i))) return;
-        const int source = int(i / ghosts()), own = int(total * strength_[source] / all / ghosts());
+        const int source = int(i / ghosts()), own = int(total * share_of_pair(source));
         const int count = std::clamp(own / 8 * 8, kFewest, kMost);
         found[i] = probe_flare(aim_, {source, int(i % ghosts()), count, front_[source]});
         if (count >= kSearched) found[i] = search(std::move(found[i]));

@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kGrid = 25, kZooms = 4;   // rays across in search of the region; times that it is closed in on
 // Where rays are lost cells of this level are not divided: all of them then take exact rays, or none.
-constexpr int kLastLost = 4;
+constexpr int kLastLost = 5;
+constexpr int kSoundLevel = 4;   // of cells as large as the squares in which sound rays are looked for
 
 Vec2f node_at(int n) { return {float(n % GhostMap::kSide) / 3, float(n / GhostMap::kSide) / 3}; }
 
@@ -90,9 +91,9 @@ bool GhostMapMaker::zoom() {
     return true;
 }
 
-/// Squares of the size of cells of level kLastLost with a sound ray at a corner, or beside such a square.
+/// Squares with a sound ray at a corner, and those beside them.
 void GhostMapMaker::find_sound() {
-    constexpr int across = GhostMap::kFirstAcross << kLastLost;
+    constexpr int across = GhostMap::kFirstAcross << kSoundLevel;
     Rays rays;
     for (int i = 0; i < (across + 1) * (across + 1); ++i) {
         const Vec2f u{float(i % (across + 1)) / across, float(i / (across + 1)) / across};
@@ -110,7 +111,7 @@ void GhostMapMaker::find_sound() {
 
 /// Adds a draft, unless all rays are lost in it and around it.
 void GhostMapMaker::propose(const Draft& d, std::vector<Draft>& to) const {
-    constexpr int across = GhostMap::kFirstAcross << kLastLost;
+    constexpr int across = GhostMap::kFirstAcross << kSoundLevel;
     const int x = int(d.low.x * across), y = int(d.low.y * across), size = std::max(int(d.size * across), 1);
     for (int v = y; v < y + size; ++v)
         for (int u = x; u < x + size; ++u)

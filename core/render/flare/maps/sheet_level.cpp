@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSharpest = 0.1;              // share of the light
 constexpr float kPitches = 5, kEvenPitches = 8;   // across the blur; in what is even
-constexpr float kBend = 0.02f, kSlope = 0.6f;     // of the variance over the distance from an edge
+constexpr float kBend = 0.02f, kSlope = 0.3f;     // of the variance over the distance from an edge
 constexpr float kVariance = 5 / 12.f;          // of a pitch of 1
 constexpr float kFinest = kVariance, kCoarsest = kVariance * (1 << 2 * CoarseLight::kMostLevel);
 

@@ -24,7 +24,7 @@ struct SheetSmooth {
 class SheetLevel {
   public:
     /// Level at least of what exact rays take off a map: it is little, and has no fine detail of its own.
-    static constexpr int kDifference = 3;
+    static constexpr int kDifference = 4;
 
     /// The map and the iris outlive this. `filled`: of the source's circle.
     SheetLevel(const GhostMap& map, const Iris& iris, double iris_radius, float filled, const SheetSmooth& smooth)
