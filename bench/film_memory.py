@@ -39,6 +39,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "picture": ("--light-paths", "off"),
     "light paths": ("--light-paths", "1000,1000"),
     "exact lens, flare": (*LENS, "--light-paths", "1000,1000", "--flare", "2000"),
+    "flare and scatter": (*LENS, "--light-paths", "1000,1000", "--flare", "2000", "--scatter", "9"),
     "channels of a sensor": ("--sensor", "sony-a7r-ii"),
     "--aov all": ("--aov", "all"),
     "--aov all, ground truth": ("--aov", "all", "--gt-time", "mid"),

@@ -173,6 +173,9 @@ void def_scatter(Settings& c) {
                       s.scatter.per_sample = paths(n, "scatter", "0 .. 1e9 paths per sample index");
                   },
                   "Light that the lens's parts scatter: paths per sample index.")
+        .def_prop_rw("scatter_nodes", [](const RenderSettings& s) { return s.scatter.nodes; },
+                     [](RenderSettings& s, bool nodes) { s.scatter.nodes = nodes; },
+                     "False: each path brings light to the pixels of its own place alone; the reference.")
         .def("prepare_scatter",
              [](RenderSettings& s, const Scene& scene, const Camera& camera) {
                  s.scatter.guide.reset();

@@ -396,8 +396,8 @@ ScatterLens ExactLens::scatter(const SensorStack& stack, const LensScatter& part
     return {s.lens, s.film_plane(), s.settings.iris, s.iris_radius, stack, s.settings.half_diagonal_mm, parts};
 }
 
-Reprojection ExactLens::reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
-                                  std::uint64_t seed) const {
+ExactLens::Scattered ExactLens::reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
+                                          std::uint64_t seed) const {
     const Affine3d back = inverse(state_->turn);
     const Vec3d pupil{0, 0, state_->order.entrance_pupil_z}, offset{0, 0, advance_};
     // From the scene on: the camera's rays go the other way.
@@ -410,7 +410,7 @@ Reprojection ExactLens::reproject(const CameraRay& ray, const LensIndices& n, co
         float(light->weight) * dirt_transmission({float(start.x), float(start.y)},
                                                  {float(light->iris.x), float(light->iris.y)});
     out.response = out.transmittance * float(1 / unit_) * kPerMm2;
-    return out;
+    return {out, float(light->blur2)};
 }
 
 ExactLens::Ball ExactLens::front_ball() const {

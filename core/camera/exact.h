@@ -89,8 +89,12 @@ class ExactLens {
     ScatterLens scatter(const SensorStack& stack, const LensScatter& parts) const;
     /// One walk of a scene ray through them, drawn by `seed`: where it comes to the film, and with how much
     /// light. No camera ray is drawn like that: aim weight and etendue are 0.
-    Reprojection reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
-                           std::uint64_t seed) const;
+    struct Scattered {
+        Reprojection landing{};
+        float blur2_mm2 = 0;   // ScatteredLight::blur2
+    };
+    Scattered reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
+                        std::uint64_t seed) const;
 
     /// A ball (camera frame, m) that holds the clear front of the first surface.
     struct Ball {

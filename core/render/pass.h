@@ -32,7 +32,8 @@ struct Picture {
 /// Tiles or paths [0], ..., [1] - 1.
 using IndexRange = std::array<std::uint64_t, 2>;
 
-/// Draws what has indices [first, last), with the buffers of one thread; kBlock of them are one task.
+/// Draws what has indices [first, last), with the buffers of one thread; kBlock of them are one task. finish(threads), if
+/// there is one, comes after the last.
 template <typename D>
 concept Draws = requires(const D& drawer, typename D::Workspace& work, std::uint64_t index) {
     { D::kBlock } -> std::convertible_to<std::uint64_t>;
@@ -66,7 +67,9 @@ class PassOf final : public Pass {
         const std::uint64_t first = range_[0] + std::uint64_t(block) * D::kBlock;
         drawer_.draw(workspaces_.local(), first, std::min(first + D::kBlock, range_[1]));
     }
-    void finish(int) override {}
+    void finish(int threads) override {
+        if constexpr (requires { drawer_.finish(threads); }) drawer_.finish(threads);
+    }
     RenderCounters counters() const override {
         RenderCounters sum;
         for (const typename D::Workspace& work : workspaces_) sum += work.counters;

@@ -35,6 +35,7 @@ struct FlarePlan {
 /// Light that the lens's own parts scatter, drawn from the emitters (scatter_pass.h).
 struct ScatterPlan {
     double per_sample = 0;   // paths per sample index, for the whole frame; 0: none
+    bool nodes = true;       // smooth light comes to nodes some pixels apart (scatter_nodes.h); false: the reference
     std::shared_ptr<const ScatterGuide> guide;   // of this picture; null: each call makes its own
 };
 

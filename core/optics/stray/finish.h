@@ -30,6 +30,7 @@ class FinishScatter {
     double value(const Vec3d& in, const Vec3d& out) const;
     /// Share of light that is sent back.
     double albedo(double cosine) const;
+    const HarveyShack& lobe() const { return finish_.lobe; }
     bool is_black() const { return finish_.diffuse == 0 && finish_.gloss == 0; }
 
     /// `u_lobe` chooses the part.

@@ -41,6 +41,7 @@ struct ScatteredLight {
     Vec2d iris{};        // mm, where it last crossed the stop
     double weight = 0;   // of it, of the light that entered
     int events = 0;      // how often it was scattered; 0: the picture's or a ghost's (ScatterDraw::all)
+    double blur2 = 0;    // mm2: how far around there such light is spread evenly, squared (scatter_blur.h)
 };
 
 /// Where light ends. `lost`: between surfaces of a prescription that run into each other. `chance`: what a walk

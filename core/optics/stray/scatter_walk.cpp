@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "math/hash.h"
+#include "optics/stray/scatter_blur.h"
 #include "optics/stray/scatter_lens.h"
 
 namespace dg {
@@ -15,6 +16,7 @@ constexpr double kTurned = 0.15;     // least chance of a mirror to turn scatter
 /// The ends of a narrow lobe hold little of its light, and reach all of the frame.
 constexpr HarveyShack kWide{0.25, -3};
 constexpr double kWideShare = 0.5;
+constexpr double kEntry = 0.25;      // of the iris's radius: how evenly light fills the front, whatever edges it meets
 constexpr double kKept = 4;          // walks that metal dims to less than 1 / kKept are ended by chance
 
 /// Numbers of one walk by event, so that wavelengths whose ways part for a moment stay alike.
@@ -51,7 +53,8 @@ class ScatterLens::Walk {
     Walk(const ScatterLens& lens, const LensIndices& n, double iris_opening, std::uint64_t seed,
          const ScatterDraw& draw, LightEnds* ends)
         : lens_(lens), tracer_(lens.ghosts_.tracer()), n_(n), opening_(iris_opening), draw_(draw), u_(seed),
-          ends_(ends) {}
+          ends_(ends),
+          blur_(std::pow(kEntry * lens.ghosts_.iris_radius() * iris_opening, 2)) {}
 
     std::optional<ScatteredLight> follow(const LensRay& ray, LensRay* left);
 
@@ -72,6 +75,7 @@ class ScatterLens::Walk {
     bool cross(const Meeting& at);
     bool pass_iris(const Meeting& at);
     void interface(const Meeting& at);
+    void bend(const Meeting& at, double n, double n_on);
     double kernel(Vec2d from, double n_from, Vec2d to, double n_to, const Meeting& at) const;
     bool off_metal(const FinishScatter& finish, const LensHit<double>& hit);
     Vec3d aimed(const std::vector<Target>& targets, double choice, Vec2d u) const;
@@ -102,6 +106,7 @@ class ScatterLens::Walk {
     const ScatterDraw& draw_;
     WalkRandom u_;
     LightEnds* ends_;
+    ScatterBlur blur_;
     LensRay ray_{};
     int gap_ = 0, scattered_ = 0, off_metal_ = 0;
     double weight_ = 1;
@@ -134,7 +139,7 @@ std::optional<ScatteredLight> ScatterLens::Walk::follow(const LensRay& ray, Lens
             const double weight = weight_;
             end(LightEnd::film);
             if (!draw_.toward_film || !counts()) return std::nullopt;
-            return ScatteredLight{film_, iris_, weight, scattered_};
+            return ScatteredLight{film_, iris_, weight, scattered_, blur_.squared()};
         }
         if (!(at.kind == Kind::wall ? off_metal(lens_.barrel_, at.hit) : cross(at))) return std::nullopt;
     }
@@ -205,6 +210,7 @@ void ScatterLens::Walk::try_film(Meeting& nearest) const {
 
 void ScatterLens::Walk::travel(const Meeting& at) {
     ray_.origin = at.hit.point;
+    blur_.travel(at.distance / n_.index[gap_]);
     if (n_.absorption.empty()) return;
     const double passed = std::exp(-n_.absorption[gap_] * at.distance);
     deposit(LightEnd::glass, weight_ * (1 - passed));
@@ -261,6 +267,7 @@ void ScatterLens::Walk::interface(const Meeting& at) {
         const double kept = goes_on ? (1 - natural) / (1 - mirror) : natural / mirror;
         reweigh(weight_ * kept * (1 - rough) / (1 - chance));
         ray_.direction = goes_on ? *bent : reflect(d, at.hit, at.sign);
+        bend(at, n1, goes_on ? n2 : -n1);
         gap_ += goes_on ? at.sign : 0;
         return;
     }
@@ -277,11 +284,19 @@ void ScatterLens::Walk::interface(const Meeting& at) {
         ((1 - wide) * lobe.pdf(middle, n, b) + (wide > 0 ? wide * kWide.pdf(middle, n, b) : 0)) * chance * part;
     const double value = draw_.toward_film ? kernel(middle, n1, b, n, at) : kernel(b, n, middle, n1, at);
     ++scattered_;
+    bend(at, n1, goes_on ? n2 : -n1);
+    const Vec2d off = b - middle;
+    blur_.scatter(lobe.knee * lobe.knee + dot(off, off));
     reweigh(pdf > 0 ? weight_ * value / pdf : 0);
     const double across = std::sqrt(std::max(0.0, 1 - dot(b, b) / (n * n)));
     const double side = goes_on ? at.sign : -at.sign;
     ray_.direction = normalize(frame.out_of({b.x / n, b.y / n, side * across}));
     gap_ += goes_on ? at.sign : 0;
+}
+
+/// The paraxial bundle at a surface; n_on < 0: it is mirrored.
+void ScatterLens::Walk::bend(const Meeting& at, double n, double n_on) {
+    blur_.bend((n_on - n) * at.sign * vertex_curvature_y(tracer_.prescription().surfaces[at.surface]));
 }
 
 /// Scattered light per unit of direction cosines, of light from one direction of a medium to one of a medium.
@@ -324,6 +339,8 @@ bool ScatterLens::Walk::off_metal(const FinishScatter& finish, const LensHit<dou
     const double pdf = own * finish.pdf(in, way) + aim * aimed_pdf(targets, frame.out_of(way));
     const double kept = pdf > 0 ? finish.value(in, way) * way.z / pdf : 0;
     ++scattered_;
+    const Vec2d off{way.x + in.x, way.y + in.y};   // from the mirror image
+    blur_.scatter(finish.lobe().knee * finish.lobe().knee + dot(off, off));
     reweigh(weight_ * kept, absorbed);
     const double survives = draw_.dice && off_metal_++ > 0 ? std::min(1.0, kKept * kept) : 1;
     if (survives < 1) reweigh(u_.next() < survives ? weight_ / survives : 0);

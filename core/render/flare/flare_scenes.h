@@ -135,6 +135,29 @@ struct Backward {
     }
 };
 
+/// A frame that is large enough for a shape of what the lens does to light.
+inline constexpr int kWide = 160, kHigh = 120, kSide = 20;
+
+inline RenderSettings wide_settings(std::uint64_t seed, double paths, bool maps = false) {
+    RenderSettings s = settings(seed, paths);
+    s.sensor = {kWide, kHigh, kSensorWidth, kSensorHeight, {0, 0}};
+    s.filter = Filter();
+    s.flare.maps = maps;
+    return s;
+}
+
+/// Means of blocks, of X, Y and Z.
+inline std::vector<double> blocks_of(const std::vector<float>& xyz) {
+    constexpr int kAcross = kWide / kSide;
+    std::vector<double> blocks(3 * std::size_t(kAcross) * (kHigh / kSide));
+    for (int y = 0; y < kHigh; ++y)
+        for (int x = 0; x < kWide; ++x)
+            for (int c = 0; c < 3; ++c)
+                blocks[3 * std::size_t(y / kSide * kAcross + x / kSide) + c] +=
+                    xyz[3 * (std::size_t(y) * kWide + x) + c] / (kSide * kSide);
+    return blocks;
+}
+
 /// The sun alone, within the frame.
 inline std::shared_ptr<const Scene> sunny() {
     SceneDescription d;
@@ -149,6 +172,21 @@ void check_same_bits(const FilmLayout& layout, const Drawn& drawn) {
     drawn(1, 0, 5, one), drawn(4, 0, 5, four), drawn(2, 0, 2, first), drawn(3, 2, 5, second);
     first.merge(second);
     for (const Film* other : {&four, &first}) CHECK(std::ranges::equal(one.state("flare"), other->state("flare")));
+}
+
+/// The same of a part of the frame of wide_settings().
+template <typename Drawn>
+void check_crop(const Drawn& drawn) {
+    Film one(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+    drawn(1, 0, 5, one);
+    const FilmLayout part{.width = 40, .height = 30, .offset_x = 60, .offset_y = 50, .flare = true};
+    Film crop(part);
+    drawn(2, 0, 5, crop);
+    const std::vector<float> all = one.flare_xyz(), own = crop.flare_xyz();
+    for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x)
+            CHECK(own[3 * (std::size_t(y) * part.width + x) + 1] ==
+                  all[3 * (std::size_t(y + part.offset_y) * kWide + x + part.offset_x) + 1]);
 }
 
 inline std::string show(const Blocks& b) {

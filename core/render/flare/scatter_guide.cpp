@@ -68,8 +68,10 @@ ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64
     const Vec2f shift = setting_at(camera_, time).film_shift_mm;   // the film lay elsewhere then
     Landings landings;
     for (int k = 0; k < kWavelengths; ++k) {
-        landings[k] = state.lens.reproject(path.lens, state.parts.at(path.wavelengths.nm[k]), state.parts, seed);
-        landings[k].film_mm = landings[k].film_mm - shift;
+        const ExactLens::Scattered light =
+            state.lens.reproject(path.lens, state.parts.at(path.wavelengths.nm[k]), state.parts, seed);
+        landings.at[k] = light.landing, landings.blur2_mm2[k] = light.blur2_mm2;
+        landings.at[k].film_mm = landings.at[k].film_mm - shift;
     }
     return landings;
 }
@@ -77,7 +79,7 @@ ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64
 /// Light that one walk of one wavelength brings to the frame, if it comes there.
 std::optional<double> ScatterGuide::light_of(const FlareArrival& path, float nm, std::uint64_t seed) const {
     const State& state = states_[aim_->state_at(path.lens.ray.time)];
-    const auto landing = state.lens.reproject(path.lens, state.parts.at(nm), state.parts, seed);
+    const auto landing = state.lens.reproject(path.lens, state.parts.at(nm), state.parts, seed).landing;
     if (!aim_->on_frame(landing, path.lens.ray.time)) return std::nullopt;
     Spectrum seen = path.radiance;
     if (!path.from.reflected) {   // else it is about what was seen from the lens
@@ -143,6 +145,7 @@ void ScatterGuide::learn(int threads) {
     });
     all = 0;
     for (const Found& f : found) all += f.light;
+    light_ = all;
     const double blind = all > 0 ? kBlind : 1;
     for (int s = 0; s < count; ++s)
         weights[s] = blind * brought[s] / all_brought + (all > 0 ? (1 - blind) * found[s].light / all : 0);

@@ -27,8 +27,13 @@ class ScatterGuide {
     std::optional<FlareArrival> draw(float source, Vec2f front, const FlareAim::Random& u) const;
 
     /// One walk for each wavelength, all by the same numbers: they go about the same way.
-    using Landings = std::array<Reprojection, kWavelengths>;
+    struct Landings {
+        std::array<Reprojection, kWavelengths> at;
+        std::array<float, kWavelengths> blur2_mm2;   // ScatteredLight::blur2
+    };
     Landings trace(const FlareArrival& path, std::uint64_t seed) const;
+    /// Scattered light of the whole frame as walks found it: exposure x mm2. 0: they found none.
+    double light() const { return light_; }
 
   private:
     struct State {
@@ -59,6 +64,7 @@ class ScatterGuide {
     std::shared_ptr<const FlareAim> aim_;
     std::vector<State> states_;
     DiscreteDistribution sources_;
+    double light_ = 0;
     std::vector<Front> fronts_;   // by source
 };
 

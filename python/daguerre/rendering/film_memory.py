@@ -17,36 +17,42 @@ if TYPE_CHECKING:
 #: hand while it is written. Measured: bench/film_memory.py.
 FRAME = 52
 TRUTH = 108  # ground truth and its rays
-#: Nodes of ghosts' maps while they are drawn: sums of a value for each pixel, and a third more.
-NODES = 32 / 3
+#: Nodes of ghosts' maps while they are drawn: sums of a value for each pixel, and a third more;
+#: those of scatter are that third again.
+NODES, SCATTER_NODES = 32 / 3, 8 / 3
 FLOAT = 4
 #: The frame of a denoised picture and what the denoiser takes: per pixel, and for itself.
 DENOISED, DENOISER = 450, 950_000_000
 
 
-def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False) -> int:
+def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False, scatter: bool = False) -> int:
     """Memory of a pixel at its peak, when the frame is made and written."""
     planes = 3 * (layout.flare + layout.splats * layout.aovs) + 12 * layout.halves
     planes += len(FILM_CHANNELS) * layout.aovs
     planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
     made = FRAME + FLOAT * planes + TRUTH * truth
-    drawn = math.ceil(NODES * (6 + layout.channels)) if layout.flare else 0
+    nodes = NODES + SCATTER_NODES * scatter
+    drawn = math.ceil(nodes * (6 + layout.channels)) if layout.flare else 0
     return _core.Film.pixel_bytes(layout) + max(made, drawn)
 
 
-def check_film(layout: _core.FilmLayout, *, truth: bool = False, free: int | None = None) -> None:
+def check_film(
+    layout: _core.FilmLayout, *, truth: bool = False, scatter: bool = False, free: int | None = None
+) -> None:
     """Refuses a picture for which the machine has too little memory.
 
     Args:
         layout: Layout of the film.
         truth: Whether the frame gets ground truth.
+        scatter: Whether scattered light is drawn.
         free: Bytes that there are; None: as the machine tells.
 
     Raises:
         InputError: The message tells how many pixels there is room for.
     """
     size = layout.width, layout.height
-    _check(size, pixel_bytes(layout, truth=truth), 0, "keep fewer channels", free)
+    each = pixel_bytes(layout, truth=truth, scatter=scatter)
+    _check(size, each, 0, "keep fewer channels", free)
 
 
 def check_picture(crop: Box | None, resolution: tuple[int, int]) -> None:

@@ -95,7 +95,7 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         bands=film.bands if waves is None else waves.bands,
         channels=0 if curves is None else len(curves),
     )
-    check_film(layout, truth=one.settings.truth.moment is not None)
+    check_film(layout, truth=one.settings.truth.moment is not None, scatter=plan.scatter > 0)
     made = _core.Film(layout)
     if curves is not None:
         made.set_responses(curves)

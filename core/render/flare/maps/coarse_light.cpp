@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
+#include "math/hash.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -13,6 +15,7 @@ constexpr int kFraction = 30;       // bits by which steps are finer than the me
 constexpr int kSharpenBits = 8;     // of the weights of level 0
 constexpr float kMost = 1 << 20;    // nodes from the frame: far beside it
 constexpr double kTent = 1 / 6.0;   // its variance
+constexpr float kVariance = 5 / 12.f;   // of a pitch of 1
 
 /// Steps so many bits below a value, but no finer than what weights leave of the bits of a sum.
 int bits_below(double value, int bits, int most) {
@@ -25,6 +28,12 @@ int bits_below(double value, int bits, int most) {
 double square_of_kernel(int level, double c) {
     if (level > 0) return 0.43041478;
     return ((1 + 2 * c) * (1 + 2 * c) + 2 * c * c) * 2 / 3 - 4 * c * (1 + 2 * c) / 6;
+}
+
+/// In [0, 1), by a place.
+double chance_of(Vec2f px) {
+    const std::uint64_t x = std::bit_cast<std::uint32_t>(px.x), y = std::bit_cast<std::uint32_t>(px.y);
+    return hash_uniform(x << 32 | y, 0);
 }
 
 /// Bits after the point of the weights of an axis.
@@ -51,13 +60,21 @@ struct Weights {
 
 }  // namespace
 
-CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance)
+float CoarseLight::level_of(float variance, int finest, int coarsest) {
+    const float squared = std::clamp(variance, CoarseLight::variance(finest), CoarseLight::variance(coarsest)) / kVariance;
+    int k = finest;
+    float own = float(1 << 2 * finest);   // 4^k
+    while (k + 1 < coarsest && squared >= 4 * own) ++k, own *= 4;
+    return float(k) + std::clamp((squared - own) / (3 * own), 0.f, 1.f);
+}
+
+CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance, double bright)
     : level_(level), zero_x_(kMargin - (region.offset_x >> level)), zero_y_(kMargin - (region.offset_y >> level)),
       columns_(((region.offset_x + region.width) >> level) + zero_x_ + 2 + kMargin),
       rows_(((region.offset_y + region.height) >> level) + zero_y_ + 2 + kMargin),
       values_(kSquares + values), sharpen_(std::lround((kTent - filter_variance) / 2 * (1 << kSharpenBits))),
       bits_(bits_below(mean, kFraction, ValueSum::kBits - 2 * weight_bits(level))),
-      square_bits_(bits_below(mean * mean, kFraction, SquareSum::kBits - 2 * weight_bits(level))),
+      square_bits_(bits_below(std::max(mean * mean, bright * bright), kFraction, SquareSum::kBits - 2 * weight_bits(level))),
       to_steps_(std::ldexp(1.0, bits_ - 2 * level)), nodes_(std::size_t(columns_) * rows_ * values_),
       locks_(rows_ / kBandRows + 1) {
     const double square = square_of_kernel(level, double(sharpen_) / (1 << kSharpenBits));
@@ -99,9 +116,11 @@ void CoarseLight::add(std::span<const Arrival> arrivals) {
     }
 }
 
-/// Parts of steps are dropped: far less than arrivals leave open.
+/// Parts of steps are dropped: far less than arrivals leave open. Squares of what is dim beside the picture may be such
+/// parts: where light arrives as one, whole steps by chance stand for them.
 void CoarseLight::add(const Arrival& a, const Node& at) {
-    const Rgb rgb = rgb_from_xyz({a.light[0], a.light[1], a.light[2]});
+    const Rgb rgb = a.as_one ? *a.as_one : rgb_from_xyz({a.light[0], a.light[1], a.light[2]});
+    const double up = a.as_one ? chance_of(a.px) : 0;
     double steps[kSquares + std::tuple_size_v<FilmColor>];
     for (int c = 0; c < kSquares; ++c) steps[c] = to_square_steps_ * double(a.variance) * double(rgb[c]) * rgb[c];
     for (int c = kSquares; c < values_; ++c) steps[c] = to_steps_ * double(a.light[c - kSquares]);
@@ -109,7 +128,8 @@ void CoarseLight::add(const Arrival& a, const Node& at) {
     for (int k = 0; k < 4; ++k) {
         const double w = (k & 1 ? fx : 1 - fx) * (k & 2 ? fy : 1 - fy);
         std::int64_t* const node = &nodes_[(std::size_t(at.row + (k >> 1)) * columns_ + at.column + (k & 1)) * values_];
-        for (int c = 0; c < values_; ++c) node[c] += std::int64_t(steps[c] * w);
+        for (int c = 0; c < kSquares; ++c) node[c] += std::int64_t(steps[c] * w + up);
+        for (int c = kSquares; c < values_; ++c) node[c] += std::int64_t(steps[c] * w);
     }
 }
 

@@ -17,7 +17,7 @@ namespace dg {
 
 class CoarseLight {
   public:
-    static constexpr int kMostLevel = 4;   // 16 px from node to node
+    static constexpr int kMostLevel = 5;   // 32 px from node to node
     /// How far beside the region light may land and come to it, px.
     static float reach(float level) { return 2.5f * std::exp2(level); }
 
@@ -26,15 +26,23 @@ class CoarseLight {
         Vec2f px;
         FilmColor light;
         float variance = 1;   // share of its square that counts: less where another arrival takes most of it away
+        /// R, G and B whose squares count instead: all the light of those that arrive as one with this, or none.
+        std::optional<Rgb> as_one{};
     };
+
+    /// Variance of the kernel of a level, px2 along an axis.
+    static constexpr float variance(int level) { return 5 / 12.f * float(1 << 2 * level); }
+    /// The level whose kernel has that variance in the mean, if the part after the point is the chance of the next one.
+    static float level_of(float variance, int finest, int coarsest);
 
     /// A filter of a larger variance, px2 along an axis, is not drawn on level 0.
     static constexpr double kWidestFilter = 0.6;
 
     /// Nodes 2^level px apart, up to kMostLevel, over a part of the frame and some more. `values`: how many of a colour
-    /// there are. `mean`: light of a pixel, about, as small parts of which values are rounded. `filter_variance`: px2 along an axis;
-    /// light of level 0, whose nodes are the pixels, is as wide as that filter, and almost of its shape.
-    CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance);
+    /// there are. `mean`: light of a pixel, about, as small parts of which values are rounded; `bright`: of a pixel by one
+    /// arrival, at most, about, if that is more. `filter_variance`: px2 along an axis; light of level 0, whose nodes are the
+    /// pixels, is as wide as that filter, and almost of its shape.
+    CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance, double bright = 0);
 
     /// Adds them, each to the four nodes around it (a tent). From any thread at any time.
     void add(std::span<const Arrival> arrivals);

@@ -69,7 +69,7 @@ void FlareSheets::make_maps(const FlareAim& aim, const RenderSettings& settings)
         const MapRays rays(aim.camera(), aim.sensor(), aim.ghost_lens(), aim.steps(ghost), sources_[source].shape);
         GhostMap::Accuracy accuracy;
         accuracy.of_blur *= sources_[source].filled;
-        GhostMap map(rays, aim.sensor(), CoarseLight::reach(CoarseLight::kMostLevel), accuracy);
+        GhostMap map(rays, aim.sensor(), CoarseLight::reach(SheetLevel::kMost), accuracy);
         all[i].emplace(Sheet{source, ghost, rays, std::move(map)});
     });
     for (std::optional<Sheet>& s : all) sheets_.push_back(std::move(*s));

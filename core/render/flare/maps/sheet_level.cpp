@@ -11,8 +11,7 @@ namespace {
 constexpr double kSharpest = 0.1;              // share of the light
 constexpr float kPitches = 5, kEvenPitches = 8;   // across the blur; in what is even
 constexpr float kBend = 0.02f, kSlope = 0.3f;     // of the variance over the distance from an edge
-constexpr float kVariance = 5 / 12.f;          // of a pitch of 1
-constexpr float kFinest = kVariance, kCoarsest = kVariance * (1 << 2 * CoarseLight::kMostLevel);
+constexpr float kVariance = CoarseLight::variance(0), kCoarsest = CoarseLight::variance(SheetLevel::kMost);
 
 /// px2, at a distance from an edge.
 float variance_at(float px) {
@@ -21,14 +20,7 @@ float variance_at(float px) {
     return px < kStraight ? 0.5f * kBend * px * px : kSlope * (px - 0.5f * kStraight);
 }
 
-/// With which the pitches 2^k and 2^(k+1) have a variance in the mean.
-float level_of(float variance) {
-    const float squared = std::clamp(variance, kFinest, kCoarsest) / kVariance;
-    int k = 0;
-    float own = 1;   // 4^k
-    while (k + 1 < CoarseLight::kMostLevel && squared >= 4 * own) ++k, own *= 4;
-    return float(k) + std::clamp((squared - own) / (3 * own), 0.f, 1.f);
-}
+float level_of(float variance) { return CoarseLight::level_of(variance, 0, SheetLevel::kMost); }
 
 float without_sharpest(std::vector<SheetSmooth::CellLight>& cells, double sharpest, float CellBlur::*value) {
     std::ranges::sort(cells, {}, [&](const SheetSmooth::CellLight& c) { return c.blur->*value; });

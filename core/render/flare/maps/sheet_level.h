@@ -23,6 +23,7 @@ struct SheetSmooth {
 
 class SheetLevel {
   public:
+    static constexpr int kMost = 4;   // 16 px from node to node
     /// Level at least of what exact rays take off a map: it is little, and has no fine detail of its own.
     static constexpr int kDifference = 4;
 

@@ -14,11 +14,11 @@ constexpr double kTask = 1 << 16;   // arrivals
 constexpr int kRowsOfTask = 32;     // of the film
 constexpr float kNear = 48;         // px beside the frame from which light may come to it
 constexpr float kVariance = 0.56f;  // of light that is moved by a pitch, over that of the light: of a B-spline of degree 4
-constexpr int kDarkLevel = CoarseLight::kMostLevel;
+constexpr int kDarkLevel = SheetLevel::kMost;
 constexpr float kMm2 = 1e6f;        // in 1 m2
 
 /// The level that light is added at: drawn, so that levels go over into each other.
-int drawn_level(float level, float u) { return std::min(int(level + u), CoarseLight::kMostLevel); }
+int drawn_level(float level, float u) { return std::min(int(level + u), SheetLevel::kMost); }
 
 std::unique_ptr<CoarseLight> coarse(const Picture& p, int values, int level, double mean) {
     return std::make_unique<CoarseLight>(p.density.region(), values, level, mean, p.settings.filter.variance());
@@ -36,7 +36,7 @@ SheetPass::SheetPass(const Picture& picture, std::array<double, 2> indices, doub
     unit_ = float(kMm2 / std::get<ExactLens>(picture.camera.lens).h0() / mm2_per_px);
     plan();
     const double mean = guide_->sheets().mean() * unit_;
-    for (int level = 0; level <= CoarseLight::kMostLevel; ++level)
+    for (int level = 0; level <= SheetLevel::kMost; ++level)
         coarse_[level] = coarse(picture, colors_.table.values(), level, mean);
 }
 
@@ -236,7 +236,7 @@ void SheetPass::trace(Work& work, const Sheet& s) {
 
 void SheetPass::flush(Work& work) {
     work.arrived = 0;
-    for (int level = 0; level <= CoarseLight::kMostLevel; ++level) {
+    for (int level = 0; level <= SheetLevel::kMost; ++level) {
         if (!work.arrivals[level].empty()) coarse_[level]->add(work.arrivals[level]);
         work.arrivals[level].clear();
     }

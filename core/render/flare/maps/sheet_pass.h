@@ -62,7 +62,7 @@ class SheetPass final : public Pass {
         std::pair<const GhostMap::Cell*, bool> color_of{};
         std::vector<const SmallSource::Point*> from;
         std::vector<Exact> exact;
-        std::array<std::vector<CoarseLight::Arrival>, CoarseLight::kMostLevel + 1> arrivals;   // by level
+        std::array<std::vector<CoarseLight::Arrival>, SheetLevel::kMost + 1> arrivals;   // by level
         std::size_t arrived = 0;   // of them
         RenderCounters counters;
     };
@@ -101,7 +101,7 @@ class SheetPass final : public Pass {
     CellColors colors_;
     float unit_;                     // of a pixel, from light and unit areas of the square
     std::vector<Task> tasks_;
-    std::array<std::unique_ptr<CoarseLight>, CoarseLight::kMostLevel + 1> coarse_;   // by level
+    std::array<std::unique_ptr<CoarseLight>, SheetLevel::kMost + 1> coarse_;   // by level
     oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Work>> works_;
 };
 

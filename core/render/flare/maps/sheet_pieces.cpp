@@ -69,7 +69,7 @@ SheetSmooth SheetPieces::smoothness() const {
         map_.landings(cell, batch, kTests);
         double light = 0;
         for (int i = 0; i < kTests; ++i)
-            if (near({batch.x[i], batch.y[i]}, float(1 << CoarseLight::kMostLevel)))
+            if (near({batch.x[i], batch.y[i]}, float(1 << SheetLevel::kMost)))
                 light += seen_light(batch.nm[i]) * batch.pass[i];
         cells.push_back({&cell.blur, light * cell.size * cell.size});
     }
@@ -167,7 +167,7 @@ SheetPieces::Looked SheetPieces::in_the_dark(const Looked& whole) {
 /// Far from the frame, for all that looks tell, which are not at the piece's rim.
 bool SheetPieces::beside(const Looked& l) const {
     const Vec2f more = 0.5f * (l.high - l.low);
-    const float reach = reach_of(float(CoarseLight::kMostLevel));
+    const float reach = reach_of(float(SheetLevel::kMost));
     return l.seen.empty() || l.high.x + more.x < -reach || l.high.y + more.y < -reach ||
            l.low.x - more.x > float(sensor_.width) + reach || l.low.y - more.y > float(sensor_.height) + reach;
 }
