@@ -10,7 +10,6 @@ namespace dg {
 namespace {
 
 constexpr float kShare = 0.1f;          // of the variance of a blur
-constexpr double kOfFrame = 1 / 70.0;   // of the diagonal: the widest kernel's RMS width along an axis
 constexpr double kArrive = 1 / 16.0;    // share of paths that come to the frame, about
 constexpr double kBright = 32;          // times a usual path: a bright one
 constexpr int kRowsOfTask = 32;         // of the film
@@ -28,8 +27,7 @@ ScatterNodes::ScatterNodes(const Picture& picture, const ScatterGuide& guide)
     : picture_(picture), px2_per_mm2_(float(1 / mm2_per_px(picture.settings.sensor))),
       exposure_(picture.density.integral() * px2_per_mm2_), values_(3 + picture.film.layout().channels) {
     const Sensor& sensor = picture.settings.sensor;
-    const double width = kOfFrame * std::hypot(sensor.width, sensor.height);
-    most_ = std::min(float(width * width), CoarseLight::variance(CoarseLight::kMostLevel));
+    most_ = std::min(CoarseLight::widest(sensor), CoarseLight::variance(CoarseLight::kMostLevel));
     const double all = guide.light() * px2_per_mm2_, mean = all / sensor.width / sensor.height;
     const double bright = kBright * all / (kArrive * picture.settings.scatter.per_sample);
     for (int level = kFinest; level < kLevels; ++level)

@@ -16,6 +16,7 @@ constexpr int kSharpenBits = 8;     // of the weights of level 0
 constexpr float kMost = 1 << 20;    // nodes from the frame: far beside it
 constexpr double kTent = 1 / 6.0;   // its variance
 constexpr float kVariance = 5 / 12.f;   // of a pitch of 1
+constexpr double kOfFrame = 1 / 70.0;   // of the diagonal: the widest kernel's RMS width along an axis
 
 /// Steps so many bits below a value, but no finer than what weights leave of the bits of a sum.
 int bits_below(double value, int bits, int most) {
@@ -59,6 +60,11 @@ struct Weights {
 };
 
 }  // namespace
+
+float CoarseLight::widest(const Sensor& sensor) {
+    const double width = kOfFrame * std::hypot(sensor.width, sensor.height);
+    return float(width * width);
+}
 
 float CoarseLight::level_of(float variance, int finest, int coarsest) {
     const float squared = std::clamp(variance, CoarseLight::variance(finest), CoarseLight::variance(coarsest)) / kVariance;

@@ -32,6 +32,8 @@ class CoarseLight {
 
     /// Variance of the kernel of a level, px2 along an axis.
     static constexpr float variance(int level) { return 5 / 12.f * float(1 << 2 * level); }
+    /// Variance of the widest kernel that a frame takes: RMS, a share of its diagonal.
+    static float widest(const Sensor& sensor);
     /// The level whose kernel has that variance in the mean, if the part after the point is the chance of the next one.
     static float level_of(float variance, int finest, int coarsest);
 

@@ -39,6 +39,11 @@ SheetSmooth SheetSmooth::of(std::vector<CellLight> cells) {
             without_sharpest(cells, kSharpest * sum, &CellBlur::even_px)};
 }
 
+SheetLevel::SheetLevel(const GhostMap& map, const GhostLens& lens, const Sensor& sensor, float filled,
+                       const SheetSmooth& smooth)
+    : map_(&map), smooth_(smooth), filled_(filled), apothem_(float(lens.iris_radius() * lens.iris().inner_radius())),
+      most_(std::min(kCoarsest, CoarseLight::widest(sensor))) {}
+
 float SheetLevel::pitch(const CellBlur& blur) const { return 2 * blur.edge * filled_ / kPitches; }
 
 float SheetLevel::of_rays() const {
@@ -62,7 +67,7 @@ float SheetLevel::of(const GhostMap::Cell& cell, const MapBatch& batch, int i) c
     const auto squared = [](float x) { return x * x; };
     const float edge = std::min(cell.blur.edge, smooth_.edge), even = std::min(cell.blur.even_px, smooth_.even);
     const float blurred = kVariance * squared(2 * edge * filled_ / kPitches);
-    const float most = std::min(kVariance * squared(even / kEvenPitches), kCoarsest) - blurred;
+    const float most = std::min(kVariance * squared(even / kEvenPitches), most_) - blurred;
     const float far = variance_at(from_edge(cell, batch, i));
     return level_of(blurred + (most > 0 ? far * most / (far + most) : 0));
 }

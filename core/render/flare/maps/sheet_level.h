@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "optics/lens/stop.h"
+#include "optics/stray/ghost_lens.h"
 #include "render/flare/maps/ghost_map.h"
 
 namespace dg {
@@ -27,9 +27,8 @@ class SheetLevel {
     /// Level at least of what exact rays take off a map: it is little, and has no fine detail of its own.
     static constexpr int kDifference = 4;
 
-    /// The map and the iris outlive this. `filled`: of the source's circle.
-    SheetLevel(const GhostMap& map, const Iris& iris, double iris_radius, float filled, const SheetSmooth& smooth)
-        : map_(&map), smooth_(smooth), filled_(filled), apothem_(float(iris_radius * iris.inner_radius())) {}
+    /// The map outlives this. `filled`: of the source's circle.
+    SheetLevel(const GhostMap& map, const GhostLens& lens, const Sensor& sensor, float filled, const SheetSmooth& smooth);
     /// Level of one of a batch of landings of a cell: 2^l px is the pitch, and the part after the point the chance of the
     /// next coarser one, with which v is right in the mean.
     float of(const GhostMap::Cell& cell, const MapBatch& batch, int i) const;
@@ -44,6 +43,7 @@ class SheetLevel {
     const GhostMap* map_;
     SheetSmooth smooth_;
     float filled_, apothem_;   // mm
+    float most_;               // px2, of a kernel
 };
 
 }  // namespace dg

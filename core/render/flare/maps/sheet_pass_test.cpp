@@ -29,7 +29,7 @@ TEST_CASE("ghosts of the sun from maps are those from paths, in every channel an
     const auto scene = sunny();
     for (const Prescription& lens : {test::tessar(), test::wide_angle(), test::telephoto()}) {
         const Camera camera = camera_with(lens);
-        const Blocks maps = pictures(*scene, camera, 6, 20000, true), paths = pictures(*scene, camera, 6, 400000, false);
+        const Blocks maps = pictures(*scene, camera, 6, 40000, true), paths = pictures(*scene, camera, 6, 800000, false);
         INFO(lens.name << ": from maps " << show(maps) << ", from paths " << show(paths));
         CHECK(whole(paths).mean > 0);
         CHECK(equality(maps, paths) > 1e-3);

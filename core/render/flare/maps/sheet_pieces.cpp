@@ -52,7 +52,7 @@ std::vector<MapRay> rays_of(const GhostMap& map, const GhostMap::Cell& cell, con
 SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSource& source, const Sensor& sensor,
                          std::uint64_t key)
     : rays_(rays), map_(map), source_(source), sensor_(sensor), key_(key),
-      smooth_(smoothness()), level_(map, rays.ghosts().iris(), rays.ghosts().iris_radius(), source.filled, smooth_),
+      smooth_(smoothness()), level_(map, rays.ghosts(), sensor, source.filled, smooth_),
       spread_(map.cells().size(), -1.f), unseen_(map.cells().size()) {
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) wrong_.push_back(map.cells()[c].exact ? 0.f : wrong(c));
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) divide({c, {0, 0}, 1, 0}, 0, nullptr);
