@@ -3,8 +3,8 @@
     python bench/flare.py [--json] [--lens NAME] [--zoom MM] [--seconds 5] [--reference RAYS]
 
 The scene is the sun alone (a ball of 0.53 degrees), so that all time is the flare's. Both ways get
-as many paths as take about --seconds of wall-clock time, set-up included, by a first short picture
-of each.
+as many paths as take about --seconds of wall-clock time, set-up included, by two short pictures of
+each.
 
 For each way two pictures A and B of different seeds. relMSE = mean((A-B)^2 / 2 / (R^2 + 0.01 m^2)),
 R their mean and m the mean of R: where the flare is fainter than a tenth of its mean it need not be
@@ -95,11 +95,11 @@ def drawn(
 
 
 def paths_in(arguments: argparse.Namespace, way: str) -> float:
-    """Paths that take about the wall-clock time that there is."""
-    trial = 2.0 * arguments.w * arguments.h
-    took = drawn(arguments, trial, 0, way)[2]
-    each = (took["wall_s"] - took["setup_wall_s"]) / trial
-    return max((arguments.seconds - took["setup_wall_s"]) / each, 0.1 * trial)
+    """Paths that take about the wall-clock time that there is, as two short pictures tell."""
+    few, many = (k * arguments.w * arguments.h for k in (0.1, 3.0))
+    first, second = (drawn(arguments, paths, 0, way)[2]["wall_s"] for paths in (few, many))
+    each = max(second - first, 0.0) / (many - few)
+    return max((arguments.seconds - first) / each if each > 0 else many, few)
 
 
 def naive_share(arguments: argparse.Namespace, paths: float) -> float:
