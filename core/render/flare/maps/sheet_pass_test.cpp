@@ -9,9 +9,11 @@ using namespace dg;
 
 namespace {
 
-Blocks pictures(const Scene& scene, const Camera& camera, int count, double paths, bool maps) {
+Blocks pictures(const Scene& scene, const Camera& camera, int count, double paths, bool maps,
+                const Shutter& shutter = {}) {
     Blocks all;
     RenderSettings s = wide_settings(0, paths, maps);
+    s.shutter = shutter;
     s.flare.guide = std::make_shared<const FlareGuide>(std::make_shared<const FlareAim>(scene, camera, s), s);
     CHECK(s.flare.guide->sheets().empty() == !maps);
     for (int k = 0; k < count; ++k) {
@@ -21,6 +23,41 @@ Blocks pictures(const Scene& scene, const Camera& camera, int count, double path
         all.push_back(blocks_of(film.flare_xyz()));
     }
     return all;
+}
+
+constexpr double kOpen_s = 0.02;
+
+SphereLight sun_toward(float x) { return {{normalize(Vec3f{x, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}; }
+
+/// A sun that goes as far while the shutter is open as four of its diameters.
+std::shared_ptr<const Scene> moving_sun() {
+    SceneDescription d;
+    d.lights = {sun_toward(0.1f)};
+    d.interval = {0, kOpen_s};
+    d.light_keys[0] = {{0, kOpen_s}, {sun_toward(0.1f), sun_toward(0.137f)}};
+    return Scene::build(std::move(d));
+}
+
+/// Something black before half of the front.
+std::shared_ptr<const Scene> half_hidden_sun() {
+    SceneDescription d;
+    d.lights = {sun_toward(0.12f)};
+    d.meshes = {quad_mesh()};
+    d.materials = {{"black", DiffuseMaterial{{0, 0, 0}}}};
+    d.instances = {{"hides", 0, 0, placed({0.065f, 0.016f, -0.2f}, 0.04f)}};
+    return Scene::build(std::move(d));
+}
+
+/// As much light as from paths, of X, Y and Z in every block.
+void check_maps(const Scene& scene, const Shutter& shutter, double share_of_sunny_from, double to) {
+    const Camera camera = camera_with(test::tessar());
+    const Blocks maps = pictures(scene, camera, 6, 40000, true, shutter);
+    const Blocks paths = pictures(scene, camera, 6, 800000, false, shutter);
+    const double sunny_light = whole(pictures(*sunny(), camera, 1, 40000, true)).mean;
+    INFO("from maps " << show(maps) << ", from paths " << show(paths) << ", of the sun alone " << sunny_light);
+    CHECK(whole(paths).mean > share_of_sunny_from * sunny_light);
+    CHECK(whole(paths).mean < to * sunny_light);
+    CHECK(equality(maps, paths) > 1e-3);
 }
 
 }  // namespace
@@ -46,4 +83,21 @@ TEST_CASE("maps have the same bits on any number of threads, and ranges of sampl
     };
     check_same_bits({.width = kWide, .height = kHigh, .flare = true}, drawn);
     check_crop(drawn);
+}
+
+TEST_CASE("what hides a part of the sun takes the same light of maps as of paths") {
+    check_maps(*half_hidden_sun(), {}, 0.2, 0.8);
+}
+
+TEST_CASE("a leaf shutter opens over maps as over paths") {
+    const Shutter leaf({.exposure_s = kOpen_s, .curve = OpeningCurve::trapezoid(0.6), .leaf = true}, kWide, kHigh);
+    check_maps(*sunny(), leaf, 0.2, 0.9);
+}
+
+TEST_CASE("a sun that moves has the same ghosts from maps as from paths, also under a shutter that rolls") {
+    const auto scene = moving_sun();
+    check_maps(*scene, Shutter({.exposure_s = kOpen_s, .curve = {}}, kWide, kHigh), 0.8, 1.2);
+    const ShutterSettings rolls{
+        .exposure_s = kOpen_s / 4, .curve = {}, .scan = ScanOrder::top, .line_time_s = 0.75 * kOpen_s / kHigh};
+    check_maps(*scene, Shutter(rolls, kWide, kHigh), 0.8, 1.2);
 }
