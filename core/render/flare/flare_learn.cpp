@@ -102,7 +102,7 @@ double Learner::count(const Rays& rays) const {
     return std::clamp(rays.per_pixel * aim_.sensor().width * aim_.sensor().height, rays.least, rays.most);
 }
 
-/// Of all rays: by the source's light, and all its ghosts alike.
+/// Share of all rays that a ghost of a source gets: by the light of the source.
 double Learner::share_of_pair(int source) const {
     return all_strength_ > 0 ? strength_[source] / all_strength_ / ghosts() : 0;
 }

@@ -48,7 +48,7 @@ std::shared_ptr<const Scene> half_hidden_sun() {
     return Scene::build(std::move(d));
 }
 
-/// As much light as from paths, of X, Y and Z in every block.
+/// Maps and paths bring the same light, of X, Y and Z in every block.
 void check_maps(const Scene& scene, const Shutter& shutter, double share_of_sunny_from, double to) {
     const Camera camera = camera_with(test::tessar());
     const Blocks maps = pictures(scene, camera, 6, 40000, true, shutter);
