@@ -18,6 +18,8 @@ struct Sensor {
         return {float(((mm.x - center_mm.x) / width_mm + 0.5) * width),
                 float((0.5 - (mm.y - center_mm.y) / height_mm) * height)};
     }
+    /// Area of a pixel.
+    double mm2_per_px() const { return width_mm / width * height_mm / height; }
     /// Whether a place is on the frame.
     bool holds(Vec2f px) const {
         return px.x >= 0 && px.y >= 0 && px.x < float(width) && px.y < float(height);

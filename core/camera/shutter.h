@@ -7,6 +7,7 @@
 // Inside the renderer, time is the fraction of the scene's interval [0, duration_s].
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -91,6 +92,11 @@ class Shutter {
     double any_share() const { return rolls() ? std::max(exposure_, 1.0 / lines_) : 1; }
     /// Weight of a sample that is drawn like this: the mean of s; 1 for a leaf.
     float weight() const { return settings_.leaf ? 1.f : float(settings_.curve.mean()); }
+    /// Row of a frame of so many pixels (column, if those are scanned) at a place, or the nearest.
+    int row_at(Vec2f px, int width, int height) const {
+        return scans_columns() ? std::clamp(int(std::floor(px.x)), 0, width - 1)
+                               : std::clamp(int(std::floor(px.y)), 0, height - 1);
+    }
     /// s of a row (of a column, if those are scanned) at a time; of an exposure of no length, whether this
     /// is its instant.
     float opening(int row, float time) const;

@@ -15,7 +15,7 @@ constexpr int kWidestBox = 12;   // px: up to here the wavelengths of a path are
 RayOnFilm::RayOnFilm(const FilmDensity& density, const Sensor& sensor,
                      std::span<const Reprojection> landings, float time)
     : film_density_(density), landings_(landings) {
-    const double mm2_per_px = sensor.width_mm / sensor.width * sensor.height_mm / sensor.height;
+    const double mm2_per_px = sensor.mm2_per_px();
     const float reach = density.filter().radius();
     bool passes = false, in_frame = false;
     for (std::size_t i = 0; i < landings.size(); ++i) {

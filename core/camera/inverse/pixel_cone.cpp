@@ -61,7 +61,7 @@ double largest_radius(const Sensor& s) {
                       0.5 * s.height_mm + std::abs(s.center_mm.y));
 }
 
-double pitch(const Sensor& s) { return std::sqrt(s.width_mm / s.width * s.height_mm / s.height); }
+double pitch(const Sensor& s) { return std::sqrt(s.mm2_per_px()); }
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 // scatter_blur.h -- how far a path's scatters spread light over the film: where it may enter, and the directions of each
-// lobe, are carried through the lens as a paraxial bundle, by the covariance of height y and reduced slope v = n u. What lands is as smooth as that.
+// lobe, are carried through the lens as a paraxial bundle, by the covariance of height y and reduced slope v = n u. What
+// lands is as smooth as that.
 //
 // A gap of length s and index n: y += s v / n. A surface of power P: v -= P y. Source: Gerrard and Burch 1975,
 // Introduction to Matrix Methods in Optics, ch. II.

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "render/flare/flare_splat.h"
+#include "render/ray_on_film.h"
 
 namespace dg {
 namespace {
@@ -95,8 +95,13 @@ void FlarePass::prefetch(const Workspace& work, std::size_t path) const {
 
 void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Reprojection> landings) const {
     const FlareArrival& path = work.paths[index];
-    splat_flare(picture_, path, path.density, landings, work.u_pixel[index], work.samplers[index],
-                work.sample[index], work.counters.rays);
+    const RayOnFilm on_film(picture_.density, picture_.settings.sensor, landings, path.lens.ray.time);
+    if (!on_film.in_reach()) return;
+    const Spectrum light = flare_light(picture_.scene, picture_.camera, picture_.settings.path, path,
+                                       work.samplers[index], work.counters.rays);
+    if (light.is_black()) return;
+    on_film.splat(picture_.film, light * float(1 / path.density), path.wavelengths, work.u_pixel[index],
+                  work.sample[index], Film::Layer::flare);
 }
 
 }  // namespace dg

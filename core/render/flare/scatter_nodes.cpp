@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/parallel.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -12,9 +11,6 @@ namespace {
 constexpr float kShare = 0.1f;          // of the variance of a blur
 constexpr double kArrive = 1 / 16.0;    // share of paths that come to the frame, about
 constexpr double kBright = 32;          // times a usual path: a bright one
-constexpr int kRowsOfTask = 32;         // of the film
-
-double mm2_per_px(const Sensor& s) { return s.width_mm / s.width * s.height_mm / s.height; }
 
 }  // namespace
 
@@ -24,7 +20,7 @@ bool ScatterNodes::serve(const Picture& picture, const ScatterGuide& guide) {
 }
 
 ScatterNodes::ScatterNodes(const Picture& picture, const ScatterGuide& guide)
-    : picture_(picture), px2_per_mm2_(float(1 / mm2_per_px(picture.settings.sensor))),
+    : picture_(picture), px2_per_mm2_(float(1 / picture.settings.sensor.mm2_per_px())),
       exposure_(picture.density.integral() * px2_per_mm2_), values_(3 + picture.film.layout().channels) {
     const Sensor& sensor = picture.settings.sensor;
     most_ = std::min(CoarseLight::widest(sensor), CoarseLight::variance(CoarseLight::kMostLevel));
@@ -55,9 +51,7 @@ float ScatterNodes::exposed(Vec2f px, float time) const {
     const Shutter* shutter = picture_.density.rolling();
     if (!shutter) return 1;
     const Sensor& sensor = picture_.settings.sensor;
-    const bool columns = shutter->scans_columns();
-    const int lines = columns ? sensor.width : sensor.height;
-    return shutter->opening(std::clamp(int(std::floor(columns ? px.x : px.y)), 0, lines - 1), time);
+    return shutter->opening(shutter->row_at(px, sensor.width, sensor.height), time);
 }
 
 ScatterNodes::Places ScatterNodes::take(ScatterGuide::Landings& landings, float time, float u) const {
@@ -109,14 +103,7 @@ void ScatterNodes::flush(Work& work) const {
 }
 
 void ScatterNodes::finish(int threads) const {
-    const FilmLayout& region = picture_.density.region();
-    const int bands = (region.height + kRowsOfTask - 1) / kRowsOfTask;
-    parallel_tasks(threads, bands, [&](std::int64_t band) {
-        const int first = region.offset_y + int(band) * kRowsOfTask;
-        const int last = std::min(first + kRowsOfTask, region.offset_y + region.height);
-        for (int level = kFinest; level < kLevels; ++level)
-            coarse_[level]->to_film(picture_.film, picture_.density, first, last);
-    });
+    CoarseLight::to_film(std::span(coarse_).subspan(kFinest), picture_.film, picture_.density, threads);
 }
 
 }  // namespace dg

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/hash.h"
+#include "render/parallel.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
@@ -15,7 +16,7 @@ constexpr int kFraction = 30;       // bits by which steps are finer than the me
 constexpr int kSharpenBits = 8;     // of the weights of level 0
 constexpr float kMost = 1 << 20;    // nodes from the frame: far beside it
 constexpr double kTent = 1 / 6.0;   // its variance
-constexpr float kVariance = 5 / 12.f;   // of a pitch of 1
+constexpr int kRowsOfTask = 32;         // of the film
 constexpr double kOfFrame = 1 / 70.0;   // of the diagonal: the widest kernel's RMS width along an axis
 
 /// Steps so many bits below a value, but no finer than what weights leave of the bits of a sum.
@@ -67,20 +68,23 @@ float CoarseLight::widest(const Sensor& sensor) {
 }
 
 float CoarseLight::level_of(float variance, int finest, int coarsest) {
-    const float squared = std::clamp(variance, CoarseLight::variance(finest), CoarseLight::variance(coarsest)) / kVariance;
+    const float squared = std::clamp(variance, CoarseLight::variance(finest), CoarseLight::variance(coarsest)) /
+                          CoarseLight::variance(0);
     int k = finest;
     float own = float(1 << 2 * finest);   // 4^k
     while (k + 1 < coarsest && squared >= 4 * own) ++k, own *= 4;
     return float(k) + std::clamp((squared - own) / (3 * own), 0.f, 1.f);
 }
 
-CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance, double bright)
+CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double mean, double filter_variance,
+                         double bright)
     : level_(level), zero_x_(kMargin - (region.offset_x >> level)), zero_y_(kMargin - (region.offset_y >> level)),
       columns_(((region.offset_x + region.width) >> level) + zero_x_ + 2 + kMargin),
       rows_(((region.offset_y + region.height) >> level) + zero_y_ + 2 + kMargin),
       values_(kSquares + values), sharpen_(std::lround((kTent - filter_variance) / 2 * (1 << kSharpenBits))),
       bits_(bits_below(mean, kFraction, ValueSum::kBits - 2 * weight_bits(level))),
-      square_bits_(bits_below(std::max(mean * mean, bright * bright), kFraction, SquareSum::kBits - 2 * weight_bits(level))),
+      square_bits_(bits_below(std::max(mean * mean, bright * bright), kFraction,
+                              SquareSum::kBits - 2 * weight_bits(level))),
       to_steps_(std::ldexp(1.0, bits_ - 2 * level)), nodes_(std::size_t(columns_) * rows_ * values_),
       locks_(rows_ / kBandRows + 1) {
     const double square = square_of_kernel(level, double(sharpen_) / (1 << kSharpenBits));
@@ -137,6 +141,17 @@ void CoarseLight::add(const Arrival& a, const Node& at) {
         for (int c = 0; c < kSquares; ++c) node[c] += std::int64_t(steps[c] * w + up);
         for (int c = kSquares; c < values_; ++c) node[c] += std::int64_t(steps[c] * w);
     }
+}
+
+void CoarseLight::to_film(std::span<const std::unique_ptr<CoarseLight>> levels, Film& film, const FilmDensity& density,
+                          int threads) {
+    const FilmLayout& region = density.region();
+    const int bands = (region.height + kRowsOfTask - 1) / kRowsOfTask;
+    parallel_tasks(threads, bands, [&](std::int64_t band) {
+        const int first = region.offset_y + int(band) * kRowsOfTask;
+        const int last = std::min(first + kRowsOfTask, region.offset_y + region.height);
+        for (const auto& light : levels) light->to_film(film, density, first, last);
+    });
 }
 
 void CoarseLight::to_film(Film& film, const FilmDensity& density, int first, int last) const {

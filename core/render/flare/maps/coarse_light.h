@@ -4,6 +4,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -48,7 +49,10 @@ class CoarseLight {
 
     /// Adds them, each to the four nodes around it (a tent). From any thread at any time.
     void add(std::span<const Arrival> arrivals);
-    /// Adds all of it to rows [first, last) of a film's region, times the samples that were drawn of each pixel.
+    /// Adds all light of some levels to a film, times the samples that were drawn of each pixel.
+    static void to_film(std::span<const std::unique_ptr<CoarseLight>> levels, Film& film, const FilmDensity& density,
+                        int threads);
+    /// Adds it to rows [first, last) of the film's region.
     void to_film(Film& film, const FilmDensity& density, int first, int last) const;
 
   private:

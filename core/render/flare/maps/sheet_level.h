@@ -24,8 +24,6 @@ struct SheetSmooth {
 class SheetLevel {
   public:
     static constexpr int kMost = 4;   // 16 px from node to node
-    /// Level at least of what exact rays take off a map: it is little, and has no fine detail of its own.
-    static constexpr int kDifference = 4;
 
     /// The map outlives this. `filled`: of the source's circle.
     SheetLevel(const GhostMap& map, const GhostLens& lens, const Sensor& sensor, float filled, const SheetSmooth& smooth);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/parallel.h"
 
 namespace dg {
 namespace {
@@ -11,10 +10,9 @@ namespace {
 // Arrivals for each flare path: from maps; exact rays of what maps have wrong; and of where they have nothing.
 constexpr double kArrivals = 4, kDifferences = 0.125, kDark = 0.005;
 constexpr double kTask = 1 << 16;   // arrivals
-constexpr int kRowsOfTask = 32;     // of the film
 constexpr float kNear = 48;         // px beside the frame from which light may come to it
 constexpr float kVariance = 0.56f;  // of light that is moved by a pitch, over that of the light: of a B-spline of degree 4
-constexpr int kDarkLevel = SheetLevel::kMost;
+constexpr int kDifferenceLevel = SheetLevel::kMost;   // it is little, and has no fine detail of its own
 constexpr float kMm2 = 1e6f;        // in 1 m2
 
 /// The level that light is added at: drawn, so that levels go over into each other.
@@ -32,8 +30,7 @@ SheetPass::SheetPass(const Picture& picture, std::array<double, 2> indices, doub
       density_(picture.density.without_shutter()),
       colors_(picture.film.responses()) {
     const Sensor& sensor = picture.settings.sensor;
-    const double mm2_per_px = sensor.width_mm / sensor.width * sensor.height_mm / sensor.height;
-    unit_ = float(kMm2 / std::get<ExactLens>(picture.camera.lens).h0() / mm2_per_px);
+    unit_ = float(kMm2 / std::get<ExactLens>(picture.camera.lens).h0() / sensor.mm2_per_px());
     plan();
     const double mean = guide_->sheets().mean() * unit_;
     for (int level = 0; level <= SheetLevel::kMost; ++level)
@@ -151,7 +148,6 @@ void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& pi
     const SmallSource& small = source(s);
     const bool hidden = guide_->sheets().hidden(s.source);
     const CellColor& color = color_of(work, s, piece);
-    const SheetLevel levels = this->levels(s);
     MapBatch& b = work.batch;
     const auto& u = work.numbers.of;
     work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
@@ -164,7 +160,7 @@ void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& pi
         s.map.landings(cell, b, count);
         for (int i = 0; i < count; ++i) {
             Exact& e = work.exact[begin + std::size_t(i)];
-            e.level = std::max(SheetLevel::kDifference, drawn_level(levels.of(cell, b, i), u[CellNumbers::kLevel][i]));
+            e.level = kDifferenceLevel;
             if (!(b.left[i] > 0)) continue;
             e.map.px = {b.x[i], b.y[i]};
             const float glass =
@@ -209,7 +205,7 @@ void SheetPass::draw_dark(Work& work, std::size_t sheet) {
     work.numbers.each(r.seed, r.first, r.last, [&](std::uint64_t, int count) {
         for (int i = 0; i < count; ++i) {
             const Vec2f at{2 * u[CellNumbers::kAcross][i] - 1, 2 * u[CellNumbers::kDown][i] - 1};
-            if (s.is_dark(at)) add_exact(work, s, at, i, weight).level = kDarkLevel;
+            if (s.is_dark(at)) add_exact(work, s, at, i, weight).level = kDifferenceLevel;
         }
     });
     trace(work, s);
@@ -256,9 +252,7 @@ float SheetPass::exposed(const SmallSource& small, const SmallSource::Point& fro
     const Shutter& shutter = picture_.settings.shutter;
     if (!shutter.rolls() || !small.moves) return shutter.weight();
     const Sensor& sensor = picture_.settings.sensor;
-    const bool columns = shutter.scans_columns();
-    const int line = std::clamp(int(std::floor(columns ? px.x : px.y)), 0, (columns ? sensor.width : sensor.height) - 1);
-    return shutter.opening(line, from.moment.time) / float(shutter.any_share());
+    return shutter.opening(shutter.row_at(px, sensor.width, sensor.height), from.moment.time) / float(shutter.any_share());
 }
 
 /// Light at a place, and what is to be taken off at another.
@@ -280,13 +274,7 @@ void SheetPass::arrive(Work& work, int level, Vec2f px, const FilmColor& light, 
 }
 
 void SheetPass::finish(int threads) {
-    const FilmLayout& region = density_.region();
-    const int bands = (region.height + kRowsOfTask - 1) / kRowsOfTask;
-    parallel_tasks(threads, bands, [&](std::int64_t band) {
-        const int first = region.offset_y + int(band) * kRowsOfTask;
-        const int last = std::min(first + kRowsOfTask, region.offset_y + region.height);
-        for (const auto& light : coarse_) light->to_film(picture_.film, density_, first, last);
-    });
+    CoarseLight::to_film(coarse_, picture_.film, density_, threads);
 }
 
 RenderCounters SheetPass::counters() const {

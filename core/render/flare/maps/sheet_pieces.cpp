@@ -25,7 +25,7 @@ constexpr float kGray = 0.25f;          // pitches that colours of one place are
 constexpr float kSure = 0.5f;           // how far beyond an edge, over what that changes in the piece
 
 /// From the frame, px: where light may land that comes to it.
-float reach_of(float level) { return CoarseLight::reach(std::max(float(SheetLevel::kDifference), std::ceil(level))); }
+const float kReach = CoarseLight::reach(SheetLevel::kMost);
 
 }  // namespace
 
@@ -125,11 +125,10 @@ void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) co
     draw(batch, piece, count);
     map_.landings(map_.cells()[piece.cell], batch, count);
     for (int i = 0; i < count; ++i) {
-        const float level = level_.of(map_.cells()[piece.cell], batch, i);
-        to.level += level / float(count);
+        to.level += level_.of(map_.cells()[piece.cell], batch, i) / float(count);
         const float seen = seen_light(batch.nm[i]);
         see(to, {batch.x[i], batch.y[i]}, seen * batch.glass[i], seen * batch.pass[i],
-            rays_.stopped(batch.landing(i, map_.crossings())), level);
+            rays_.stopped(batch.landing(i, map_.crossings())));
     }
 }
 
@@ -137,21 +136,21 @@ void SheetPieces::look_by_rays(const SheetPiece& piece, int count, Looked& to) c
     thread_local MapBatch batch;
     draw(batch, piece, count);
     const std::vector<MapLanding> landings = trace(batch, map_.cells()[piece.cell], count);
-    const float level = to.level = level_.of_rays();
+    to.level = level_.of_rays();
     for (int i = 0; i < count; ++i) {
         const MapLanding& l = landings[i];
         const float seen = seen_light(batch.nm[i]);
-        see(to, l.px, l.sound ? seen * l.pass : 0, seen * rays_.passed(l, batch.opening[i]), rays_.stopped(l), level);
+        see(to, l.px, l.sound ? seen * l.pass : 0, seen * rays_.passed(l, batch.opening[i]), rays_.stopped(l));
     }
 }
 
-void SheetPieces::see(Looked& to, Vec2f px, float glass, float pass, float stop, float level) const {
+void SheetPieces::see(Looked& to, Vec2f px, float glass, float pass, float stop) const {
     to.lit += pass > 0;
     to.least_stop = std::min(to.least_stop, stop), to.most_stop = std::max(to.most_stop, stop);
     if (!(glass > 0)) return;
     to.low = {std::min(to.low.x, px.x), std::min(to.low.y, px.y)};
     to.high = {std::max(to.high.x, px.x), std::max(to.high.y, px.y)};
-    const bool here = near(px, reach_of(level));
+    const bool here = near(px, kReach);
     to.seen.push_back({px, here ? pass : 0, here ? glass : kFarOff * glass});
 }
 
@@ -167,9 +166,8 @@ SheetPieces::Looked SheetPieces::in_the_dark(const Looked& whole) {
 /// Far from the frame, for all that looks tell, which are not at the piece's rim.
 bool SheetPieces::beside(const Looked& l) const {
     const Vec2f more = 0.5f * (l.high - l.low);
-    const float reach = reach_of(float(SheetLevel::kMost));
-    return l.seen.empty() || l.high.x + more.x < -reach || l.high.y + more.y < -reach ||
-           l.low.x - more.x > float(sensor_.width) + reach || l.low.y - more.y > float(sensor_.height) + reach;
+    return l.seen.empty() || l.high.x + more.x < -kReach || l.high.y + more.y < -kReach ||
+           l.low.x - more.x > float(sensor_.width) + kReach || l.low.y - more.y > float(sensor_.height) + kReach;
 }
 
 /// `whole`: what was seen of what it is a part of. Where no light comes through the glass in all of a cell, the cell is

@@ -73,7 +73,7 @@ class SheetPieces {
     Looked look(const SheetPiece& piece, int count) const;
     void look_at_map(const SheetPiece& piece, int count, Looked& to) const;
     void look_by_rays(const SheetPiece& piece, int count, Looked& to) const;
-    void see(Looked& to, Vec2f px, float glass, float pass, float stop, float level) const;
+    void see(Looked& to, Vec2f px, float glass, float pass, float stop) const;
     void keep(SheetPiece piece, int count, Looked looked, const Looked* whole);
     float spread(std::uint32_t cell);
     float wrong(std::uint32_t cell) const;
