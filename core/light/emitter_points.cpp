@@ -10,7 +10,10 @@ namespace dg {
 namespace {
 
 constexpr double kOwnShare = 0.01;    // lights that bring more than this are sources by themselves
+constexpr float kOneLamp = 0.035f;    // rad: triangles of an instance that is seen within this of its middle are one light
 constexpr double kLeastShare = 0.02;  // of the mean: no light is chosen less often within its source
+constexpr float kPartAngle = 0.4f;    // rad: a light that is seen larger is divided
+constexpr int kMostAcross = 6;        // parts of it, by side
 constexpr int kMostHot = 48;          // parts of the bright sky
 constexpr int kAcross = 16, kDown = 8;   // tiles of the rest
 
@@ -22,6 +25,25 @@ int square_of(Vec3f d) {
     const auto step = [](float x) { return std::clamp(int((x + 1) * 2), 0, 3); };
     return ((axis * 2 + (main > 0)) * 4 + step(u)) * 4 + step(v);
 }
+
+/// Triangles of one instance.
+struct Lamp {
+    std::vector<std::int32_t> lights;
+    LightBounds bounds{};
+    double strength = 0;
+
+    void add(std::int32_t light, const LightBounds& b, double brings) {
+        bounds = lights.empty() ? b : merge(bounds, b);
+        lights.push_back(light), strength += brings;
+    }
+    bool is_small(std::span<const ViewCone> views) const {
+        const Vec3f middle = (bounds.min + bounds.max) * 0.5f;
+        const float radius = 0.5f * length(bounds.max - bounds.min);
+        return std::ranges::all_of(views, [&](const ViewCone& view) {
+            return radius < std::sin(kOneLamp) * length(middle - view.from.eye);
+        });
+    }
+};
 
 }  // namespace
 
@@ -47,15 +69,32 @@ void EmitterPoints::add_lights(std::span<const ViewCone> views) {
             strength[i] += illuminance_estimate(b, lights_->moves(i), view) / double(views.size());
     }
     const double all = std::accumulate(strength.begin(), strength.end(), 0.0);
+    const std::vector<bool> taken = add_lamps(views, strength, all);
     for (std::size_t i = 0; i < count; ++i) {
-        if (!(strength[i] > 0)) continue;
+        if (!(strength[i] > 0) || taken[i]) continue;
         const LightBounds b = lights_->bounds_of(i);
         if (strength[i] > kOwnShare * all || lights_->infinite_weight(i) > 0)
-            add_source({std::int32_t(i)}, strength);
+            add_parts(std::int32_t(i), strength, views);
         else
             groups[square_of((b.min + b.max) * 0.5f - views.front().from.eye)].push_back(std::int32_t(i));
     }
     for (auto& [square, members] : groups) add_source(std::move(members), strength);
+}
+
+/// A lamp of many triangles that is seen small is one source, as a ball is: its ghosts are those of the whole.
+std::vector<bool> EmitterPoints::add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength,
+                                           double all) {
+    std::map<std::uint32_t, Lamp> lamps;   // by instance
+    for (std::size_t i = 0; i < strength.size(); ++i)
+        if (const auto* triangle = std::get_if<TriangleLight>(&lights_->lights()[i]); triangle && strength[i] > 0)
+            lamps[triangle->instance].add(std::int32_t(i), lights_->bounds_of(i), strength[i]);
+    std::vector<bool> taken(strength.size());
+    for (auto& [instance, lamp] : lamps) {
+        if (!(lamp.strength > kOwnShare * all) || !lamp.is_small(views)) continue;
+        for (const std::int32_t i : lamp.lights) taken[std::size_t(i)] = true;
+        add_source(std::move(lamp.lights), strength);
+    }
+    return taken;
 }
 
 void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength) {
@@ -66,6 +105,49 @@ void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vect
     source.choice = DiscreteDistribution(std::span<const double>(weights));
     source.lights = std::move(lights);
     sources_.push_back(std::move(source));
+}
+
+/// Squares of the numbers that choose a point on a light.
+std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, std::span<const ViewCone> views) const {
+    if (lights_->infinite_weight(light) > 0) return {Part{}};
+    const LightBounds b = lights_->bounds_of(light);
+    const float radius = 0.5f * length(b.max - b.min);
+    float angle = 0;   // that it fills at most
+    for (const ViewCone& view : views) {
+        const float distance = length((b.min + b.max) * 0.5f - view.from.eye);
+        angle = std::max(angle, radius < distance ? 2 * std::asin(radius / distance) : kPi);
+    }
+    const int across = std::clamp(int(std::ceil(angle / kPartAngle)), 1, kMostAcross);
+    const float side = 1 / float(across);
+    std::vector<Part> parts;
+    for (int y = 0; y < across; ++y)
+        for (int x = 0; x < across; ++x) parts.push_back({{float(x) * side, float(y) * side}, side});
+    return parts;
+}
+
+/// From a large light each ghost takes another part for each place of the film: rays to all of it hardly ever find it.
+void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& strength,
+                              std::span<const ViewCone> views) {
+    add_source({light}, strength);
+    const Source whole = std::move(sources_.back());
+    sources_.pop_back();
+    const std::vector<Part> parts = parts_of(light, views);
+    const ViewCone& view = views.front();
+    std::vector<double> brings;
+    for (const Part& part : parts) {
+        const auto p = sample_light(light, part.at({0.5f, 0.5f}), view.time, view.from);
+        const Vec3f to = p ? view.from.eye - p->point.position : Vec3f{1, 0, 0};
+        const double d2 = std::max(length_squared(to), view.from.radius * view.from.radius);
+        const bool faces = p && !p->delta && d2 > 0;
+        brings.push_back(faces ? std::abs(dot(to, p->point.normal)) / (d2 * std::sqrt(d2)) : 1);
+    }
+    const double sum = std::accumulate(brings.begin(), brings.end(), 0.0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double share = sum > 0 ? brings[i] / sum : 1 / double(parts.size());
+        sources_.push_back(whole);
+        sources_.back().part = parts[i];
+        sources_.back().strength *= std::max(share, kLeastShare / double(parts.size()));
+    }
 }
 
 /// Bright spots by their luminance; the rest, and a sky of one colour, by tiles, evenly.
@@ -109,9 +191,9 @@ std::optional<EmitterPoint> EmitterPoints::sample(int which, float u_select, Vec
         return EmitterPoint{{.position = s.direction, .pdf = s.pdf}, true};
     }
     const DiscreteSample choice = source.choice.sample(u_select);
-    auto point = sample_light(source.lights[choice.index], u, time, view);
+    auto point = sample_light(source.lights[choice.index], source.part.at(u), time, view);
     if (!point || !(point->point.pdf > 0)) return std::nullopt;
-    point->point.pdf *= choice.pmf;
+    point->point.pdf *= choice.pmf / (source.part.side * source.part.side);
     return point;
 }
 

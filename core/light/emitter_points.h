@@ -39,16 +39,26 @@ class EmitterPoints {
     Rgb delta_value(const EmitterPoint& from, Vec3f to, float time) const;
 
   private:
+    struct Part {
+        Vec2f from{0, 0};
+        float side = 1;
+        Vec2f at(Vec2f u) const { return from + u * side; }
+    };
     struct Source {
         double strength = 0;
         std::vector<std::int32_t> lights{};   // or
         DiscreteDistribution choice{};
+        Part part{};                          // of all of them
         int hot = -1;                         // part of the bright sky, or
         std::optional<DirectionTile> tile{};  // of the even part of it, or
         int highlight = -1;
     };
     void add_lights(std::span<const ViewCone> views);
+    /// Which lights it took.
+    std::vector<bool> add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength, double all);
     void add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength);
+    std::vector<Part> parts_of(std::int32_t light, std::span<const ViewCone> views) const;
+    void add_parts(std::int32_t light, const std::vector<double>& strength, std::span<const ViewCone> views);
     void add_sky(std::span<const ViewCone> views);
     std::optional<EmitterPoint> sample_light(std::int32_t light, Vec2f u, float time, const Viewpoint& view) const;
     std::optional<EmitterPoint> sample_tile(const DirectionTile& tile, Vec2f u, float time) const;

@@ -131,9 +131,10 @@ std::vector<FlareFound> Learner::look_wide() {
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
         visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
     });
-    all_strength_ = std::accumulate(strength_.begin(), strength_.end(), 0.0);
+    for (int s = 0; s < sources(); ++s)
+        if (!leaves(std::size_t(s + 1) * ghosts() - 1)) all_strength_ += strength_[s];
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
-        if (!leaves(std::size_t(s) * ghosts() + ghosts() - 1)) front_[s] = scout(int(s));
+        if (!leaves(std::size_t(s + 1) * ghosts() - 1)) front_[s] = scout(int(s));
     });
     const double total = count(kWide);
     std::vector<FlareFound> found(strength_.size() * std::size_t(ghosts()));

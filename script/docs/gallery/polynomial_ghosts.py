@@ -29,7 +29,7 @@ from daguerre.lenses.lens import Lens
 
 Floats = NDArray[np.float64]
 CHANNEL_NM = (650.0, 545.0, 443.0)  # see docs/darkroom.md, "Distortion"
-GRID = 300  # rays across the light of a ghost
+GRID = 800  # rays across the light of a ghost
 FULL_MM = 36.0  # width of the film
 
 

@@ -353,7 +353,7 @@ def _flare_row(file: str, camera: str, sun: str, note: str) -> tuple[Panel, ...]
         Panel(
             f"traced{note}",
             f"{file}_traced",
-            (render(DUSK, f"{seen} --f-stop 4 {_SEEN} --flare 150000", f"{file}_traced"),),
+            (render(DUSK, f"{seen} --f-stop 4 {_SEEN} --flare 400000", f"{file}_traced"),),
         ),
         Panel(
             f"polynomial{note}",
@@ -427,7 +427,7 @@ brighter than the others, or spikes would not be seen.""",
             FAIR,
             f"--lens {GAUSS} --focus 60",
             f"{_STARS} --diffraction",
-            f"--res 480x320 {DARK} --spp 16",
+            f"--res 480x320 {DARK} --spp 64",
             (
                 f"distortion:model=lens,lens={GAUSS},focus=60m,scale=0.9,sensor=36x24",
                 "diffraction:f_number=16,blades=6,sensor=36x24",

@@ -38,6 +38,29 @@ std::shared_ptr<const Scene> moving_sun() {
     return Scene::build(std::move(d));
 }
 
+/// The sun as a disc of so many triangles, which faces the lens.
+std::shared_ptr<const Scene> sun_of_triangles(std::uint32_t count) {
+    SceneDescription d;
+    GltfMaterial shines;
+    shines.emissive = {3e5f, 3e5f, 3e5f};
+    d.materials = {{"shines", shines}};
+    const SphereLight sun = sun_toward(0.12f);
+    const Frame across = Frame::from_normal(normalize(sun.shape.center * -1.f));
+    std::vector<Vec3f> positions{sun.shape.center};
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float angle = 2 * kPi * float(i) / float(count);
+        const Vec3f rim{sun.shape.radius * std::cos(angle), sun.shape.radius * std::sin(angle), 0};
+        positions.push_back(sun.shape.center + across.to_world(rim));
+        triangles.push_back({0, i + 1, (i + 1) % count + 1});
+    }
+    Mesh mesh;
+    mesh.positions = positions, mesh.triangles = triangles;
+    d.meshes = {mesh};
+    d.instances = {{"sun", 0, 0, Affine3f{}}};
+    return Scene::build(std::move(d));
+}
+
 /// Something black before half of the front.
 std::shared_ptr<const Scene> half_hidden_sun() {
     SceneDescription d;
@@ -70,6 +93,19 @@ TEST_CASE("ghosts of the sun from maps are those from paths, in every channel an
         INFO(lens.name << ": from maps " << show(maps) << ", from paths " << show(paths));
         CHECK(whole(paths).mean > 0);
         CHECK(equality(maps, paths) > 1e-3);
+    }
+}
+
+TEST_CASE("a disc of triangles has the ghosts of a ball of its size, from maps") {
+    const Camera camera = camera_with(test::tessar());
+    const Blocks ball = pictures(*sunny(), camera, 6, 40000, true);
+    for (const std::uint32_t triangles : {24u, 400u}) {
+        const double share = 0.5 * triangles * std::sin(2 * kPiD / triangles) / kPiD;   // of the round disc
+        Blocks disc = pictures(*sun_of_triangles(triangles), camera, 6, 40000, true);
+        for (std::vector<double>& picture : disc)
+            for (double& block : picture) block /= share;
+        INFO(triangles << " triangles: " << show(disc) << ", a ball " << show(ball));
+        CHECK(equality(disc, ball) > 1e-3);
     }
 }
 
