@@ -14,6 +14,7 @@ constexpr float kOneLamp = 0.035f;    // rad: triangles of an instance that is s
 constexpr double kLeastShare = 0.02;  // of the mean: no light is chosen less often within its source
 constexpr float kPartAngle = 0.4f;    // rad: a light that is seen larger is divided
 constexpr int kMostAcross = 6;        // parts of it, by side
+constexpr double kPartShare = 0.005;  // that a part brings at least: so many parts there are at most
 constexpr int kMostHot = 48;          // parts of the bright sky
 constexpr int kAcross = 16, kDown = 8;   // tiles of the rest
 
@@ -74,7 +75,7 @@ void EmitterPoints::add_lights(std::span<const ViewCone> views) {
         if (!(strength[i] > 0) || taken[i]) continue;
         const LightBounds b = lights_->bounds_of(i);
         if (strength[i] > kOwnShare * all || lights_->infinite_weight(i) > 0)
-            add_parts(std::int32_t(i), strength, views);
+            add_parts(std::int32_t(i), strength, all, views);
         else
             groups[square_of((b.min + b.max) * 0.5f - views.front().from.eye)].push_back(std::int32_t(i));
     }
@@ -108,7 +109,8 @@ void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vect
 }
 
 /// Squares of the numbers that choose a point on a light.
-std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, std::span<const ViewCone> views) const {
+std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, double share,
+                                                         std::span<const ViewCone> views) const {
     if (lights_->infinite_weight(light) > 0) return {Part{}};
     const LightBounds b = lights_->bounds_of(light);
     const float radius = 0.5f * length(b.max - b.min);
@@ -117,7 +119,8 @@ std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, std
         const float distance = length((b.min + b.max) * 0.5f - view.from.eye);
         angle = std::max(angle, radius < distance ? 2 * std::asin(radius / distance) : kPi);
     }
-    const int across = std::clamp(int(std::ceil(angle / kPartAngle)), 1, kMostAcross);
+    const int most = std::clamp(int(std::sqrt(share / kPartShare)), 1, kMostAcross);
+    const int across = std::clamp(int(std::ceil(angle / kPartAngle)), 1, most);
     const float side = 1 / float(across);
     std::vector<Part> parts;
     for (int y = 0; y < across; ++y)
@@ -126,12 +129,12 @@ std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, std
 }
 
 /// From a large light each ghost takes another part for each place of the film: rays to all of it hardly ever find it.
-void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& strength,
+void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& strength, double all,
                               std::span<const ViewCone> views) {
     add_source({light}, strength);
     const Source whole = std::move(sources_.back());
     sources_.pop_back();
-    const std::vector<Part> parts = parts_of(light, views);
+    const std::vector<Part> parts = parts_of(light, whole.strength / all, views);
     const ViewCone& view = views.front();
     std::vector<double> brings;
     for (const Part& part : parts) {

@@ -57,8 +57,9 @@ class EmitterPoints {
     /// Which lights it took.
     std::vector<bool> add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength, double all);
     void add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength);
-    std::vector<Part> parts_of(std::int32_t light, std::span<const ViewCone> views) const;
-    void add_parts(std::int32_t light, const std::vector<double>& strength, std::span<const ViewCone> views);
+    std::vector<Part> parts_of(std::int32_t light, double share, std::span<const ViewCone> views) const;
+    void add_parts(std::int32_t light, const std::vector<double>& strength, double all,
+                   std::span<const ViewCone> views);
     void add_sky(std::span<const ViewCone> views);
     std::optional<EmitterPoint> sample_light(std::int32_t light, Vec2f u, float time, const Viewpoint& view) const;
     std::optional<EmitterPoint> sample_tile(const DirectionTile& tile, Vec2f u, float time) const;

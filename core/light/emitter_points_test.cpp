@@ -68,6 +68,13 @@ double integral(const EmitterPoints& sources, int source, const Viewpoint& view,
 
 constexpr auto kArea = [](Vec3f) { return 1.0; };
 
+/// A metre before the lens.
+TriangleLight wide() {
+    TriangleLight t{{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {5, 5, 5}, 0, 0, false};
+    t.even = true;
+    return t;
+}
+
 }  // namespace
 
 TEST_CASE("points of a lamp of triangles are on all of it, and their densities add up to its area") {
@@ -84,10 +91,8 @@ TEST_CASE("points of a lamp of triangles are on all of it, and their densities a
 }
 
 TEST_CASE("a light that is seen large is sources for its parts, which cover it once") {
-    TriangleLight wide{{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {5, 5, 5}, 0, 0, false};
-    wide.even = true;
     const ViewCone view{.from = {{0, 0, 0}, 0.02f}};
-    for (const Light& light : {Light(wide), Light(SphereLight{{{0, 0, -2}, 1}, {5, 5, 5}})}) {
+    for (const Light& light : {Light(wide()), Light(SphereLight{{{0, 0, -2}, 1}, {5, 5, 5}})}) {
         const LightSet lights = set_of({light});
         const EmitterPoints sources(lights, std::span(&view, 1));
         REQUIRE(sources.count() > 9);
@@ -106,4 +111,15 @@ TEST_CASE("a light that is seen large is sources for its parts, which cover it o
         CHECK(std::abs(xy) < 0.02);
         CHECK(strength == doctest::Approx(illuminance_estimate(lights.bounds_of(0), false, view)).epsilon(0.1));
     }
+}
+
+TEST_CASE("a large light that is dim beside others stays whole: each part has to be learned about") {
+    const ViewCone view{.from = {{0, 0, 0}, 0.02f}};
+    const double own = illuminance_estimate(set_of({wide()}).bounds_of(0), false, view);
+    const auto beside = [&](double times) {   // a ball of so many times its light
+        const float luminance = float(times * own / (kPiD * 0.01 * 0.01));
+        return sources_of(set_of({wide(), SphereLight{{{0, 0, -1}, 0.01f}, {luminance, luminance, luminance}}}));
+    };
+    CHECK(beside(60) == 2);
+    CHECK(beside(10) > 10);
 }
