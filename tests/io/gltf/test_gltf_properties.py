@@ -227,7 +227,7 @@ def _change_value(folder: Path, data: Any) -> None:
         try:
             for key in way[:-1]:
                 holder = holder[key]
-            holder[way[-1]] = data.draw(ANY)
+            holder[way[-1]] = copy.deepcopy(data.draw(ANY))  # `ANY` may hand out one object twice
         except (TypeError, KeyError, IndexError):
             pass  # the first change took the way to the second
     path = folder / "b.glb"
