@@ -104,7 +104,7 @@ TEST_CASE("a light that is seen large is sources for its parts, which cover it o
             CHECK(sources.strength(i) > 0);
         }
         const bool flat = std::holds_alternative<TriangleLight>(light);
-        // Of a ball: 2 pi r^2 (1 - cos) of what some point of the lens may see (1 - r' / d to either side).
+        // A ball shows 2 pi r^2 (1 - cos) of what some point of the lens may see (1 - r' / d to either side).
         const double seen = 2 * kPiD * (1 - (1 - 0.02) / 2);
         CHECK(area == doctest::Approx(flat ? 2 : seen).epsilon(0.02));
         if (flat) CHECK(xx == doctest::Approx(2 / 3.0).epsilon(0.02));
