@@ -27,6 +27,17 @@ int square_of(Vec3f d) {
     return ((axis * 2 + (main > 0)) * 4 + step(u)) * 4 + step(v);
 }
 
+/// Behind the triangles of the instance whose first one is given: they lie side by side; behind any other light.
+std::size_t end_of_instance(std::span<const Light> lights, std::size_t first) {
+    const auto instance = [&](std::size_t i) {
+        const auto* triangle = std::get_if<TriangleLight>(&lights[i]);
+        return triangle ? std::optional(triangle->instance) : std::nullopt;
+    };
+    std::size_t end = first + 1;
+    while (end < lights.size() && instance(first) && instance(end) == instance(first)) ++end;
+    return end;
+}
+
 /// Triangles of one instance.
 struct Lamp {
     std::vector<std::int32_t> lights;
@@ -85,12 +96,13 @@ void EmitterPoints::add_lights(std::span<const ViewCone> views) {
 /// A lamp of many triangles that is seen small is one source, as a ball is: its ghosts are those of the whole.
 std::vector<bool> EmitterPoints::add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength,
                                            double all) {
-    std::map<std::uint32_t, Lamp> lamps;   // by instance
-    for (std::size_t i = 0; i < strength.size(); ++i)
-        if (const auto* triangle = std::get_if<TriangleLight>(&lights_->lights()[i]); triangle && strength[i] > 0)
-            lamps[triangle->instance].add(std::int32_t(i), lights_->bounds_of(i), strength[i]);
     std::vector<bool> taken(strength.size());
-    for (auto& [instance, lamp] : lamps) {
+    for (std::size_t first = 0, next; first < strength.size(); first = next) {
+        next = end_of_instance(lights_->lights(), first);
+        if (next - first < 2) continue;
+        Lamp lamp;
+        for (std::size_t i = first; i < next; ++i)
+            if (strength[i] > 0) lamp.add(std::int32_t(i), lights_->bounds_of(i), strength[i]);
         if (!(lamp.strength > kOwnShare * all) || !lamp.is_small(views)) continue;
         for (const std::int32_t i : lamp.lights) taken[std::size_t(i)] = true;
         add_source(std::move(lamp.lights), strength);
