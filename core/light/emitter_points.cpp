@@ -10,7 +10,7 @@ namespace dg {
 namespace {
 
 constexpr double kOwnShare = 0.01;    // lights that bring more than this are sources by themselves
-constexpr float kOneLamp = 0.035f;    // rad: triangles of an instance that is seen within this of its middle are one light
+constexpr float kOneLamp = 0.07f;     // rad: triangles of an instance that is seen smaller are one light
 constexpr double kLeastShare = 0.02;  // of the mean: no light is chosen less often within its source
 constexpr float kPartAngle = 0.4f;    // rad: a light that is seen larger is divided
 constexpr int kMostAcross = 6;        // parts of it, by side
@@ -27,7 +27,7 @@ int square_of(Vec3f d) {
     return ((axis * 2 + (main > 0)) * 4 + step(u)) * 4 + step(v);
 }
 
-/// Behind the triangles of the instance whose first one is given: they lie side by side; behind any other light.
+/// One past the triangles of an instance, which lie side by side, or past the one light that is no triangle.
 std::size_t end_of_instance(std::span<const Light> lights, std::size_t first) {
     const auto instance = [&](std::size_t i) {
         const auto* triangle = std::get_if<TriangleLight>(&lights[i]);
@@ -36,6 +36,25 @@ std::size_t end_of_instance(std::span<const Light> lights, std::size_t first) {
     std::size_t end = first + 1;
     while (end < lights.size() && instance(first) && instance(end) == instance(first)) ++end;
     return end;
+}
+
+/// Angle that it fills at most as these see it, rad; pi from within.
+float angle_of(const LightBounds& b, std::span<const ViewCone> views) {
+    const float radius = 0.5f * length(b.max - b.min);
+    float angle = 0;
+    for (const ViewCone& view : views) {
+        const float distance = length((b.min + b.max) * 0.5f - view.from.eye);
+        angle = std::max(angle, radius < distance ? 2 * std::asin(radius / distance) : kPi);
+    }
+    return angle;
+}
+
+/// Illuminance by a unit of area there, as far as a place and a direction tell it.
+double brought_by(const std::optional<EmitterPoint>& point, const Viewpoint& view) {
+    if (!point) return 0;
+    const Vec3f to = view.eye - point->point.position;
+    const double d2 = std::max(length_squared(to), view.radius * view.radius);
+    return d2 > 0 ? std::abs(dot(to, point->point.normal)) / (d2 * std::sqrt(d2)) : 0;
 }
 
 /// Triangles of one instance.
@@ -47,13 +66,6 @@ struct Lamp {
     void add(std::int32_t light, const LightBounds& b, double brings) {
         bounds = lights.empty() ? b : merge(bounds, b);
         lights.push_back(light), strength += brings;
-    }
-    bool is_small(std::span<const ViewCone> views) const {
-        const Vec3f middle = (bounds.min + bounds.max) * 0.5f;
-        const float radius = 0.5f * length(bounds.max - bounds.min);
-        return std::ranges::all_of(views, [&](const ViewCone& view) {
-            return radius < std::sin(kOneLamp) * length(middle - view.from.eye);
-        });
     }
 };
 
@@ -103,7 +115,7 @@ std::vector<bool> EmitterPoints::add_lamps(std::span<const ViewCone> views, cons
         Lamp lamp;
         for (std::size_t i = first; i < next; ++i)
             if (strength[i] > 0) lamp.add(std::int32_t(i), lights_->bounds_of(i), strength[i]);
-        if (!(lamp.strength > kOwnShare * all) || !lamp.is_small(views)) continue;
+        if (!(lamp.strength > kOwnShare * all) || !(angle_of(lamp.bounds, views) < kOneLamp)) continue;
         for (const std::int32_t i : lamp.lights) taken[std::size_t(i)] = true;
         add_source(std::move(lamp.lights), strength);
     }
@@ -124,13 +136,7 @@ void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vect
 std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, double share,
                                                          std::span<const ViewCone> views) const {
     if (lights_->infinite_weight(light) > 0) return {Part{}};
-    const LightBounds b = lights_->bounds_of(light);
-    const float radius = 0.5f * length(b.max - b.min);
-    float angle = 0;   // that it fills at most
-    for (const ViewCone& view : views) {
-        const float distance = length((b.min + b.max) * 0.5f - view.from.eye);
-        angle = std::max(angle, radius < distance ? 2 * std::asin(radius / distance) : kPi);
-    }
+    const float angle = angle_of(lights_->bounds_of(light), views);
     const int most = std::clamp(int(std::sqrt(share / kPartShare)), 1, kMostAcross);
     const int across = std::clamp(int(std::ceil(angle / kPartAngle)), 1, most);
     const float side = 1 / float(across);
@@ -144,18 +150,14 @@ std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, dou
 void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& strength, double all,
                               std::span<const ViewCone> views) {
     add_source({light}, strength);
+    const std::vector<Part> parts = parts_of(light, strength[std::size_t(light)] / all, views);
+    if (parts.size() == 1) return;
     const Source whole = std::move(sources_.back());
     sources_.pop_back();
-    const std::vector<Part> parts = parts_of(light, whole.strength / all, views);
     const ViewCone& view = views.front();
     std::vector<double> brings;
-    for (const Part& part : parts) {
-        const auto p = sample_light(light, part.at({0.5f, 0.5f}), view.time, view.from);
-        const Vec3f to = p ? view.from.eye - p->point.position : Vec3f{1, 0, 0};
-        const double d2 = std::max(length_squared(to), view.from.radius * view.from.radius);
-        const bool faces = p && !p->delta && d2 > 0;
-        brings.push_back(faces ? std::abs(dot(to, p->point.normal)) / (d2 * std::sqrt(d2)) : 1);
-    }
+    for (const Part& part : parts)
+        brings.push_back(brought_by(sample_light(light, part.at({0.5f, 0.5f}), view.time, view.from), view.from));
     const double sum = std::accumulate(brings.begin(), brings.end(), 0.0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const double share = sum > 0 ? brings[i] / sum : 1 / double(parts.size());

@@ -46,6 +46,8 @@ class Learner {
         const std::size_t source = pair / std::size_t(ghosts());
         return source < mapped_.size() && mapped_[source] && int(pair) % ghosts() < aim_.pairs();
     }
+    /// Another one draws all of its ghosts.
+    bool leaves_source(int source) const { return leaves(std::size_t(source + 1) * ghosts() - 1); }
     double count(const Rays& rays) const;
     double share_of_pair(int source) const;
     FlareRectangle scout(int source) const;
@@ -132,9 +134,9 @@ std::vector<FlareFound> Learner::look_wide() {
         visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
     });
     for (int s = 0; s < sources(); ++s)
-        if (!leaves(std::size_t(s + 1) * ghosts() - 1)) all_strength_ += strength_[s];
+        if (!leaves_source(s)) all_strength_ += strength_[s];
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
-        if (!leaves(std::size_t(s + 1) * ghosts() - 1)) front_[s] = scout(int(s));
+        if (!leaves_source(int(s))) front_[s] = scout(int(s));
     });
     const double total = count(kWide);
     std::vector<FlareFound> found(strength_.size() * std::size_t(ghosts()));

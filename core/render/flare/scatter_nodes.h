@@ -2,9 +2,10 @@
 // comes to the frame, so each of them shines on as many pixels as it may.
 //
 // The lobes of a path's scatters, and the front where it enters, spread light over the film
-// (optics/stray/scatter_blur.h), by a shape that falls as a power of the distance from its middle, r^slope. A kernel whose variance is c times that of the blur, which grows as r^2,
-// changes such a shape by the share c slope'^2 / 2 (slope' = slope + 2) wherever the power holds: so much, and no more than
-// the smooth light of the barrel allows at its edges, is the kernel of a path. In the narrow peak of a fine polish, or where
+// (optics/stray/scatter_blur.h), by a shape that falls as a power of the distance from its middle, r^slope. A kernel
+// whose variance is c times that of the blur, which grows as r^2, changes such a shape by the share c slope'^2 / 2
+// (slope' = slope + 2) wherever the power holds: so much, and no more than the smooth light of the barrel allows at its
+// edges, is the kernel of a path. In the narrow peak of a fine polish, or where
 // parts of the lens have a sharp image on the film, it gets so small that a path keeps to its pixels (ray_on_film.h).
 #pragma once
 #include <array>
