@@ -76,6 +76,8 @@ void bind_layout(nb::module_& m) {
         .def_rw("splats", &FilmLayout::splats, "Light paths may add to any pixel.")
         .def_rw("flare", &FilmLayout::flare, "Ghosts may add to any pixel.")
         .def_rw("halves", &FilmLayout::halves, "The picture of every other sample beside that of all.")
+        .def_rw("coverage", &FilmLayout::coverage, "Share of each pixel that objects cover.")
+        .def_rw("catchers", &FilmLayout::catchers, "Light of the set beside that of the objects.")
         .def_rw("bands", &FilmLayout::bands, "Bands of equal width over all wavelengths.")
         .def_rw("channels", &FilmLayout::channels, "Channels of a sensor (Film.set_responses).");
     m.attr("FILM_AOVS") = dg::bind::names_of(dg::kAovChannels);
@@ -109,6 +111,15 @@ void bind_film(nb::module_& m) {
                  return triples(f, to_rgb(f.half_xyz(odd ? Film::Half::odd : Film::Half::even, by_light_paths)));
              },
              "odd"_a, "by_light_paths"_a, "The picture of the samples with even, or odd, indices, without ghosts.")
+        .def("coverage", [](const Film& f) { return plane(f, f.coverage()); },
+             "Share of each pixel that objects cover, (H, W).")
+        .def("set_rgb", [](const Film& f, bool with_objects) { return triples(f, to_rgb(f.set_xyz(with_objects))); },
+             "with_objects"_a, "Light of the set, linear Rec.709 (H, W, 3), with the objects there or without.")
+        .def("set_channels",
+             [](const Film& f, bool with_objects) {
+                 return stacks(f, f.set_channels(with_objects), f.layout().channels);
+             },
+             "with_objects"_a, "The same in the sensor's channels, (H, W, channels).")
         .def("mean_bands", [](const Film& f) { return stacks(f, f.mean_bands(), f.layout().bands); },
              "Mean radiance of each band, (H, W, bands).")
         .def("mean_channels",

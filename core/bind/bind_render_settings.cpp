@@ -96,8 +96,8 @@ void def_light_paths(Settings& c) {
                   [](const RenderSettings& s) { return std::tuple{s.light.m1, s.light.m2}; },
                   [](RenderSettings& s, std::tuple<double, double> m) {
                       constexpr auto kWanted = "0 .. 1e9 per sample index";
-                      s.light = {paths(std::get<0>(m), "light paths", kWanted),
-                                 paths(std::get<1>(m), "light paths", kWanted)};
+                      s.light.m1 = paths(std::get<0>(m), "light paths", kWanted);
+                      s.light.m2 = paths(std::get<1>(m), "light paths", kWanted);
                   },
                   "Per sample index: straight from an emitter to the lens, and with bounces.")
         .def("prepare_light",
@@ -192,6 +192,19 @@ void def_scatter(Settings& c) {
              "shines, or nothing scatters.");
 }
 
+void def_background(Settings& c) {
+    c.def_prop_rw("transparent",
+                  [](const RenderSettings& s) { return s.path.background == Background::transparent; },
+                  [](RenderSettings& s, bool transparent) {
+                      s.path.background = transparent ? Background::transparent : Background::environment;
+                      s.light.sky = !transparent;
+                  },
+                  "The lens does not see the environment; light from there stays.")
+        .def_prop_rw("see_through", [](const RenderSettings& s) { return s.path.see_through; },
+                     [](RenderSettings& s, bool on) { s.path.see_through = on; },
+                     "Smooth glass does not cover what lies straight behind it.");
+}
+
 /// Who draws what several could: to check one against the other.
 void def_references(Settings& c) {
     c.def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
@@ -228,5 +241,6 @@ void bind_render_settings(nb::module_& m) {
     def_light_paths(c);
     def_flare(c);
     def_scatter(c);
+    def_background(c);
     def_references(c);
 }

@@ -216,6 +216,11 @@ struct Builder {
         return int(description.instances.size()) - 1;
     }
 
+    /// Makes an instance a part of the set.
+    void set_catcher(std::uint32_t instance, bool shadow, bool reflection, bool gi) {
+        description.instances.at(instance).catcher = CatcherEffects{shadow, reflection, gi};
+    }
+
     void add_light(Light light) { description.lights.push_back(std::move(light)); }
 
     void fold_materials(const std::vector<double>& times) {
@@ -283,7 +288,9 @@ void def_shapes(nb::class_<Builder>& c) {
         .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
              "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
         .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
-             "motion"_a, "shown"_a = nb::none());
+             "motion"_a, "shown"_a = nb::none())
+        .def("set_catcher", &Builder::set_catcher, "instance"_a, "shadow"_a, "reflection"_a, "gi"_a,
+             "Makes an instance a part of the set: which effects of objects it catches.");
 }
 
 /// One maker for each kind of material.

@@ -15,7 +15,6 @@ struct AovSample {
     float depth = 0;  // m, along the camera's -z
     Vec3f position, normal, albedo;
     std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
-    float alpha = 1;              // 1 where something was hit
     Vec3f seen_albedo{}, seen_normal{};   // guides for a denoiser, through mirrors and glass; 0: nothing
 };
 
@@ -44,7 +43,6 @@ inline constexpr std::array kAovChannels{
     AovChannel{"denoise_normal.X", false, [](const AovSample& s) { return s.seen_normal.x; }},
     AovChannel{"denoise_normal.Y", false, [](const AovSample& s) { return s.seen_normal.y; }},
     AovChannel{"denoise_normal.Z", false, [](const AovSample& s) { return s.seen_normal.z; }},
-    AovChannel{"alpha", false, [](const AovSample& s) { return s.alpha; }},
 };
 
 }  // namespace dg

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <thread>
 
 #include "math/error.h"
@@ -51,6 +52,8 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.splats) splats_.resize(pixels);
     if (layout.flare) flare_.resize(pixels);
     if (layout.halves) halves_.resize(pixels);
+    if (layout.coverage) coverage_.resize(pixels);
+    if (layout.catchers) catchers_.resize(pixels);
     if (layout.splats || layout.flare) row_locks_.resize(std::size_t(kLockStride) * layout.height);
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
@@ -61,6 +64,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     bands_.resize(std::size_t(pixels) * layout.bands);
     channels_.resize(std::size_t(pixels) * layout.channels);
     if (layout.splats || layout.flare) channel_splats_.resize(channels_.size());
+    if (layout.catchers) catcher_channels_.resize(2 * channels_.size());
 }
 
 void Film::set_responses(Responses responses) {
@@ -150,21 +154,59 @@ void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) const {
 }
 
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
-               Spectrum radiance) {
+               const CameraLight& arrived) {
     if (layout_.bands && (layout_.splats || layout_.flare))   // they share the sums of bands
-        return add_shared(x, y, sample, wavelengths, radiance);
+        return add_shared(x, y, sample, wavelengths, arrived);
     const std::int64_t i = find(x, y);
-    if (i >= 0 && add_light(pixels_[i], half(i, sample), i, sample, wavelengths, radiance) && layout_.channels)
-        add_channels(channels_, i, responses_.of(wavelengths, radiance));
+    if (i >= 0) add_arrived(i, sample, wavelengths, arrived);
 }
 
 void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
-                      Spectrum radiance) {
+                      const CameraLight& arrived) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const Lock lock(pixels_[i].lock);
-    if (add_light(pixels_[i], half(i, sample), i, sample, wavelengths, radiance) && layout_.channels)
-        add_channels(channels_, i, responses_.of(wavelengths, radiance));
+    add_arrived(i, sample, wavelengths, arrived);
+}
+
+void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance) {
+    add(x, y, sample, wavelengths, CameraLight{.light = radiance});
+}
+
+void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance) {
+    add_shared(x, y, sample, wavelengths, CameraLight{.light = radiance});
+}
+
+void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
+                       const CameraLight& arrived) {
+    if (layout_.coverage) add_coverage(i, arrived.white, arrived.covered);
+    if (layout_.catchers && !add_set(i, wavelengths, arrived)) return mark_bad(pixels_[i], sample);
+    const bool alone = !layout_.catchers;
+    if (add_light(pixels_[i], half(i, sample), i, sample, wavelengths, arrived.light, alone) && layout_.channels)
+        add_channels(channels_, i, responses_.of(wavelengths, arrived.light));
+}
+
+/// Adds light of the set. The picture's noise is that of what comes into the plate, light and change: their squares
+/// replace those of the light alone, which add_light() adds.
+bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
+    const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
+                without = wavelengths.to_xyz(arrived.without);
+    for (int k = 0; k < 3; ++k)
+        if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k])) return false;
+    for (int k = 0; k < 3; ++k) catchers_[i].with[k].add(with[k]), catchers_[i].without[k].add(without[k]);
+    add_squares(pixels_[i], light + with - without);
+    if (!layout_.channels) return true;
+    add_channels(catcher_channels_, 2 * i, responses_.of(wavelengths, arrived.with));
+    add_channels(catcher_channels_, 2 * i + 1, responses_.of(wavelengths, arrived.without));
+    return true;
+}
+
+void Film::add_coverage(std::size_t i, float white, float covered) {
+    constexpr float kMost = 0x1p20f, kScale = 0x1p30f;
+    const auto steps = [&](float v) { return std::int64_t(std::clamp(v, -kMost, kMost) * kScale); };
+    if (!(std::abs(white) + std::abs(covered) < std::numeric_limits<float>::infinity())) return;
+    coverage_[i].white += steps(white);
+    coverage_[i].covered += steps(covered);
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -186,8 +228,8 @@ void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& waveleng
 }
 
 bool Film::add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample,
-                     const Wavelengths& wavelengths, Spectrum radiance) {
-    if (!add_to(sums, half, wavelengths.to_xyz(radiance))) {
+                     const Wavelengths& wavelengths, Spectrum radiance, bool squares) {
+    if (!add_to(sums, half, wavelengths.to_xyz(radiance), squares)) {
         mark_bad(pixels_[i], sample);
         return false;
     }
@@ -217,17 +259,21 @@ ValueSum* Film::half(std::size_t i, std::uint32_t sample, Layer layer) {
     return halves_.empty() || sample % 2 || layer != Layer::splats ? nullptr : halves_[i].splats;
 }
 
-bool Film::add_to(Sums& sums, ValueSum* half, Vec3f xyz) const {
+bool Film::add_to(Sums& sums, ValueSum* half, Vec3f xyz, bool squares) const {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) return false;
-    const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
     sums.xyz[0].add(xyz.x);
     sums.xyz[1].add(xyz.y);
     sums.xyz[2].add(xyz.z);
     if (half) half[0].add(xyz.x), half[1].add(xyz.y), half[2].add(xyz.z);
+    if (squares) add_squares(sums, xyz);
+    return true;
+}
+
+void Film::add_squares(Sums& sums, Vec3f xyz) const {
+    const Vec3d rgb = to_double(float_transform(rgb_from_xyz_, xyz));
     sums.rgb_squares[0].add(std::min(rgb.x * rgb.x, kMaxFilmSquare));
     sums.rgb_squares[1].add(std::min(rgb.y * rgb.y, kMaxFilmSquare));
     sums.rgb_squares[2].add(std::min(rgb.z * rgb.z, kMaxFilmSquare));
-    return true;
 }
 
 void Film::count(int x, int y, std::uint32_t sample) {
@@ -270,7 +316,8 @@ void Film::merge(const Film& other) {
                    std::to_string(l.offset_y) + ")" +
                    (l.aovs ? " with aovs" : " without aovs") +
                    (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "") +
-                   (l.halves ? ", with halves" : "") +
+                   (l.halves ? ", with halves" : "") + (l.coverage ? ", with coverage" : "") +
+                   (l.catchers ? ", with catchers" : "") +
                    (l.bands ? ", " + std::to_string(l.bands) + " bands" : "") +
                    (l.channels ? ", " + std::to_string(l.channels) + " channels" : "");
         };
@@ -292,6 +339,16 @@ void Film::merge(const Film& other) {
         for (int k = 0; k < 3; ++k) a.own[k].add(b.own[k]), a.splats[k].add(b.splats[k]);
         a.count += b.count;
     }
+    for (std::size_t i = 0; i < coverage_.size(); ++i) {
+        coverage_[i].white += other.coverage_[i].white;
+        coverage_[i].covered += other.coverage_[i].covered;
+    }
+    for (std::size_t i = 0; i < catchers_.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            catchers_[i].with[k].add(other.catchers_[i].with[k]);
+            catchers_[i].without[k].add(other.catchers_[i].without[k]);
+        }
+    for (std::size_t i = 0; i < catcher_channels_.size(); ++i) catcher_channels_[i].add(other.catcher_channels_[i]);
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);
     for (std::size_t i = 0; i < channel_splats_.size(); ++i)

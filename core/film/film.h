@@ -17,6 +17,14 @@
 
 namespace dg {
 
+/// Light that one camera sample brings to one pixel, and how much of the pixel its objects cover. In a film with
+/// catchers `light` is the objects' alone, beside what the set sends with them there and without.
+struct CameraLight {
+    Spectrum light{0.f}, with{0.f}, without{0.f};
+    float white = 0;     // what a white world would bring: the weight of this sample's coverage
+    float covered = 0;   // as much of it as objects cover
+};
+
 /// A sample that had to be dropped, with the place to look for it.
 struct BadSample {
     int x, y;
@@ -30,6 +38,8 @@ struct FilmLayout {
     bool splats = false;             // light paths may add to any pixel (Film::splat)
     bool flare = false;              // and so may ghosts
     bool halves = false;             // with the picture of every other sample beside that of all, without ghosts
+    bool coverage = false;           // share of each pixel that objects cover
+    bool catchers = false;           // light of the set beside that of the objects
     int bands = 0;                   // of equal width over all wavelengths, kept beside XYZ
     int channels = 0;                // of a sensor, likewise (Film::set_responses)
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
@@ -42,8 +52,9 @@ struct PixelBox {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
-/// 112 bytes per pixel; 288 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with each band, 16 with each
-/// channel and as much again if there are splats or flare.
+/// 112 bytes per pixel; 272 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with coverage, 96 with
+/// catchers, 16 with each band, 16 with each channel, as much again if there are splats or flare, and twice if there are
+/// catchers.
 class Film {
   public:
     /// Bytes of the sums of one pixel.
@@ -88,6 +99,9 @@ class Film {
                     Spectrum radiance);
     void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
                Spectrum radiance, Layer layer = Layer::splats);
+    /// The same with coverage, and with the light of the set.
+    void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
+    void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
     /// Adds whole steps of the sums to the flare of pixels side by side within the region: of XYZ, of the squares of R, G
     /// and B, and of the channels, as many per pixel as there are. From any thread at any time.
     struct FlareSteps {
@@ -113,6 +127,12 @@ class Film {
     /// samples; Error without halves.
     enum class Half { even, odd };
     std::vector<float> half_xyz(Half half, bool by_light_paths = false) const;
+    /// Share of each pixel that objects cover; Error without coverage.
+    std::vector<float> coverage() const;
+    /// Mean XYZ of the light of the set, with the objects there or without; Error without catchers.
+    std::vector<float> set_xyz(bool with_objects) const;
+    /// The same in the channels.
+    std::vector<float> set_channels(bool with_objects) const;
     /// Mean radiance of each band, all that was added, size bands*width*height; D65 of luminance 1 has
     /// some 1 in each. Throws Error for a film without bands.
     std::vector<float> mean_bands() const;
@@ -138,9 +158,10 @@ class Film {
     std::uint64_t bad_sample_count() const;
 
     /// The whole state as it lies in memory, which is what pass files store and read back:
-    /// "sums", and "aovs", "splats", "flare", "halves", "bands", "channels" and "channel_splats" if there are any, so many
-    /// bytes per pixel (per band or channel).
+    /// "sums", and "aovs", "splats", "flare", "halves", "coverage", "catchers", "bands", "channels", "channel_splats" and
+    /// "catcher_channels" if there are any, so many bytes per pixel (per band or channel).
     static constexpr std::size_t kSumBytes = 112, kSplatBytes = 96, kHalfBytes = 112, kBandBytes = 16;
+    static constexpr std::size_t kCoverageBytes = 16, kCatcherBytes = 96;
     static constexpr std::size_t kAovBytes = 16 * (kAovChannels.size() + 1);
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
@@ -163,6 +184,13 @@ class Film {
         ValueSum own[3], splats[3];
         std::uint32_t count = 0, unused[3] = {};
     };
+    /// Whole steps of 2^-30: 2^33 samples of white fit.
+    struct CoveragePixel {
+        std::int64_t white = 0, covered = 0;
+    };
+    struct CatcherPixel {
+        ValueSum with[3], without[3];
+    };
     struct AovPixel {
         std::array<ValueSum, kAovChannels.size()> sums;   // in their order
         std::uint32_t passed = 0, hits = 0, object_sample = kNone, object_id = 0;
@@ -176,10 +204,15 @@ class Film {
     ValueSum* half(std::size_t i, std::uint32_t sample);
     ValueSum* half(std::size_t i, std::uint32_t sample, Layer layer);
     /// To a pixel's own sums, or to those of its splats, and to half of them if there are any; false if the sample is bad.
-    bool add_to(Sums& sums, ValueSum* half, Vec3f xyz) const;
+    bool add_to(Sums& sums, ValueSum* half, Vec3f xyz, bool squares = true) const;
+    void add_squares(Sums& sums, Vec3f xyz) const;
+    /// Under the pixel's lock, if there is need of one.
+    void add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
+    bool add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived);
+    void add_coverage(std::size_t i, float white, float covered);
     /// To XYZ and bands. Splats and samples share the sums of bands: under the pixel's lock. False if bad.
     bool add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
-                   Spectrum radiance);
+                   Spectrum radiance, bool squares = true);
     void add_bands(ValueSum* bands, const Wavelengths& wavelengths, Spectrum radiance) const;
     void add_channels(std::vector<ValueSum>& channels, std::size_t i, Spectrum values) const;
     /// Lock of a row of the region; for splats without bands, and for the channels of all splats.
@@ -202,10 +235,13 @@ class Film {
     std::vector<AovPixel> aovs_;
     std::vector<Sums> splats_, flare_;
     std::vector<HalfPixel> halves_;
+    std::vector<CoveragePixel> coverage_;
+    std::vector<CatcherPixel> catchers_;
     // Locks of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
     std::vector<ValueSum> bands_, channels_, channel_splats_;   // those of a pixel side by side
+    std::vector<ValueSum> catcher_channels_;   // with the objects, then without
     Responses responses_;
 };
 

@@ -66,6 +66,36 @@ std::vector<float> Film::half_xyz(Half half, bool by_light_paths) const {
     return mean;
 }
 
+std::vector<float> Film::coverage() const {
+    if (coverage_.empty()) throw Error("film: this film was made without coverage");
+    std::vector<float> shares;
+    shares.reserve(coverage_.size());
+    for (const CoveragePixel& p : coverage_) shares.push_back(p.white > 0 ? float(double(p.covered) / double(p.white)) : 0.f);
+    return shares;
+}
+
+std::vector<float> Film::set_xyz(bool with_objects) const {
+    if (catchers_.empty()) throw Error("film: this film was made without catchers");
+    std::vector<float> mean;
+    mean.reserve(3 * pixels_.size());
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+        for (const ValueSum& sum : with_objects ? catchers_[i].with : catchers_[i].without)
+            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
+    return mean;
+}
+
+std::vector<float> Film::set_channels(bool with_objects) const {
+    if (catcher_channels_.empty()) throw Error("film: this film was made without catchers, or without channels");
+    std::vector<float> mean;
+    mean.reserve(channels_.size());
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+        for (int c = 0; c < layout_.channels; ++c) {
+            const ValueSum& sum = catcher_channels_[(2 * i + (with_objects ? 0 : 1)) * layout_.channels + c];
+            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
+        }
+    return mean;
+}
+
 std::vector<float> Film::mean_bands() const {
     if (bands_.empty()) throw Error("film: this film was made without bands");
     return means(bands_, layout_.bands);
@@ -91,7 +121,12 @@ std::vector<float> Film::means(const std::vector<ValueSum>& sums, int each) cons
 
 Film::Estimate Film::estimate(std::size_t i) const {
     const Pixel& p = pixels_[i];
-    const Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
+    Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
+    for (int k = 0; k < 3 && layout_.catchers; ++k) {   // the noise of light and change, beside what is seen
+        const double with = catchers_[i].with[k].value();
+        xyz[k] += with - catchers_[i].without[k].value();
+        all[k] += with;
+    }
     const double n = p.count;
     Estimate e;
     for (int k = 0; k < 3; ++k) {

@@ -13,7 +13,8 @@ static_assert(std::endian::native == std::endian::little,
 std::size_t Film::pixel_bytes(const FilmLayout& l) {
     const bool lit = l.splats || l.flare;   // channels have sums of their own for that
     return kSumBytes + (l.aovs ? kAovBytes : 0) + (l.splats ? kSplatBytes : 0) + (l.flare ? kSplatBytes : 0) +
-           (l.halves ? kHalfBytes : 0) + kBandBytes * std::size_t(l.bands + l.channels * (lit ? 2 : 1));
+           (l.halves ? kHalfBytes : 0) + (l.coverage ? kCoverageBytes : 0) + (l.catchers ? kCatcherBytes : 0) +
+           kBandBytes * std::size_t(l.bands + l.channels * ((lit ? 2 : 1) + (l.catchers ? 2 : 0)));
 }
 
 std::vector<std::string> Film::state_parts() const {
@@ -22,14 +23,18 @@ std::vector<std::string> Film::state_parts() const {
     if (layout_.splats) parts.push_back("splats");
     if (layout_.flare) parts.push_back("flare");
     if (layout_.halves) parts.push_back("halves");
+    if (layout_.coverage) parts.push_back("coverage");
+    if (layout_.catchers) parts.push_back("catchers");
     if (layout_.bands) parts.push_back("bands");
     if (layout_.channels) parts.push_back("channels");
     if (!channel_splats_.empty()) parts.push_back("channel_splats");
+    if (!catcher_channels_.empty()) parts.push_back("catcher_channels");
     return parts;
 }
 
 std::span<const std::byte> Film::state(const std::string& part) const {
     static_assert(sizeof(Pixel) == kSumBytes && sizeof(AovPixel) == kAovBytes &&
+                  sizeof(CoveragePixel) == kCoverageBytes && sizeof(CatcherPixel) == kCatcherBytes &&
                   sizeof(Sums) == kSplatBytes && sizeof(HalfPixel) == kHalfBytes &&
                   sizeof(ValueSum) == kBandBytes);
     if (part == "sums") return std::as_bytes(std::span(pixels_));
@@ -37,10 +42,14 @@ std::span<const std::byte> Film::state(const std::string& part) const {
     if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
     if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
     if (part == "halves" && layout_.halves) return std::as_bytes(std::span(halves_));
+    if (part == "coverage" && layout_.coverage) return std::as_bytes(std::span(coverage_));
+    if (part == "catchers" && layout_.catchers) return std::as_bytes(std::span(catchers_));
     if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
     if (part == "channels" && layout_.channels) return std::as_bytes(std::span(channels_));
     if (part == "channel_splats" && !channel_splats_.empty())
         return std::as_bytes(std::span(channel_splats_));
+    if (part == "catcher_channels" && !catcher_channels_.empty())
+        return std::as_bytes(std::span(catcher_channels_));
     std::string known;
     for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
     throw input_error("film state", "part", known, "'" + part + "'");

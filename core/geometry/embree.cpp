@@ -4,7 +4,8 @@
 // One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world
 // space (flattened) or as a user geometry that traces the mesh's own scene; geometry
 // `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
-// stands between them.
+// stands between them. Where there are catchers, a second one holds them and the lights
+// alone: the same geometries under the same ids.
 #include <cstring>
 #include <algorithm>
 #include <deque>
@@ -42,6 +43,8 @@ class EmbreeIntersector final : public Intersector {
     SceneOwner new_scene(std::size_t triangles);
     void set_filters(RTCGeometry geometry, const InstanceGeometry& instance);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
+    void attach_to_top(GeometryOwner geometry, unsigned id, bool of_set);
+    RTCScene top_of(const Ray& ray) const { return ray.of_set && set_ ? set_.get() : top_.get(); }
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
     const Hull& hull_of(std::uint32_t index, const Mesh& mesh);
@@ -60,6 +63,7 @@ class EmbreeIntersector final : public Intersector {
         mesh_scenes_;  // by mesh, and whether it is cut out, and clear
     std::map<std::uint32_t, Hull> hulls_;  // of meshes that move; for building only
     SceneOwner top_;
+    SceneOwner set_;   // of catchers; null: there are none
     unsigned sphere_geometry_;
     std::string name_;
 };
@@ -79,6 +83,7 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
       top_(new_scene(count_flattened(meshes, instances, flattened_))),
       sphere_geometry_(static_cast<unsigned>(instances.size())),
       name_(device_.version()) {
+    if (std::ranges::any_of(instances, &InstanceGeometry::catcher)) set_ = new_scene(0);
     for (unsigned i = 0; i < instances.size(); ++i) {
         const Mesh& mesh = meshes[instances[i].mesh];
         has_cutout_.push_back(instances[i].cutout);
@@ -86,9 +91,10 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
         if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
     }
     if (!spheres_.empty())
-        attach(top_.get(), geometry_of_spheres(device_, spheres_), sphere_geometry_);
+        attach_to_top(geometry_of_spheres(device_, spheres_), sphere_geometry_, true);
     hulls_.clear();
     rtcCommitScene(top_.get());
+    if (set_) rtcCommitScene(set_.get());
     device_.check("building the acceleration structure of the scene");
 }
 
@@ -114,6 +120,11 @@ void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned 
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene, geometry.get(),
                           id);  // the scene keeps a reference of its own
+}
+
+void EmbreeIntersector::attach_to_top(GeometryOwner geometry, unsigned id, bool of_set) {
+    if (set_ && of_set) rtcAttachGeometryByID(set_.get(), geometry.get(), id);
+    attach(top_.get(), std::move(geometry), id);
 }
 
 RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
@@ -143,19 +154,19 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
         GeometryOwner geometry =
             world_triangles_of(device_, mesh, instance.world_from_local);
         set_filters(geometry.get(), instance);
-        attach(top_.get(), std::move(geometry), id);
+        attach_to_top(std::move(geometry), id, instance.catcher);
         return;
     }
     RTCScene local_scene = mesh_scene(instance, mesh);
     if (!instance.still()) {
         moving_.emplace_back(local_scene, id, hull_of(instance.mesh, mesh), instance);
-        attach(top_.get(), geometry_of(device_, moving_.back()), id);
+        attach_to_top(geometry_of(device_, moving_.back()), id, instance.catcher);
         return;
     }
     const Affine3f local = to_float(inverse(to_double(instance.world_from_local)));
     placed_.push_back({local_scene, id, local,
                        world_bounds(mesh, instance.world_from_local)});
-    attach(top_.get(), geometry_of(device_, placed_.back()), id);
+    attach_to_top(geometry_of(device_, placed_.back()), id, instance.catcher);
 }
 
 RawHit EmbreeIntersector::raw_hit(float t, const RTCHit& hit) const {
@@ -213,7 +224,7 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
     ray_hit.ray = embree_ray(ray);
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    query(top_.get(), context.embree, ray_hit);
+    query(top_of(ray), context.embree, ray_hit);
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return raw_hit(ray_hit.ray.tfar, ray_hit.hit);
 }
@@ -224,7 +235,7 @@ bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
     context.ray = &ray;
     context.crossings = crossings;
     RTCRay shadow_ray = embree_ray(ray);
-    query(top_.get(), context.embree, shadow_ray);
+    query(top_of(ray), context.embree, shadow_ray);
     return shadow_ray.tfar < 0;  // Embree's sign for "something was met"
 }
 

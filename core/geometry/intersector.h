@@ -27,6 +27,7 @@ struct InstanceGeometry {
     // Over the scene's interval (0 .. 1); both outlive the intersector.
     const Motion* motion = nullptr;  // in the place of world_from_local; null: stands still
     const Shown* shown = nullptr;    // null: always
+    bool catcher = false;            // met by rays of the set, too (Ray::of_set)
     bool still() const { return !motion && !shown; }
 };
 

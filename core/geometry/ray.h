@@ -15,6 +15,7 @@ struct Ray {
     float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
     RayCone cone = {};  // about the ray; empty: no texture is averaged
+    bool of_set = false;  // meets catchers alone: the set as it is without the objects
 };
 
 /// Whether a ray tracer bears it: no NaN, nothing infinite, and nothing at which its own numbers overflow.

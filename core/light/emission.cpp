@@ -74,7 +74,7 @@ std::optional<EmissionPoint> point_on(const Sphere& sphere, Vec2f u, const Viewp
                          .pdf = side.pdf(n) / (sphere.radius * sphere.radius)};
 }
 
-EmissionSampler::EmissionSampler(const LightSet& lights, std::span<const ViewCone> views)
+EmissionSampler::EmissionSampler(const LightSet& lights, std::span<const ViewCone> views, bool with_sky)
     : lights_(&lights), entry_of_(lights.lights().size(), -1) {
     std::vector<double> weights;
     for (std::size_t i = 0; i < entry_of_.size(); ++i) {
@@ -87,7 +87,7 @@ EmissionSampler::EmissionSampler(const LightSet& lights, std::span<const ViewCon
         for (const ViewCone& view : views) weight += illuminance_estimate(bounds, moves, view);
         if (weight > 0 && std::isfinite(weight)) add(std::int32_t(i), weight / double(views.size()), weights);
     }
-    const double sky = sky_weight(views);
+    const double sky = with_sky ? sky_weight(views) : 0;
     if (sky > 0) add(EmissionPoint::kSky, sky, weights);
     if (weights.empty()) return;
     double sum = 0;

@@ -40,7 +40,7 @@ class EmissionSampler {
   public:
     EmissionSampler() = default;
     /// `views`: at some moments, one at least, between which the camera hardly moves. `lights` outlives this.
-    EmissionSampler(const LightSet& lights, std::span<const ViewCone> views);
+    EmissionSampler(const LightSet& lights, std::span<const ViewCone> views, bool with_sky = true);
 
     /// Nothing to be sampled.
     bool empty() const { return choice_.empty(); }

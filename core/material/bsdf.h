@@ -20,7 +20,8 @@ namespace dg {
 /// (share of light that a smooth clear surface lets through unbent; where it bounds a
 /// volume, as if light went on without being bent: both faces of a plane slab have the
 /// Fresnel reflectance of the angle outside); float reversed(wo, wi) const (what a delta
-/// lobe from wi to wo has, 1 / eta^2 aside, over the same from wo to wi).
+/// lobe from wi to wo has, 1 / eta^2 aside, over the same from wo to wi); float diffuse_share(wo,
+/// wi) const (of f that is not delta, 0 to 1).
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf>;
 

@@ -14,6 +14,7 @@ struct ConductorBsdf {
 
     static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
     bool is_specular() const { return alpha < kSmoothAlpha; }
+    float diffuse_share(Vec3f, Vec3f) const { return 0; }
 
     Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
         const Facing side(ns, ng, wo);

@@ -26,6 +26,7 @@ struct DielectricBsdf {
     /// window.
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return alpha < kSmoothAlpha || std::abs(ior - 1) < 1e-3f; }
+    float diffuse_share(Vec3f, Vec3f) const { return 0; }
 
     Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
         const Facing side(ns, ng, wo);

@@ -35,6 +35,7 @@ struct DiffuseBsdf {
     bool bounds_volume() const { return false; }
     Spectrum straight(Vec3f) const { return 0.f; }
     float reversed(Vec3f, Vec3f) const { return 1; }
+    float diffuse_share(Vec3f, Vec3f) const { return 1; }
 };
 
 }  // namespace dg

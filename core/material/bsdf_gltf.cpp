@@ -248,6 +248,15 @@ Evaluation GltfBsdf::evaluate_through(const Seen& seen, Vec3f wi, float cos_i,
             seen.diffuse_probability * through_share * cos_i / kPi, disperses};
 }
 
+float GltfBsdf::diffuse_share(Vec3f wo, Vec3f wi) const {
+    const Seen seen = seen_from(wo);
+    const float all = evaluate_with_pdf(seen, wi).f_cos.average(), cos_i = dot(seen.side.ns, wi);
+    if (!(all > 0)) return 1;
+    const Evaluation diffused = seen.side.reflects(wi) ? evaluate_diffuse(seen, wi, cos_i)
+                                                       : evaluate_through(seen, wi, -cos_i, eta(seen.side.front));
+    return std::min(1.f, diffused.f_cos.average() / all);
+}
+
 Evaluation GltfBsdf::evaluate_with_pdf(const Seen& seen, Vec3f wi) const {
     const Vec3f wo = seen.wo;
     const Facing& side = seen.side;

@@ -131,6 +131,7 @@ struct GltfBsdf {
     bool bounds_volume() const { return bends; }
     Spectrum straight(Vec3f wo) const;
     float reversed(Vec3f, Vec3f) const { return 1; }
+    float diffuse_share(Vec3f wo, Vec3f wi) const;
 
   private:
     /// Split of light at a facet whose normal makes cos_h with wo: colours, and the chance to

@@ -61,6 +61,16 @@ LayeredBsdf::Shares LayeredBsdf::shares(Vec3f wo) const {
     return p;
 }
 
+float LayeredBsdf::diffuse_share(Vec3f wo, Vec3f wi) const {
+    const Facing side(base.ns, base.ng, wo);
+    const float all = evaluate(wo, wi).average();
+    if (!(all > 0)) return 1;
+    const float kept = (1 - shares(wo).coat) * (sheen.present() ? sheen.passed(side.cos_o, dot(side.ns, wi)) : 1);
+    const float glossy = base.evaluate(wo, wi).average() * (1 - base.diffuse_share(wo, wi)) * kept;
+    const float coated = coat.evaluate_with_pdf(base.ng, wo, wi).f_cos.average() * shares(wo).coat;
+    return std::clamp(1 - (glossy + coated) / all, 0.f, 1.f);
+}
+
 Evaluation LayeredBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     const Shares p = shares(wo);
     const Facing side(base.ns, base.ng, wo);

@@ -69,6 +69,8 @@ struct LayeredBsdf {
     /// Coat and sheen take their share of what goes straight through.
     Spectrum straight(Vec3f wo) const;
     float reversed(Vec3f wo, Vec3f wi) const;
+    /// Sheen is diffuse, a coat is not.
+    float diffuse_share(Vec3f wo, Vec3f wi) const;
 
   private:
     /// Shares of the light seen from wo: what the coat takes, and the chances to follow it, the

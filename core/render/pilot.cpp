@@ -68,7 +68,7 @@ class Pilot {
           frame_{settings.sensor.width, settings.sensor.height},
           density_(settings.filter, frame_, {}, &settings.shutter) {
         settings_.seed = hash64(settings.seed, kOwnRandom, 1);
-        settings_.light = {1, 1};
+        settings_.light = {1, 1, settings.light.sky};
         settings_.technique = Technique::both;
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
     }

@@ -129,15 +129,29 @@ class CameraPass {
         if (!weight_.off()) first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
         FirstHit hit;
         FirstHit* const wanted = film_.layout().aovs ? &hit : nullptr;
-        const Radiance light = radiance(scene_, ray, sample.wavelengths, sample.sampler, settings_.path, wanted,
-                                        &work.counters.rays, first ? &*first : nullptr);
+        const Sight sight = look(scene_, ray, sample.wavelengths, sample.sampler, settings_.path, wanted,
+                                 &work.counters.rays, first ? &*first : nullptr);
         if (wanted) add_aov(sample, ray.time, hit);
+        const Spectrum weight(camera_ray.weight * sample.weight);
         if (reprojected_) {
-            splat(sample, camera_ray, landings.subspan(1 - first_traced_), light);
+            splat(sample, camera_ray, landings.subspan(1 - first_traced_), sight, weight);
         } else {
             film_.add(sample.pixel.x, sample.pixel.y, sample.index, sample.wavelengths,
-                      light.sum() * (camera_ray.weight * sample.weight));
+                      arrived(sample, sight, weight, [&](const Radiance& r) { return r.sum() * weight; }));
         }
+    }
+
+    /// Light on its way to one pixel, by `to_film`. Coverage is that of a white world's luminance, so that a pixel's
+    /// share is that of the light that it would have.
+    template <typename ToFilm>
+    CameraLight arrived(const Sample& sample, const Sight& sight, Spectrum weight, const ToFilm& to_film) const {
+        CameraLight all{.light = to_film(sight.light)};
+        if (film_.layout().catchers) all.with = to_film(sight.with), all.without = to_film(sight.without);
+        if (!film_.layout().coverage) return all;
+        const Spectrum luminance = sample.wavelengths.d65 * sample.wavelengths.cie_y * weight;
+        all.white = 4 * luminance.average();
+        all.covered = all.white * sight.covers.sum();
+        return all;
     }
 
     /// Each wavelength at its own film point; those of one pixel are added as one value. Light that only
@@ -145,20 +159,21 @@ class CameraPass {
     /// weighs the landings: another hero would have been bent elsewhere in the scene, so its technique
     /// has the density 0 for this path. It has the plain weight of the hero's own film sample.
     void splat(const Sample& sample, const CameraRay& camera_ray, std::span<const Reprojection> others,
-               const Radiance& light) const {
+               const Sight& sight, Spectrum own) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.ray.time, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
         const Landings landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
-        Spectrum own = light.hero * (camera_ray.weight * sample.weight);
         for (const Landing& l : landings) {   // the hero's own pixel comes first
-            film_.add_shared(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths, own + light.shared * l.weight);
+            const auto to_film = [&](const Radiance& r) { return r.hero * own + r.shared * l.weight; };
+            film_.add_shared(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
+                             arrived(sample, sight, l.weight, to_film));
             own = 0.f;
         }
     }
 
     void add_aov(const Sample& sample, float time, const FirstHit& hit) const {
         AovSample aov{.hit = hit.found, .position = hit.position, .normal = hit.normal, .albedo = hit.albedo,
-                      .object_id = hit.found ? hit.instance + 1 : 0, .alpha = hit.found ? 1.f : 0.f,
+                      .object_id = hit.found ? hit.instance + 1 : 0,
                       .seen_albedo = hit.seen_albedo, .seen_normal = hit.seen_normal};
         if (hit.found) {
             const Affine3d camera = camera_.world_from_camera.at(time);
@@ -185,6 +200,8 @@ RenderCounters render(const Scene& scene, const Camera& camera, Film& film, cons
                       const std::function<bool(double)>& progress) {
     if (film.responses().count() != film.layout().channels)
         throw input_error("render", "film", "responses of its channels", "none");
+    if (scene.has_catchers() && !(film.layout().catchers && settings.light.off()))
+        throw input_error("render", "film", "catchers, and no light paths, for a scene with catchers", "another");
     const DrawnSamples drawn(settings, film.layout());
     const FilmDensity density(settings.filter, drawn.region(), drawn.counts(), &settings.shutter);
     const Picture picture{scene, camera, film, settings, density};

@@ -100,7 +100,8 @@ std::vector<InstanceGeometry> Scene::geometry_of_instances() {
         const Clear clear = clear_for_shadows(i, delta_lights);
         has_clear_ = has_clear_ || clear != Clear::no;
         geometry.push_back(
-            {i.mesh, i.world_from_local, cutout, clear, i.motion.get(), i.shown.get()});
+            {i.mesh, i.world_from_local, cutout, clear, i.motion.get(), i.shown.get(), i.catcher.has_value()});
+        has_catchers_ = has_catchers_ || i.catcher;
     }
     return geometry;
 }
@@ -129,6 +130,12 @@ void Scene::build_records(const std::vector<InstanceGeometry>& geometry) {
             change ? change->range.most : description_.materials[instance.material],
             instance.material, geometry[i], intersector_->is_flattened(i)));
     }
+}
+
+bool Scene::is_of_object(std::int32_t light) const {
+    if (light < 0) return false;
+    const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[std::size_t(light)]);
+    return triangle && !catcher(triangle->instance);
 }
 
 void Scene::hold(Vec3d point) {

@@ -14,6 +14,7 @@
 #include "light/light.h"
 #include "material/material.h"
 #include "motion/motion.h"
+#include "scene/catcher.h"
 #include "scene/changes.h"
 #include "scene/instance_record.h"
 
@@ -25,6 +26,7 @@ struct Instance {
     Affine3f world_from_local;                      // where it does not move
     std::shared_ptr<const Motion> motion = nullptr; // of time in s; null: it stands still
     std::shared_ptr<const Shown> shown = nullptr;   // times in s; null: always there
+    std::optional<CatcherEffects> catcher = {};     // nothing: it is an object
 };
 
 /// Parts that a scene is built from. Lights made of meshes are found by Scene::build from the
@@ -90,6 +92,16 @@ class Scene {
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
+
+    bool has_catchers() const { return has_catchers_; }
+    /// Effects that the instance catches; null: it is an object.
+    const CatcherEffects* catcher(std::uint32_t instance) const {
+        const auto& effects = description_.instances[instance].catcher;
+        return effects ? &*effects : nullptr;
+    }
+    /// Whether a light (index in lights(), or LightSet::kEnvironment) comes with an object. Lamps without a mesh and the
+    /// environment are the set's.
+    bool is_of_object(std::int32_t light) const;
 
     /// Material at the hit's time.
     MaterialAt material(const SurfaceHit& hit) const {
@@ -164,7 +176,7 @@ class Scene {
     }
     std::vector<Keyed<Sphere>> spheres() const;
     Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
-    bool has_clear_ = false;
+    bool has_clear_ = false, has_catchers_ = false;
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;

@@ -12,9 +12,12 @@ inline constexpr double kMostLightPaths = 1e9;
 struct LightPlan {
     double m1 = 0;   // from an emitter straight to the lens
     double m2 = 0;   // over two surfaces or more; direct light is the camera's
+    bool sky = true;   // straight from the sky, too: not where the lens does not see it
 
     bool off() const { return m1 <= 0 && m2 <= 0; }
-    friend LightPlan operator*(LightPlan plan, double factor) { return {plan.m1 * factor, plan.m2 * factor}; }
+    friend LightPlan operator*(LightPlan plan, double factor) {
+        return {plan.m1 * factor, plan.m2 * factor, plan.sky};
+    }
 };
 
 /// Who draws what both could find: tests hold one against the other. What only one can find is always its

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "transport/light_pick.h"
 #include "transport/path_mis.h"
@@ -13,6 +14,13 @@ namespace {
 
 constexpr float kRouletteThreshold = 0.3f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Scenes that a path goes through: the full one, that of the set alone (of catchers), or both as long as they do not
+/// differ on its way. Without catchers there is the full one alone.
+enum class World : std::uint8_t { both, full, set };
+
+/// Chance to look at what an object hides of the set: it matters in pixels that the object covers in part.
+constexpr float kHiddenShare = 0.25f;
 
 /// State of the path from vertex to vertex.
 struct Walk {
@@ -31,6 +39,14 @@ struct Walk {
     bool bent_alone = false;           // it goes the hero's way, behind a dispersive interface
     int splits = 0;                    // interfaces at which both ways were taken
     bool seen = false;                 // a surface that is not smooth was met: what the lens sees
+    bool open = true;                  // straight from the lens: what is met here covers the background
+    World world = World::full;
+    bool bent = false;                 // it is, by way of smooth glass
+    bool of_catcher = false;           // light is the set's, and not an object's
+    bool hides = false;                // behind an object: what the set sends without it is found by another path
+    const CatcherEffects* effects = nullptr;   // of the first catcher on the way
+    bool past_catcher = false, left_catcher = false;   // it lies behind; straight from it
+    float kept = 1;                    // share of differences between both worlds that counts: the effects that are on
 };
 
 constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to way: more than the longest path has
@@ -148,13 +164,22 @@ class Path {
 
     void start(const Ray& ray, const FirstRay* first);
     bool follow() { return follow(0); }
-    const Radiance& light() const { return light_; }
+    const Sight& sight() const { return sight_; }
     std::uint64_t rays() const { return rays_; }
 
   private:
     bool follow(int vertex);
-    Spectrum& gathered() { return walk_.bent_alone ? light_.hero : light_.shared; }
+    void gather(Spectrum light, bool hero, float kept);
+    void gather(Spectrum light) { gather(light, walk_.bent_alone, walk_.kept); }
+    void gather_emission(Spectrum light);
     bool step(int vertex);
+    bool leave_scene(bool counts);
+    bool arrive(Scene::Hit& found, int vertex, bool counts);
+    bool fork(Scene::Hit& found, int vertex, bool counts);
+    void see_catcher(std::uint32_t instance);
+    bool see_through();
+    void cover(std::uint32_t id, float sign);
+    bool counts(int vertex) const;
     bool scatter(const Material& material, SurfaceHit& hit, int vertex);
     bool scatter_shared(const Material& material, SurfaceHit& hit, int vertex);
     bool leave_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
@@ -166,11 +191,16 @@ class Path {
     template <typename BsdfKind>
     void go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample, PathMis::Vertex* both);
     template <typename BsdfKind, typename Seen>
-    Spectrum direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
-                          const VertexRandom& u, PathMis::Vertex* both, bool& hero_only);
-    template <typename BsdfKind>
-    Spectrum arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
+    void direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit, const VertexRandom& u,
                       PathMis::Vertex* both);
+    template <typename BsdfKind>
+    void arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
+                  const Evaluation& f, PathMis::Vertex* both);
+    bool at_first_catcher() const { return walk_.effects && !walk_.past_catcher; }
+    template <typename BsdfKind>
+    float kept_by(const BsdfKind& bsdf, Vec3f wo, Vec3f wi) const;
+    template <typename BsdfKind>
+    void leave_catcher(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample);
 
     Spectrum environment_emission() const;
     Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;
@@ -187,7 +217,8 @@ class Path {
     FirstHit* first_hit_;
     Walk walk_;
     std::optional<PathMis> bounces_;
-    Radiance light_;
+    Sight sight_;
+    float seen_through_ = 0;   // share of the camera's ray that objects let pass, glass included
     bool traced_ = true;
     std::uint64_t rays_ = 0;
 };
@@ -196,6 +227,7 @@ void Path::start(const Ray& ray, const FirstRay* first) {
     walk_.ray = ray;
     walk_.previous = ray.origin;
     walk_.first = first;
+    if (scene_.has_catchers()) walk_.world = World::both, walk_.of_catcher = true;
     if (first) bounces_.emplace(*first);
     if (bounces_ && bounces_->open()) walk_.bounces = &*bounces_;
 }
@@ -210,26 +242,113 @@ bool Path::follow(int vertex) {
     }
 }
 
+/// Adds light that the path found, to what it belongs to. `kept`: the share of it that only this world is to have.
+void Path::gather(Spectrum light, bool hero, float kept) {
+    const auto add = [&](Radiance& to, float share) {
+        if (share != 0) (hero ? to.hero : to.shared) += light * share;
+    };
+    if (!walk_.of_catcher) return add(sight_.light, 1);
+    if (walk_.world != World::full && !walk_.hides) add(sight_.without, 1);
+    const float share = walk_.world == World::both ? 1 : walk_.world == World::full ? kept : 1 - kept;
+    add(sight_.with, share);
+}
+
+/// The same for what the path met itself. Light of an emitter straight on a catcher is the shadow's affair.
+void Path::gather_emission(Spectrum light) {
+    const bool shadow = walk_.left_catcher && walk_.world == World::set;
+    gather(light, walk_.bent_alone, shadow ? float(walk_.effects->shadow) : walk_.kept);
+}
+
+/// Whether emission met here counts: that of some ways is other passes'.
+bool Path::counts(int vertex) const {
+    const bool caustic = walk_.from_delta && !walk_.in_view;
+    return (settings_.straight || vertex > 0) && (settings_.caustics || !caustic);
+}
+
 /// To what the ray meets, and on from it. False: the path ends.
 bool Path::step(int vertex) {
     ++rays_;
-    const bool caustic = walk_.from_delta && !walk_.in_view;
-    const bool counts = (settings_.straight || vertex > 0) && (settings_.caustics || !caustic);
+    const bool counted = counts(vertex);
     auto found = scene_.intersect(walk_.ray);
-    if (!found) {
-        if (counts) gathered() += walk_.throughput * environment_emission();
-        return false;
-    }
-    SurfaceHit& hit = found->surface;
+    if (!found) return leave_scene(counted);
+    const bool object = found->sphere_light < 0 && walk_.world == World::both &&
+                        !scene_.catcher(found->surface.instance);
+    return object ? fork(*found, vertex, counted) : arrive(*found, vertex, counted);
+}
+
+/// To the background. False: the path ends.
+bool Path::leave_scene(bool counts) {
+    if (walk_.open && walk_.bent && scene_.has_catchers()) return see_through();
+    if (walk_.open && scene_.has_catchers()) walk_.of_catcher = true;
+    else if (walk_.open && settings_.background == Background::transparent) return false;
+    if (counts) gather_emission(walk_.throughput * environment_emission());
+    return false;
+}
+
+/// Goes on at what was met. False: the path ends.
+bool Path::arrive(Scene::Hit& found, int vertex, bool counts) {
+    SurfaceHit& hit = found.surface;
     if (walk_.medium.present) walk_.throughput *= walk_.medium.transmittance(hit.t);
-    if (found->sphere_light >= 0) {
-        if (counts) gathered() += sphere_light(std::uint32_t(found->sphere_light), hit);
+    if (found.sphere_light >= 0) {
+        if (walk_.open && scene_.has_catchers()) walk_.of_catcher = true;
+        else cover(Cover::kSpheres + std::uint32_t(found.sphere_light), 1);
+        if (counts) gather_emission(sphere_light(std::uint32_t(found.sphere_light), hit));
         return false;
     }
+    if (!scene_.has_catchers() || !scene_.catcher(hit.instance)) cover(hit.instance, 1);
+    else if (walk_.open && walk_.bent) return see_through();
+    else see_catcher(hit.instance);
     const MaterialAt material = scene_.material(hit);
-    if (counts) gathered() += walk_.throughput * surface_emission(material, hit);
+    if (counts) gather_emission(walk_.throughput * surface_emission(material, hit));
     if (vertex == settings_.max_depth && !scene_.has_clear()) return false;   // behind it only windows count
     return scatter(material, hit, vertex);
+}
+
+/// At a catcher. One that is seen past an object (through a sheet) is in both worlds again, as effects may be off.
+void Path::see_catcher(std::uint32_t instance) {
+    if (walk_.open && walk_.world == World::full) walk_.world = World::both, walk_.hides = true;
+    if (walk_.open) walk_.of_catcher = true;
+    if (walk_.of_catcher && !walk_.effects) walk_.effects = scene_.catcher(instance);
+}
+
+/// At the end of a way through smooth glass that is to show what lies straight behind it: the path that looks there
+/// brings it (fork()).
+bool Path::see_through() {
+    seen_through_ += walk_.throughput.average() * walk_.eta_squared;
+    return false;
+}
+
+/// Adds to what the camera's ray is covered by, or takes off what passes.
+void Path::cover(std::uint32_t id, float sign) {
+    if (!walk_.open || walk_.world == World::set) return;
+    const float share = walk_.throughput.average() * walk_.eta_squared;
+    sight_.covers.add(id, sign * share);
+}
+
+/// At an object, where the two worlds part: the full one goes on there, the set's behind it. Both draw the same random
+/// numbers: each by itself is right on average, and so is their difference.
+bool Path::fork(Scene::Hit& found, int vertex, bool counts) {
+    const Walk before = walk_;
+    const PathSampler sampler = sampler_;
+    const bool camera = walk_.open;
+    walk_.world = World::full;
+    if (camera) walk_.of_catcher = false;
+    if (walk_.kept > 0 && arrive(found, vertex, counts)) {
+        const int next = vertex + (walk_.straight == 0);
+        if (next < settings_.roulette_depth || survives_roulette(walk_, sampler_.next_1d())) follow(next);
+    }
+    walk_ = before;
+    if (camera && walk_.hides) return false;
+    wavelengths_.secondary_ended = secondary_ended_ || walk_.bent_alone;
+    sampler_ = sampler;
+    walk_.world = World::set;
+    walk_.ray.of_set = true;
+    if (camera) {
+        if (sampler_.next_1d() >= kHiddenShare) return false;
+        walk_.throughput *= 1 / kHiddenShare;
+        walk_.kept = 1 - seen_through_;
+    }
+    return step(vertex);
 }
 
 /// At a surface: its BSDF, and the way on. False: the path ends.
@@ -250,7 +369,7 @@ bool Path::scatter_shared(const Material& material, SurfaceHit& hit, int vertex)
 
 bool Path::leave_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
                          PathMis::Vertex* both) {
-    if (first_hit_ && !walk_.seen) record_first_hit(material, hit, is_specular(bsdf));
+    if (first_hit_ && !walk_.seen && walk_.world != World::set) record_first_hit(material, hit, is_specular(bsdf));
     return std::visit([&](const auto& kind) { return leave(kind, hit, vertex, both); }, bsdf);
 }
 
@@ -262,9 +381,7 @@ bool Path::leave(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex, PathMi
     const VertexRandom u = draw_vertex(bsdf, tries, sampler_);
     const auto seen = seen_from(bsdf, hit.wo);
     if (!last && !bsdf.is_specular()) {
-        bool hero_only = false;
-        const Spectrum direct = walk_.throughput * direct_light(bsdf, seen, tries, hit, u, both, hero_only);
-        (hero_only ? light_.hero : gathered()) += direct;
+        direct_light(bsdf, seen, tries, hit, u, both);
     }
     if constexpr (!BsdfKind::kOneLobe)
         if (!last && walk_.in_view && walk_.splits < settings_.splits && split(bsdf, hit, vertex)) return true;
@@ -301,7 +418,13 @@ bool Path::split(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex) {
 template <typename BsdfKind>
 void Path::go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample, PathMis::Vertex* both) {
     const RayCone cone = next_cone(scene_, walk_.ray.cone, hit, sample);
+    const bool of_set = walk_.ray.of_set;
+    if (scene_.has_catchers()) leave_catcher(bsdf, hit, sample);
+    const bool through = sample.transmitted && sample.specular && (settings_.see_through || !bsdf.bounds_volume());
+    walk_.open = walk_.open && through;
+    walk_.bent = walk_.bent || bsdf.bounds_volume();
     advance(walk_, hit, bsdf, sample, both);
+    if (!scene_.has_catchers() || !scene_.catcher(hit.instance)) cover(hit.instance, -1);
     if (sample.hero_only) {
         // The throughput carries the hero's share from here on, so the weights of what was
         // gathered before stay. A BSDF disperses no path whose wavelengths have ended.
@@ -309,43 +432,77 @@ void Path::go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sam
     }
     walk_.ray = spawn_ray(hit, sample.wi, walk_.ray.time);
     walk_.ray.cone = cone;
+    walk_.ray.of_set = of_set;
 }
 
-/// Next-event estimation at one vertex. hero_only: see Evaluation.
+/// From the first catcher on, differences count as far as its effects are on.
+template <typename BsdfKind>
+void Path::leave_catcher(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample) {
+    if (sample.transmitted && sample.specular && !bsdf.bounds_volume()) return;   // a window
+    walk_.left_catcher = walk_.world == World::both && at_first_catcher();
+    if (!walk_.left_catcher) return;
+    walk_.kept = sample.specular ? float(walk_.effects->reflection) : kept_by(bsdf, hit.wo, sample.wi);
+    walk_.past_catcher = true;
+}
+
+/// Next-event estimation at one vertex.
 template <typename BsdfKind, typename Seen>
-Spectrum Path::direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
-                            const VertexRandom& u, PathMis::Vertex* both, bool& hero_only) {
+void Path::direct_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit, const VertexRandom& u,
+                        PathMis::Vertex* both) {
     using Strategy = PathSettings::Strategy;
     const bool shared = settings_.strategy != Strategy::light, by_bsdf = settings_.strategy == Strategy::bsdf;
     if (tries > 1 && !by_bsdf) {
         const auto picked =
             LightPick::pick(scene_, hit, wavelengths_, tries, shared, {u.select, u.light, u.lobe}, walk_.throughput,
                             [&](Vec3f wi) { return bsdf.evaluate_with_pdf(seen, wi); });
-        if (!picked) return 0.f;
-        hero_only = picked->seen.hero_only;
-        return picked->seen.f_cos * arriving(bsdf, hit, picked->light, picked->weight, both);
+        if (picked) arriving(bsdf, hit, picked->light, picked->weight, picked->seen, both);
+        return;
     }
     const auto light = scene_.sample_light(u.select, u.light, hit.position, hit.time, wavelengths_);
-    if (!light || light->pdf <= 0) return 0.f;
-    if (by_bsdf && !light->delta) return 0.f;
-    const auto [f_cos, pdf, alone_bent] = bsdf.evaluate_with_pdf(seen, light->wi);
-    if (f_cos.is_black()) return 0.f;
-    hero_only = alone_bent;
-    const float share = light->delta || !shared ? 1.f : power_heuristic(light->pdf, pdf);
-    return f_cos * arriving(bsdf, hit, *light, share / light->pdf, both);
+    if (!light || light->pdf <= 0) return;
+    if (by_bsdf && !light->delta) return;
+    const Evaluation f = bsdf.evaluate_with_pdf(seen, light->wi);
+    if (f.f_cos.is_black()) return;
+    const float share = light->delta || !shared ? 1.f : power_heuristic(light->pdf, f.pdf);
+    arriving(bsdf, hit, *light, share / light->pdf, f, both);
 }
 
-/// A light's radiance with its weight, where nothing is in its way.
+/// Adds a light's radiance with its weight, where nothing is in its way.
 template <typename BsdfKind>
-Spectrum Path::arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
-                        PathMis::Vertex* both) {
-    ++rays_;
-    const Spectrum visible =
-        scene_.visibility(spawn_ray(hit, light.wi, walk_.ray.time), light.distance, light.delta,
-                          medium_after(walk_, hit, bsdf, light.wi), wavelengths_);
-    if (visible.is_black()) return 0.f;
+void Path::arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSample& light, float weight,
+                    const Evaluation& f, PathMis::Vertex* both) {
+    const bool of_object = walk_.world != World::full && scene_.is_of_object(light.light);
+    if (of_object && walk_.world == World::set) return;
+    const Interior medium = medium_after(walk_, hit, bsdf, light.wi);
+    Ray ray = spawn_ray(hit, light.wi, walk_.ray.time);
+    const auto visible = [&](bool of_set) {
+        ++rays_;
+        ray.of_set = of_set;
+        return scene_.visibility(ray, light.distance, light.delta, medium, wavelengths_);
+    };
     if (both) weight *= walk_.bounces->of_sample(scene_, *both, light, wavelengths_);
-    return light.radiance * visible * weight;
+    const auto bring = [&](Spectrum left, World world, float kept) {
+        if (left.is_black()) return;
+        const Spectrum direct = walk_.throughput * (f.f_cos * (light.radiance * left * weight));
+        const World here = std::exchange(walk_.world, world);
+        gather(direct, f.hero_only || walk_.bent_alone, kept);
+        walk_.world = here;
+    };
+    const Spectrum now = visible(walk_.world == World::set);
+    if (walk_.world != World::both) return bring(now, walk_.world, walk_.kept);
+    if (of_object) return bring(now, World::full, kept_by(bsdf, hit.wo, light.wi));
+    if (now.min() == 1 && now.max() == 1) return bring(now, World::both, 1);
+    const float kept = at_first_catcher() ? float(walk_.effects->shadow) : walk_.kept;
+    bring(now, World::full, kept);
+    bring(visible(true), World::set, kept);
+}
+
+/// Share of what the full scene sends to a catcher from there that counts.
+template <typename BsdfKind>
+float Path::kept_by(const BsdfKind& bsdf, Vec3f wo, Vec3f wi) const {
+    if (!at_first_catcher() || walk_.effects->all()) return walk_.kept;
+    const float diffuse = bsdf.diffuse_share(wo, wi);
+    return diffuse * float(walk_.effects->gi) + (1 - diffuse) * float(walk_.effects->reflection);
 }
 
 /// Share of emission met by following the BSDF, where light sampling would have had `light_pdf`.
@@ -425,11 +582,20 @@ void Path::record_first_hit(const Material& material, const SurfaceHit& hit, boo
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first) {
+    return look(scene, ray, wavelengths, sampler, settings, hit, ray_count, first).light;
+}
+
+Sight look(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
+           const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first) {
     Path path(scene, settings, wavelengths, sampler, hit);
     path.start(ray, first);
-    if (!path.follow()) return {Spectrum(std::numeric_limits<float>::quiet_NaN()), 0.f};
+    if (!path.follow()) {
+        Sight untraceable;
+        untraceable.light.shared = Spectrum(std::numeric_limits<float>::quiet_NaN());
+        return untraceable;
+    }
     if (ray_count) *ray_count += path.rays();
-    return path.light();
+    return path.sight();
 }
 
 }  // namespace dg

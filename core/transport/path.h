@@ -1,10 +1,16 @@
 // path.h -- radiance along a ray. Knows neither camera nor film, so it can be held against a furnace.
 #pragma once
+#include <array>
+
 #include "geometry/ray.h"
 #include "math/sampler.h"
 #include "scene/scene.h"
 
 namespace dg {
+
+/// Behind everything, where the lens looks past it: the environment, or nothing, for a plate to come there. Light from
+/// there is the environment's in either case.
+enum class Background { environment, transparent };
 
 struct PathSettings {
     int max_depth = 16;      // surface vertices
@@ -13,6 +19,8 @@ struct PathSettings {
     enum class Strategy { mis, light, bsdf } strategy = Strategy::mis;   // light, bsdf: for tests
     bool caustics = true;    // with what mirrors and smooth glass throw on rough surfaces
     bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
+    Background background = Background::environment;
+    bool see_through = false;   // smooth glass lets the background pass unbent; false: it covers it with what it shows
 };
 
 /// Light in two parts that add up: what any wavelength of the path could have found as its hero, and
@@ -33,6 +41,46 @@ struct FirstHit {
     Vec3f seen_albedo, seen_normal;   // of the first surface that is not smooth, times that share
 };
 
+/// Share of a ray's light that one object covers: what lies behind it would have brought as much.
+struct Cover {
+    std::uint32_t instance;   // or, from kSpheres on, a sphere light
+    float share;
+    static constexpr std::uint32_t kSpheres = 0x80000000u;
+};
+
+/// The objects that cover what lies behind them, seen straight: through clear sheets, and through smooth glass if
+/// PathSettings::see_through. The shares are 1 together where nothing behind is seen; the first kMost have theirs.
+class Covers {
+  public:
+    static constexpr std::size_t kMost = 4;
+    void add(std::uint32_t instance, float share) {
+        std::size_t i = 0;
+        while (i < count_ && all_[i].instance != instance) ++i;
+        if (i == count_ && count_ == kMost) i = kMost - 1;
+        else if (i == count_) all_[count_++] = {instance, 0};
+        all_[i].share += share;
+    }
+    const Cover* begin() const { return all_.data(); }
+    const Cover* end() const { return all_.data() + count_; }
+    float sum() const {
+        float sum = 0;
+        for (const Cover& c : *this) sum += c.share;
+        return sum;
+    }
+
+  private:
+    std::array<Cover, kMost> all_;
+    std::size_t count_ = 0;
+};
+
+/// Radiance along a camera ray, and what it covers. In a scene with catchers `light` is that of the objects alone;
+/// `with` is what catchers and the background send past them, with the objects in the scene, and `without` what they
+/// send where there are none: of the whole ray, also where an object covers it.
+struct Sight {
+    Radiance light, with, without;
+    Covers covers;
+};
+
 class FirstRay;   // first_ray.h
 
 /// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance sampling. At
@@ -41,5 +89,9 @@ class FirstRay;   // first_ray.h
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first = nullptr);
+
+/// The same with coverage, in parts where the scene has catchers. Then light paths must not be in use.
+Sight look(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
+           const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first = nullptr);
 
 }  // namespace dg
