@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <thread>
 
 #include "math/error.h"
@@ -22,6 +21,12 @@ std::array<float, kAovChannels.size()> aov_values(const AovSample& s) {
     for (std::size_t k = 0; k < values.size(); ++k)
         if (s.hit || !kAovChannels[k].of_hits) values[k] = kAovChannels[k].value(s);
     return values;
+}
+
+/// Whole steps of a weight of coverage; a sample that is no number has none.
+std::int64_t coverage_steps(float weight) {
+    constexpr float kMost = 0x1p20f, kScale = 0x1p30f;
+    return weight == weight ? std::int64_t(std::clamp(weight, -kMost, kMost) * kScale) : 0;
 }
 
 /// Holds a pixel, or a row, that several threads may write.
@@ -64,7 +69,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     bands_.resize(std::size_t(pixels) * layout.bands);
     channels_.resize(std::size_t(pixels) * layout.channels);
     if (layout.splats || layout.flare) channel_splats_.resize(channels_.size());
-    if (layout.catchers) catcher_channels_.resize(2 * channels_.size());
+    if (layout.catchers) catcher_channels_.resize(3 * channels_.size());
 }
 
 void Film::set_responses(Responses responses) {
@@ -190,23 +195,24 @@ void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& w
 /// replace those of the light alone, which add_light() adds.
 bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
     const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
-                without = wavelengths.to_xyz(arrived.without);
+                without = wavelengths.to_xyz(arrived.without), hidden = wavelengths.to_xyz(arrived.hidden);
     for (int k = 0; k < 3; ++k)
-        if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k])) return false;
-    for (int k = 0; k < 3; ++k) catchers_[i].with[k].add(with[k]), catchers_[i].without[k].add(without[k]);
+        if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k]) || !fits_film(hidden[k])) return false;
+    CatcherPixel& pixel = catchers_[i];
+    for (int k = 0; k < 3; ++k)
+        pixel.with[k].add(with[k]), pixel.without[k].add(without[k]), pixel.hidden[k].add(hidden[k]);
+    pixel.hides += coverage_steps(arrived.hides), pixel.looked += coverage_steps(arrived.looked);
     add_squares(pixels_[i], light + with - without);
     if (!layout_.channels) return true;
-    add_channels(catcher_channels_, 2 * i, responses_.of(wavelengths, arrived.with));
-    add_channels(catcher_channels_, 2 * i + 1, responses_.of(wavelengths, arrived.without));
+    add_channels(catcher_channels_, 3 * i, responses_.of(wavelengths, arrived.with));
+    add_channels(catcher_channels_, 3 * i + 1, responses_.of(wavelengths, arrived.without));
+    add_channels(catcher_channels_, 3 * i + 2, responses_.of(wavelengths, arrived.hidden));
     return true;
 }
 
 void Film::add_coverage(std::size_t i, float white, float covered) {
-    constexpr float kMost = 0x1p20f, kScale = 0x1p30f;
-    const auto steps = [&](float v) { return std::int64_t(std::clamp(v, -kMost, kMost) * kScale); };
-    if (!(std::abs(white) + std::abs(covered) < std::numeric_limits<float>::infinity())) return;
-    coverage_[i].white += steps(white);
-    coverage_[i].covered += steps(covered);
+    coverage_[i].white += coverage_steps(white);
+    coverage_[i].covered += coverage_steps(covered);
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -347,7 +353,12 @@ void Film::merge(const Film& other) {
         for (int k = 0; k < 3; ++k) {
             catchers_[i].with[k].add(other.catchers_[i].with[k]);
             catchers_[i].without[k].add(other.catchers_[i].without[k]);
+            catchers_[i].hidden[k].add(other.catchers_[i].hidden[k]);
         }
+    for (std::size_t i = 0; i < catchers_.size(); ++i) {
+        catchers_[i].hides += other.catchers_[i].hides;
+        catchers_[i].looked += other.catchers_[i].looked;
+    }
     for (std::size_t i = 0; i < catcher_channels_.size(); ++i) catcher_channels_[i].add(other.catcher_channels_[i]);
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);

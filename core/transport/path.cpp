@@ -44,6 +44,7 @@ struct Walk {
     bool bent = false;                 // it is, by way of smooth glass
     bool of_catcher = false;           // light is the set's, and not an object's
     bool hides = false;                // behind an object: what the set sends without it is found by another path
+    bool hidden = false;               // that path
     const CatcherEffects* effects = nullptr;   // of the first catcher on the way
     bool past_catcher = false, left_catcher = false;   // it lies behind; straight from it
     float kept = 1;                    // share of differences between both worlds that counts: the effects that are on
@@ -248,6 +249,10 @@ void Path::gather(Spectrum light, bool hero, float kept) {
         if (share != 0) (hero ? to.hero : to.shared) += light * share;
     };
     if (!walk_.of_catcher) return add(sight_.light, 1);
+    if (walk_.hidden) {
+        add(sight_.hidden, sight_.looked);
+        return add(sight_.with, seen_through_);
+    }
     if (walk_.world != World::full && !walk_.hides) add(sight_.without, 1);
     const float share = walk_.world == World::both ? 1 : walk_.world == World::full ? kept : 1 - kept;
     add(sight_.with, share);
@@ -344,9 +349,10 @@ bool Path::fork(Scene::Hit& found, int vertex, bool counts) {
     walk_.world = World::set;
     walk_.ray.of_set = true;
     if (camera) {
-        if (sampler_.next_1d() >= kHiddenShare) return false;
-        walk_.throughput *= 1 / kHiddenShare;
-        walk_.kept = 1 - seen_through_;
+        sight_.hides = walk_.hidden = true;
+        const bool looks = sampler_.next_1d() < kHiddenShare;
+        sight_.looked = seen_through_ > 0 ? 1 : looks ? 1 / kHiddenShare : 0;
+        if (sight_.looked == 0) return false;
     }
     return step(vertex);
 }

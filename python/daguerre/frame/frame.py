@@ -33,7 +33,13 @@ class Frame(Value):
     Attributes:
         rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
         xyz: CIE 1931 XYZ of the same light, shape (H, W, 3).
-        alpha: Share of the samples that hit something, shape (H, W); default: 1.
+        alpha: Share of each pixel that objects cover, through lens, shutter and filter, by which
+            ``rgb`` is premultiplied, shape (H, W); default: 1.
+        catcher: What objects add to the light of catchers and take from it, if the scene has any,
+            shape (H, W, 3): plus ``rgb`` and (1 - ``alpha``) of a plate it is the picture.
+        catcher_ratio: The same as a factor of that part of the plate.
+        catcher_channels: ``catcher`` in the channels of the sensor, shape (H, W, C).
+        catcher_ratio_channels: ``catcher_ratio`` likewise.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
         splats: Light that light paths brought to ``rgb``, shape (H, W, 3), beside ``aovs``.
@@ -63,6 +69,10 @@ class Frame(Value):
     bands: NDArray[np.float32] | None = None
     splats: NDArray[np.float32] | None = None
     halves: NDArray[np.float32] | None = None
+    catcher: NDArray[np.float32] | None = None
+    catcher_ratio: NDArray[np.float32] | None = None
+    catcher_channels: NDArray[np.float32] | None = None
+    catcher_ratio_channels: NDArray[np.float32] | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
 from daguerre.frame.aovs import FILM_CHANNELS
+from daguerre.frame.catcher import layers
 from daguerre.frame.frame import Frame
 
 
@@ -44,10 +45,9 @@ def frame_of(
             before.
     """
     planes: dict[str, NDArray[Any]] = {}
-    alpha = np.ones(film.shape, np.float32)
     if aovs:
         planes = {name: _plane(film, name) for name in FILM_CHANNELS}
-        alpha = film.aov("alpha")
+    alpha = film.coverage()
     parts, keep = film.state_parts(), bool(metadata.get("bands"))
     if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .diffraction import developed, rgb_of
@@ -76,7 +76,21 @@ def frame_of(
         halves=_halves(film) if "halves" in parts else None,
         channels=channels,
         bands=bands,
+        **_catchers(film, alpha),
     )
+
+
+def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
+    """Layers of what catchers catch, if the film has any."""
+    parts = film.state_parts()
+    made: dict[str, NDArray[np.float32]] = {}
+    if "catchers" in parts:
+        pair = film.set_rgb(True), film.set_rgb(False)
+        made["catcher"], made["catcher_ratio"] = layers(*pair, alpha)
+    if "catcher_channels" in parts:
+        pair = film.set_channels(True), film.set_channels(False)
+        made["catcher_channels"], made["catcher_ratio_channels"] = layers(*pair, alpha)
+    return made
 
 
 def _halves(film: Any) -> NDArray[np.float32]:

@@ -30,6 +30,7 @@ def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False, scatter: bool 
     planes = 3 * (layout.flare + layout.splats * layout.aovs) + 12 * layout.halves
     planes += len(FILM_CHANNELS) * layout.aovs
     planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
+    planes += 4 * (3 + 2 * layout.channels) * layout.catchers  # and two that they are made of
     made = FRAME + FLOAT * planes + TRUTH * truth
     nodes = NODES + SCATTER_NODES * scatter
     drawn = math.ceil(nodes * (6 + layout.channels)) if layout.flare else 0

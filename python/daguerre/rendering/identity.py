@@ -19,6 +19,7 @@ from daguerre.setup.metadata import camera_metadata, facts_of
 from .adaptive import Round
 from .light_paths import show_plan
 from .light_plan import LightPlan
+from .parameters import DEFAULT
 from .pixels import parse_filter
 from .prepare import Prepared
 from .settings import RenderSettings
@@ -77,6 +78,7 @@ def metadata(session: Drawn) -> dict[str, Any]:
         "diffraction": settings.diffraction.words if settings.diffraction else None,
         "pupils": one.pupils,
         "bands": settings.film.bands or None,
+        "background": settings.backdrop.background,
         **sensor_metadata(one.sensor),
         "scene_hash": session.key["scene"],
         "bad_samples": bad,
@@ -124,6 +126,10 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
         out["bands"] = settings.film.bands
     if one.overscan:
         out["overscan"] = str(one.overscan)
+    if settings.backdrop.background != DEFAULT["background"]:
+        out["background"] = settings.backdrop.background
+    if settings.backdrop.see_through:
+        out["see_through"] = True
     return out
 
 

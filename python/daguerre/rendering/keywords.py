@@ -33,6 +33,8 @@ class ViewKeywords(TypedDict, total=False):
     technique: str
     diffraction: bool | Diffraction
     bands: int
+    background: str
+    see_through: bool
 
 
 class SettingsKeywords(ViewKeywords, total=False):

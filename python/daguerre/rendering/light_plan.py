@@ -17,6 +17,7 @@ from daguerre.setup.resolved import ResolvedCamera
 from .film_memory import check_film
 from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
+from .parameters import TRANSPARENT
 from .pixels import parse_filter
 from .prepare import Prepared
 from .settings import RenderSettings
@@ -59,6 +60,9 @@ def plan_light(one: Prepared) -> LightPlan:
     with core_errors(UsageError):
         core = _settings(one, one.setup, NONE)
     wanted = check_light_paths(one.settings.light.light_paths)
+    if one.scene.has_catchers:
+        _check_catchers(one)
+        wanted = OFF
     plan = pilot(one, core) if wanted is None else wanted
     # The pilot judges by the frame; a crop gets the share that it has of its pixels.
     shared = one.share(area(one.window)) if wanted is None else 1.0
@@ -92,6 +96,8 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         splats=plan.followed,
         flare=plan.flare > 0 or plan.scatter > 0,
         halves=film.halves,
+        coverage=True,
+        catchers=one.scene.has_catchers,
         bands=film.bands if waves is None else waves.bands,
         channels=0 if curves is None else len(curves),
     )
@@ -100,6 +106,23 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
     if curves is not None:
         made.set_responses(curves)
     return made
+
+
+def _check_catchers(one: Prepared) -> None:
+    """Refuses what would come into a plate twice, or not where it belongs.
+
+    Raises:
+        UsageError: The message names the parameter.
+    """
+    light = one.settings.light
+    for name in DARK:
+        if check_paths(getattr(light, name), name) != 0:
+            raise UsageError(f"{name}: wanted off with catchers: the plate has that of its own lamps")
+    if one.settings.diffraction is not None or one.settings.film.bands:
+        name = "bands" if one.settings.diffraction is None else "diffraction"
+        raise UsageError(f"{name}: wanted none with catchers, whose layers have colours alone")
+    if check_light_paths(light.light_paths) not in (None, OFF):
+        raise UsageError("light_paths: wanted auto or off with catchers, got a number of paths")
 
 
 def pilot(one: Prepared, core: _core.RenderSettings) -> Plan:
@@ -154,6 +177,8 @@ def _options(settings: RenderSettings) -> dict[str, Any]:
         "threads": settings.threads,
         "filter": _core.Filter(*parse_filter(settings.sampling.filter)),
         "max_depth": light.max_depth,
+        "transparent": settings.backdrop.background == TRANSPARENT,
+        "see_through": settings.backdrop.see_through,
         "strategy": reference.strategy,
         "dispersion": reference.dispersion,
         "technique": reference.technique,

@@ -25,6 +25,7 @@ from .truth import GT_LENSES, GT_RAYS, GT_TIMES, MAX_RAYS
 DEFAULT_SPP = 64
 MAX_SEED = (1 << 64) - 1
 OUTPUT, SAMPLING = "Output", "Sampling"
+ENVIRONMENT, TRANSPARENT = BACKGROUNDS = ("environment", "transparent")
 
 
 @dataclass(frozen=True)
@@ -202,6 +203,21 @@ LIGHT_ROWS = (
         "``Diffraction`` with the number of bands and zones; default: False.",
     ),
 )
+PLATE_ROWS = (
+    Setting(
+        "background", "Background behind the scene: the environment as the lens sees it, or "
+        "nothing, for a plate to come there. It gives light in either case",
+        default="environment", kind="choice", choices=BACKGROUNDS,
+        flags=("--background",), metavar="environment|transparent", panel=OUTPUT,
+        tells_default=True, explained=("plates.md#alpha",),
+    ),
+    Setting(
+        "see_through", "Smooth glass keeps a hole for what lies straight behind it, instead of "
+        "covering it with what it refracts", default=False, kind="flag",
+        normal=_switch("True or False"), flags=("--see-through",), panel=OUTPUT,
+        explained=("plates.md#alpha",),
+    ),
+)
 TRUTH_ROWS = (
     Setting(
         "gt_time", "Exact depth, P, N and ids at that moment of the exposure, instead of means",
@@ -270,7 +286,7 @@ DIFFRACTION_ROWS = (
     ),
 )
 # fmt: on
-ROWS = (*SAMPLING_ROWS, *FILM_ROWS, *LIGHT_ROWS, *TRUTH_ROWS, *REFERENCE_ROWS, THREADS)
+ROWS = (*SAMPLING_ROWS, *FILM_ROWS, *LIGHT_ROWS, *PLATE_ROWS, *TRUTH_ROWS, *REFERENCE_ROWS, THREADS)
 #: All parameters by name, for the record.
 TABLE = {row.name: row for row in ROWS}
 #: Defaults, for the fields of the record.

@@ -47,14 +47,15 @@ State = dict[str, NDArray[np.uint32]]
 SUMS = "sums"
 ROUND = "round"
 STATE_PARTS = (
-    SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", ROUND,
+    SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", "coverage",
+    "catchers", "catcher_channels", ROUND,
 )  # fmt: skip
 ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
     "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare, scatter, "
-    "diffraction, sensor, bands",
+    "background, diffraction, sensor, bands",
     "build": "the build of daguerre",
 }
 #: Settings that a header tells as they are.

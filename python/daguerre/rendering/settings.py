@@ -72,6 +72,14 @@ class Light(_Group):
 
 
 @dataclass(frozen=True)
+class Backdrop(_Group):
+    """What lies behind the scene, and what glass shows of it."""
+
+    background: str = DEFAULT["background"]
+    see_through: bool = DEFAULT["see_through"]
+
+
+@dataclass(frozen=True)
 class Truth(_Group):
     """Ground truth: at which moment, and through which rays."""
 
@@ -109,6 +117,7 @@ class RenderSettings:
         sampling: Samples: spp, noise, seed, filter.
         film: Pixels: resolution, crop, overscan, aovs, halves, bands.
         light: Light transport: max_depth, light_paths, flare, scatter, diffraction and more.
+        backdrop: What lies behind: background, see_through.
         truth: Ground truth: gt_time, gt_lens, gt_rays, motion.
         reference: Switches for checks: strategy, technique, dispersion.
         threads: Number of threads; 0: all cores.
@@ -120,6 +129,7 @@ class RenderSettings:
     sampling: Sampling = field(default_factory=Sampling)
     film: Film = field(default_factory=Film)
     light: Light = field(default_factory=Light)
+    backdrop: Backdrop = field(default_factory=Backdrop)
     truth: Truth = field(default_factory=Truth)
     reference: Reference = field(default_factory=Reference)
     threads: int = THREADS.default
@@ -186,7 +196,8 @@ class RenderSettings:
 
 
 GROUPS: dict[str, Any] = {
-    "sampling": Sampling, "film": Film, "light": Light, "truth": Truth, "reference": Reference,
+    "sampling": Sampling, "film": Film, "light": Light, "backdrop": Backdrop, "truth": Truth,
+    "reference": Reference,
 }  # fmt: skip
 
 

@@ -58,13 +58,17 @@ class Texture(FixedArrays):
 
 @dataclass(frozen=True, eq=False)
 class Instance(Value):
-    """A mesh in the world."""
+    """A mesh in the world.
+
+    ``catcher``: effects of objects that it catches (``Scene.set_catcher``); None: it is an object.
+    """
 
     mesh: int
     material: int
     transform: NDArray[np.float64]
     name: str = ""
     shown: bool = True
+    catcher: tuple[str, ...] | None = None
 
     def __repr__(self) -> str:
         return f"<Instance {self.name!r}: mesh {self.mesh}, material {self.material}>"

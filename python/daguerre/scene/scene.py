@@ -24,6 +24,7 @@ from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 from daguerre.parameters.keywords import takes
 
+from .catcher import EFFECTS, check_effects
 from .illuminance import scale_for
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
@@ -113,6 +114,34 @@ class Scene(Value):
     def group_instances(self, name: str, instances: Sequence[int]) -> None:
         """Says which instances a node stands for: its own and its descendants'."""
         self.nodes[name] = list(instances)
+
+    def set_catcher(self, node: str, effects: str | Sequence[str] = EFFECTS) -> None:
+        """Makes the meshes of a node, and below it, a part of the set: what the plate shows.
+
+        A catcher is not in the picture: it hides objects that lie behind it, and what objects take
+        from its light and add to it becomes ``Frame.catcher`` (``docs/plates.md``). Its material
+        should look like what it stands for.
+
+        Args:
+            node: Name of the node.
+            effects: Which effects of objects count: "shadow", "reflection" and "gi" (default: all),
+                or "holdout" for none of them.
+
+        Raises:
+            UsageError: No such node, one without meshes, or an unknown effect.
+        """
+        if node not in self.nodes:
+            raise UsageError(f"catcher: no node {node!r}{suggest(node, list(self.nodes))}")
+        found = check_effects(effects, f"catcher {node!r}: effects")
+        if not self.nodes[node]:
+            raise UsageError(f"catcher: wanted a node with a mesh, got {node!r} without any")
+        for i in self.nodes[node]:
+            self.instances[i] = replace(self.instances[i], catcher=found)
+
+    @property
+    def has_catchers(self) -> bool:
+        """Whether some instance is a catcher."""
+        return any(instance.catcher is not None for instance in self.instances)
 
     def add_texture(
         self,

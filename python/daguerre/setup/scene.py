@@ -13,6 +13,7 @@ from daguerre import memory
 from daguerre.checks import as_readonly, short
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.motion.subdivision import samples
+from daguerre.scene.catcher import EFFECTS
 from daguerre.scene.scene import Scene
 
 from .scene_motion import MovingParts
@@ -66,6 +67,8 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
         builder.add_instance(
             instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)
         )
+        if instance.catcher is not None:
+            builder.set_catcher(i, *(effect in instance.catcher for effect in EFFECTS))
     add_lights(builder, scene, moving.interval)
     add_environment(builder, scene, moving.interval)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.scene.catcher import EFFECTS
 
 from .groups import Text, option
 
@@ -65,6 +66,16 @@ class SceneFlags:
         Text,
         option("--sky", metavar="R,G,B", help="Even sky of this luminance, cd/m2.", panel=_LIGHT),
     ] = None
+    catcher: Annotated[
+        list[str] | None,
+        option(
+            "--catcher",
+            metavar="NODE[:EFFECTS]",
+            help="Node that stands for what the plate shows: it catches shadow,reflection,gi of "
+            "objects as a layer [all], or hides them alone (holdout). May be repeated.",
+            panel=_LIGHT,
+        ),
+    ] = None
     allow_dir: Annotated[
         list[Path] | None,
         option(
@@ -90,6 +101,9 @@ class SceneFlags:
             self._change(scene)
         if lux is not None:
             self._light(scene, lux)
+        for text in self.catcher or ():
+            node, _, effects = text.partition(":") if text not in scene.nodes else (text, "", "")
+            scene.set_catcher(node, effects or EFFECTS)
         return scene
 
     def _lux(self) -> float | None:

@@ -57,6 +57,10 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
         flare=_group(planes, [f"flare.{c}" for c in "RGB"]),
         channels=_group(planes, [f"sensor.{name}" for name in names]),
         bands=_group(planes, bands),
+        catcher=_group(planes, [f"catcher.{c}" for c in "RGB"]),
+        catcher_ratio=_group(planes, [f"catcher_ratio.{c}" for c in "RGB"]),
+        catcher_channels=_group(planes, [f"catcher_sensor.{name}" for name in names]),
+        catcher_ratio_channels=_group(planes, [f"catcher_ratio_sensor.{name}" for name in names]),
     )
     frame.aovs = planes
     count = metadata.get("bad_samples", 0)

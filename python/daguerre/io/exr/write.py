@@ -47,7 +47,7 @@ OWN_NUMBERS = (
 OWN_STRINGS = (
     "version", "scene_hash", "filter", "denoised", "noise_of", "gt_time", "gt_lens",
     "light_paths", "flare", "scatter",
-    "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan",
+    "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan", "background",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
 
@@ -92,8 +92,9 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
     """The channels of a frame by the names of the file, all that it has.
 
-    R G B A, its AOVs, flare.R/G/B, variance.R/G/B, samples.Y, those of its sensor (sensor.R) and
-    its bands of wavelengths (bands.0380-0405, nm). An array of three planes stands for three
+    R G B A, its AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
+    samples.Y, those of its sensor (sensor.R; catcher_sensor.R, catcher_ratio_sensor.R) and its
+    bands of wavelengths (bands.0380-0405, nm). An array of three planes stands for three
     channels, as OpenEXR has it: no copies are made.
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
@@ -101,17 +102,29 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
     planes |= frame.aovs
     if frame.channels is not None:
         names = frame.metadata["sensor_channels"]
-        planes |= {f"sensor.{name}": frame.channels[..., i] for i, name in enumerate(names)}
+        planes |= _per_channel("sensor", frame.channels, names)
     if frame.bands is not None:
         names = band_names(frame.bands.shape[2])
         planes |= {f"bands.{name}": frame.bands[..., i] for i, name in enumerate(names)}
     if frame.flare is not None:
         planes["flare"] = frame.flare
+    if frame.catcher is not None and frame.catcher_ratio is not None:
+        planes |= {"catcher": frame.catcher, "catcher_ratio": frame.catcher_ratio}
+    if frame.catcher_channels is not None and frame.catcher_ratio_channels is not None:
+        names = frame.metadata["sensor_channels"]
+        planes |= _per_channel("catcher_sensor", frame.catcher_channels, names)
+        planes |= _per_channel("catcher_ratio_sensor", frame.catcher_ratio_channels, names)
     if frame.variance is not None:
         planes["variance"] = frame.variance
     if frame.samples is not None:
         planes["samples.Y"] = frame.samples.astype(np.float32)
     return {name: _plane(name, plane) for name, plane in planes.items()}
+
+
+def _per_channel(
+    layer: str, values: NDArray[np.float32], names: list[str]
+) -> dict[str, NDArray[np.float32]]:
+    return {f"{layer}.{name}": values[..., i] for i, name in enumerate(names)}
 
 
 def band_names(count: int) -> list[str]:

@@ -25,6 +25,7 @@ from daguerre.scene.transforms import without_scale
 from .accessors import Accessors
 from .animation import Animations
 from .cameras import read_camera
+from .catchers import mark_catcher
 from .extensions import check_extensions
 from .file import load_buffers, open_document
 from .images import Images
@@ -126,6 +127,8 @@ class _Reader:
             firsts.append(len(scene.instances))
             self._node(position)
         self._collect(placed, [*firsts, len(scene.instances)])
+        for position in placed:
+            mark_catcher(scene, self.names[position.index], self.tree.items[position.index])
         scene.note(*self.notes.sentences())
         return scene
 

@@ -1,0 +1,1 @@
+"""Photographs as plates: their light, and what is put into them."""

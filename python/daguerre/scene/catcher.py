@@ -1,0 +1,34 @@
+"""Catchers: parts of a scene that stand for what a photograph shows already."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from daguerre.errors import UsageError, suggest
+
+#: Effects of objects on a catcher, in their order; ``holdout`` stands for none of them.
+EFFECTS = ("shadow", "reflection", "gi")
+HOLDOUT = "holdout"
+WANTED = f"{', '.join(EFFECTS)}, or {HOLDOUT}"
+
+
+def check_effects(effects: str | Iterable[str], where: str) -> tuple[str, ...]:
+    """Effects in their order.
+
+    Args:
+        effects: Names, or a text with commas between them; ``holdout``: none of them.
+        where: Start of messages.
+
+    Raises:
+        UsageError: A name is unknown, or stands beside ``holdout``.
+    """
+    names = effects.split(",") if isinstance(effects, str) else list(effects)
+    names = [str(name).strip() for name in names]
+    for name in names:
+        if name not in (*EFFECTS, HOLDOUT):
+            raise UsageError(
+                f"{where}: wanted {WANTED}, got {name!r}{suggest(name, [*EFFECTS, HOLDOUT])}"
+            )
+    if not names or (HOLDOUT in names and len(names) > 1):
+        raise UsageError(f"{where}: wanted {WANTED}, got {', '.join(names) or 'nothing'!r}")
+    return tuple(name for name in EFFECTS if name in names)
