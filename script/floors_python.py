@@ -36,6 +36,7 @@ FLOORS = [
     {"stocks"},
     {"rendering"},
     {"maps", "labels", "charts"},
+    {"plates"},
     {"__init__"},
     {"cli"},
     {"__main__"},

@@ -33,6 +33,16 @@ nb::tuple expose(const Picture& light, const dg::Shot& shot) {
                           out.bad, nb::make_tuple(out.bad_x, out.bad_y));
 }
 
+auto expected(const Picture& light, const dg::Shot& shot) {
+    const std::size_t height = light.shape(0), width = light.shape(1);
+    std::vector<float> out;
+    {
+        nb::gil_scoped_release release;
+        out = dg::expected_electrons({light.data(), int(width), int(height), int(light.shape(2))}, shot);
+    }
+    return dg::bind::to_numpy(std::move(out), {height, width});
+}
+
 }  // namespace
 
 void bind_develop_expose(nb::module_& m) {
@@ -60,4 +70,6 @@ void bind_develop_expose(nb::module_& m) {
     m.def("expose", &expose, "light"_a, "shot"_a,
           "Light (H, W, P) to DN (H, W), saturated (H, W), and counts of negative and of bad photosites with "
           "the first of these.");
+    m.def("expected_electrons", &expected, "light"_a, "shot"_a,
+          "Light (H, W, P) to the electrons that it makes on average (H, W), without noise.");
 }

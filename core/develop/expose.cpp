@@ -74,6 +74,26 @@ public:
 
     /// Rows [begin, end).
     void rows(int begin, int end) {
+        each(begin, end, [&](int x, int y, float mean, const Keys& keys) { read(x, y, mean, keys); });
+    }
+
+    /// The same on average.
+    void expected_rows(int begin, int end, std::vector<float>& out) {
+        each(begin, end, [&](int x, int y, float mean, const Keys& keys) {
+            out[std::size_t(y) * light_.width + x] = mean * float(pattern(x, keys.pattern).response);
+        });
+    }
+
+    Counts counts;
+
+private:
+    struct Keys {
+        std::uint64_t shot, pattern;
+    };
+
+    /// Calls `use` with the electrons that light makes on average at each photosite of rows [begin, end).
+    template <typename Photosite>
+    void each(int begin, int end, const Photosite& use) {
         const bool mixed = shot_.crosstalk > 0;
         const int margin = mixed ? 1 : 0, width = light_.width;
         std::vector<float> expected(std::size_t(end - begin + 2 * margin) * width);
@@ -83,16 +103,9 @@ public:
             const float* const row = expected.data() + std::size_t(y - begin + margin) * width;
             const Keys keys{PixelRandom::row_key(shot_.seed, kShot, y),
                             PixelRandom::row_key(shot_.serial, kPattern, y)};
-            for (int x = 0; x < width; ++x) read(x, y, mixed ? mix(row, x) : row[x], keys);
+            for (int x = 0; x < width; ++x) use(x, y, mixed ? mix(row, x) : row[x], keys);
         }
     }
-
-    Counts counts;
-
-private:
-    struct Keys {
-        std::uint64_t shot, pattern;
-    };
 
     int channel(int x, int y) const {
         return shot_.cells[std::size_t(y % shot_.cell_height) * shot_.cell_width + x % shot_.cell_width];
@@ -193,7 +206,22 @@ private:
     const std::vector<Tap> taps_;
 };
 
+template <typename Rows>
+void in_blocks(int height, const Rows& rows) {
+    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<int>(0, height, kBlock),
+                              [&](const auto& r) { rows(r.begin(), r.end()); },
+                              oneapi::tbb::simple_partitioner{});
+}
+
 }  // namespace
+
+std::vector<float> expected_electrons(const Planes& light, const Shot& shot) {
+    std::vector<float> out(std::size_t(light.width) * light.height);
+    Exposed unread;
+    Exposing exposing(light, shot, unread);
+    in_blocks(light.height, [&](int begin, int end) { exposing.expected_rows(begin, end, out); });
+    return out;
+}
 
 Exposed expose(const Planes& light, const Shot& shot) {
     Exposed out;
@@ -201,9 +229,7 @@ Exposed expose(const Planes& light, const Shot& shot) {
     out.mosaic.resize(count);
     out.saturated.resize(count);
     Exposing exposing(light, shot, out);
-    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<int>(0, light.height, kBlock),
-                              [&](const auto& r) { exposing.rows(r.begin(), r.end()); },
-                              oneapi::tbb::simple_partitioner{});
+    in_blocks(light.height, [&](int begin, int end) { exposing.rows(begin, end); });
     out.negative = exposing.counts.negative;
     out.bad = exposing.counts.bad;
     if (out.bad > 0) {

@@ -45,4 +45,7 @@ struct Exposed {
 /// Source of the order: EMVA Standard 1288, release 4.0 Linear (2021), 2.1 to 2.4 and 4.
 Exposed expose(const Planes& light, const Shot& shot);
 
+/// Electrons that light makes on average, without noise, heat and limits: what another exposure has besides its own.
+std::vector<float> expected_electrons(const Planes& light, const Shot& shot);
+
 }  // namespace dg

@@ -33,7 +33,10 @@ def test_it_is_held_against_what_is_free() -> None:
     assert "parts of at most 250,000 pixels (--crop)" in str(got.value)
 
 
-@pytest.mark.parametrize("keeps", ["aovs", "splats", "flare", "halves", "bands", "channels"])
+@pytest.mark.parametrize(
+    "keeps",
+    ["aovs", "splats", "flare", "halves", "coverage", "catchers", "bands", "channels"],
+)
 def test_what_is_kept_counts(keeps: str) -> None:
     count = 4 if keeps in ("bands", "channels") else True
     more = layout(**{keeps: count})
@@ -44,7 +47,7 @@ def test_what_is_kept_counts(keeps: str) -> None:
 def test_a_session_refuses_before_there_is_a_film(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "free_bytes", lambda: 10_000_000)
     scene = scenes.furnace(dg.Material(dg.Diffuse((0.5,) * 3)))
-    with pytest.raises(InputError, match="2000 x 1000 px of 164 bytes: 328 MB"):
+    with pytest.raises(InputError, match="2000 x 1000 px of 180 bytes: 360 MB"):
         Session(scene, dg.Camera(), resolution=(2000, 1000), light_paths="off")
     # A part of it fits.
     crop = (0, 0, 200, 100)

@@ -136,7 +136,7 @@ def test_light_that_lands_beside_the_frame_is_counted() -> None:
     off = session(light_paths="off")
     off.draw(0, 1)
     assert off.counters.light_paths == 0
-    assert list(off.state()) == ["sums"]
+    assert list(off.state()) == ["sums", "coverage"]
     assert "light_paths" not in off.metadata
 
 

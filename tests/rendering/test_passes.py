@@ -111,7 +111,7 @@ def test_a_session_goes_on_from_a_pass(tmp_path: Path, whole: dg.Frame) -> None:
 def test_a_pass_can_be_looked_at(tmp_path: Path) -> None:
     path = write(tmp_path / "a.exr", (0, 2))
     with OpenEXR.File(str(path), separate_channels=True) as file:
-        assert [part.name() for part in file.parts] == ["beauty", "sums", "aovs"]
+        assert [part.name() for part in file.parts] == ["beauty", "sums", "aovs", "coverage"]
         assert {"R", "G", "B", "A", "depth.Z", "object_id"} <= set(file.parts[0].channels)
         assert {c.pixels.dtype for c in file.parts[1].channels.values()} == {np.dtype(np.uint32)}
 

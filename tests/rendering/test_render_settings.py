@@ -24,6 +24,7 @@ RICH: dict[str, Any] = {
     "halves": True, "bands": 8,
     "max_depth": 5, "light_paths": (20, 3), "flare": "auto", "flare_order": 4,
     "flare_highlights": "off", "scatter": 7, "diffraction": dg.Diffraction(8, 2),
+    "background": "transparent", "see_through": True,
     "gt_time": "open", "gt_lens": "mean", "gt_rays": 16, "motion": True, "strategy": "light",
     "technique": "camera", "dispersion": "end_secondary", "threads": 3,
 }  # fmt: skip

@@ -47,8 +47,8 @@ def frame_of(
     planes: dict[str, NDArray[Any]] = {}
     if aovs:
         planes = {name: _plane(film, name) for name in FILM_CHANNELS}
-    alpha = film.coverage()
     parts, keep = film.state_parts(), bool(metadata.get("bands"))
+    alpha = film.coverage() if "coverage" in parts else np.ones(film.shape, np.float32)
     if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .diffraction import developed, rgb_of
 

@@ -117,7 +117,9 @@ def _check_catchers(one: Prepared) -> None:
     light = one.settings.light
     for name in DARK:
         if check_paths(getattr(light, name), name) != 0:
-            raise UsageError(f"{name}: wanted off with catchers: the plate has that of its own lamps")
+            raise UsageError(
+                f"{name}: wanted off with catchers: the plate has that of its own lamps"
+            )
     if one.settings.diffraction is not None or one.settings.film.bands:
         name = "bands" if one.settings.diffraction is None else "diffraction"
         raise UsageError(f"{name}: wanted none with catchers, whose layers have colours alone")

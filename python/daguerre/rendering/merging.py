@@ -91,7 +91,8 @@ def film_of(one: Pass) -> Any:
     layout = FilmLayout(width=width, height=height, offset_x=int(x0), offset_y=int(y0))
     layout.aovs = _has_aovs(one.state)
     layout.splats, layout.flare = "splats" in one.state, "flare" in one.state
-    layout.halves = "halves" in one.state
+    for part in ("halves", "coverage", "catchers"):
+        setattr(layout, part, part in one.state)
     if "bands" in one.state:
         layout.bands = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
     if "channels" in one.state:

@@ -1,0 +1,133 @@
+"""Objects into a raw picture: in electrons, before noise and before the mosaic is undone.
+
+A plate's photosite has N electrons, a number of the Poisson distribution of mean L, and read noise
+of deviation r. Objects leave the share k of its light and add E electrons on average. Their picture
+would have had a number of mean k L + E, with one read noise. From the plate's own number that is
+
+    k (N + read) + noise of variance k (1 - k) L + (1 - k^2) r^2 + a number of mean E,
+
+with N in the place of L: mean and variance are those of such a shot (thinning of a Poisson process;
+Kingman 1993, Poisson Processes, 5.1). Where nothing changes, the plate's numbers stay as they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+import daguerre._core as _core
+from daguerre.checks import short, whole
+from daguerre.errors import InputError, UsageError
+from daguerre.exposure.expose import chosen_ev, light_of
+from daguerre.frame.frame import Frame
+from daguerre.frame.raw import Raw
+from daguerre.frame.seen_by import seen_of
+from daguerre.sensors.sensor import Sensor
+
+from .over import AUTO, RATIO, Change, change_of
+
+Mosaic = NDArray[np.float32]
+#: Effect below which a photosite keeps its number: a ten-thousandth of its light, or of an electron.
+NOTHING = 1e-4
+
+
+def composite_raw(plate: Raw, frame: Frame, *, form: str = AUTO, seed: int = 0) -> Raw:
+    """Puts objects into a raw picture.
+
+    Args:
+        plate: The raw picture, of a sensor that is known.
+        frame: The objects, rendered by the plate's camera and sensor (``sensor=``).
+        form: How catchers change the plate, ``auto`` or ``ratio``; see ``over``.
+        seed: Seed of the noise of what is added.
+
+    Returns:
+        The plate with other numbers where the objects change something.
+
+    Raises:
+        InputError: The pictures differ in size, or the frame lacks its exposure, or the sensor's
+            channels of what catchers caught.
+        UsageError: Another form: electrons cannot be taken away but as a share.
+    """
+    if form not in (AUTO, RATIO):
+        raise UsageError(f"form: wanted {AUTO} or {RATIO} in raw, got {short(form)}")
+    shown = frame.without_overscan()
+    if (shown.width, shown.height) != (plate.width, plate.height):
+        raise InputError(
+            f"composite: size: wanted the plate's {plate.width} x {plate.height} px, "
+            f"got {shown.width} x {shown.height} px"
+        )
+    kept, added = _mosaics(plate, shown, form)
+    rng = np.random.Generator(np.random.Philox(whole(seed, "seed", 0, 2**64 - 1)))
+    read = plate.sensor.read_noise_at(plate.iso)
+    electrons = mixed(plate.electrons(), kept, added, read, rng)
+    full = plate.sensor.full_well_at(plate.iso)
+    number = np.rint(np.minimum(electrons, full) * plate.gain + plate.black_level)
+    changed = (np.abs(1 - kept) > NOTHING) | (added > NOTHING)
+    highest = plate.sensor.highest_dn
+    mosaic = np.where(changed, np.clip(number, 0, highest), plate.mosaic).astype(np.uint16)
+    clipped = np.where(changed, (electrons >= full) | (number >= highest), plate.saturated)
+    return replace(plate, mosaic=mosaic, clipped=clipped, luminance_exposure=None)
+
+
+def mixed(
+    plate: Mosaic, kept: Mosaic, added: Mosaic, read: float, rng: np.random.Generator
+) -> Mosaic:
+    """Electrons of a shot that has ``kept`` of the plate's light, and ``added`` of its own.
+
+    Args:
+        plate: Electrons of the plate, noise and all, shape (H, W).
+        kept: Share of its light that is left, 0 .. 1.
+        added: Electrons that come to it on average.
+        read: Deviation of read noise, electrons.
+        rng: Source of random numbers.
+    """
+    light = np.maximum(plate, 0)
+    variance = kept * (1 - kept) * light + (1 - kept**2) * read**2
+    noise = rng.standard_normal(plate.shape, np.float32) * np.sqrt(np.maximum(variance, 0))
+    return np.asarray(kept * plate + noise + rng.poisson(np.maximum(added, 0)), np.float32)
+
+
+def _mosaics(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
+    """Kept share and added electrons of each photosite, behind the sensor's filters."""
+    body = plate.sensor
+    light = light_of(frame, body, chosen_ev(frame, None))
+    change = _change(frame, body, light.planes, light.electrons, form)
+    one = np.eye(len(body.channels), dtype=np.float32)
+    kept = _core.expected_electrons(_planes(np.clip(change.factor, 0, 1)), _shot(body, one, 0.0))
+    # More than all of the plate (the ratio alone does that) is light that comes to it.
+    more = np.maximum(change.factor - 1, 0)
+    added = _core.expected_electrons(_planes(change.light), _shot(body, one, body.prnu))
+    if more.any():
+        times = _core.expected_electrons(_planes(more), _shot(body, one, 0.0))
+        added = added + times * np.maximum(plate.electrons(), 0)
+    return np.asarray(kept), np.asarray(added)
+
+
+def _change(
+    frame: Frame, body: Sensor, planes: Mosaic, electrons: NDArray[np.float64], form: str
+) -> Change:
+    """The change in electrons of each channel of the sensor."""
+    weights = electrons.T.astype(np.float32)
+    light = np.asarray(planes @ weights)
+    if frame.catcher is None:
+        return change_of(light, frame.alpha, None, None, form)
+    if frame.catcher_channels is not None and seen_of(frame, body).source == "channels":
+        caught = frame.catcher_channels @ weights
+        return change_of(light, frame.alpha, caught, frame.catcher_ratio_channels, form)
+    raise InputError(
+        "composite: catchers in raw: wanted a frame with the channels of the plate's sensor "
+        f"(render with --sensor {body.name})"
+    )
+
+
+def _planes(values: Mosaic) -> Mosaic:
+    return np.ascontiguousarray(values, np.float32)
+
+
+def _shot(body: Sensor, electrons: Mosaic, prnu: float) -> _core.Shot:
+    shot = _core.Shot(electrons, body.pattern.cells)
+    shot.low_pass_px = body.low_pass / body.pixel_pitch
+    shot.crosstalk, shot.prnu, shot.serial = body.crosstalk, prnu, body.serial
+    return shot

@@ -1,0 +1,67 @@
+"""Objects over a plate in linear light, with what catchers catch.
+
+``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. Where the plate is what
+the set was modelled to be, all forms give the same picture. Where it is not, *auto* takes light away
+as a share of the plate, which knows the materials, and adds it as light, which a dark plate does not
+make less.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import short
+from daguerre.errors import UsageError, suggest
+from daguerre.frame.frame import Frame
+
+Plane = NDArray[np.float32]
+AUTO, RATIO, DIFFERENCE = FORMS = ("auto", "ratio", "difference")
+
+
+@dataclass(frozen=True)
+class Change:
+    """What becomes of a plate: ``factor`` times it, plus ``light``; shapes (H, W, C)."""
+
+    factor: Plane
+    light: Plane
+
+    def of(self, plate: Plane) -> Plane:
+        """The composite."""
+        return np.asarray(self.factor * plate + self.light, np.float32)
+
+
+def change_of(
+    light: Plane, alpha: Plane, catcher: Plane | None, ratio: Plane | None, form: str = AUTO
+) -> Change:
+    """The change that objects bring to any plate.
+
+    Args:
+        light: Light of the objects, premultiplied, shape (H, W, C).
+        alpha: What they cover, shape (H, W).
+        catcher: Difference that catchers caught, shape (H, W, C); None: there are none.
+        ratio: The same as a factor.
+        form: ``auto``, ``ratio`` or ``difference``.
+
+    Raises:
+        UsageError: No such form.
+    """
+    if form not in FORMS:
+        raise UsageError(
+            f"form: wanted {', '.join(FORMS)}, got {short(form)}{suggest(form, FORMS)}"
+        )
+    left = (1 - alpha)[..., None]
+    if catcher is None or ratio is None:
+        return Change(np.broadcast_to(left, light.shape), light)
+    if form == DIFFERENCE:
+        return Change(np.broadcast_to(left, light.shape), light + catcher)
+    if form == RATIO:
+        return Change(left * ratio, light)
+    return Change(left * np.minimum(ratio, 1), light + np.maximum(catcher, 0))
+
+
+def change_of_rgb(frame: Frame, form: str = AUTO) -> Change:
+    """The change in red, green and blue, relative exposure."""
+    return change_of(frame.rgb, frame.alpha, frame.catcher, frame.catcher_ratio, form)
