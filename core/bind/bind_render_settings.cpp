@@ -11,6 +11,7 @@
 #include "render/flare/scatter_guide.h"
 #include "render/light_guide.h"
 #include "render/render.h"
+#include "render/truth/projected_plate.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -19,6 +20,7 @@ namespace {
 
 using namespace dg;
 using Settings = nb::class_<RenderSettings>;
+using Pixels = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using Corners = std::tuple<int, int, int, int>;
 
 Corners corners(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
@@ -202,7 +204,17 @@ void def_background(Settings& c) {
                   "The lens does not see the environment; light from there stays.")
         .def_prop_rw("see_through", [](const RenderSettings& s) { return s.path.see_through; },
                      [](RenderSettings& s, bool on) { s.path.see_through = on; },
-                     "Smooth glass does not cover what lies straight behind it.");
+                     "Smooth glass does not cover what lies straight behind it.")
+        .def("set_plate",
+             [](RenderSettings& s, const Scene& scene, const Camera& camera, const RenderSettings& taken,
+                const Pixels& pixels) {
+                 std::vector<Rgb> rgb(pixels.shape(0) * pixels.shape(1));
+                 for (std::size_t i = 0; i < rgb.size(); ++i)
+                     rgb[i] = {pixels.data()[3 * i], pixels.data()[3 * i + 1], pixels.data()[3 * i + 2]};
+                 s.plate = std::make_shared<const ProjectedPlate>(scene, camera, taken, std::move(rgb));
+             },
+             "scene"_a, "camera"_a, "taken"_a, "pixels"_a, nb::keep_alive<1, 2>(),
+             "Photograph of the set (H, W, 3), cd/m2, by another camera and its settings.");
 }
 
 /// Who draws what several could: to check one against the other.

@@ -44,7 +44,8 @@ class CameraPass {
 
     CameraPass(const Picture& picture, const DrawnSamples& drawn, const LightWeight& weight, const PixelCone& cone)
         : scene_(picture.scene), camera_(picture.camera), film_(picture.film), settings_(picture.settings),
-          density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone) {
+          density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone), path_(picture.settings.path) {
+        path_.plate = settings_.plate.get();
         const bool exact = std::holds_alternative<ExactLens>(camera_.lens);
         reprojected_ = exact && settings_.dispersion == Dispersion::reproject;
         end_secondary_ = exact && settings_.dispersion == Dispersion::end_secondary;
@@ -129,7 +130,7 @@ class CameraPass {
         if (!weight_.off()) first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
         FirstHit hit;
         FirstHit* const wanted = film_.layout().aovs ? &hit : nullptr;
-        const Sight sight = look(scene_, ray, sample.wavelengths, sample.sampler, settings_.path, wanted,
+        const Sight sight = look(scene_, ray, sample.wavelengths, sample.sampler, path_, wanted,
                                  &work.counters.rays, first ? &*first : nullptr);
         if (wanted) add_aov(sample, ray.time, hit);
         const Spectrum weight(camera_ray.weight * sample.weight);
@@ -192,6 +193,7 @@ class CameraPass {
     const DrawnSamples& drawn_;
     const LightWeight& weight_;
     const PixelCone& cone_;
+    PathSettings path_;
     bool reprojected_, end_secondary_;   // what becomes of secondary wavelengths
     int first_traced_, end_traced_;
 };

@@ -79,6 +79,7 @@ struct RenderSettings {
     std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
     FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
     ScatterPlan scatter;                        // the same; it is in the layer of flare
+    std::shared_ptr<const PlateLight> plate;    // a photograph of the set; null: its materials send their own light
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

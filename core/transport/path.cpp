@@ -48,6 +48,8 @@ struct Walk {
     const CatcherEffects* effects = nullptr;   // of the first catcher on the way
     bool past_catcher = false, left_catcher = false;   // it lies behind; straight from it
     float kept = 1;                    // share of differences between both worlds that counts: the effects that are on
+    bool change = false;               // the plate has shown the set here: differences between both worlds alone count
+    float share = 1;                   // of what is found on the way to a plate, which was a difference itself
 };
 
 constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to way: more than the longest path has
@@ -180,6 +182,9 @@ class Path {
     void see_catcher(std::uint32_t instance);
     bool see_through();
     void cover(std::uint32_t id, float sign);
+    bool asks_plate() const;
+    bool show_plate_sky();
+    void show_plate(const Material& material, const SurfaceHit& hit);
     bool counts(int vertex) const;
     bool scatter(const Material& material, SurfaceHit& hit, int vertex);
     bool scatter_shared(const Material& material, SurfaceHit& hit, int vertex);
@@ -246,8 +251,12 @@ bool Path::follow(int vertex) {
 /// Adds light that the path found, to what it belongs to. `kept`: the share of it that only this world is to have.
 void Path::gather(Spectrum light, bool hero, float kept) {
     const auto add = [&](Radiance& to, float share) {
-        if (share != 0) (hero ? to.hero : to.shared) += light * share;
+        if (share != 0) (hero ? to.hero : to.shared) += light * (share * walk_.share);
     };
+    if (walk_.change) {
+        const float sign = walk_.world == World::both ? 0 : walk_.world == World::full ? kept : -kept;
+        return add(walk_.of_catcher ? sight_.with : sight_.light, sign);
+    }
     if (!walk_.of_catcher) return add(sight_.light, 1);
     if (walk_.hidden) {
         add(sight_.hidden, sight_.looked);
@@ -286,8 +295,45 @@ bool Path::leave_scene(bool counts) {
     if (walk_.open && walk_.bent && scene_.has_catchers()) return see_through();
     if (walk_.open && scene_.has_catchers()) walk_.of_catcher = true;
     else if (walk_.open && settings_.background == Background::transparent) return false;
-    if (counts) gather_emission(walk_.throughput * environment_emission());
+    if (counts && !show_plate_sky()) gather_emission(walk_.throughput * environment_emission());
     return false;
+}
+
+/// Whether an object sees the set here, and a plate may say what that is like.
+bool Path::asks_plate() const { return settings_.plate && walk_.world == World::full && !walk_.open; }
+
+/// Adds what the plate shows of the background, where mirrors and smooth glass look there: light sampling knows the
+/// environment alone.
+bool Path::show_plate_sky() {
+    if (!asks_plate() || !walk_.from_delta) return false;
+    const Vec3f direction = walk_.ray.direction;
+    const auto shown = settings_.plate->at(direction, 0, walk_.ray.time);
+    if (!shown) return false;
+    Ray from_eye{.origin = settings_.plate->eye(walk_.ray.time), .direction = direction, .time = walk_.ray.time};
+    from_eye.of_set = true;
+    ++rays_;
+    if (scene_.visibility(from_eye, kInfinity, false, {}, wavelengths_).max() < 1) return false;
+    gather(walk_.throughput * wavelengths_.emission(*shown), walk_.bent_alone, walk_.kept);
+    return true;
+}
+
+/// Adds what the plate shows of a catcher that an object sees. From here on the path looks for what objects change of
+/// that. Lamps of the set are their own light, which light sampling finds.
+void Path::show_plate(const Material& material, const SurfaceHit& hit) {
+    if (!asks_plate() || emits(material)) return;
+    const auto shown = settings_.plate->at(hit.position, 1, hit.time);
+    if (!shown) return;
+    const Vec3f to_eye = settings_.plate->eye(hit.time) - hit.position;
+    const float distance = length(to_eye);
+    Ray ray = spawn_ray(hit, to_eye * (1 / distance), hit.time);
+    ray.of_set = true;
+    ++rays_;
+    if (scene_.visibility(ray, distance, false, {}, wavelengths_).max() < 1) return;   // it lies behind something else
+    walk_.share *= walk_.kept;
+    walk_.change = false;
+    gather(walk_.throughput * wavelengths_.emission(*shown), walk_.bent_alone, 1);
+    walk_.change = true, walk_.world = World::both;
+    walk_.effects = scene_.catcher(hit.instance), walk_.past_catcher = walk_.left_catcher = false, walk_.kept = 1;
 }
 
 /// Goes on at what was met. False: the path ends.
@@ -304,6 +350,7 @@ bool Path::arrive(Scene::Hit& found, int vertex, bool counts) {
     else if (walk_.open && walk_.bent) return see_through();
     else see_catcher(hit.instance);
     const MaterialAt material = scene_.material(hit);
+    if (scene_.has_catchers() && scene_.catcher(hit.instance)) show_plate(material, hit);
     if (counts) gather_emission(walk_.throughput * surface_emission(material, hit));
     if (vertex == settings_.max_depth && !scene_.has_clear()) return false;   // behind it only windows count
     return scatter(material, hit, vertex);

@@ -5,6 +5,7 @@
 #include "geometry/ray.h"
 #include "math/sampler.h"
 #include "scene/scene.h"
+#include "transport/plate_light.h"
 
 namespace dg {
 
@@ -21,6 +22,7 @@ struct PathSettings {
     bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
     Background background = Background::environment;
     bool see_through = false;   // smooth glass lets the background pass unbent; false: it covers it with what it shows
+    const PlateLight* plate = nullptr;   // light of the set as objects see it; null: that of its materials
 };
 
 /// Light in two parts that add up: what any wavelength of the path could have found as its hero, and

@@ -19,6 +19,7 @@ from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
 from .parameters import TRANSPARENT
 from .pixels import parse_filter
+from .plate import throw_plate
 from .prepare import Prepared
 from .settings import RenderSettings
 
@@ -60,7 +61,7 @@ def plan_light(one: Prepared) -> LightPlan:
     with core_errors(UsageError):
         core = _settings(one, one.setup, NONE)
     wanted = check_light_paths(one.settings.light.light_paths)
-    if one.scene.has_catchers:
+    if one.scene.has_catchers or one.scene.plate is not None:
         _check_catchers(one)
         wanted = OFF
     plan = pilot(one, core) if wanted is None else wanted
@@ -168,7 +169,9 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
 
 def _settings(one: Prepared, setup: ResolvedCamera, overscan: Overscan) -> _core.RenderSettings:
     core_shutter = shutter.core_shutter(one.camera, one.size)
-    return core_settings(setup, one.size, core_shutter, overscan, _options(one.settings))
+    core = core_settings(setup, one.size, core_shutter, overscan, _options(one.settings))
+    throw_plate(one, core)
+    return core
 
 
 def _options(settings: RenderSettings) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera.camera import Camera
 from daguerre.files.value import FixedArrays, Value
 
 from .motion import Vertices
@@ -72,6 +73,20 @@ class Instance(Value):
 
     def __repr__(self) -> str:
         return f"<Instance {self.name!r}: mesh {self.mesh}, material {self.material}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Plate(FixedArrays):
+    """A photograph of the set, (H, W, 3), cd/m2 as a frame has them, and the camera that took it.
+
+    ``camera``: None is the one that renders.
+    """
+
+    pixels: NDArray[np.float32]
+    camera: Camera | None = None
+
+    def __repr__(self) -> str:
+        return "<Plate {1}x{0} pixels>".format(*self.pixels.shape)
 
 
 @dataclass(frozen=True, eq=False)

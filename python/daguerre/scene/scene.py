@@ -30,7 +30,7 @@ from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
-from .parts import Environment, Instance, Mesh, Texture, vertices_of
+from .parts import Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 
 
@@ -57,6 +57,8 @@ class Scene(Value):
     #: other names by which ``camera`` finds one, such as that of the camera in its node
     camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
+    #: photograph of the set, as objects see it in mirrors and glass
+    plate: Plate | None = None
     #: what of all that changes over time
     motion: SceneMotion = field(default_factory=SceneMotion)
     #: length of the animations of a file, s
@@ -137,6 +139,30 @@ class Scene(Value):
             raise UsageError(f"catcher: wanted a node with a mesh, got {node!r} without any")
         for i in self.nodes[node]:
             self.instances[i] = replace(self.instances[i], catcher=found)
+
+    def set_plate(self, pixels: ArrayLike, camera: Camera | None = None) -> None:
+        """Throws a photograph of the set back onto it, where objects see catchers.
+
+        Mirrors and glass then show the photograph, and it lights what stands on it: where a catcher
+        lies in its frame and nothing of the set is in between; elsewhere catchers have the light of
+        their materials. Smooth mirrors and glass see it in the place of the environment, too.
+
+        Args:
+            pixels: Shape (H, W, 3), linear Rec.709, in the units of a frame: 1 is a white of 1 cd/m2.
+            camera: Camera that took it; default: the one that renders.
+
+        Raises:
+            InputError: Another shape, or numbers that are not finite.
+        """
+        array = as_readonly(np.asarray(pixels), np.float32)
+        if array.ndim != 3 or array.shape[2] != 3 or array.size == 0:
+            raise InputError(f"plate: pixels: wanted shape (H, W, 3), got {array.shape}")
+        bad = int((~np.isfinite(array)).any(axis=2).sum())
+        if bad:
+            raise InputError(f"plate: pixels: wanted finite numbers, got others at {bad} pixels")
+        if camera is not None and not isinstance(camera, Camera):
+            raise UsageError(f"plate: camera: wanted a Camera, got {short(camera)}")
+        self.plate = Plate(array, camera)
 
     @property
     def has_catchers(self) -> bool:

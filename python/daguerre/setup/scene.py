@@ -104,6 +104,7 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
         scene.instances,
         scene.lights,
         scene.environment,
+        scene.plate,
     ):
         add(part)
     if interval is not None:

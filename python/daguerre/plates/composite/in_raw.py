@@ -29,7 +29,7 @@ from daguerre.sensors.sensor import Sensor
 from .over import AUTO, RATIO, Change, change_of
 
 Mosaic = NDArray[np.float32]
-#: Effect below which a photosite keeps its number: a ten-thousandth of its light, or of an electron.
+#: Effect below which a photosite keeps its number: that share of its light, or of an electron.
 NOTHING = 1e-4
 
 

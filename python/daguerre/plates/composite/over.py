@@ -1,9 +1,9 @@
 """Objects over a plate in linear light, with what catchers catch.
 
-``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. Where the plate is what
-the set was modelled to be, all forms give the same picture. Where it is not, *auto* takes light away
-as a share of the plate, which knows the materials, and adds it as light, which a dark plate does not
-make less.
+``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. Where the plate is
+what the set was modelled to be, all forms give the same picture. Where it is not, *auto* takes
+light away as a share of the plate, which knows the materials, and adds it as light, which a dark
+plate does not make less.
 """
 
 from __future__ import annotations

@@ -1,0 +1,28 @@
+// projected_plate.h -- a photograph that is thrown back into the scene along the chief rays of the camera that took it.
+#pragma once
+#include <vector>
+
+#include "render/truth/truth_view.h"
+#include "transport/plate_light.h"
+
+namespace dg {
+
+class ProjectedPlate final : public PlateLight {
+  public:
+    /// `pixels`: RGB (cd/m2), rows from the top, as many as the settings' sensor has; of these, sensor and shutter
+    /// count. The scene outlives it.
+    ProjectedPlate(const Scene& scene, Camera camera, RenderSettings settings, std::vector<Rgb> pixels);
+
+    std::optional<Rgb> at(Vec3f place, float w, float time) const override;
+    Vec3f eye(float time) const override;
+
+  private:
+    Rgb pixel(int x, int y) const { return pixels_[std::size_t(y) * settings_.sensor.width + x]; }
+
+    Camera camera_;
+    RenderSettings settings_;
+    TruthView view_;
+    std::vector<Rgb> pixels_;
+};
+
+}  // namespace dg
