@@ -69,7 +69,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     bands_.resize(std::size_t(pixels) * layout.bands);
     channels_.resize(std::size_t(pixels) * layout.channels);
     if (layout.splats || layout.flare) channel_splats_.resize(channels_.size());
-    if (layout.catchers) catcher_channels_.resize(3 * channels_.size());
+    if (layout.catchers) catcher_channels_.resize(2 * channels_.size());
 }
 
 void Film::set_responses(Responses responses) {
@@ -195,18 +195,15 @@ void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& w
 /// replace those of the light alone, which add_light() adds.
 bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
     const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
-                without = wavelengths.to_xyz(arrived.without), hidden = wavelengths.to_xyz(arrived.hidden);
+                without = wavelengths.to_xyz(arrived.without);
     for (int k = 0; k < 3; ++k)
-        if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k]) || !fits_film(hidden[k])) return false;
+        if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k])) return false;
     CatcherPixel& pixel = catchers_[i];
-    for (int k = 0; k < 3; ++k)
-        pixel.with[k].add(with[k]), pixel.without[k].add(without[k]), pixel.hidden[k].add(hidden[k]);
-    pixel.hides += coverage_steps(arrived.hides), pixel.looked += coverage_steps(arrived.looked);
+    for (int k = 0; k < 3; ++k) pixel.with[k].add(with[k]), pixel.without[k].add(without[k]);
     add_squares(pixels_[i], light + with - without);
     if (!layout_.channels) return true;
-    add_channels(catcher_channels_, 3 * i, responses_.of(wavelengths, arrived.with));
-    add_channels(catcher_channels_, 3 * i + 1, responses_.of(wavelengths, arrived.without));
-    add_channels(catcher_channels_, 3 * i + 2, responses_.of(wavelengths, arrived.hidden));
+    add_channels(catcher_channels_, 2 * i, responses_.of(wavelengths, arrived.with));
+    add_channels(catcher_channels_, 2 * i + 1, responses_.of(wavelengths, arrived.without));
     return true;
 }
 
@@ -353,12 +350,7 @@ void Film::merge(const Film& other) {
         for (int k = 0; k < 3; ++k) {
             catchers_[i].with[k].add(other.catchers_[i].with[k]);
             catchers_[i].without[k].add(other.catchers_[i].without[k]);
-            catchers_[i].hidden[k].add(other.catchers_[i].hidden[k]);
         }
-    for (std::size_t i = 0; i < catchers_.size(); ++i) {
-        catchers_[i].hides += other.catchers_[i].hides;
-        catchers_[i].looked += other.catchers_[i].looked;
-    }
     for (std::size_t i = 0; i < catcher_channels_.size(); ++i) catcher_channels_[i].add(other.catcher_channels_[i]);
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
     for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);

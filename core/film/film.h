@@ -21,10 +21,8 @@ namespace dg {
 /// catchers `light` is the objects' alone, beside what the set sends with them there and without.
 struct CameraLight {
     Spectrum light{0.f}, with{0.f}, without{0.f};
-    Spectrum hidden{0.f};   // of `without`, where an object comes first and it was looked at nevertheless
     float white = 0;     // what a white world would bring: the weight of this sample's coverage
     float covered = 0;   // as much of it as objects cover
-    float hides = 0, looked = 0;   // it, or 0: where an object comes first; where what that hides was looked at
 };
 
 /// A sample that had to be dropped, with the place to look for it.
@@ -54,9 +52,9 @@ struct PixelBox {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
-/// 112 bytes per pixel; 272 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with coverage, 160 with
-/// catchers, 16 with each band, 16 with each channel, as much again if there are splats or flare, and three times if there
-/// are catchers.
+/// 112 bytes per pixel; 272 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with coverage, 96 with
+/// catchers, 16 with each band, 16 with each channel, as much again if there are splats or flare, and twice if there are
+/// catchers.
 class Film {
   public:
     /// Bytes of the sums of one pixel.
@@ -163,7 +161,7 @@ class Film {
     /// "sums", and "aovs", "splats", "flare", "halves", "coverage", "catchers", "bands", "channels", "channel_splats" and
     /// "catcher_channels" if there are any, so many bytes per pixel (per band or channel).
     static constexpr std::size_t kSumBytes = 112, kSplatBytes = 96, kHalfBytes = 112, kBandBytes = 16;
-    static constexpr std::size_t kCoverageBytes = 16, kCatcherBytes = 160;
+    static constexpr std::size_t kCoverageBytes = 16, kCatcherBytes = 96;
     static constexpr std::size_t kAovBytes = 16 * (kAovChannels.size() + 1);
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
@@ -190,11 +188,8 @@ class Film {
     struct CoveragePixel {
         std::int64_t white = 0, covered = 0;
     };
-    /// The set behind objects is that of the samples which looked there, times the weight of all behind them: a mean
-    /// over looks, as their number is chance.
     struct CatcherPixel {
-        ValueSum with[3], without[3], hidden[3];
-        std::int64_t hides = 0, looked = 0;   // in steps of CoveragePixel
+        ValueSum with[3], without[3];
     };
     struct AovPixel {
         std::array<ValueSum, kAovChannels.size()> sums;   // in their order
@@ -215,7 +210,6 @@ class Film {
     void add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
     bool add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived);
     void add_coverage(std::size_t i, float white, float covered);
-    double set_value(std::size_t i, const ValueSum& without, const ValueSum& hidden) const;
     /// To XYZ and bands. Splats and samples share the sums of bands: under the pixel's lock. False if bad.
     bool add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance, bool squares = true);
@@ -247,7 +241,7 @@ class Film {
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
     std::vector<ValueSum> bands_, channels_, channel_splats_;   // those of a pixel side by side
-    std::vector<ValueSum> catcher_channels_;   // with the objects, without, and hidden, one after the other
+    std::vector<ValueSum> catcher_channels_;   // with the objects, then without
     Responses responses_;
 };
 

@@ -74,25 +74,13 @@ std::vector<float> Film::coverage() const {
     return shares;
 }
 
-/// Sum of the set without objects: what was found of it, and as much as objects hide of it on average.
-double Film::set_value(std::size_t i, const ValueSum& without, const ValueSum& hidden) const {
-    const CatcherPixel& p = catchers_[i];
-    if (p.hides == 0) return without.value();
-    if (p.looked > 0) return without.value() + hidden.value() * (double(p.hides) / double(p.looked));
-    const double seen = layout_.coverage ? double(coverage_[i].white - p.hides) : 0;   // nobody looked: as beside it
-    return seen > 0 ? without.value() * (1 + double(p.hides) / seen) : without.value();
-}
-
 std::vector<float> Film::set_xyz(bool with_objects) const {
     if (catchers_.empty()) throw Error("film: this film was made without catchers");
     std::vector<float> mean;
     mean.reserve(3 * pixels_.size());
     for (std::size_t i = 0; i < pixels_.size(); ++i)
-        for (int k = 0; k < 3; ++k) {
-            const CatcherPixel& p = catchers_[i];
-            const double sum = with_objects ? p.with[k].value() : set_value(i, p.without[k], p.hidden[k]);
-            mean.push_back(pixels_[i].count ? float(sum / pixels_[i].count) : 0.f);
-        }
+        for (const ValueSum& sum : with_objects ? catchers_[i].with : catchers_[i].without)
+            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
     return mean;
 }
 
@@ -103,9 +91,8 @@ std::vector<float> Film::set_channels(bool with_objects) const {
     const std::size_t channels = layout_.channels;
     for (std::size_t i = 0; i < pixels_.size(); ++i)
         for (std::size_t c = 0; c < channels; ++c) {
-            const ValueSum* const sums = &catcher_channels_[3 * i * channels + c];
-            const double sum = with_objects ? sums[0].value() : set_value(i, sums[channels], sums[2 * channels]);
-            mean.push_back(pixels_[i].count ? float(sum / pixels_[i].count) : 0.f);
+            const ValueSum& sum = catcher_channels_[(2 * i + (with_objects ? 0 : 1)) * channels + c];
+            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
         }
     return mean;
 }

@@ -14,7 +14,7 @@ std::size_t Film::pixel_bytes(const FilmLayout& l) {
     const bool lit = l.splats || l.flare;   // channels have sums of their own for that
     return kSumBytes + (l.aovs ? kAovBytes : 0) + (l.splats ? kSplatBytes : 0) + (l.flare ? kSplatBytes : 0) +
            (l.halves ? kHalfBytes : 0) + (l.coverage ? kCoverageBytes : 0) + (l.catchers ? kCatcherBytes : 0) +
-           kBandBytes * std::size_t(l.bands + l.channels * ((lit ? 2 : 1) + (l.catchers ? 3 : 0)));
+           kBandBytes * std::size_t(l.bands + l.channels * ((lit ? 2 : 1) + (l.catchers ? 2 : 0)));
 }
 
 std::vector<std::string> Film::state_parts() const {

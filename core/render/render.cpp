@@ -147,13 +147,11 @@ class CameraPass {
     template <typename ToFilm>
     CameraLight arrived(const Sample& sample, const Sight& sight, Spectrum weight, const ToFilm& to_film) const {
         CameraLight all{.light = to_film(sight.light)};
-        const bool catchers = film_.layout().catchers;
-        if (catchers) all.with = to_film(sight.with), all.without = to_film(sight.without), all.hidden = to_film(sight.hidden);
-        if (!film_.layout().coverage && !catchers) return all;
+        if (film_.layout().catchers) all.with = to_film(sight.with), all.without = to_film(sight.without);
+        if (!film_.layout().coverage) return all;
         const Spectrum luminance = sample.wavelengths.d65 * sample.wavelengths.cie_y * weight;
         all.white = 4 * luminance.average();
         all.covered = all.white * sight.covers.sum();
-        if (sight.hides) all.hides = all.white, all.looked = all.white * sight.looked;
         return all;
     }
 

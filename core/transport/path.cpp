@@ -19,9 +19,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// differ on its way. Without catchers there is the full one alone.
 enum class World : std::uint8_t { both, full, set };
 
-/// Chance to look at what an object hides of the set: it matters in pixels that the object covers in part.
-constexpr float kHiddenShare = 0.25f;
-
 /// State of the path from vertex to vertex.
 struct Walk {
     Ray ray;
@@ -44,7 +41,7 @@ struct Walk {
     bool bent = false;                 // it is, by way of smooth glass
     bool of_catcher = false;           // light is the set's, and not an object's
     bool hides = false;                // behind an object: what the set sends without it is found by another path
-    bool hidden = false;               // that path
+    bool hidden = false;               // that path, which the lens looks past an object
     const CatcherEffects* effects = nullptr;   // of the first catcher on the way
     bool past_catcher = false, left_catcher = false;   // it lies behind; straight from it
     float kept = 1;                    // share of differences between both worlds that counts: the effects that are on
@@ -258,10 +255,7 @@ void Path::gather(Spectrum light, bool hero, float kept) {
         return add(walk_.of_catcher ? sight_.with : sight_.light, sign);
     }
     if (!walk_.of_catcher) return add(sight_.light, 1);
-    if (walk_.hidden) {
-        add(sight_.hidden, sight_.looked);
-        return add(sight_.with, seen_through_);
-    }
+    if (walk_.hidden) kept = 1 - seen_through_;
     if (walk_.world != World::full && !walk_.hides) add(sight_.without, 1);
     const float share = walk_.world == World::both ? 1 : walk_.world == World::full ? kept : 1 - kept;
     add(sight_.with, share);
@@ -395,12 +389,7 @@ bool Path::fork(Scene::Hit& found, int vertex, bool counts) {
     sampler_ = sampler;
     walk_.world = World::set;
     walk_.ray.of_set = true;
-    if (camera) {
-        sight_.hides = walk_.hidden = true;
-        const bool looks = sampler_.next_1d() < kHiddenShare;
-        sight_.looked = seen_through_ > 0 ? 1 : looks ? 1 / kHiddenShare : 0;
-        if (sight_.looked == 0) return false;
-    }
+    walk_.hidden = camera;
     return step(vertex);
 }
 

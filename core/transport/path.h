@@ -77,12 +77,10 @@ class Covers {
 
 /// Radiance along a camera ray, and what it covers. In a scene with catchers `light` is that of the objects alone;
 /// `with` is what catchers and the background send past them, with the objects in the scene, and `without` what they
-/// send where there are none. Of a ray that meets an object first, another path finds the latter, now and then: `hidden`.
+/// send where there are none: of the whole ray, also where an object covers it.
 struct Sight {
-    Radiance light, with, without, hidden;
+    Radiance light, with, without;
     Covers covers;
-    bool hides = false;   // an object comes first
-    float looked = 0;     // what it hides was looked at: one over the chance of that, with which `hidden` is weighed
 };
 
 class FirstRay;   // first_ray.h

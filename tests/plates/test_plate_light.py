@@ -29,7 +29,7 @@ def test_objects_see_the_set_in_the_plate(name: str) -> None:
     whole = np.array([f.rgb for f in case.frames("full", 100)], np.float64)
     plates = [f.rgb for f in case.frames("empty", 200)]
     sharp = dg.render(
-        case.scene("empty"), case.camera, resolution=(144, 96), spp=256, seed=7, light_paths="off"
+        case.scene("empty"), case.camera, resolution=(288, 192), spp=256, seed=7, light_paths="off"
     )
     scene = case.scene("caught")
     scene.set_plate(sharp.rgb)
