@@ -5,7 +5,8 @@ from __future__ import annotations
 import logging
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -48,15 +49,26 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
     Raises:
         InputError: It is no such file, or nothing is known of its camera's colours.
     """
+    tags = tags_of(path)
+    with opened_raw(path) as opened:
+        return _shot(path, opened, tags, demosaic)
+
+
+@contextmanager
+def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
+    """A raw file, opened by rawpy.
+
+    Raises:
+        InputError: It is no such file; also where LibRaw finds that out within the block.
+    """
     import rawpy
 
     if not Path(path).is_file():
         got = "a folder" if Path(path).is_dir() else "no such file"
         raise InputError(f"{path}: wanted a raw file, got {got}")
-    tags = _tags(path)
     try:
         with rawpy.imread(str(path)) as opened:
-            return _shot(path, opened, tags, demosaic)
+            yield opened
     except rawpy.LibRawError as error:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
@@ -84,9 +96,22 @@ def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -
         unit=white / 2.0 ** _number(tags.get("BaselineExposure"), 0.0),
         full=np.minimum(white, 65535.0),
         xyz_from=lambda white: np.asarray(np.linalg.inv(matrix(white)), np.float64),
-        as_shot=illuminants.D65_XY if grey else _white(neutral, matrix),
+        as_shot=white_of_shot(path, opened, tags),
         metadata=_facts(tags),
     )
+
+
+def white_of_shot(path: Any, opened: Any, tags: Mapping[str, Any]) -> XY:
+    """The white that a camera was set to, as its file says, without developing it.
+
+    Args:
+        path: Name of the file, for messages.
+        opened: rawpy's.
+        tags: Those of ``tags_of``.
+    """
+    if opened.num_colors == 1:
+        return illuminants.D65_XY
+    return _white(_neutral(path, opened), _camera_from_xyz(path, opened, tags))
 
 
 def _neutral(path: Any, opened: Any) -> FloatArray:
@@ -153,7 +178,7 @@ def _matrix(value: Any) -> FloatArray | None:
     return table if usable else None
 
 
-def _tags(path: str | os.PathLike[str]) -> dict[str, Any]:
+def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     """TIFF tags of the first directory and that of the exposure; none if the file is no TIFF."""
     import tifffile
 

@@ -57,9 +57,7 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
         _check_png(data, where)
         suffix = ".png"
     elif data.startswith(b"\xff\xd8\xff"):
-        # libjpeg fills what is missing with grey; without an end marker something is missing.
-        if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
-            raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
+        _check_jpeg(data, where)
         suffix = ".jpg"
     elif data[:4] == b"RIFF" and data[8:12] == b"WEBP":
         wanted = 8 + int.from_bytes(data[4:8], "little")
@@ -109,7 +107,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
         rgb = _uncrop(rgb, spec)
     if kind == "hdr":
         rgb /= np.float32(_radiance_exposure(file))
-    rgb = _upright(rgb, spec.get_int_attribute("Orientation", 1))
+    rgb = upright(rgb, spec.get_int_attribute("Orientation", 1))
     for name, bad in (("finite", ~(np.abs(rgb) <= MAX_LIGHT)), ("non-negative", rgb < 0)):
         count = int(bad.any(axis=2).sum())
         if count:
@@ -119,6 +117,34 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
                 f"({count} such pixels)"
             )
     return np.ascontiguousarray(rgb)
+
+
+def read_file(path: Path) -> tuple[NDArray[Any], Any]:
+    """Pixels of a picture in their own type, shape (H, W, C), as they lie in the file; its facts.
+
+    Args:
+        path: What OpenImageIO decodes. Of PNG and JPEG what is cut off is refused here.
+
+    Returns:
+        The pixels, straight alpha, and OpenImageIO's specification.
+
+    Raises:
+        InputError: It cannot be decoded, is cut off or absurdly large.
+    """
+    with path.open("rb") as stream:
+        start = stream.read(8)
+    if start.startswith(_PNG_MAGIC):
+        _check_png(path.read_bytes(), str(path))
+    elif start.startswith(b"\xff\xd8\xff"):
+        _check_jpeg(path.read_bytes(), str(path))
+    pixels, spec, _ = _read(str(path), str(path))
+    return pixels, spec
+
+
+def _check_jpeg(data: bytes, where: str) -> None:
+    """Refuses one without an end: libjpeg fills what is missing with grey."""
+    if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
+        raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
 
 
 def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], Any, str]:
@@ -243,12 +269,12 @@ def _radiance_exposure(file: Path) -> float:
     return exposure
 
 
-def _upright(rgb: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
-    """The Exif orientation 1 .. 8 undone."""
+def upright(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """A picture, shape (H, W) or (H, W, C), with its Exif orientation 1 .. 8 undone."""
     if orientation >= 5:
-        rgb = rgb.transpose(1, 0, 2)
+        pixels = pixels.swapaxes(0, 1)
     if orientation in (2, 3, 6, 7):
-        rgb = rgb[:, ::-1]
+        pixels = pixels[:, ::-1]
     if orientation in (3, 4, 7, 8):
-        rgb = rgb[::-1]
-    return rgb
+        pixels = pixels[::-1]
+    return pixels

@@ -1,0 +1,32 @@
+"""Photographs as linear light: OpenEXR with the standard's attributes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from daguerre.errors import InputError
+from daguerre.io.exr.read import read_frame
+
+from .display_file import alpha_notes
+from .photograph import Photograph
+
+
+def read_linear(path: Path) -> Photograph:
+    """Reads a picture in linear light, Rec.709.
+
+    Raises:
+        InputError: It cannot be read, has no colours, or a pixel is not finite.
+    """
+    frame = read_frame(path).without_overscan()
+    bad = np.argwhere(~np.isfinite(frame.rgb).all(axis=2))
+    if len(bad):
+        y, x = bad[0]
+        raise InputError(
+            f"{path}: pixel ({x}, {y}): wanted finite light, got {frame.rgb[y, x].tolist()} "
+            f"({len(bad)} such pixels)"
+        )
+    notes = alpha_notes(frame.alpha) if (frame.alpha != 1).any() else []
+    facts = {name: value for name, value in frame.metadata.items() if value is not None}
+    return Photograph(path, "linear", frame.rgb, None, facts, tuple(notes))

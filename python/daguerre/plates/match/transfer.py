@@ -1,0 +1,216 @@
+"""Photon transfer: gain and read noise from the variance of a picture's flat blocks.
+
+Electrons arrive by Poisson's law, so the variance of numbers grows with their mean by the gain g
+(DN per electron); reading adds r^2, rounding 1/12, and unequal photosites p^2 times the mean
+squared: V(s) = r^2 + 1/12 + g s + p^2 s^2, s above black (Janesick 2007, Photon Transfer, ch. 5).
+Of one picture r holds the unequal offsets of the photosites (DSNU), too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+
+from .blocks import HIGH_COUNT, Blocks
+
+FloatArray = NDArray[np.float64]
+#: Fewest flat blocks of which a line is fitted.
+LEAST = 64
+_BINS, _FINE_BINS, _FIRST_SHARE, _ROUNDS = 24, 96, 0.1, 6
+#: Width of a bin, standard deviations of a photosite; the mean of a block has an eighth of one.
+_BIN_WIDTH = 2.0
+#: Mean squares of flat blocks over their variance: 1 in 100 of the low ones is larger than that,
+#: and 1 in 10000 of the high ones (chi-square of 9 and 16).
+_FLAT, _OUTLIER = 2.41, 2.90
+#: Standard deviations between a block's mean and the ends of the numbers.
+_CLEAR = 5.0
+ROUNDING = 1 / 12  # DN^2
+#: No sensor has photosites that differ so much; texture looks like them.
+MOST_PRNU = 0.05
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """A photon transfer curve.
+
+    Attributes:
+        gain: DN per electron.
+        gain_error: Its standard error, relative.
+        read_noise: Noise in the dark, DSNU included, e-.
+        read_noise_error: Its standard error, relative; infinite if the picture has nothing dark.
+        prnu: Standard deviation of the photosites' responses, relative.
+        blocks: Number of flat blocks.
+        darkest: Mean of the darkest ones, e-.
+        by_channel: Gain of each channel alone, DN per electron; NaN where it has too few blocks.
+    """
+
+    gain: float
+    gain_error: float
+    read_noise: float
+    read_noise_error: float
+    prnu: float
+    blocks: int
+    darkest: float
+    by_channel: tuple[float, ...]
+
+
+def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where: str) -> Transfer:
+    """Fits a photon transfer curve.
+
+    Args:
+        blocks: Of one picture, or of several with the same settings.
+        span: Least and largest number above black, DN.
+        channels: Number of channels.
+        where: The picture, for messages.
+
+    Raises:
+        InputError: Too few blocks are flat, or they tell no gain: all are of one brightness.
+    """
+    flat, line = _flat(blocks, span, where)
+    fitted = _fit(flat.level, flat.high, line)
+    a, g, q = fitted.values
+    error = fitted.errors
+    if q > MOST_PRNU**2:
+        raise InputError(
+            f"{where}: noise: wanted flat parts, got texture alone: its variance would be unequal "
+            f"photosites of {np.sqrt(q):.0%}; --flat FILE brings an even surface"
+        )
+    if not (g > 0 and error[1] < 0.5 * g):
+        raise InputError(
+            f"{where}: noise: wanted flat parts of different brightness, got {len(flat.level)} "
+            "flat blocks whose noise does not grow with light; is it a raw file as the camera "
+            "wrote it?"
+        )
+    dark = a - ROUNDING
+    read = float(np.sqrt(max(dark, 0.0))) / g
+    spread = error[0] / (2 * dark) if dark > 0 else np.inf
+    return Transfer(
+        gain=g,
+        gain_error=error[1] / g,
+        read_noise=read,
+        read_noise_error=float(np.hypot(spread, error[1] / g)),
+        prnu=float(np.sqrt(q)),
+        blocks=len(flat.level),
+        darkest=float(np.quantile(flat.level, 0.01) / g),
+        by_channel=tuple(_gain_of(flat, c, line) for c in range(channels)),
+    )
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Coefficients of 1, s and s^2, with their standard errors."""
+
+    values: tuple[float, float, float]
+    errors: tuple[float, float, float]
+
+    def __call__(self, level: FloatArray) -> FloatArray:
+        a, g, q = self.values
+        return np.asarray(np.maximum(a + g * level + q * level**2, 1e-6))
+
+
+def _flat(blocks: Blocks, span: tuple[float, float], where: str) -> tuple[Blocks, _Line]:
+    """The flat blocks, and the variance by level that tells them, in turns."""
+    if len(blocks.level) < LEAST:
+        raise InputError(
+            f"{where}: noise: wanted at least {LEAST} blocks that are not clipped, got "
+            f"{len(blocks.level)}"
+        )
+    level, variance = _first_guess(blocks)
+    line = _fit(level, variance, None)
+    chosen = blocks
+    for _ in range(_ROUNDS):
+        expected = line(blocks.level)
+        clear = _CLEAR * np.sqrt(expected)
+        good = (blocks.low < _FLAT * expected) & (blocks.high < _OUTLIER * expected)
+        good &= (blocks.level - clear > span[0]) & (blocks.level + clear < span[1])
+        chosen = blocks.only(good)
+        if len(chosen.level) < LEAST:
+            raise InputError(
+                f"{where}: noise: wanted at least {LEAST} flat blocks, got {len(chosen.level)} of "
+                f"{len(blocks.level)}; --flat FILE brings an even surface"
+            )
+        line = _fit(chosen.level, chosen.high, line)
+    return chosen, line
+
+
+def _first_guess(blocks: Blocks) -> tuple[FloatArray, FloatArray]:
+    """Levels, and the variance in the blocks of each bin of levels that have least structure."""
+    order = np.argsort(blocks.level)
+    found = []
+    for part in np.array_split(order, min(_BINS, len(order) // 8)):
+        count = max(int(_FIRST_SHARE * len(part)), 4)
+        flattest = part[np.argsort(blocks.low[part])[:count]]
+        found.append((blocks.level[flattest].mean(), blocks.high[flattest].mean()))
+    level, variance = np.array(found).T
+    return level, variance
+
+
+def _fit(level: FloatArray, variance: FloatArray, last: _Line | None) -> _Line:
+    """Least squares over bins of levels, weighted by the variance of a variance.
+
+    No coefficient is below 0: one after the other those are left out, of s^2 first, which is the
+    least sure.
+    """
+    number = np.arange(len(level)) if last is None else _bins(level, last)
+    count = np.bincount(number)
+    s = np.bincount(number, level)[count > 0] / count[count > 0]
+    v = np.bincount(number, variance)[count > 0] / count[count > 0]
+    expected = _smooth(s, v) if last is None else last(s)
+    weight = np.sqrt(count[count > 0]) / expected
+    columns = np.stack([np.ones_like(s), s, s**2], axis=1) * weight[:, None]
+    kept = [0, 1, 2]
+    while True:
+        inverse = _inverse(columns[:, kept])
+        found = inverse @ (columns[:, kept].T @ (v * weight))
+        low = [k for k, value in zip(kept, found, strict=True) if value < 0 and k != 1]
+        if not low:
+            break
+        kept.remove(max(low))
+    values, errors = np.zeros(3), np.zeros(3)
+    values[kept] = found
+    errors[kept] = np.sqrt(np.maximum(np.diag(inverse), 0) * 2 / HIGH_COUNT)
+    return _Line((values[0], values[1], values[2]), (errors[0], errors[1], errors[2]))
+
+
+def _bins(level: FloatArray, line: _Line) -> NDArray[np.intp]:
+    """Number of each block's bin: wider than the noise of its mean, from the darkest block on.
+
+    A weight by a block's own level would prefer, of equal blocks in the dark, those whose mean
+    noise has lowered, and lift the line there.
+    """
+    a, g, _ = line.values
+    if not g > 0:
+        return np.zeros(len(level), np.intp)
+    steps = 2 / g * np.sqrt(np.maximum(a + g * (level - level.min()), 0))  # standard deviations
+    steps -= steps.min()
+    width = max(_BIN_WIDTH, float(steps.max()) / _FINE_BINS)
+    return np.asarray(steps / width, np.intp)
+
+
+def _smooth(level: FloatArray, variance: FloatArray) -> FloatArray:
+    """The trend of variances, for the weights of a first fit."""
+    trend = np.polyval(np.polyfit(level, variance, 1), level)
+    return np.asarray(np.maximum(trend, 0.1 * variance.mean()))
+
+
+def _inverse(columns: FloatArray) -> FloatArray:
+    """Inverse of the normal matrix, whose columns are of very different size."""
+    scale = np.linalg.norm(columns, axis=0)
+    scale[scale == 0] = 1
+    unit = columns / scale
+    return np.asarray(np.linalg.pinv(unit.T @ unit) / np.outer(scale, scale))
+
+
+def _gain_of(flat: Blocks, channel: int, line: _Line) -> float:
+    """Gain of one channel, with the other terms of all."""
+    chosen = flat.only(flat.channel == channel)
+    if len(chosen.level) < LEAST:
+        return float("nan")
+    a, _, q = line.values
+    weight = 1 / line(chosen.level) ** 2
+    rest = chosen.high - a - q * chosen.level**2
+    return float((weight * rest * chosen.level).sum() / (weight * chosen.level**2).sum())

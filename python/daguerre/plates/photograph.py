@@ -1,0 +1,123 @@
+"""A photograph as its file has it: pixels as they stand, upright, and the facts of the shot."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import srgb
+from daguerre.errors import InputError
+
+Kind = Literal["raw", "display", "linear"]
+XY = tuple[float, float]
+DISPLAY = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
+
+
+@dataclass(frozen=True, eq=False)
+class RawNumbers:
+    """Numbers of a mosaic, upright.
+
+    Attributes:
+        mosaic: Digital numbers of the photosites, uint16, shape (H, W).
+        cells: Index of the channel of each photosite of the cell that repeats, shape (h, w).
+        channels: Names, ``("R", "G", "B")`` or ``("Y",)``.
+        black: DN of no light by channel, shape (C,).
+        white: DN from which on a photosite is saturated.
+        white_balance: White that the camera was set to, chromaticity (x, y).
+    """
+
+    mosaic: NDArray[np.uint16]
+    cells: NDArray[np.uint8]
+    channels: tuple[str, ...]
+    black: NDArray[np.float64]
+    white: int
+    white_balance: XY
+
+
+@dataclass(frozen=True, eq=False)
+class Photograph:
+    """A photograph.
+
+    Attributes:
+        path: Its file.
+        kind: ``raw``: numbers of a mosaic; ``display``: encoded for screens; ``linear``: light.
+        pixels: Red, green and blue, upright, shape (H, W, 3): uint8 or uint16 of ``display``,
+            float32 of ``linear``; None of ``raw``.
+        raw: Numbers of ``raw``; None of others.
+        facts: Facts of the shot by the names of OpenEXR, such as ``expTime`` (s), ``aperture``.
+        notes: Decisions that were made on reading, a sentence each.
+    """
+
+    path: Path
+    kind: Kind
+    pixels: NDArray[Any] | None
+    raw: RawNumbers | None
+    facts: dict[str, Any]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, upright, px."""
+        shape = self._array.shape
+        return int(shape[1]), int(shape[0])
+
+    @property
+    def _array(self) -> NDArray[Any]:
+        array = self.pixels if self.raw is None else self.raw.mosaic
+        assert array is not None
+        return array
+
+    def linear(
+        self, rows: slice = slice(None), columns: slice = slice(None)
+    ) -> NDArray[np.float32]:
+        """Light of a part of a developed photograph, linear, shape (h, w, 3)."""
+        part = self._array[rows, columns]
+        if self.kind == "linear":
+            return np.asarray(part, np.float32)
+        return np.asarray(srgb.to_linear(encoded(part)), np.float32)
+
+    def sha256(self) -> str:
+        """Hash of the file."""
+        with self.path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def encoded(pixels: NDArray[Any]) -> NDArray[np.float32]:
+    """Whole numbers of pictures as 0 .. 1; float numbers stay."""
+    if not np.issubdtype(pixels.dtype, np.integer):
+        return np.asarray(pixels, np.float32)
+    return np.asarray(pixels, np.float32) / np.float32(np.iinfo(pixels.dtype).max)
+
+
+def read(path: str | os.PathLike[str]) -> Photograph:
+    """Reads a photograph by the end of its name.
+
+    Args:
+        path: ``.jpg``, ``.png``, ``.tif``: developed; ``.exr``: linear light; others are raw files,
+            ``.dng`` and what else LibRaw reads.
+
+    Raises:
+        InputError: It is no such file, or holds no picture of red, green and blue, or grey.
+    """
+    file = Path(path)
+    if not file.is_file():
+        got = "a folder" if file.is_dir() else "no such file"
+        raise InputError(f"{file}: wanted a photograph, got {got}")
+    suffix = file.suffix.lower()
+    if suffix == ".exr":
+        from .linear_file import read_linear
+
+        return read_linear(file)
+    if suffix in DISPLAY:
+        from .display_file import read_display
+
+        return read_display(file)
+    from .raw_file import read_raw
+
+    return read_raw(file)

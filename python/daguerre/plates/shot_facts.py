@@ -1,0 +1,95 @@
+"""Facts of a shot from EXIF: its names and units to those of OpenEXR.
+
+Tags and units: Exif 3.0 (CIPA DC-008-2023), 4.6.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+#: EXIF's names, and ours; of several the first that is there counts.
+_NUMBERS = {
+    "ExposureTime": "expTime",
+    "FNumber": "aperture",
+    "FocalLength": "nominalFocalLength",
+    "PhotographicSensitivity": "isoSpeed",
+    "ISOSpeedRatings": "isoSpeed",
+    "SubjectDistance": "focus",
+}
+_TEXTS = {
+    "LensMake": "lensMake",
+    "LensModel": "lensModel",
+    "Make": "cameraMake",
+    "Model": "cameraModel",
+    "DateTimeOriginal": "capDate",
+}
+#: Units of the resolution of the focal plane, mm.
+_UNITS_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 1e-3}
+_FULL_FRAME_DIAGONAL_MM = math.hypot(36, 24)
+
+
+def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]:
+    """Facts by the names of OpenEXR.
+
+    Args:
+        tags: Values by EXIF's names; rationals as numbers or as pairs.
+        size: Width and height of the picture as it lies in the file, px.
+
+    Returns:
+        Those that are there; ``sensorOverallDimensions`` (mm) where the resolution of the focal
+        plane or the equivalent focal length tells it.
+    """
+    facts: dict[str, Any] = {}
+    for theirs, ours in _NUMBERS.items():
+        value = exif_number(tags.get(theirs))
+        if value is not None and value > 0:
+            facts.setdefault(ours, value)
+    for theirs, ours in _TEXTS.items():
+        text = tags.get(theirs)
+        if isinstance(text, str) and text.strip("\0 "):
+            facts[ours] = text.strip("\0 ")
+    sensor = _by_focal_plane(tags, size) or _by_equivalent(tags, facts, size)
+    return facts if sensor is None else facts | {"sensorOverallDimensions": sensor}
+
+
+def exif_number(value: Any) -> float | None:
+    """A finite number; a rational may be a pair, and of a list of others the first counts."""
+    try:
+        if isinstance(value, tuple | list):
+            value = float(value[0]) / float(value[1]) if len(value) == 2 else value[0]
+        number = float(value)
+    except (TypeError, ValueError, ZeroDivisionError, IndexError):
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _by_focal_plane(tags: Mapping[str, Any], size: tuple[int, int]) -> tuple[float, float] | None:
+    """Pixels over their density on the sensor; a picture that was made smaller keeps both tags."""
+    unit = _UNITS_MM.get(int(exif_number(tags.get("FocalPlaneResolutionUnit")) or 2))
+    across = exif_number(tags.get("FocalPlaneXResolution"))
+    down = exif_number(tags.get("FocalPlaneYResolution")) or across
+    if unit is None or across is None or down is None or min(across, down) <= 0:
+        return None
+    columns = exif_number(tags.get("PixelXDimension")) or size[0]
+    width_mm = columns / across * unit
+    return _plausible((width_mm, width_mm * size[1] / size[0] * across / down))
+
+
+def _by_equivalent(
+    tags: Mapping[str, Any], facts: Mapping[str, Any], size: tuple[int, int]
+) -> tuple[float, float] | None:
+    """By the focal length of the same diagonal field on 36 x 24 mm, a whole number of mm."""
+    equivalent = exif_number(tags.get("FocalLengthIn35mmFilm"))
+    focal = facts.get("nominalFocalLength")
+    if not equivalent or equivalent <= 0 or focal is None:
+        return None
+    diagonal = _FULL_FRAME_DIAGONAL_MM * focal / equivalent
+    scale = diagonal / math.hypot(*size)
+    return _plausible((size[0] * scale, size[1] * scale))
+
+
+def _plausible(sensor: tuple[float, float]) -> tuple[float, float] | None:
+    """Sizes that sensors have; wrong units of some files give others."""
+    return sensor if all(1 <= side <= 250 for side in sensor) else None
