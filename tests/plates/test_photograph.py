@@ -9,7 +9,8 @@ import tifffile
 
 from daguerre.errors import InputError
 from daguerre.frame.picture import Picture
-from daguerre.plates.photograph import encoded, read
+from daguerre.plates.files import read
+from daguerre.plates.photograph import encoded
 from daguerre.plates.shot_facts import exif_number, shot_facts
 from tests.support.plate_frames import FACTS, of_light, ramp
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -12,11 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
-from daguerre.errors import InputError
 
 Kind = Literal["raw", "display", "linear"]
 XY = tuple[float, float]
-DISPLAY = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,31 +90,3 @@ def encoded(pixels: NDArray[Any]) -> NDArray[np.float32]:
     if not np.issubdtype(pixels.dtype, np.integer):
         return np.asarray(pixels, np.float32)
     return np.asarray(pixels, np.float32) / np.float32(np.iinfo(pixels.dtype).max)
-
-
-def read(path: str | os.PathLike[str]) -> Photograph:
-    """Reads a photograph by the end of its name.
-
-    Args:
-        path: ``.jpg``, ``.png``, ``.tif``: developed; ``.exr``: linear light; others are raw files,
-            ``.dng`` and what else LibRaw reads.
-
-    Raises:
-        InputError: It is no such file, or holds no picture of red, green and blue, or grey.
-    """
-    file = Path(path)
-    if not file.is_file():
-        got = "a folder" if file.is_dir() else "no such file"
-        raise InputError(f"{file}: wanted a photograph, got {got}")
-    suffix = file.suffix.lower()
-    if suffix == ".exr":
-        from .linear_file import read_linear
-
-        return read_linear(file)
-    if suffix in DISPLAY:
-        from .display_file import read_display
-
-        return read_display(file)
-    from .raw_file import read_raw
-
-    return read_raw(file)

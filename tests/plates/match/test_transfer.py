@@ -7,7 +7,7 @@ import pytest
 
 from daguerre import sensors
 from daguerre.errors import InputError
-from daguerre.plates.match import blocks, transfer
+from daguerre.plates.match import cut, transfer
 from tests.support.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
 
 SHAPE = (1600, 2400)
@@ -28,7 +28,7 @@ def shot(name, iso, light=None, seed=1, **changes):
 def measured(raw, **parts):
     numbers = replace(numbers_of(raw), **parts)
     span = (-raw.black_level, raw.white_level - raw.black_level)
-    found = blocks.blocks_of(numbers)
+    found = cut.blocks_of(numbers)
     return transfer.transfer_of(found, span, len(raw.sensor.channels), "plate.dng")
 
 
@@ -73,7 +73,7 @@ def test_stated_errors_are_those_of_many_shots_and_nothing_is_biased():
 @pytest.mark.parametrize("name", ["sony-a7r-ii", "raspberry-pi-hq", "fujifilm-x-t4"])
 def test_blocks_are_those_of_their_channel(name):
     raw = of_light(np.ones((192, 192)), 0.05).expose(name, 400, seed=1)
-    found = blocks.blocks_of(numbers_of(raw))
+    found = cut.blocks_of(numbers_of(raw))
     for channel in set(found.channel.tolist()):
         wanted = raw.mosaic[raw.channel_map() == channel].mean() - raw.black_level
         assert found.level[found.channel == channel].mean() == pytest.approx(wanted, rel=0.02)
