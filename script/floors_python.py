@@ -58,6 +58,7 @@ HAND_OVERS = {
     ("lenses/lens.py", "at_zoom", "lenses.zoom"),
     ("lenses/lens.py", "focused", "lenses.focus"),
     ("lenses/lens.py", "zoom_range_mm", "lenses.zoom"),
+    ("plates/match/plate_camera.py", "save", "plates.match.writer"),
     ("polynomial/lens_fit.py", "save", "export"),
     ("stocks/stock.py", "expose", "stocks.negative"),
 }

@@ -9,6 +9,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from daguerre.io.exif import FULL_FRAME_DIAGONAL_MM, rational
+
 #: EXIF's names, and ours; of several the first that is there counts.
 _NUMBERS = {
     "ExposureTime": "expTime",
@@ -27,7 +29,6 @@ _TEXTS = {
 }
 #: Units of the resolution of the focal plane, mm.
 _UNITS_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 1e-3}
-_FULL_FRAME_DIAGONAL_MM = math.hypot(36, 24)
 
 
 def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]:
@@ -45,7 +46,9 @@ def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]
     for theirs, ours in _NUMBERS.items():
         value = exif_number(tags.get(theirs))
         if value is not None and value > 0:
-            facts.setdefault(ours, value)
+            # Fractions come as floats of 32 bits: 1/125 s as 0.00800000038.
+            above, below = rational(value)
+            facts.setdefault(ours, above / below)
     for theirs, ours in _TEXTS.items():
         text = tags.get(theirs)
         if isinstance(text, str) and text.strip("\0 "):
@@ -85,7 +88,7 @@ def _by_equivalent(
     focal = facts.get("nominalFocalLength")
     if not equivalent or equivalent <= 0 or focal is None:
         return None
-    diagonal = _FULL_FRAME_DIAGONAL_MM * focal / equivalent
+    diagonal = FULL_FRAME_DIAGONAL_MM * focal / equivalent
     scale = diagonal / math.hypot(*size)
     return _plausible((size[0] * scale, size[1] * scale))
 

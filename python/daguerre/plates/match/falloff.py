@@ -1,0 +1,141 @@
+"""Vignetting by a photograph of an even surface, as the polynomial of the darkroom."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.errors import InputError
+from daguerre.plates.photograph import Photograph
+
+from .regions import overview
+
+FloatArray = NDArray[np.float64]
+Floats = NDArray[np.float32]
+Terms = tuple[float, float, float]
+#: Cells of the picture along its longer side of which means are fitted.
+_CELLS = 48
+#: Share of the light by which an even surface may differ from the fit.
+UNEVEN = 0.03
+
+
+@dataclass(frozen=True)
+class Falloff:
+    """Light over the picture, 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in the corners.
+
+    Attributes:
+        terms: k1, k2 and k3 as measured.
+        lens: Those of the camera's lens as it is rendered; None: it has no falloff of its own.
+        rest: Root mean square of what the fit leaves, relative.
+    """
+
+    terms: Terms
+    lens: Terms | None = None
+    rest: float = 0.0
+
+    @property
+    def corner_ev(self) -> float:
+        """Light in the corners against the middle, EV."""
+        return float(np.log2(max(1 + sum(self.terms), 1e-6)))
+
+    @property
+    def lens_corner_ev(self) -> float | None:
+        """The same by the lens as it is rendered."""
+        return None if self.lens is None else float(np.log2(max(1 + sum(self.lens), 1e-6)))
+
+    def factor(self, rows: int, columns: int) -> Floats:
+        """Factor from rendered light to the plate's, shape (rows, columns)."""
+        r2 = radii_squared(rows, columns)
+        measured = polynomial(self.terms, r2)
+        return np.asarray(measured / polynomial(self.lens or (0, 0, 0), r2), np.float32)
+
+
+def radii_squared(rows: int, columns: int) -> FloatArray:
+    """Square of the distance from the middle, 1 in the corners of the picture."""
+    y = np.arange(rows) + 0.5 - rows / 2
+    x = np.arange(columns) + 0.5 - columns / 2
+    return np.asarray((y[:, None] ** 2 + x**2) / (rows**2 / 4 + columns**2 / 4))
+
+
+def polynomial(terms: Terms, r2: FloatArray) -> FloatArray:
+    """Light at squared radii; never below 1/1000."""
+    k1, k2, k3 = terms
+    return np.asarray(np.maximum(1 + r2 * (k1 + r2 * (k2 + r2 * k3)), 1e-3))
+
+
+def fitted(
+    light: FloatArray, r2: FloatArray, more: FloatArray | None = None
+) -> tuple[Terms, float]:
+    """The polynomial through light at squared radii, and the RMS of what it leaves.
+
+    Args:
+        light: Any scale, shape (N,).
+        r2: Squared radii, shape (N,).
+        more: Functions that may go with it and are left out, relative to the middle, shape (N, M).
+    """
+    columns = np.stack([np.ones_like(r2), r2, r2**2, r2**3], axis=1)
+    if more is not None:
+        columns = np.concatenate([columns, more], axis=1)
+    found = np.linalg.lstsq(columns, light, rcond=None)[0]
+    rest = float(np.sqrt(np.mean((light - columns @ found) ** 2)) / found[0])
+    k1, k2, k3 = (float(found[k] / found[0]) for k in (1, 2, 3))
+    return (k1, k2, k3), rest
+
+
+def falloff_of(flat: Photograph) -> Falloff:
+    """Measures the falloff of a photograph of an even surface.
+
+    A gradient across it, of a surface that is lit from one side, is fitted and left out.
+
+    Raises:
+        InputError: It is clipped, dark, or not even.
+    """
+    light = _means(flat)
+    if not (light > 0).all():
+        raise InputError(f"{flat.path}: flat: wanted light everywhere, got some parts without")
+    rows, columns = light.shape
+    r2 = radii_squared(rows, columns)
+    y, x = np.mgrid[-1 : 1 : rows * 1j, -1 : 1 : columns * 1j]
+    more = np.stack([y.ravel(), x.ravel()], axis=1)
+    terms, rest = fitted(light.ravel(), r2.ravel(), more)
+    if rest > UNEVEN:
+        raise InputError(
+            f"{flat.path}: flat: wanted an even surface, got light that differs by {rest:.1%} from "
+            "a smooth falloff"
+        )
+    return Falloff(terms, None, rest)
+
+
+def _means(flat: Photograph) -> FloatArray:
+    """Means of light over cells of the picture, as many as fit."""
+    plane, _ = overview(flat)
+    clipped = _top(flat)
+    if (plane >= clipped).mean() > 1e-3:
+        raise InputError(f"{flat.path}: flat: wanted no clipped light, got some")
+    side = max(max(plane.shape) // _CELLS, 1)
+    rows, columns = (length // side for length in plane.shape)
+    cut = plane[: rows * side, : columns * side] - np.float32(_black(flat))
+    light = _decoded(flat, cut).reshape(rows, side, columns, side)
+    return np.asarray(light.mean(axis=(1, 3), dtype=np.float64))
+
+
+def _top(flat: Photograph) -> float:
+    if flat.raw is not None:
+        return 0.98 * flat.raw.white
+    assert flat.pixels is not None
+    return float(np.iinfo(flat.pixels.dtype).max) if flat.kind == "display" else np.inf
+
+
+def _black(flat: Photograph) -> float:
+    return 0.0 if flat.raw is None else float(flat.raw.black[flat.raw.cells].mean())
+
+
+def _decoded(flat: Photograph, plane: Floats) -> Floats:
+    if flat.kind != "display":
+        return plane
+    from daguerre.color import srgb
+
+    assert flat.pixels is not None
+    return np.asarray(srgb.to_linear(plane / np.float32(np.iinfo(flat.pixels.dtype).max)))

@@ -1,0 +1,125 @@
+"""Flat blocks of developed pictures, chosen by what is coarser than their noise.
+
+Noise of developed pictures is not white, so its own low frequencies cannot be told from its high
+ones. Blocks are judged by means of 8 x 8 px, in which little noise is left, and measured by all
+that is finer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.plates.photograph import Photograph, encoded
+
+from .grain import SIDE
+
+FloatArray = NDArray[np.float64]
+#: Blocks that are looked at, and those that must be flat.
+_MOST, LEAST = 9000, 12
+_BINS, _FLATTEST = 16, 0.2
+#: Noise of flat blocks differs little; what has more than this times the usual is texture.
+_TEXTURE = 1.5
+_CELL = 8
+#: Share of pixels at either end of the numbers that a channel of a block may have.
+_CLIPPED = 0.15
+
+
+@dataclass(frozen=True)
+class FlatBlocks:
+    """Flat blocks.
+
+    Attributes:
+        corner: Upper left pixel, y and x, shape (N, 2).
+        level: Mean of each channel, shape (N, 3).
+        variance: Variance about the plane through the block, shape (N, 3).
+    """
+
+    corner: NDArray[np.intp]
+    level: FloatArray
+    variance: FloatArray
+
+    def only(self, chosen: NDArray[np.intp]) -> FlatBlocks:
+        """Those of some numbers."""
+        return FlatBlocks(self.corner[chosen], self.level[chosen], self.variance[chosen])
+
+
+def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
+    """The flat blocks of a developed picture; None: there are too few."""
+    all_blocks, structure = _blocks(photograph)
+    order = np.argsort(all_blocks.level.mean(axis=1))
+    if len(order) < LEAST:
+        return None
+    found = []
+    for part in np.array_split(order, max(min(_BINS, len(order) // (2 * LEAST)), 1)):
+        count = max(int(_FLATTEST * len(part)), min(LEAST, len(part)))
+        found.append(part[np.argsort(structure[part])[:count]])
+    best = [chosen[_alike(all_blocks.variance[chosen].mean(axis=1))] for chosen in found]
+    kept = np.concatenate(
+        [part for part, seen in zip(best, found, strict=True) if len(part) >= len(seen) // 2]
+    )
+    return all_blocks.only(kept) if len(kept) >= LEAST else None
+
+
+def _alike(variance: FloatArray) -> NDArray[np.bool_]:
+    """Which variances are those of noise: near the lower ones, which texture does not have."""
+    usual = np.quantile(variance, 0.25)
+    return np.asarray(variance <= _TEXTURE * max(float(usual), 1e-14))
+
+
+def _blocks(photograph: Photograph) -> tuple[FlatBlocks, FloatArray]:
+    """Blocks all over the picture that are not clipped, and how much structure they have."""
+    pixels = photograph.pixels
+    assert pixels is not None
+    rows, columns = (side // SIDE for side in pixels.shape[:2])
+    every = max(rows * columns // _MOST, 1)
+    corners, levels, variances, structures = [], [], [], []
+    for i in range(0, rows, every):
+        strip = pixels[i * SIDE : (i + 1) * SIDE, : columns * SIDE]
+        blocks = strip.reshape(SIDE, columns, SIDE, 3).swapaxes(0, 1)
+        inside = _inside(blocks)
+        light = encoded(blocks[inside])
+        mean, variance, structure = _moments(light)
+        corners.append(
+            np.stack([np.full(inside.sum(), i * SIDE), np.flatnonzero(inside) * SIDE], 1)
+        )
+        levels.append(mean)
+        variances.append(variance)
+        structures.append(structure)
+    if not corners:
+        return FlatBlocks(np.zeros((0, 2), np.intp), np.zeros((0, 3)), np.zeros((0, 3))), np.zeros(
+            0
+        )
+    made = FlatBlocks(*(np.concatenate(part) for part in (corners, levels, variances)))
+    return made, np.concatenate(structures)
+
+
+def _inside(blocks: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which blocks have hardly a pixel at either end of the numbers."""
+    if not np.issubdtype(blocks.dtype, np.integer):
+        return np.asarray(blocks.max(axis=(1, 2, 3)) > 0)
+    ends = (blocks == 0) | (blocks == np.iinfo(blocks.dtype).max)
+    return np.asarray(ends.mean(axis=(1, 2)).max(axis=1) < _CLIPPED)
+
+
+def _moments(light: NDArray[np.float32]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mean and variance of blocks, (N, 3) each, and the largest structure of a channel, (N,)."""
+    count = len(light)
+    mean = light.mean(axis=(1, 2), dtype=np.float64)
+    rest = light - mean[:, None, None].astype(np.float32)
+    ramp = (np.arange(SIDE) - (SIDE - 1) / 2).astype(np.float32)
+    unit = float(np.square(ramp).sum() * SIDE)
+    down = np.einsum("nyxc,y->nc", rest, ramp) / unit
+    across = np.einsum("nyxc,x->nc", rest, ramp) / unit
+    slopes = np.square(down) + np.square(across)
+    total = np.einsum("nyxc,nyxc->nc", rest, rest).astype(np.float64)
+    variance = np.maximum(total - unit * slopes, 0) / (SIDE**2 - 3)
+    cells = SIDE // _CELL
+    coarse = rest.reshape(count, cells, _CELL, cells, _CELL, 3).mean(axis=(2, 4))
+    step = (np.arange(cells) - (cells - 1) / 2) * _CELL
+    coarse -= (down[:, None] * step[:, None]).astype(np.float32)[:, :, None]
+    coarse -= (across[:, None] * step[:, None]).astype(np.float32)[:, None]
+    return mean, variance, np.square(coarse, dtype=np.float64).mean(axis=(1, 2)).max(axis=1)

@@ -1,0 +1,193 @@
+"""Matches a photograph: its camera, noise, sharpness and vignetting, without further asking."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Unpack
+
+import numpy as np
+
+from daguerre.camera.camera import Camera
+from daguerre.development.looks import look_of
+from daguerre.errors import InputError
+from daguerre.parameters.keywords import takes
+from daguerre.plates.files import read
+from daguerre.plates.photograph import Photograph
+from daguerre.sensors import Sensor
+
+from .blocks import joined
+from .blur import fitted
+from .cut import blocks_of
+from .falloff import Falloff, falloff_of
+from .grain import Grain
+from .grain_measure import grain_of
+from .lens_model import bench_of, lens_falloff, lens_response
+from .parameters import MATCH, MatchKeywords
+from .plate_camera import PlateCamera
+from .plate_sensor import plate_sensor, responsivity, with_transfer
+from .settings import settings_of
+from .sharpness import Sharpness, sharpness_of
+from .transfer import Transfer, transfer_of
+
+Path = str | os.PathLike[str]
+#: Relative standard error of the read noise above which a note tells it.
+_UNSURE = 0.1
+#: What a camera's own picture looks like, of those looks that there are.
+_USUAL_LOOK = "standard"
+
+
+@takes(MATCH, MatchKeywords)
+def match_plate(
+    photo: Path, *, flats: Sequence[Path] = (), **keywords: Unpack[MatchKeywords]
+) -> PlateCamera:
+    """Finds the camera of a photograph, and how its pixels look.
+
+    Lens, stop, time, ISO and sensor are those of its EXIF; noise comes from its flat parts,
+    sharpness from its edges, vignetting from a flat.
+
+    Args:
+        photo: A raw file (``.dng`` and others), ``.jpg``, ``.png``, ``.tif``, or linear ``.exr``.
+        flats: Photographs of an even surface by the same camera, at the same settings.
+        {keywords}
+
+    Raises:
+        InputError: A file cannot be used, or does not say what is needed.
+        UsageError: A wrong parameter.
+    """
+    given = MATCH.filled(keywords, "match_plate")
+    photograph = read(photo)
+    even = [_flat(read(path), photograph) for path in flats]
+    found = settings_of(photograph, given)
+    notes = [*photograph.notes, *found.notes]
+    camera, sensor, noise = _noise(photograph, even, found.camera, found.body, notes)
+    if photograph.raw is not None and camera.white_balance is None:
+        camera = camera.with_(white_balance=photograph.raw.white_balance)
+    bench = bench_of(camera)
+    pitch = camera.sensor_size[0] / photograph.size[0]
+    sharpness = _sharpness(photograph, bench, pitch, notes)
+    if sharpness is not None and sensor is not None:
+        sensor = sensor.with_(low_pass=0.0)  # it is in the edges
+    falloff = _falloff(even, bench, camera, notes)
+    return PlateCamera(
+        plate=photograph.path.name,
+        sha256=photograph.sha256(),
+        kind=photograph.kind,
+        resolution=photograph.size,
+        camera=camera,
+        sensor=sensor,
+        noise=noise,
+        sharpness=sharpness,
+        falloff=falloff,
+        look=_look(given["look"], photograph, notes),
+        notes=tuple(notes),
+    )
+
+
+def _flat(flat: Photograph, photograph: Photograph) -> Photograph:
+    """A flat that goes with the photograph."""
+    if flat.kind != photograph.kind or flat.size != photograph.size:
+        width, height = photograph.size
+        raise InputError(
+            f"{flat.path}: flat: wanted a {photograph.kind} picture of {width}x{height} px as the "
+            f"plate, got a {flat.kind} one of {flat.size[0]}x{flat.size[1]}"
+        )
+    return flat
+
+
+def _noise(
+    photograph: Photograph,
+    flats: list[Photograph],
+    camera: Camera,
+    body: Sensor | None,
+    notes: list[str],
+) -> tuple[Camera, Sensor | None, Transfer | Grain | None]:
+    """The camera as it is exposed, its sensor, and the noise."""
+    if photograph.raw is None:
+        grain = grain_of(photograph)
+        if grain is None:
+            notes.append("noise: no part of the picture is flat: none was measured")
+        return camera, None, grain
+    iso = float(camera.iso)
+    sensor, more = plate_sensor(
+        photograph.raw, body, iso, camera.sensor_size[0], f"{photograph.path.stem}-sensor"
+    )
+    notes += more
+    measured = _transfer(photograph, flats, body, notes)
+    if measured is None:
+        return camera, sensor, None
+    sensor = with_transfer(sensor, measured, iso, photograph.raw.white)
+    beyond = responsivity(sensor)
+    if beyond > 1:
+        notes.append(f"the ISO promises {np.log2(beyond):.2f} EV more than ISO 12232 allows")
+        efficiency = np.asarray(sensor.quantum_efficiency) / beyond
+        sensor = sensor.with_(quantum_efficiency=efficiency)
+        camera = camera.with_(iso=iso / beyond, responsivity=beyond)
+    return camera, sensor, measured
+
+
+def _transfer(
+    photograph: Photograph, flats: list[Photograph], body: Sensor | None, notes: list[str]
+) -> Transfer | None:
+    """Photon transfer; None: nothing is flat, and the library knows the camera."""
+    pictures = [one.raw for one in (photograph, *flats) if one.raw is not None]
+    main = pictures[0]
+    blocks = joined([blocks_of(raw, 1 / len(pictures)) for raw in pictures])
+    black = float(main.black.max())
+    try:
+        span = (-black, main.white - black)
+        found = transfer_of(blocks, span, len(main.channels), str(photograph.path))
+    except InputError as error:
+        if body is None:
+            raise
+        notes.append(f"{error}; gain and noise are those of {body.name}")
+        return None
+    if found.read_noise_error > _UNSURE:
+        notes.append(
+            f"read noise: little of the picture is dark, so it is known within "
+            f"{min(found.read_noise_error, 10):.0%}"
+        )
+    return found
+
+
+def _sharpness(
+    photograph: Photograph, bench: Any, pitch_mm: float, notes: list[str]
+) -> Sharpness | None:
+    found = sharpness_of(photograph)
+    if found is None:
+        notes.append("sharpness: no edge is good enough: objects keep the sharpness of the render")
+        return None
+    if bench is None:
+        return found
+    lens = lens_response(bench, pitch_mm, found.frequency)
+    model = np.sinc(found.frequency) * lens
+    return replace(found, blur=fitted(found.frequency, found.response, model))
+
+
+def _falloff(
+    flats: list[Photograph], bench: Any, camera: Camera, notes: list[str]
+) -> Falloff | None:
+    if not flats:
+        return None
+    found = falloff_of(flats[0])
+    if bench is None:
+        return found
+    found = replace(found, lens=lens_falloff(bench, camera.sensor_size))
+    own = found.lens_corner_ev or 0.0
+    notes.append(
+        f"vignetting: corners {found.corner_ev:+.2f} EV, by the lens of the library {own:+.2f} EV"
+    )
+    return found
+
+
+def _look(given: str | None, photograph: Photograph, notes: list[str]) -> str:
+    """The tone curve: no photograph tells its own."""
+    if given is not None:
+        if not given.startswith("ocio:"):
+            look_of(given)
+        return given
+    if photograph.kind != "display":
+        return "neutral"
+    notes.append(f"tone: a picture does not tell its curve: taken for {_USUAL_LOOK} (--look)")
+    return _USUAL_LOOK
