@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
+    from .plates.match.match import match_plate
+    from .plates.match.plate_camera import PlateCamera
+    from .plates.match.reader import read_plate_camera
     from .rendering.diffraction import Diffraction
     from .rendering.merged import merge
     from .rendering.render import iter_render, render
@@ -64,6 +67,7 @@ __all__ = [
     "Material",
     "MismatchError",
     "OutputError",
+    "PlateCamera",
     "PointLight",
     "Projection",
     "Raw",
@@ -92,11 +96,13 @@ __all__ = [
     "lenses",
     "load",
     "load_frame",
+    "match_plate",
     "merge",
     "metering",
     "polynomial",
     "post",
     "raymap",
+    "read_plate_camera",
     "render",
     "render_rig",
     "rendering",
@@ -120,6 +126,9 @@ _LAZY = {
     "raymap": "maps.ray_map",
     "StMaps": "maps.st_maps",
     "stmaps": "maps.st_maps",
+    "PlateCamera": "plates.match.plate_camera",
+    "match_plate": "plates.match.match",
+    "read_plate_camera": "plates.match.reader",
     "RenderSettings": "rendering.settings",
     "Session": "rendering.session",
     "iter_render": "rendering.render",

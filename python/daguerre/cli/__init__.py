@@ -38,6 +38,7 @@ COMMANDS = {
     "stocks": ".stocks",
     "chart": ".chart",
     "calibrate": ".calibrate",
+    "match-plate": ".match_plate",
     "version": ".version",
 }
 
@@ -55,7 +56,8 @@ def program(*names: str) -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_top)
     for name in names or COMMANDS:
-        app.command(name=name)(getattr(import_module(COMMANDS[name], __name__), name))
+        function = getattr(import_module(COMMANDS[name], __name__), name.replace("-", "_"))
+        app.command(name=name)(function)
     return app
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from daguerre.errors import DaguerreError, UsageError
 
@@ -17,9 +17,24 @@ from .reporter import Reporter
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
+    from daguerre.frame.picture import Picture
     from daguerre.sensors import Sensor
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+
+
+class Like(Protocol):
+    """A camera whose pictures these shall look like: that of a plate."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What frames say of it in their files."""
+
+    def seen(self, frame: Frame, seed: int = 0) -> Frame:
+        """A clean frame as that camera sees it."""
+
+    def finished(self, picture: Picture, seed: int = 0) -> Picture:
+        """A developed picture with what that camera's development leaves in it."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +51,7 @@ class Photograph:
         look: Tone curve; None: neutral.
         seed: Seed of the noise.
         focus_at: Pixel that is in focus, if one was named: where the spot is metered.
+        like: Camera that exposed and developed pictures look like; None: none in particular.
     """
 
     develops: bool = False
@@ -47,6 +63,7 @@ class Photograph:
     look: str | None = None
     seed: int = 0
     focus_at: tuple[float, float] | None = None
+    like: Like | None = None
 
     def exposes(self, path: Path) -> bool:
         """Whether what is written there depends on exposure."""
@@ -112,6 +129,8 @@ class Photograph:
 
     def write(self, frame: Frame, paths: Sequence[Path], tone: str, tell: Reporter) -> None:
         """Writes outputs; each exposure is taken once, whatever its formats."""
+        if self.like is not None:
+            frame = replace(frame, metadata={**frame.metadata, "plate": self.like.facts})
         exposed = [path for path in paths if self.exposes(path)]
         for path in paths:
             if path not in exposed:
@@ -131,6 +150,8 @@ class Photograph:
 
         if offset:
             frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
+        if self.like is not None:
+            frame = self.like.seen(frame, self.seed)
         looks: dict[str, Any] = {} if self.look is None else {"look": self.look}
         raw = None
         if self.sensor is not None or any(_is_raw(file) for file in files):
@@ -145,9 +166,12 @@ class Photograph:
                 if remark := size_note(raw):
                     tell.note(f"{file}: {remark}")
             elif raw is not None and self.sensor is not None:
-                develop(raw, **looks).save(file)
+                self._finished(develop(raw, **looks)).save(file)
             else:
-                develop(frame, **looks).save(file)
+                self._finished(develop(frame, **looks)).save(file)
+
+    def _finished(self, picture: Picture) -> Picture:
+        return picture if self.like is None else self.like.finished(picture, self.seed)
 
 
 def _is_raw(path: Path) -> bool:

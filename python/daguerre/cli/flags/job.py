@@ -97,6 +97,16 @@ class JobFlags:
             panel=OUTPUT,
         ),
     ] = None
+    like_plate: Annotated[
+        Path | None,
+        option(
+            "--like-plate",
+            metavar="CAMERA.json",
+            help="Camera of a photo by `match-plate`: its lens, exposure, sensor and size; "
+            "pictures get its blur, noise and development.",
+            panel=OUTPUT,
+        ),
+    ] = None
     look: Annotated[
         Text,
         option(

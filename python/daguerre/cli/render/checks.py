@@ -87,6 +87,8 @@ def settings_of(
         "halves": flags.denoise and "noise" in rows.given(),
         "motion": any(name in groups for name in names_of(Source.MOTION)),
     }
+    if flags.like_plate is not None and "filter" not in rows.given():
+        more["filter"] = "box"  # as a photosite is: the blur of the plate is beside that
     if any(name in groups for name in (*EXACT_ONLY, DISPARITY)):
         more["gt_time"] = rows.given().get("gt_time", "mid")
     return rows.settings(**more)

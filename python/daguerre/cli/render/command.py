@@ -20,6 +20,7 @@ from daguerre.cli.flags.shutter import ShutterFlags
 
 from .coco import coco_of
 from .plan import plan_of
+from .plate import over_plate, read_plate
 from .run import describe, interrupted_early, run
 from .views import Cameras
 
@@ -50,8 +51,10 @@ def render(
     Ctrl-C stops: samples that were drawn are kept, and the command that resumes is printed.
     """
     console.quiet = job_flags.quiet
-    changes = camera_flags.changes() | shutter_flags.changes()
-    cameras = Cameras(camera_flags.camera, calibration_flags, changes)
+    plate = read_plate(job_flags.like_plate)
+    given = camera_flags.changes() | shutter_flags.changes()
+    changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))
+    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate)
     plan = plan_of(job_flags, settings_flags, map_flags, cameras)
     labels = coco_of(job_flags.coco, job_flags.categories, plan)
     launched = time.monotonic()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
 from daguerre.errors import UsageError
 from daguerre.rendering.photograph import Photograph, offset_name
+
+if TYPE_CHECKING:
+    from daguerre.plates.match.plate_camera import PlateCamera
 
 #: Parameters of a camera that are about exposure and development alone.
 ASKING = (
@@ -22,13 +25,16 @@ def photograph_of(
     bracket: str | None,
     look: str | None,
     seed: int,
+    plate: PlateCamera | None = None,
 ) -> Photograph:
-    """From flags, checked.
+    """From flags, checked; ``plate``: camera of a photograph that pictures shall look like.
 
     Raises:
         UsageError: One is wrong, or does not go with another.
     """
     iso, sensor = changes.get("iso"), changes.get("sensor")
+    if plate is not None and exposure is not None:
+        raise UsageError("--exposure auto and --like-plate: the plate has its ISO; wanted one")
     if exposure is not None and iso is not None:
         raise UsageError("--exposure auto chooses the ISO: wanted either it or --iso, got both")
     if iso is not None and not iso > 0:
@@ -37,11 +43,16 @@ def photograph_of(
         from daguerre.exposure.expose import check_can_expose
 
         check_can_expose(sensor, iso)
-    asked = any(name in changes for name in ASKING) or any((exposure, bracket, look))
+    asked = any(name in changes for name in ASKING) or any((exposure, bracket, look, plate))
     if look is not None:
         from daguerre.development.develop import Recipe
 
         Recipe.of(look=look)
+    like = None
+    if plate is not None:
+        from daguerre.plates.match.like import PlateLook
+
+        like, look = PlateLook(plate), look or plate.look
     return Photograph(
         asked,
         sensor,
@@ -52,6 +63,7 @@ def photograph_of(
         look,
         seed,
         changes.get("focus_at"),
+        like,
     )
 
 

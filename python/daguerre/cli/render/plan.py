@@ -79,7 +79,7 @@ def _output(
     if settings.light.scatter in ("off", 0) and "scatter" in cameras.changes:
         raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
     asked = (flags.exposure, flags.bracket, flags.look)
-    photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed)
+    photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
     if photograph.develops and flags.tone != "srgb":
         raise UsageError(f"--tone {flags.tone}: these pictures are developed; wanted --look")
     is_pass = flags.samples is not None

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from daguerre.calibration import Calibration
     from daguerre.camera.camera import Camera
     from daguerre.cli.flags.calibration import CalibrationFlags
+    from daguerre.plates.match.plate_camera import PlateCamera
     from daguerre.scene.scene import Scene
 
 SIDES = {"left": -0.5, "right": 0.5}
@@ -69,11 +70,13 @@ class Cameras:
         names: Value of ``--camera``.
         flags: Calibrations that replace lenses.
         changes: Parameters that the command line changes.
+        plate: Camera of a photograph, whose size pictures have; None: there is none.
     """
 
     names: str | None
     flags: CalibrationFlags
     changes: dict[str, Any]
+    plate: PlateCamera | None = None
 
     def views(self, stereo: str | None) -> list[View]:
         """The cameras, with those of a stereo pair."""
@@ -81,7 +84,8 @@ class Cameras:
 
     def size(self, view: View, res: str | None) -> tuple[int, int]:
         """Size of a camera's picture, px."""
-        return self.flags.resolution(view.calibration, res, DEFAULT["resolution"])
+        usual = DEFAULT["resolution"] if self.plate is None else self.plate.resolution
+        return self.flags.resolution(view.calibration, res, usual)
 
 
 def views_of(

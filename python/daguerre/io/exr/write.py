@@ -49,7 +49,7 @@ OWN_STRINGS = (
     "light_paths", "flare", "scatter",
     "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan", "background",
 )  # fmt: skip
-OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance")
+OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 

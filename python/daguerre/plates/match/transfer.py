@@ -89,8 +89,8 @@ def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where:
     read = float(np.sqrt(max(dark, 0.0))) / g
     spread = error[0] / (2 * dark) if dark > 0 else np.inf
     return Transfer(
-        gain=g,
-        gain_error=error[1] / g,
+        gain=float(g),
+        gain_error=float(error[1] / g),
         read_noise=read,
         read_noise_error=float(np.hypot(spread, error[1] / g)),
         prnu=float(np.sqrt(q)),

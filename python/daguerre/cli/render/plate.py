@@ -1,0 +1,52 @@
+"""``--like-plate``: a camera that was matched to a photograph, and flags that are given over it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daguerre.camera.ideal import IDEAL
+from daguerre.camera.parameters import CAMERA
+
+if TYPE_CHECKING:
+    from daguerre.plates.match.plate_camera import PlateCamera
+
+#: Parameters of a plate's camera that go with one that was given.
+_WITH = {
+    "lens": ("lens", "zoom", "focal_length", "exposure_f_stop"),
+    "focal_length": ("lens", "zoom"),
+    "f_stop": ("exposure_f_stop",),
+    "sensor": ("sensor", "sensor_size", "responsivity"),
+}
+
+
+def read_plate(path: Path | None) -> PlateCamera | None:
+    """The camera file of the flag, if it was given."""
+    if path is None:
+        return None
+    from daguerre.plates.match.reader import read_plate_camera
+
+    return read_plate_camera(path)
+
+
+def over_plate(
+    plate: PlateCamera | None, given: dict[str, Any], *, calibrated: bool
+) -> dict[str, Any]:
+    """Parameters of the camera: the plate's, and over them those that were given.
+
+    Args:
+        plate: The matched camera; None: there is none.
+        given: Parameters from flags.
+        calibrated: Whether a calibration takes the lens's place.
+    """
+    if plate is None:
+        return given
+    found = plate.changes()
+    dropped = {name for group in CAMERA.rivals() if set(group) & set(given) for name in group}
+    dropped |= {name for each in given for name in _WITH.get(each, ())}
+    if given.get("lens") in IDEAL and "zoom" in found:
+        found["focal_length"] = found["zoom"]
+        dropped.discard("focal_length")
+    if calibrated:
+        dropped |= {name for name in found if not CAMERA[name].takes("projection")}
+    return {name: value for name, value in found.items() if name not in dropped} | given

@@ -1,0 +1,106 @@
+"""Clean frames made to look like a plate: its vignetting, blur, noise and development.
+
+``PlateLook`` is what a ``Photograph`` of a job asks; its functions serve whoever has a frame.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color.spectra import xyz_of
+from daguerre.frame.frame import Frame
+from daguerre.frame.picture import Picture
+
+from .grain import Grain
+from .grain_draw import with_grain
+from .plate_camera import PlateCamera
+
+Floats = NDArray[np.float32]
+#: Arrays of a frame that sensors and development read.
+_LIGHT = ("rgb", "xyz", "channels", "bands")
+
+
+class PlateLook:
+    """The look of a plate.
+
+    Attributes:
+        plate: The matched camera.
+        look: Tone curve that pictures are developed by.
+    """
+
+    def __init__(self, plate: PlateCamera) -> None:
+        self.plate, self.look = plate, plate.look
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What the file of a frame says of the plate, for who goes on with it."""
+        return {"file": self.plate.plate, "sha256": self.plate.sha256, "kind": self.plate.kind}
+
+    def seen(self, frame: Frame, seed: int = 0) -> Frame:
+        """A clean frame as the plate's camera sees it: vignetting and blur.
+
+        Where the plate is linear light its noise is added, too: a sensor or a development adds
+        that of others.
+
+        Args:
+            frame: Scene-linear, without noise.
+            seed: Seed of the noise.
+        """
+        frame = frame.without_overscan()
+        factor, scale = self._factor(frame), self._scale(frame)
+        planes: dict[str, Any] = {
+            name: self._blurred(plane, factor, scale)
+            for name in _LIGHT
+            if (plane := getattr(frame, name)) is not None
+        }
+        noise = self.plate.noise
+        if isinstance(noise, Grain) and noise.linear:
+            place = _corner(frame.metadata)
+            planes["rgb"] = with_grain(planes["rgb"], noise, _own(seed, frame.metadata), place)
+            planes["xyz"] = xyz_of(planes["rgb"])
+        return replace(frame, **planes)
+
+    def finished(self, picture: Picture, seed: int = 0) -> Picture:
+        """A developed picture with the noise of a developed plate; of others it has it already."""
+        noise = self.plate.noise
+        if not isinstance(noise, Grain) or noise.linear:
+            return picture
+        facts = picture.metadata
+        noisy = with_grain(picture.pixels, noise, _own(seed, facts), _corner(facts))
+        return Picture(np.clip(noisy, 0, 1), picture.colour_space, facts)
+
+    def _blurred(self, plane: Floats, factor: Floats | None, scale: float) -> Floats:
+        lit = plane if factor is None else plane * factor[:, :, None]
+        if self.plate.sharpness is None:
+            return lit
+        return self.plate.sharpness.blur.applied(np.ascontiguousarray(lit), scale)
+
+    def _factor(self, frame: Frame) -> Floats | None:
+        """Vignetting of the frame's part of the picture, shape (H, W); None: none is known."""
+        if self.plate.falloff is None:
+            return None
+        width, height = frame.metadata.get("resolution") or (frame.width, frame.height)
+        x, y = _corner(frame.metadata)
+        whole = self.plate.falloff.factor(height, width)
+        return whole[y : y + frame.height, x : x + frame.width]
+
+    def _scale(self, frame: Frame) -> float:
+        """Pixels of the frame for each of the plate."""
+        width = (frame.metadata.get("resolution") or (frame.width, frame.height))[0]
+        return float(width / self.plate.resolution[0])
+
+
+def _corner(facts: dict[str, Any]) -> tuple[int, int]:
+    x, y = (facts.get("crop") or (0, 0))[:2]
+    return int(x), int(y)
+
+
+def _own(seed: int, facts: dict[str, Any]) -> int:
+    """A seed of the moment: pictures of a sequence have noise of their own."""
+    time = float(facts.get("time") or 0.0)
+    return seed if time == 0 else (seed + zlib.crc32(repr(time).encode())) % 2**53
