@@ -104,14 +104,16 @@ def _camera(found: PlateCamera) -> dict[str, str]:
 
 
 def _measured(found: PlateCamera) -> dict[str, str]:
+    from daguerre.plates.match.plate_sensor import UNKNOWN
     from daguerre.plates.match.transfer import Transfer
 
     noise, sharp, even = found.noise, found.sharpness, found.falloff
     rows: dict[str, str] = {}
     if isinstance(noise, Transfer):
         rows["gain"] = f"{noise.gain:.4g} DN/e-, +-{noise.gain_error:.1%}"
-        error = min(noise.read_noise_error, 9.99)
-        rows["read noise"] = f"{noise.read_noise:.3g} e-, +-{error:.1%}"
+        error = noise.read_noise_error
+        sure = f"{noise.read_noise:.3g} e-, +-{error:.1%}"
+        rows["read noise"] = sure if error < UNKNOWN else "not known"
     elif noise is not None:
         lowest, highest = noise.deviations[1].min(), noise.deviations[1].max()
         rows["noise"] = (

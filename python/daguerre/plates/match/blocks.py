@@ -13,7 +13,7 @@ look like noise. There squares of four that touch are taken, see ``squares``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,27 +31,25 @@ class Blocks:
         level: Mean, DN above black, shape (N,).
         low: Mean square of the low coefficients, DN^2, shape (N,).
         high: Mean square of the high ones, DN^2: of a flat block the variance of its noise.
+        slope: Sum of the squares of the first coefficient along either axis, DN^2.
         channel: Index of the channel, shape (N,).
     """
 
     level: FloatArray
     low: FloatArray
     high: FloatArray
+    slope: FloatArray
     channel: NDArray[np.intp]
 
     def only(self, chosen: NDArray[np.bool_]) -> Blocks:
         """Those of a mask."""
-        return Blocks(self.level[chosen], self.low[chosen], self.high[chosen], self.channel[chosen])
+        return Blocks(*(getattr(self, part.name)[chosen] for part in fields(self)))
 
 
 def joined(parts: list[Blocks]) -> Blocks:
     """Blocks of several pictures as one."""
-    return Blocks(
-        np.concatenate([part.level for part in parts]),
-        np.concatenate([part.low for part in parts]),
-        np.concatenate([part.high for part in parts]),
-        np.concatenate([part.channel for part in parts]),
-    )
+    names = [part.name for part in fields(Blocks)]
+    return Blocks(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
 
 
 def inside(blocks: NDArray[np.uint16], white: int) -> NDArray[np.bool_]:

@@ -26,7 +26,7 @@ from .grain_measure import grain_of
 from .lens_model import bench_of, lens_falloff, lens_response
 from .parameters import MATCH, MatchKeywords
 from .plate_camera import PlateCamera
-from .plate_sensor import plate_sensor, responsivity, with_transfer
+from .plate_sensor import UNKNOWN, plate_sensor, responsivity, with_transfer
 from .settings import settings_of
 from .sharpness import Sharpness, sharpness_of
 from .transfer import Transfer, transfer_of
@@ -143,11 +143,11 @@ def _transfer(
             raise
         notes.append(f"{error}; gain and noise are those of {body.name}")
         return None
-    if found.read_noise_error > _UNSURE:
-        notes.append(
-            f"read noise: little of the picture is dark, so it is known within "
-            f"{min(found.read_noise_error, 10):.0%}"
-        )
+    if found.read_noise_error > UNKNOWN:
+        notes.append("read noise: nothing in the picture is dark: that of the library was taken")
+    elif found.read_noise_error > _UNSURE:
+        error = found.read_noise_error
+        notes.append(f"read noise: little of the picture is dark: known within {error:.0%}")
     return found
 
 

@@ -43,9 +43,11 @@ def _transformed(blocks: NDArray[np.float32], channel: int) -> Blocks:
     basis = cosines(SIDE)
     low = np.einsum("ki,nij,lj->nkl", basis[_LOW], blocks, basis[_LOW], optimize=True)
     high = np.einsum("ki,nij,lj->nkl", basis[_HIGH], blocks, basis[_HIGH], optimize=True)
+    first = [blocks.sum(axis=axis) @ basis[1] / np.sqrt(np.float32(SIDE)) for axis in (1, 2)]
     return Blocks(
         blocks.mean(axis=(1, 2), dtype=np.float64),
         np.square(low, dtype=np.float64).mean(axis=(1, 2)),
         np.square(high, dtype=np.float64).mean(axis=(1, 2)),
+        np.square(first, dtype=np.float64).sum(axis=0),
         np.full(len(blocks), channel),
     )

@@ -15,6 +15,8 @@ from .transfer import Transfer
 
 #: Sensors whose colours stand in for those of unknown cameras.
 _STAND_INS = {1: "sony-imx571-mono", 3: "nikon-d5100"}
+#: Relative standard error from which on a read noise is not known.
+UNKNOWN = 0.5
 #: Most electrons per photon that efficiencies are scaled to.
 _MOST_EFFICIENT = 1.0
 
@@ -64,10 +66,12 @@ def with_transfer(sensor: Sensor, measured: Transfer, iso: float, white: int) ->
     highest = 2**sensor.bit_depth - 1
     wanted = (highest - sensor.black_level) * iso / SATURATION_LX_S / measured.gain
     scale = wanted / float(sensor.white_electrons().max())
-    dark = max(measured.read_noise**2 - sensor.dsnu**2, 0.0)
+    dark = math.sqrt(max(measured.read_noise**2 - sensor.dsnu**2, 0.0))
+    if measured.read_noise_error > UNKNOWN:
+        dark = sensor.read_noise_at(iso)
     return sensor.with_(
         quantum_efficiency=np.asarray(sensor.quantum_efficiency) * scale,
-        read_noise=((iso, math.sqrt(dark)),),
+        read_noise=((iso, dark),),
         prnu=measured.prnu or sensor.prnu,
         full_well=max((white - sensor.black_level) / measured.gain, 1.0),
         dual_gain=None,

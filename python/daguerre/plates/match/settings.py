@@ -111,6 +111,8 @@ def _lens(
         raise UsageError("--lens pinhole: wanted a lens with an opening, as the photo has one")
     if given is not None:
         return (None, []) if given in IDEAL else (given, [])
+    if facts.get("lensModel") in IDEAL:  # a picture of ours
+        return None, []
     if facts.get("lensModel") is None:
         return None, ["the file names no lens: taken for an ideal thin lens"]
     name, notes = library_lens(facts, where)

@@ -53,11 +53,13 @@ def _of_place(raw: RawNumbers, y: int, x: int, every: int) -> Blocks:
     blocks = blocks[(y + x) % every :: every].reshape(-1, SIDE, SIDE, 4)
     light = blocks[inside(blocks, raw.white)].astype(np.float32) - np.float32(raw.black[channel])
     a, b, c, d = np.moveaxis(light, 3, 0)
-    basis = cosines(SIDE)[1:]
-    low = np.einsum("ki,nij,lj->nkl", basis, light.mean(axis=3), basis, optimize=True)
+    basis, means = cosines(SIDE)[1:], light.mean(axis=3)
+    low = np.einsum("ki,nij,lj->nkl", basis, means, basis, optimize=True)
+    first = [means.sum(axis=axis) @ basis[0] / np.sqrt(np.float32(SIDE)) for axis in (1, 2)]
     return Blocks(
         light.mean(axis=(1, 2, 3), dtype=np.float64),
         4 * np.square(low, dtype=np.float64).mean(axis=(1, 2)),
         np.square((a - b - c + d) / 2, dtype=np.float64).mean(axis=(1, 2)),
+        4 * np.square(first, dtype=np.float64).sum(axis=0),
         np.full(len(light), channel),
     )

@@ -26,6 +26,8 @@ _BIN_WIDTH = 2.0
 #: Mean squares of flat blocks over their variance: 1 in 100 of the low ones is larger than that,
 #: and 1 in 10000 of the high ones (chi-square of 9 and 16).
 _FLAT, _OUTLIER = 2.41, 2.90
+#: Slopes of blocks that are gradients, over the variance; edges have larger ones.
+_STEEP = 100.0
 #: Standard deviations between a block's mean and the ends of the numbers.
 _CLEAR = 5.0
 ROUNDING = 1 / 12  # DN^2
@@ -126,6 +128,7 @@ def _flat(blocks: Blocks, span: tuple[float, float], where: str) -> tuple[Blocks
         expected = line(blocks.level)
         clear = _CLEAR * np.sqrt(expected)
         good = (blocks.low < _FLAT * expected) & (blocks.high < _OUTLIER * expected)
+        good &= blocks.slope < _STEEP * expected
         good &= (blocks.level - clear > span[0]) & (blocks.level + clear < span[1])
         chosen = blocks.only(good)
         if len(chosen.level) < LEAST:
@@ -172,7 +175,9 @@ def _fit(level: FloatArray, variance: FloatArray, last: _Line | None) -> _Line:
         kept.remove(max(low))
     values, errors = np.zeros(3), np.zeros(3)
     values[kept] = found
-    errors[kept] = np.sqrt(np.maximum(np.diag(inverse), 0) * 2 / HIGH_COUNT)
+    known = sorted({0, 1, *kept})  # that the first is held at 0 makes it no surer
+    sure = _inverse(columns[:, known])
+    errors[known] = np.sqrt(np.maximum(np.diag(sure), 0) * 2 / HIGH_COUNT)
     return _Line((values[0], values[1], values[2]), (errors[0], errors[1], errors[2]))
 
 
