@@ -146,8 +146,8 @@ def _transfer(
     if found.read_noise_error > UNKNOWN:
         notes.append("read noise: nothing in the picture is dark: that of the library was taken")
     elif found.read_noise_error > _UNSURE:
-        error = found.read_noise_error
-        notes.append(f"read noise: little of the picture is dark: known within {error:.0%}")
+        sure = f"{found.read_noise_error:.0%}"
+        notes.append(f"read noise: little of the picture is dark: known within {sure}")
     return found
 
 

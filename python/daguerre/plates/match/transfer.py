@@ -27,7 +27,7 @@ _BIN_WIDTH = 2.0
 #: and 1 in 10000 of the high ones (chi-square of 9 and 16).
 _FLAT, _OUTLIER = 2.41, 2.90
 #: Slopes of blocks that are gradients, over the variance; edges have larger ones.
-_STEEP = 100.0
+_STEEP = 1000.0
 #: Standard deviations between a block's mean and the ends of the numbers.
 _CLEAR = 5.0
 ROUNDING = 1 / 12  # DN^2
