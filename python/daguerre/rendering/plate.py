@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera import shutter
-from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up

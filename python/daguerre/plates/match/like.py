@@ -21,8 +21,9 @@ from .grain_draw import with_grain
 from .plate_camera import PlateCamera
 
 Floats = NDArray[np.float32]
-#: Arrays of a frame that sensors and development read.
-_LIGHT = ("rgb", "xyz", "channels", "bands")
+#: Light of a frame: what sensors and development read, and what catchers add.
+_LIGHT = ("rgb", "xyz", "channels", "bands", "catcher", "catcher_channels")
+_RATIOS = ("catcher_ratio", "catcher_ratio_channels")
 
 
 class PlateLook:
@@ -58,6 +59,7 @@ class PlateLook:
             for name in _LIGHT
             if (plane := getattr(frame, name)) is not None
         }
+        planes |= self._covered(frame, scale)
         noise = self.plate.noise
         if isinstance(noise, Grain) and noise.linear:
             place = _corner(frame.metadata)
@@ -73,6 +75,20 @@ class PlateLook:
         facts = picture.metadata
         noisy = with_grain(picture.pixels, noise, _own(seed, facts), _corner(facts))
         return Picture(np.clip(noisy, 0, 1), picture.colour_space, facts)
+
+    def _covered(self, frame: Frame, scale: float) -> dict[str, Floats]:
+        """Alpha and ratios with the blur of the light: a ratio counts by what is not covered."""
+        if self.plate.sharpness is None or bool((frame.alpha == 1).all()):
+            return {}
+        left = 1 - frame.alpha[:, :, None]
+        soft = np.clip(self._blurred(left, None, scale), 0, 1)
+        found = {"alpha": 1 - soft[:, :, 0]}
+        for name in _RATIOS:
+            ratio = getattr(frame, name)
+            if ratio is not None:
+                share = np.maximum(self._blurred(left * ratio, None, scale), 0)
+                found[name] = np.divide(share, soft, out=np.ones_like(share), where=soft > 1e-6)
+        return found
 
     def _blurred(self, plane: Floats, factor: Floats | None, scale: float) -> Floats:
         lit = plane if factor is None else plane * factor[:, :, None]

@@ -15,7 +15,8 @@ HALF = 28
 def overview(photograph: Photograph) -> tuple[Floats, int]:
     """The whole picture as one plane, smaller, and how many pixels one of its own stands for."""
     if photograph.raw is not None:
-        side = max(len(photograph.raw.cells), 2)
+        # Squares of 3 x 3 of X-Trans have as many of each channel everywhere.
+        side = {1: 2, 6: 3}.get(len(photograph.raw.cells), len(photograph.raw.cells))
         return _cell_means(photograph.raw, side), side
     assert photograph.pixels is not None
     green = photograph.pixels[:, :, 1]
@@ -25,7 +26,7 @@ def overview(photograph: Photograph) -> tuple[Floats, int]:
 
 
 def _cell_means(raw: RawNumbers, side: int) -> Floats:
-    """Means of squares of so many photosites: of whole cells of the mosaic."""
+    """Means of squares of so many photosites, each with the same share of channels."""
     height, width = (length // side * side for length in raw.mosaic.shape)
     total = np.zeros((height // side, width // side), np.float32)
     for i in range(side):

@@ -1,0 +1,43 @@
+"""A raw plate as a raw picture of its matched sensor: what objects are put into."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from daguerre.errors import InputError
+from daguerre.frame.raw import Raw
+from daguerre.plates.photograph import Photograph
+
+from .plate_camera import PlateCamera
+
+
+def raw_of(photograph: Photograph, plate: PlateCamera) -> Raw:
+    """The numbers of a raw photograph, upright, with the sensor that was measured in it.
+
+    Args:
+        photograph: As ``plates.files.read`` gives it.
+        plate: The camera that was matched to it.
+
+    Raises:
+        InputError: It is no raw photograph, or another one.
+    """
+    raw, sensor = photograph.raw, plate.sensor
+    if raw is None or sensor is None:
+        raise InputError(f"{photograph.path}: wanted a raw plate, got a {photograph.kind} one")
+    if photograph.size != plate.resolution:
+        raise InputError(
+            f"{photograph.path}: wanted {plate.resolution[0]}x{plate.resolution[1]} px as the "
+            f"camera was matched to, got {photograph.size[0]}x{photograph.size[1]}"
+        )
+    iso = float(plate.camera.iso)
+    return Raw(
+        mosaic=raw.mosaic,
+        sensor=sensor,
+        iso=iso,
+        black_level=sensor.black_level,
+        white_level=sensor.white_level(iso),
+        gain=sensor.gain(iso),
+        neutral=np.asarray(sensor.neutral(raw.white_balance)),
+        white_balance=raw.white_balance,
+        metadata=dict(photograph.facts),
+    )
