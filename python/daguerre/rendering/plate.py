@@ -13,6 +13,7 @@ from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
+from daguerre.setup.scene import build
 
 from .film_parts import core_settings
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from .prepare import Prepared
 
 #: Size of the white picture that tells a lens's shading, px along the longer side, and its samples.
-ACROSS, SPP = 48, 256
+ACROSS, SPP = 64, 256
 #: Share of the light below which a corner tells nothing.
 DARK = 0.02
 
@@ -35,23 +36,21 @@ def throw_plate(one: Prepared, core: _core.RenderSettings) -> None:
     setup = one.setup if plate.camera is None else set_up(one.scene, camera, size, one.core_scene)
     options = {"seed": 0, "filter": _core.Filter("box", 0.0)}
     taken = core_settings(setup, size, shutter.core_shutter(camera, size), NONE, options)
-    light = plate.pixels / np.maximum(shading(setup.core, taken, size), DARK)[..., None]
+    light = plate.pixels / np.maximum(shading(setup.core, taken, size), DARK)
     core.set_plate(one.core_scene, setup.core, taken, np.ascontiguousarray(light, np.float32))
 
 
 def shading(
     camera: _core.Camera, taken: _core.RenderSettings, size: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Light that a white world brings to each pixel, relative to that on the axis, shape (H, W).
+    """Light that a white world brings to each pixel, relative exposure, shape (H, W, 3).
 
-    It is drawn small, and read in between.
+    It is drawn small, and read in between. Glass tints it, too.
     """
     scale = min(1.0, ACROSS / max(size))
     small = max(2, math.ceil(size[0] * scale)), max(2, math.ceil(size[1] * scale))
     white = Scene()
     white.set_environment(color=(1, 1, 1))
-    from daguerre.setup.scene import build
-
     film = _core.Film(_core.FilmLayout(width=small[0], height=small[1]))
     settings = _core.RenderSettings()
     settings.resolution = small
@@ -59,7 +58,7 @@ def shading(
     settings.sensor_center_mm = taken.sensor_center_mm
     settings.filter = _core.Filter("box", 0.0)
     _core.render(build(white), camera, film, settings, 0, SPP)
-    return _grown(film.mean_xyz()[..., 1], size)
+    return _grown(film.mean_rgb(), size)
 
 
 def _grown(small: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
@@ -68,7 +67,7 @@ def _grown(small: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.floa
         count = small.shape[axis]
         at = np.clip((np.arange(wanted) + 0.5) * count / wanted - 0.5, 0, count - 1)
         low = np.minimum(at.astype(int), count - 2)
-        share = np.expand_dims((at - low).astype(np.float32), 1 - axis)
+        share = np.expand_dims((at - low).astype(np.float32), (1 - axis, 2))
         left, right = (np.take(small, low + i, axis) for i in range(2))
         small = left + (right - left) * share
     return np.asarray(small, np.float32)
