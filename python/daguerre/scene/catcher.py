@@ -16,19 +16,19 @@ def check_effects(effects: str | Iterable[str], where: str) -> tuple[str, ...]:
     """Effects in their order.
 
     Args:
-        effects: Names, or a text with commas between them; ``holdout``: none of them.
+        effects: Names, or a text with commas between them; ``holdout``, or no name: none of them.
         where: Start of messages.
 
     Raises:
         UsageError: A name is unknown, or stands beside ``holdout``.
     """
-    names = effects.split(",") if isinstance(effects, str) else list(effects)
+    names = effects.split(",") if isinstance(effects, str) else list(effects) or [HOLDOUT]
     names = [str(name).strip() for name in names]
     for name in names:
         if name not in (*EFFECTS, HOLDOUT):
             raise UsageError(
                 f"{where}: wanted {WANTED}, got {name!r}{suggest(name, [*EFFECTS, HOLDOUT])}"
             )
-    if not names or (HOLDOUT in names and len(names) > 1):
-        raise UsageError(f"{where}: wanted {WANTED}, got {', '.join(names) or 'nothing'!r}")
+    if HOLDOUT in names and len(names) > 1:
+        raise UsageError(f"{where}: wanted {WANTED}, got {', '.join(names)!r}")
     return tuple(name for name in EFFECTS if name in names)
