@@ -194,7 +194,7 @@ TEST_CASE("what the lens looks past an object to is covered by its share") {
         for (const Cover& c : s.covers) CHECK((c.instance == pane || c.instance == behind));
         ++rays;
     }
-    // Of a wavelength the sheet passes (1 - r)^2 / (1 - r^2) of its colour at 4 % Fresnel reflectance, on average.
+    // The sheet passes (1 - r)^2 / (1 - r^2) of its colour, at 4 % Fresnel reflectance, on average.
     CHECK(of_ball / rays > 0.5);
     CHECK(of_ball / rays < 0.8);
     CHECK(of_pane / rays == doctest::Approx(1 - of_ball / rays).epsilon(0.01));

@@ -35,7 +35,7 @@ class Frame(Value):
         xyz: CIE 1931 XYZ of the same light, shape (H, W, 3).
         alpha: Share of each pixel that objects cover, through lens, shutter and filter, by which
             ``rgb`` is premultiplied, shape (H, W); default: 1.
-        catcher: What objects add to the light of catchers and take from it, if the scene has any,
+        catcher: Light that objects add to catchers, less what they take, if the scene has any,
             shape (H, W, 3): plus ``rgb`` and (1 - ``alpha``) of a plate it is the picture.
         catcher_ratio: The same as a factor of that part of the plate.
         catcher_channels: ``catcher`` in the channels of the sensor, shape (H, W, C).

@@ -19,7 +19,7 @@ from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
 from .parameters import TRANSPARENT
 from .pixels import parse_filter
-from .plate import throw_plate
+from .plate_light import throw_plate
 from .prepare import Prepared
 from .settings import RenderSettings
 

@@ -148,7 +148,7 @@ class Scene(Value):
         their materials. Smooth mirrors and glass see it in the place of the environment, too.
 
         Args:
-            pixels: Shape (H, W, 3), linear Rec.709, in the units of a frame: 1 is a white of 1 cd/m2.
+            pixels: Shape (H, W, 3), linear Rec.709, in units of a frame: 1 is a white of 1 cd/m2.
             camera: Camera that took it; default: the one that renders.
 
         Raises:
