@@ -34,6 +34,7 @@ FLOORS = [
     {"exposure"},
     {"development"},
     {"stocks"},
+    {"plates"},
     {"rendering"},
     {"maps", "labels", "charts"},
     {"plates"},

@@ -40,9 +40,11 @@ if TYPE_CHECKING:
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
+    from .plates.composite.composite import composite
     from .plates.match.match import match_plate
     from .plates.match.plate_camera import PlateCamera
     from .plates.match.reader import read_plate_camera
+    from .plates.probe.probe import light_probe
     from .rendering.diffraction import Diffraction
     from .rendering.merged import merge
     from .rendering.render import iter_render, render
@@ -88,12 +90,14 @@ __all__ = [
     "calibrate_all",
     "calibration",
     "charts",
+    "composite",
     "development",
     "distortion",
     "exposure",
     "iter_render",
     "keys",
     "lenses",
+    "light_probe",
     "load",
     "load_frame",
     "match_plate",
@@ -127,8 +131,10 @@ _LAZY = {
     "StMaps": "maps.st_maps",
     "stmaps": "maps.st_maps",
     "PlateCamera": "plates.match.plate_camera",
+    "composite": "plates.composite.composite",
     "match_plate": "plates.match.match",
     "read_plate_camera": "plates.match.reader",
+    "light_probe": "plates.probe.probe",
     "RenderSettings": "rendering.settings",
     "Session": "rendering.session",
     "iter_render": "rendering.render",

@@ -39,6 +39,8 @@ COMMANDS = {
     "chart": ".chart",
     "calibrate": ".calibrate",
     "match-plate": ".match_plate",
+    "light-probe": ".light_probe",
+    "composite": ".composite",
     "version": ".version",
 }
 
@@ -56,9 +58,13 @@ def program(*names: str) -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_top)
     for name in names or COMMANDS:
-        function = getattr(import_module(COMMANDS[name], __name__), name.replace("-", "_"))
-        app.command(name=name)(function)
+        app.command(name=name)(_function(name))
     return app
+
+
+def _function(name: str) -> Any:
+    """The function of a command, whose name has underscores."""
+    return getattr(import_module(COMMANDS[name], __name__), name.replace("-", "_"))
 
 
 def __getattr__(name: str) -> Any:

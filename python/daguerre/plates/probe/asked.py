@@ -1,0 +1,142 @@
+"""Wishes of a light probe, checked, with what was remarked on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import number, numbers
+from daguerre.errors import UsageError
+from daguerre.files.notes import Notes
+
+from .brackets import Reading
+from .latlong import FloatArray
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Parameters as ``LIGHT_PROBE`` explains them, in the forms in which they are used."""
+
+    photographs: list[Path]
+    ball: str | None
+    ev: tuple[float, ...] | None
+    circle: tuple[float, float, float] | None
+    fov: float | None
+    reflectance: FloatArray
+    yaws: tuple[float, ...]
+    pitch: float
+    sun: str
+    sun_diameter: float | None
+    illuminance: float | None
+    grey: list[Path]
+    grey_circle: tuple[float, float, float] | None
+    grey_yaw: float
+    rotate: float
+    res: int | None
+    reading: Reading
+    notes: Notes = field(default_factory=Notes)
+
+    @classmethod
+    def of(cls, photographs: Any, given: dict[str, Any]) -> Asked:
+        """Checks what no row of the table can.
+
+        Raises:
+            UsageError: The message names the parameter.
+        """
+        paths, greys = _paths(photographs), _paths(given["grey"] or [])
+        if not paths:
+            raise UsageError("light_probe: photographs: wanted one at least, got none")
+        ball = given["ball"]
+        yaws = _several(given["ball_direction"], "ball_direction") or (0.0,)
+        _refuse_idle(ball, given)
+        if len(paths) % len(yaws):
+            raise UsageError(
+                f"--ball-direction: wanted as many photographs of each of {len(yaws)} sides, got "
+                f"{len(paths)} in all"
+            )
+        notes = Notes()
+        reading = Reading(given["wb"], given["response"], given["scale"], notes)
+        return cls(
+            photographs=paths, ball=ball, ev=_several(given["ev"], "ev"),
+            circle=_circle(given["circle"], "circle"), fov=_fov(given["fov"]),
+            reflectance=_reflectance(given["reflectance"], ball), yaws=yaws,
+            pitch=given["pitch"], sun=given["sun"], sun_diameter=given["sun_diameter"],
+            illuminance=given["illuminance"], grey=greys,
+            grey_circle=_circle(given["grey_circle"], "grey_circle"),
+            grey_yaw=yaws[0] if given["grey_direction"] is None else given["grey_direction"],
+            rotate=given["rotate"], res=given["res"], reading=reading, notes=notes,
+        )  # fmt: skip
+
+    @property
+    def sides(self) -> list[tuple[float, list[Path]]]:
+        """Photographs of each side of the ball, with the yaw of the camera."""
+        each = len(self.photographs) // len(self.yaws)
+        return [
+            (yaw, self.photographs[i * each : (i + 1) * each]) for i, yaw in enumerate(self.yaws)
+        ]
+
+    def ev_of(self, side: int) -> tuple[float, ...] | None:
+        """Exposures of the photographs of a side, EV: one list serves each side, or all."""
+        if self.ev is None or len(self.ev) != len(self.photographs):
+            return self.ev
+        each = len(self.ev) // len(self.yaws)
+        return self.ev[side * each : (side + 1) * each]
+
+
+def _paths(given: Any) -> list[Path]:
+    return [Path(given)] if isinstance(given, str | Path) else [Path(one) for one in given]
+
+
+def _several(given: Any, name: str) -> tuple[float, ...] | None:
+    """One number or several; None stays None."""
+    if given is None:
+        return None
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        given = (given,)
+    wanted = "numbers" if name == "ev" else "one number or several"
+    return numbers(given, f"light_probe: {name}", len(given), wanted)
+
+
+def _circle(given: Any, name: str) -> tuple[float, float, float] | None:
+    if given is None:
+        return None
+    x, y, radius = numbers(given, f"light_probe: {name}", 3, "x, y and radius in px")
+    number(radius, f"light_probe: {name}: radius", 4)
+    return x, y, radius
+
+
+def _fov(given: Any) -> float | None:
+    return None if given is None else number(given, "light_probe: fov", 0, 179)
+
+
+def _reflectance(given: Any, ball: str | None) -> NDArray[np.float64]:
+    if given is None:
+        given = 0.18 if ball == "grey" else 1.0
+    found = _several(given, "reflectance") or ()
+    if len(found) not in (1, 3) or not all(0 < v <= 1 for v in found):
+        raise UsageError(
+            f"light_probe: reflectance: wanted one or three numbers above 0, at most 1; got {given}"
+        )
+    return np.broadcast_to(np.array(found), 3)
+
+
+def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
+    """Refuses what would do nothing."""
+    flags = ("circle", "reflectance", "ball_direction", "pitch")
+    if ball is None and (idle := [name for name in flags if given[name]]):
+        raise UsageError(f"--{idle[0].replace('_', '-')}: wanted --ball mirror or grey with it")
+    if given["grey"] and (given["illuminance"] or ball == "grey"):
+        other = "--ball grey" if ball == "grey" else "--illuminance"
+        raise UsageError(f"--grey and {other}: wanted one of them, got both")
+    if not given["grey"]:
+        for name in ("grey_circle", "grey_direction"):
+            if given[name] is not None:
+                raise UsageError(f"--{name.replace('_', '-')}: wanted --grey with it")
+    several: Sequence[Any] = given["ball_direction"] if given["ball"] else ()
+    if ball == "grey" and isinstance(several, Sequence) and len(several) > 1:
+        raise UsageError("--ball-direction: wanted one side of a grey ball, got several")

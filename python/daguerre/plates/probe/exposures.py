@@ -1,0 +1,102 @@
+"""Exposures of photographs: how much light each took, and the luminance of a value of 1.
+
+A sensor at f-number N, t seconds and ISO S shows white where the exposure H is that of ISO 12232:
+middle grey, 0.18, is 10 / S lux s. With H = pi / 4 L t / N^2 a value of 1 is a luminance of
+L = 4 / pi * 10 / 0.18 * N^2 / (t S) cd/m2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from daguerre.development.looks import GREY
+from daguerre.errors import InputError, UsageError
+from daguerre.files.notes import Notes
+from daguerre.sensors.sensor import GREY_LX_S
+
+from .shots import Shot
+
+#: Luminance x t S / N^2 of a value of 1.
+_WHITE = 4 / math.pi * GREY_LX_S / GREY
+_WORDS = {"expTime": "exposure time", "aperture": "f-number", "isoSpeed": "ISO"}
+
+
+@dataclass(frozen=True)
+class Exposures:
+    """Exposures of the photographs of one view.
+
+    Attributes:
+        luminance: Luminance of a value of 1 in each, cd/m2 if ``absolute``.
+        absolute: Whether that unit is known.
+    """
+
+    luminance: tuple[float, ...]
+    absolute: bool
+
+    @property
+    def stops(self) -> tuple[float, ...]:
+        """Exposure of each, EV, more than that of the darkest photograph."""
+        highest = max(self.luminance)
+        return tuple(math.log2(highest / value) for value in self.luminance)
+
+
+def exposures_of(
+    shots: list[Shot], ev: Sequence[float] | None, scale: float | None, notes: Notes
+) -> Exposures:
+    """Exposures by ``ev`` where given, else by EXIF.
+
+    Args:
+        shots: Photographs of one view.
+        ev: Exposure of each, EV, more is brighter; None: by EXIF.
+        scale: Luminance of a value of 1, cd/m2: at 0 EV, in linear files, or without EXIF.
+        notes: Says what was not known.
+
+    Raises:
+        UsageError: There are more or fewer ``ev`` than photographs.
+        InputError: EXIF does not say what is needed.
+    """
+    if ev is not None:
+        if len(ev) != len(shots):
+            raise UsageError(f"--ev: wanted one for each of {len(shots)} photographs, got {len(ev)}")
+        values = tuple((scale or 1.0) / 2**one for one in ev)
+        return Exposures(values, scale is not None)
+    if all(not shot.metered for shot in shots):
+        if len(shots) > 1:
+            raise InputError(
+                f"{shots[1].path}: exposure: linear files do not say it; wanted --ev, such as -4,0"
+            )
+        return Exposures((scale or 1.0,), True)
+    return _by_exif(shots, scale, notes)
+
+
+def _by_exif(shots: list[Shot], scale: float | None, notes: Notes) -> Exposures:
+    known = {name: [shot.facts.get(name) for shot in shots] for name in _WORDS}
+    if len(shots) > 1:
+        _refuse_missing(shots, known)
+    factors = np.ones(len(shots))
+    for name, power in (("expTime", 1), ("aperture", -2), ("isoSpeed", 1)):
+        values = [v if v is not None else 1.0 for v in known[name]]
+        factors *= np.array(values, np.float64) ** power
+    absolute = all(v is not None for values in known.values() for v in values)
+    if scale is not None:  # of the first photograph
+        return Exposures(tuple(scale * factors[0] / factors), True)
+    if absolute:
+        return Exposures(tuple(_WHITE / factors), True)
+    missing = [_WORDS[name] for name, values in known.items() if None in values]
+    notes.add(f"EXIF lacks {', '.join(missing)}: values have no known unit; --scale gives one")
+    return Exposures(tuple(np.median(factors) / factors), False)
+
+
+def _refuse_missing(shots: list[Shot], known: dict[str, list[float | None]]) -> None:
+    """Several photographs need times; f-numbers and ISO may be missing in all of them."""
+    for name, values in known.items():
+        for shot, value in zip(shots, values, strict=True):
+            if value is None and (name == "expTime" or any(values)):
+                raise InputError(
+                    f"{shot.path}: EXIF: wanted the {_WORDS[name]}, got none; give --ev, such as "
+                    "-4,-2,0"
+                )

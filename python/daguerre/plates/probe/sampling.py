@@ -1,0 +1,29 @@
+"""Pictures between their pixels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def between(image: NDArray[Any], x: NDArray[Any], y: NDArray[Any]) -> NDArray[np.float32]:
+    """Bilinear values at places in px, middles of pixels at + 0.5; beyond the edge its pixels.
+
+    Args:
+        image: Shape (H, W) or (H, W, C).
+        x: From the left edge, any shape S.
+        y: From the upper edge, shape S.
+
+    Returns:
+        Shape S, or S + (C,).
+    """
+    height, width = image.shape[:2]
+    x, y = np.clip(x - 0.5, 0, width - 1), np.clip(y - 0.5, 0, height - 1)
+    column, row = (np.minimum(v.astype(int), n) for v, n in ((x, width - 1), (y, height - 1)))
+    right, low = np.minimum(column + 1, width - 1), np.minimum(row + 1, height - 1)
+    more = (...,) + (None,) * (image.ndim - 2)
+    dx, dy = ((v - n).astype(np.float32)[more] for v, n in ((x, column), (y, row)))
+    top = image[row, column] * (1 - dx) + image[row, right] * dx
+    return np.asarray(top * (1 - dy) + (image[low, column] * (1 - dx) + image[low, right] * dx) * dy)

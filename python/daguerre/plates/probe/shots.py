@@ -1,0 +1,148 @@
+"""Photographs of a probe: numbers on a scale that ends at saturation, and how they were exposed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import illuminants
+from daguerre.color.adaptation import adaptation
+from daguerre.color.spectra import rgb_from_xyz
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+from daguerre.io.exif import FULL_FRAME_DIAGONAL_MM
+from daguerre.io.photographs import CODED, LINEAR, read_photograph
+
+White = float | tuple[float, float] | None
+#: Share of full scale from which on a channel counts as clipped: demosaicing and JPEG smear.
+CLIPPED = 0.98
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One photograph.
+
+    Attributes:
+        path: Its file.
+        numbers: Upright, shape (H, W, 3): uint8 or uint16 coded by a curve, float32 linear.
+        full: Where each channel of ``numbers`` saturates, shape (3,); infinite: never.
+        rgb: Linear Rec.709 of linear numbers, shape (3, 3); None: they are that, or coded.
+        facts: expTime (s), aperture, isoSpeed, focal_35mm (mm), as far as known.
+    """
+
+    path: Path
+    numbers: NDArray[Any]
+    full: NDArray[np.float64]
+    rgb: NDArray[np.float64] | None
+    facts: dict[str, float]
+
+    @property
+    def coded(self) -> bool:
+        """Whether a curve stands between light and numbers."""
+        return bool(np.issubdtype(self.numbers.dtype, np.integer))
+
+    @property
+    def metered(self) -> bool:
+        """Whether a value of 1 is white by ISO 12232, and no luminance already."""
+        return self.path.suffix.lower() not in LINEAR
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height, px."""
+        return self.numbers.shape[1], self.numbers.shape[0]
+
+    @property
+    def focal_px(self) -> float | None:
+        """Focal length by its 35 mm equivalent, which is over the diagonal, px."""
+        equivalent = self.facts.get("focal_35mm")
+        if equivalent is None:
+            return None
+        return equivalent / FULL_FRAME_DIAGONAL_MM * math.hypot(*self.size)
+
+    @property
+    def top(self) -> NDArray[np.float32]:
+        """The fullest channel of each pixel as a share of saturation, shape (H, W)."""
+        if not np.isfinite(self.full).all():
+            return np.zeros(self.numbers.shape[:2], np.float32)
+        shares = [self.numbers[..., c] / np.float32(self.full[c]) for c in range(3)]
+        return np.asarray(np.maximum(np.maximum(*shares[:2]), shares[2]))
+
+
+def read_shot(path: str | Path, white: White, notes: Notes) -> Shot:
+    """Reads a photograph: JPEG, PNG, TIFF, .hdr, .exr, or a raw file.
+
+    Args:
+        path: The file.
+        white: White that becomes neutral in raw files: K or x, y; None: as shot.
+        notes: Says what was turned, and which colours were taken for sRGB.
+
+    Raises:
+        InputError: It cannot be read; the message names the file.
+    """
+    file = Path(path)
+    if file.suffix.lower() not in LINEAR + CODED:
+        return _raw(file, white, notes)
+    photograph = read_photograph(file)
+    if photograph.orientation != 1:
+        notes.add("photograph turned or mirrored to stand upright, as its EXIF orientation says")
+    if photograph.profile and "srgb" not in photograph.profile.lower():
+        notes.add(f"colour profile {photograph.profile[:40]!r} taken for sRGB")
+    numbers = photograph.numbers
+    if np.issubdtype(numbers.dtype, np.integer):
+        full = np.full(3, float(np.iinfo(numbers.dtype).max))
+    else:
+        full = _plateau(numbers)
+    return Shot(file, numbers, full, None, photograph.facts)
+
+
+def _raw(file: Path, white: White, notes: Notes) -> Shot:
+    """A raw file: linear, in units of a developed white."""
+    from daguerre.development.camera_raw import read_shot as read_raw
+
+    channels = read_raw(file)
+    at = channels.as_shot if white is None else illuminants.white_xy(white)
+    rgb = rgb_from_xyz() @ adaptation(at, illuminants.D65_XY) @ channels.xyz_from(at)
+    unit = channels.unit.astype(np.float32)
+    facts = {
+        name: float(value)
+        for name, value in channels.metadata.items()
+        if name in ("expTime", "aperture", "isoSpeed")
+    }
+    if white is None:
+        notes.add("raw file developed with its own white balance")
+    return Shot(file, channels.pixels / unit, channels.full / unit, rgb, facts)
+
+
+def _plateau(light: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Saturation of linear light: its highest value, if many of the brightest pixels share it."""
+    top = light.max(axis=2)
+    highest = float(top.max())
+    count = int((top >= highest * (1 - 1e-6)).sum())
+    # More than a few pixels of just one value, and not most of the picture: a ceiling.
+    is_ceiling = count >= 9 and count < 0.2 * top.size and highest > 4 * float(np.median(top))
+    return np.full(3, highest if is_ceiling else math.inf)
+
+
+def check_together(shots: list[Shot]) -> None:
+    """Refuses photographs of one view that differ in size or kind.
+
+    Raises:
+        InputError: The message names the file and what is wanted.
+    """
+    first = shots[0]
+    for shot in shots[1:]:
+        if shot.size != first.size:
+            raise InputError(
+                f"{shot.path}: size: wanted {first.size[0]}x{first.size[1]} px as {first.path}, "
+                f"got {shot.size[0]}x{shot.size[1]}"
+            )
+        if shot.coded != first.coded:
+            raise InputError(
+                f"{shot.path}: wanted photographs of one kind, as {first.path}; got linear and "
+                "coded ones"
+            )
