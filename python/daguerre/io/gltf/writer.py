@@ -234,11 +234,14 @@ class Glb:
         """Writes the .glb: a header, the JSON chunk, the binary chunk (glTF 2.0, section 4.4)."""
         self.json |= {"scene": 0, "scenes": [{"nodes": self.roots}]}
         self.binary += b"\0" * (-len(self.binary) % 4)
-        self.json["buffers"] = [{"byteLength": len(self.binary)}, *self.fallbacks]
+        own = [{"byteLength": len(self.binary)}] if self.binary else []
+        if own or self.fallbacks:
+            self.json["buffers"] = [*own, *self.fallbacks]
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
-        size = 12 + 8 + len(text) + 8 + len(self.binary)
-        head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
-        data = head + text + struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary
+        body = struct.pack("<I4s", len(text), b"JSON") + text
+        if self.binary:
+            body += struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary
+        data = struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
         path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(path, data)

@@ -14,6 +14,8 @@ import numpy as np
 from .latlong import FloatArray
 
 Circle = tuple[float, float, float]
+#: Pixels on the outline show the background, too: nothing is read closer to it, px.
+INSIDE = 1.25
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,12 @@ class Ball:
 
     @property
     def unseen_deg(self) -> float:
-        """Half angle of what it hides, about the direction that leads away from the camera."""
-        return math.degrees(math.asin(self.sine))
+        """Half angle of what its outline hides, about the direction away from the camera."""
+        inside = 1 - INSIDE / self.circle[2]
+        if self.sine == 0:
+            return 180 - 2 * math.degrees(math.asin(inside))
+        normal, seen = self._turns()
+        return 180 - math.degrees(np.interp(inside * seen[-1], seen, 2 * normal + seen))
 
     def mirrored(self, toward: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where on the picture directions are mirrored.
@@ -57,7 +63,7 @@ class Ball:
         angle = np.arctan2(length, along)
         if self.sine == 0:
             x, y, radius = self.circle
-            off = radius * np.sin(angle / 2)
+            off = np.minimum(radius * np.sin(angle / 2), radius - INSIDE)
             return np.stack([x + off * side[:, 0], y - off * side[:, 1]], axis=1), angle
         seen = self._seen_at(angle)
         ray = np.cos(seen)[:, None] * -back + np.sin(seen)[:, None] * side
@@ -70,9 +76,14 @@ class Ball:
         g = atan(s sin t / (1 - s cos t)), s being radius over distance, and the mirrored ray leaves
         at 2 t + g, which grows with t: it is inverted in a table.
         """
+        normal, seen = self._turns()
+        inside = seen[-1] * (1 - INSIDE / self.circle[2])
+        return np.minimum(np.interp(angle, 2 * normal + seen, seen), inside)
+
+    def _turns(self) -> tuple[FloatArray, FloatArray]:
+        """Table of t and g from the middle of the ball to its outline, rad."""
         normal = np.linspace(0, math.acos(self.sine), 4096)
-        seen = np.arctan2(self.sine * np.sin(normal), 1 - self.sine * np.cos(normal))
-        return np.interp(angle, 2 * normal + seen, seen)
+        return normal, np.arctan2(self.sine * np.sin(normal), 1 - self.sine * np.cos(normal))
 
     def _place(self, ray: FloatArray) -> FloatArray:
         scale = self.focal_px / -ray[:, 2]

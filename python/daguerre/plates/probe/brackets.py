@@ -67,7 +67,7 @@ def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Read
     Raises:
         InputError: One cannot be read, they do not belong together, or all is clipped.
     """
-    shots = [read_shot(path, how.white, how.notes) for path in paths]
+    shots = [read_shot(path, how.white, how.notes, len(paths)) for path in paths]
     check_together(shots)
     exposures = exposures_of(shots, ev, how.scale, how.notes)
     if len(shots) > 1:

@@ -22,8 +22,8 @@ from .merge import Merged
 #: Steeper parts mirror and blur: least cosine between normal and view.
 _LEAST_COSINE = 0.25
 _MOST_NORMALS = 6000
-#: A sun must explain this share of what soft light leaves, and bring this share of the light.
-_EXPLAINS, _BRINGS = 0.4, 0.02
+#: A sun must explain this share of what soft light leaves, and bring this share of the mean light.
+_EXPLAINS, _BRINGS = 0.1, 0.05
 #: Strength of the wish for little light where the ball does not show it.
 _CALM = 1e-3
 
@@ -128,9 +128,22 @@ def _sun_direction(soft: FloatArray, normals: FloatArray, luma: FloatArray) -> F
         tried = _about(best, spread)
         spread /= 3
     amount = _amount(best, normals, q, left)
-    brings = amount * np.maximum(normals @ best, 0).mean()
     explains = gain / max(float(left @ left), 1e-300)
-    return best if explains > _EXPLAINS and brings > _BRINGS * luma.mean() else None
+    if explains < _EXPLAINS or amount < _BRINGS * luma.mean():
+        return None
+    # max(x, 0) = (|x| + x) / 2: suns on opposite sides differ by soft light of order 1 alone,
+    # which would have to be negative to make the wrong one fit.
+    sides = [(_error_with(side, soft, normals, luma), i) for i, side in enumerate((best, -best))]
+    return best if min(sides)[1] == 0 else -best
+
+
+def _error_with(
+    direction: FloatArray, soft: FloatArray, normals: FloatArray, luma: FloatArray
+) -> float:
+    """Mean square that a sun and soft light of at least 0 leave."""
+    columns = np.hstack([soft, np.maximum(normals @ direction, 0)[:, None]])
+    found = _positive(columns, luma[:, None])
+    return float(((columns @ found - luma[:, None]) ** 2).mean())
 
 
 def _gains(tried: FloatArray, normals: FloatArray, q: FloatArray, left: FloatArray) -> FloatArray:
@@ -172,8 +185,8 @@ def _positive(columns: FloatArray, target: FloatArray) -> FloatArray:
     everywhere = np.hstack([everywhere, np.zeros((len(everywhere), extra))])
     size = np.sqrt((columns**2).sum(axis=0).max())
     calm = np.diag([0.0] + [_CALM * size] * 8 + [0.0] * extra)
-    found = np.zeros((columns.shape[1], 3))
-    for c in range(3):
+    found = np.zeros((columns.shape[1], target.shape[1]))
+    for c in range(target.shape[1]):
         firm = np.zeros(len(everywhere))
         for _ in range(12):
             rows = np.vstack([columns, calm, firm[:, None] * everywhere])

@@ -60,7 +60,7 @@ def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
             clipped &= top >= _FADE
         sums += weight[..., None] * light * unit
         weights += weight
-    sums /= weights[..., None]
+    sums = light * unit if len(shots) == 1 else sums / weights[..., None]
     rgb = shots[0].rgb
     if rgb is not None:
         sums = sums @ rgb.T

@@ -25,6 +25,10 @@ _LEAST, _MOST = 0.06, 0.52
 _ANGLES = 720
 #: Share of the rim that must be seen as an edge.
 _RIM = 0.4
+#: Least cosine between an edge's gradient and the radius.
+_ASLANT = 0.85
+#: Circles that are looked at closely.
+_LOOKS = 12
 
 
 @dataclass(frozen=True)
@@ -71,24 +75,25 @@ def _tones(light: NDArray[np.float32]) -> FloatArray:
 
 
 def _candidates(grey: FloatArray) -> list[Circle]:
-    """Circles with the most votes, px of the picture; up to five that differ."""
-    step = max(grey.shape) / _SMALL
+    """Circles with the most votes, px of the picture; those that differ."""
+    step = max(max(grey.shape) / _SMALL, 1.0)
     size = (max(round(grey.shape[1] / step), 8), max(round(grey.shape[0] / step), 8))
-    small = _box(grey, *size)
+    small = _soft(_box(grey, *size))
     dy, dx = np.gradient(small)
     strength = np.hypot(dx, dy)
     edges = np.argwhere(strength > np.quantile(strength, 0.93))
     toward = np.stack([dy, dx], axis=-1)[tuple(edges.T)] / strength[tuple(edges.T)][:, None]
+    votes = np.sqrt(strength[tuple(edges.T)])
     least, most = (max(4, share * min(size)) for share in (_LEAST, _MOST))
     radii = np.arange(least, most, 0.5)
-    scores = [_best(edges, toward, radius, small.shape) for radius in radii]
+    scores = [_best(edges, toward, votes, radius, small.shape) for radius in radii]
     chosen: list[Circle] = []
     for i in np.argsort([-score for score, _ in scores]):
         row, column = scores[i][1]
         circle = ((column + 0.5) * step, (row + 0.5) * step, float(radii[i]) * step)
         if all(math.dist(circle, other) > 0.1 * circle[2] for other in chosen):
             chosen.append(circle)
-        if len(chosen) == 5:
+        if len(chosen) == _LOOKS:
             break
     return chosen
 
@@ -104,8 +109,22 @@ def _box(grey: FloatArray, width: int, height: int) -> FloatArray:
     return np.asarray(sums / counts)
 
 
+def _soft(picture: FloatArray) -> FloatArray:
+    """Blurred by 1 px, so that gradients have the direction of an edge and not of its steps."""
+    for axis in (0, 1):
+        for _ in range(2):
+            edge = np.pad(picture, [(1, 1) if i == axis else (0, 0) for i in (0, 1)], mode="edge")
+            parts = [np.take(edge, np.arange(i, i + picture.shape[axis]), axis) for i in range(3)]
+            picture = 0.25 * parts[0] + 0.5 * parts[1] + 0.25 * parts[2]
+    return picture
+
+
 def _best(
-    edges: NDArray[np.int64], toward: FloatArray, radius: float, shape: tuple[int, ...]
+    edges: NDArray[np.int64],
+    toward: FloatArray,
+    weights: FloatArray,
+    radius: float,
+    shape: tuple[int, ...],
 ) -> tuple[float, tuple[float, float]]:
     """Most votes for a middle at a radius, by length of the circle, and the middle (row, column)."""
     votes = np.zeros(shape[0] * shape[1])
@@ -114,7 +133,7 @@ def _best(
         inside = ((middle >= 0) & (middle < shape)).all(axis=1)
         at = middle[inside] @ (shape[1], 1)
         # A circle whose rim is brighter than its surroundings here and darker there has both.
-        votes += np.bincount(at, minlength=votes.size)
+        votes += np.bincount(at, weights[inside], minlength=votes.size)
     spread = votes.reshape(shape)
     spread = sum(np.roll(spread, (a, b), (0, 1)) for a in (-1, 0, 1) for b in (-1, 0, 1))
     row, column = np.unravel_index(int(spread.argmax()), shape)
@@ -160,7 +179,16 @@ def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
     strong = np.take_along_axis(slope, best[:, None], 1)[:, 0] > 0.05
     way = np.stack([np.cos(angle[inside]), np.sin(angle[inside])], axis=1)
     points = (x, y) + (radius + place)[:, None] * way
-    return np.asarray(points[strong])
+    return np.asarray(points[strong & _across(grey, points, way)])
+
+
+def _across(grey: FloatArray, points: FloatArray, way: FloatArray) -> NDArray[np.bool_]:
+    """Whether edges at points stand across the radius there, not aslant."""
+    x, y = points.T
+    dx = between(grey, x + 1, y) - between(grey, x - 1, y)
+    dy = between(grey, x, y + 1) - between(grey, x, y - 1)
+    along = np.abs(dx * way[:, 0] + dy * way[:, 1])
+    return np.asarray(along > _ASLANT * np.hypot(dx, dy))
 
 
 def _circle_through(points: FloatArray) -> Circle:

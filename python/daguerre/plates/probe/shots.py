@@ -21,6 +21,8 @@ from daguerre.io.photographs import CODED, LINEAR, read_photograph
 White = float | tuple[float, float] | None
 #: Share of full scale from which on a channel counts as clipped: demosaicing and JPEG smear.
 CLIPPED = 0.98
+#: Pixels that share the highest value of linear light from which on it counts as a ceiling.
+_SHARED = 3
 
 
 @dataclass(frozen=True)
@@ -73,13 +75,14 @@ class Shot:
         return np.asarray(np.maximum(np.maximum(*shares[:2]), shares[2]))
 
 
-def read_shot(path: str | Path, white: White, notes: Notes) -> Shot:
+def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> Shot:
     """Reads a photograph: JPEG, PNG, TIFF, .hdr, .exr, or a raw file.
 
     Args:
         path: The file.
         white: White that becomes neutral in raw files: K or x, y; None: as shot.
         notes: Says what was turned, and which colours were taken for sRGB.
+        one_of: Photographs of its view.
 
     Raises:
         InputError: It cannot be read; the message names the file.
@@ -96,7 +99,7 @@ def read_shot(path: str | Path, white: White, notes: Notes) -> Shot:
     if np.issubdtype(numbers.dtype, np.integer):
         full = np.full(3, float(np.iinfo(numbers.dtype).max))
     else:
-        full = _plateau(numbers)
+        full = _plateau(numbers, one_of)
     return Shot(file, numbers, full, None, photograph.facts)
 
 
@@ -118,14 +121,16 @@ def _raw(file: Path, white: White, notes: Notes) -> Shot:
     return Shot(file, channels.pixels / unit, channels.full / unit, rgb, facts)
 
 
-def _plateau(light: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Saturation of linear light: its highest value, if many of the brightest pixels share it."""
+def _plateau(light: NDArray[np.float32], one_of: int) -> NDArray[np.float64]:
+    """Saturation of linear light: its highest value, if many of the brightest pixels share it.
+
+    In a single picture they must be few and bright, else they may be an even sky.
+    """
     top = light.max(axis=2)
     highest = float(top.max())
     count = int((top >= highest * (1 - 1e-6)).sum())
-    # More than a few pixels of just one value, and not most of the picture: a ceiling.
-    is_ceiling = count >= 9 and count < 0.2 * top.size and highest > 4 * float(np.median(top))
-    return np.full(3, highest if is_ceiling else math.inf)
+    sparse = count < 0.2 * top.size and highest > 4 * float(np.median(top))
+    return np.full(3, highest if count >= _SHARED and (sparse or one_of > 1) else math.inf)
 
 
 def check_together(shots: list[Shot]) -> None:

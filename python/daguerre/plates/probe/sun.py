@@ -17,7 +17,7 @@ from .latlong import FloatArray, centres, luminance, place, solid_angles
 DIAMETER_DEG = 0.533
 #: Share of all light, integrated over the sphere, from which on a source counts.
 LEAST_SHARE = 0.05
-#: A source above this diameter is a window or a lamp; what is clipped may be larger, degrees.
+#: A source above this diameter is a window or a lamp; if clipped light is sought, it may be larger.
 MOST_DEG, MOST_CLIPPED_DEG = 10.0, 40.0
 #: Its edge: share of the highest luminance above the surroundings.
 _EDGE = 0.02
@@ -103,7 +103,7 @@ def take_out(
     is_clipped = bool(clipped[peak])
     core = _connected(clipped, peak) if is_clipped else _half(found, peak)
     diameter = _diameter(float(angles[core].sum()))
-    if diameter > (MOST_CLIPPED_DEG if is_clipped else MOST_DEG):
+    if diameter > (MOST_CLIPPED_DEG if is_clipped and seek_clipped else MOST_DEG):
         return None
     middle = _mean_direction(toward, angles * core)
     around = _ring(toward @ middle, diameter) & ~clipped
