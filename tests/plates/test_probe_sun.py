@@ -120,10 +120,14 @@ def test_clipped_sun_by_a_grey_ball(tmp_path, bright):
     """Reflectance and exposure of the ball need not be known; the sun's colour comes back."""
     toward = grid(48, 24).reshape(-1, 3)
     light = sky(toward) * np.repeat(solid_angles(48, 24), 48)[:, None]
+    # The sky is the same all around, so its irradiance depends on the normal's height alone.
+    heights = np.linspace(-1, 1, 101)
+    tilted = np.stack([np.sqrt(1 - heights**2), heights, np.zeros(101)], axis=1)
+    soft_of = np.maximum(tilted @ toward.T, 0) @ light
     truth = np.array([1.05, 1.0, 0.9]) * 80000 / float(LUMA @ (1.05, 1.0, 0.9))
 
     def surface(n, _):
-        soft = np.maximum(n @ toward.T, 0) @ light
+        soft = np.stack([np.interp(n[:, 1], heights, soft_of[:, c]) for c in range(3)], axis=1)
         return 1.7e-5 * (soft + np.maximum(n @ TOWARD, 0)[..., None] * truth)
 
     a = math.radians(60)
