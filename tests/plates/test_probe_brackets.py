@@ -176,7 +176,7 @@ def test_turned_photographs_stand_upright(tmp_path):
         save(path, codes[::-1, ::-1], exposure(time), orientation=3)
     made = dg.light_probe(paths, sun="off")
     assert np.median(np.abs(made.image / upright.image - 1)) < 0.02
-    assert any("EXIF orientation says (4 uses)" in note for note in made.notes)
+    assert any("EXIF orientation" in note for note in made.notes)
 
 
 def test_clipped_everywhere(tmp_path):

@@ -15,10 +15,12 @@ from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.io.exif import FULL_FRAME_DIAGONAL_MM
-from daguerre.io.photographs import CODED, LINEAR, read_photograph
+from daguerre.io.images import read_environment
+from daguerre.plates.display_file import read_display
+from daguerre.plates.files import DISPLAY
 
 White = float | tuple[float, float] | None
+LINEAR = (".exr", ".hdr")
 #: Share of full scale from which on a channel counts as clipped: demosaicing and JPEG smear.
 CLIPPED = 0.98
 #: Pixels that share the highest value of linear light from which on it counts as a ceiling.
@@ -34,14 +36,14 @@ class Shot:
         numbers: Upright, shape (H, W, 3): uint8 or uint16 coded by a curve, float32 linear.
         full: Where each channel of ``numbers`` saturates, shape (3,); infinite: never.
         rgb: Linear Rec.709 of linear numbers, shape (3, 3); None: they are that, or coded.
-        facts: expTime (s), aperture, isoSpeed, focal_35mm (mm), as far as known.
+        facts: Facts of the shot by the names of OpenEXR, as far as known.
     """
 
     path: Path
     numbers: NDArray[Any]
     full: NDArray[np.float64]
     rgb: NDArray[np.float64] | None
-    facts: dict[str, float]
+    facts: dict[str, Any]
 
     @property
     def coded(self) -> bool:
@@ -60,11 +62,12 @@ class Shot:
 
     @property
     def focal_px(self) -> float | None:
-        """Focal length by its 35 mm equivalent, which is over the diagonal, px."""
-        equivalent = self.facts.get("focal_35mm")
-        if equivalent is None:
+        """Focal length by that of the lens and the size of the sensor, px."""
+        focal = self.facts.get("nominalFocalLength")
+        sensor = self.facts.get("sensorOverallDimensions")
+        if focal is None or sensor is None:
             return None
-        return equivalent / FULL_FRAME_DIAGONAL_MM * math.hypot(*self.size)
+        return float(focal / math.hypot(*sensor) * math.hypot(*self.size))
 
     @property
     def top(self) -> NDArray[np.float32]:
@@ -88,19 +91,22 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
         InputError: It cannot be read; the message names the file.
     """
     file = Path(path)
-    if file.suffix.lower() not in LINEAR + CODED:
+    suffix = file.suffix.lower()
+    if suffix in LINEAR:
+        light = read_environment(file)
+        return Shot(file, light, _plateau(light, one_of), None, {})
+    if not file.is_file():
+        got = "a folder" if file.is_dir() else "no such file"
+        raise InputError(f"{file}: wanted a photograph, got {got}")
+    if suffix not in DISPLAY:
         return _raw(file, white, notes)
-    photograph = read_photograph(file)
-    if photograph.orientation != 1:
-        notes.add("photograph turned or mirrored to stand upright, as its EXIF orientation says")
-    if photograph.profile and "srgb" not in photograph.profile.lower():
-        notes.add(f"colour profile {photograph.profile[:40]!r} taken for sRGB")
-    numbers = photograph.numbers
-    if np.issubdtype(numbers.dtype, np.integer):
-        full = np.full(3, float(np.iinfo(numbers.dtype).max))
-    else:
-        full = _plateau(numbers, one_of)
-    return Shot(file, numbers, full, None, photograph.facts)
+    photograph = read_display(file)
+    for note in photograph.notes:
+        notes.add(note)
+    numbers = photograph.pixels
+    assert numbers is not None
+    full = np.full(3, float(np.iinfo(numbers.dtype).max))
+    return Shot(file, np.ascontiguousarray(numbers), full, None, photograph.facts)
 
 
 def _raw(file: Path, white: White, notes: Notes) -> Shot:
