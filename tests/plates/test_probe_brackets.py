@@ -135,7 +135,9 @@ def test_missing_exposures(tmp_path):
     codes = np.full((64, 128, 3), 90, np.uint8)
     one = save(tmp_path / "a.jpg", codes, exposure(0.01))
     two = save(tmp_path / "b.jpg", codes)
-    with pytest.raises(InputError, match=r"b.jpg: EXIF: wanted the exposure time, got none; give --ev"):
+    with pytest.raises(
+        InputError, match=r"b.jpg: EXIF: wanted the exposure time, got none; give --ev"
+    ):
         dg.light_probe([one, two])
     with pytest.raises(UsageError, match=r"--ev: wanted one for each of 2 photographs, got 3"):
         dg.light_probe([one, two], ev=(0, 1, 2))

@@ -88,7 +88,11 @@ def test_flags_reach_the_ball(tmp_path, capfd):
         (["pano.exr", "--ball", "mirror", "--circle", "999,2,30"], 3, "wanted a circle within"),
         (["pano.exr", "--ball", "mirror", "--fov", "200"], 2, "--fov: wanted far, or an angle"),
         (["pano.exr", "--ball", "mirror", "--reflectance", "1.5"], 2, "reflectance: wanted one or"),
-        (["pano.exr", "--ball", "mirror", "--ball-direction", "0,90"], 2, "--ball-direction: wanted"),
+        (
+            ["pano.exr", "--ball", "mirror", "--ball-direction", "0,90"],
+            2,
+            "--ball-direction: wanted",
+        ),
         (["pano.exr", "--res", "1"], 2, "res: wanted 16 to 32768, got 1"),
         (["pano.exr", "--illuminance", "-1"], 2, "illuminance: wanted a number above 0"),
         (["pano.exr", "--sun-out", "sun.gltf"], 2, "wanted a name ending in .glb"),

@@ -52,7 +52,9 @@ def angle_deg(a, b):
     return math.degrees(math.acos(min(float(np.dot(a, b)), 1)))
 
 
-@pytest.mark.parametrize("sun", [(0.5, 0.6, 0.4), (-0.7, 0.3, 0.1), (0.2, 0.9, -0.3), (0.5, 0.3, -0.8)])
+@pytest.mark.parametrize(
+    "sun", [(0.5, 0.6, 0.4), (-0.7, 0.3, 0.1), (0.2, 0.9, -0.3), (0.5, 0.3, -0.8)]
+)
 def test_the_sun_by_its_terminator(tmp_path, sun):
     """Turns red with normals mirrored in x (up to 90 degrees off), or without the factor pi."""
     toward = np.array(sun) / np.linalg.norm(sun)

@@ -160,7 +160,9 @@ def test_meter_scales_what_is_not_clipped(file, bright):
 
 def test_meter_that_does_not_fit(tmp_path, bright):
     path = save(tmp_path / "clipped.exr", np.minimum(bright, 30000))
-    with pytest.raises(InputError, match=r"wanted more than the 1.* lux of the map without its sun"):
+    with pytest.raises(
+        InputError, match=r"wanted more than the 1.* lux of the map without its sun"
+    ):
         dg.light_probe(path, illuminance=1000)
     with pytest.raises(UsageError, match="--grey and --illuminance: wanted one of them"):
         dg.light_probe(path, illuminance=1000, grey=path)

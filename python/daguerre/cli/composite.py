@@ -65,7 +65,9 @@ def composite(
 
     console.quiet = quiet
     for path in output:
-        if any(path.exists() and each.exists() and path.samefile(each) for each in (plate, objects)):
+        if any(
+            path.exists() and each.exists() and path.samefile(each) for each in (plate, objects)
+        ):
             raise UsageError(f"{path}: wanted another file than those that are read")
         check_writable(path)
     number = None if scale is None else q.plain_number("--plate-scale", scale, "a number above 0")

@@ -121,7 +121,12 @@ def _linear(plate: Frame, seen: Frame, form: str, scale: float) -> Frame:
 
 
 def _developed(
-    plate: Photograph, seen: Frame, look: PlateLook | None, form: str, scale: float | None, seed: int
+    plate: Photograph,
+    seen: Frame,
+    look: PlateLook | None,
+    form: str,
+    scale: float | None,
+    seed: int,
 ) -> Picture | Frame:
     """A picture, encoded as the plate is; of a linear photograph a frame."""
     check_size(seen, plate.size)
@@ -145,7 +150,7 @@ def white_of(frame: Frame) -> float:
     facts = frame.metadata
     iso = float(facts.get("isoSpeed") or 100.0)
     gain = 2.0 ** float(facts.get("exposure_compensation") or 0)
-    return GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain)
+    return float(GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain))
 
 
 def _noisy(

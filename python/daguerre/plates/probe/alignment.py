@@ -7,6 +7,7 @@ their shift is where their correlation is highest.
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -29,7 +30,7 @@ def check_aligned(shots: list[Shot], stops: tuple[float, ...]) -> None:
         InputError: The message names two files, and the shift in px.
     """
     order = sorted(range(len(shots)), key=lambda i: stops[i])
-    for dark, light in zip(order, order[1:], strict=False):
+    for dark, light in itertools.pairwise(order):
         _check_pair(shots[dark], shots[light], stops[light] - stops[dark])
 
 

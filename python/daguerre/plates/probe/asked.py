@@ -137,6 +137,6 @@ def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
         for name in ("grey_circle", "grey_direction"):
             if given[name] is not None:
                 raise UsageError(f"--{name.replace('_', '-')}: wanted --grey with it")
-    several: Sequence[Any] = given["ball_direction"] if given["ball"] else ()
+    several = given["ball_direction"] if given["ball"] else ()
     if ball == "grey" and isinstance(several, Sequence) and len(several) > 1:
         raise UsageError("--ball-direction: wanted one side of a grey ball, got several")

@@ -78,7 +78,7 @@ class Ball:
         """
         normal, seen = self._turns()
         inside = seen[-1] * (1 - INSIDE / self.circle[2])
-        return np.minimum(np.interp(angle, 2 * normal + seen, seen), inside)
+        return np.asarray(np.minimum(np.interp(angle, 2 * normal + seen, seen), inside))
 
     def _turns(self) -> tuple[FloatArray, FloatArray]:
         """Table of t and g from the middle of the ball to its outline, rad."""

@@ -134,7 +134,7 @@ def _sun_direction(soft: FloatArray, normals: FloatArray, luma: FloatArray) -> F
     # max(x, 0) = (|x| + x) / 2: suns on opposite sides differ by soft light of order 1 alone,
     # which would have to be negative to make the wrong one fit.
     sides = [(_error_with(side, soft, normals, luma), i) for i, side in enumerate((best, -best))]
-    return best if min(sides)[1] == 0 else -best
+    return np.asarray(best if min(sides)[1] == 0 else -best)
 
 
 def _error_with(

@@ -2,8 +2,8 @@
 
 The irradiance of a surface with normal n by light of coefficients L_lm is the sum of
 A_l L_lm Y_lm(n) with A = pi, 2 pi / 3, pi / 4: higher orders hardly show on a matt ball. Source:
-Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, SIGGRAPH 2001,
-equations 3 and 8.
+Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, SIGGRAPH
+2001, equations 3 and 8.
 """
 
 from __future__ import annotations

@@ -60,4 +60,4 @@ def world_from_camera(yaw: float, pitch: float = 0.0) -> FloatArray:
     a, b = math.radians(yaw), math.radians(pitch)
     about_y = [[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]]
     about_x = [[1, 0, 0], [0, math.cos(b), -math.sin(b)], [0, math.sin(b), math.cos(b)]]
-    return np.array(about_y) @ np.array(about_x)
+    return np.asarray(np.array(about_y) @ np.array(about_x), np.float64)

@@ -87,10 +87,10 @@ def _warnings(source: Source) -> tuple[str, ...]:
     facts = clipped_facts(source.light, source.clipped)
     unit = "lux" if source.absolute else "of its unknown unit"
     return (
-        "{share:.3%} of the sphere is clipped in every photograph, about azimuth {azimuth_deg:.0f}, "
-        "elevation {elevation_deg:.0f} degrees: {illuminance_at_least:.4g} {unit} at least, "
-        "{light_share_at_least:.1%} of all light, and more is lost; a shorter exposure, "
-        "--illuminance or --grey finds it".format(unit=unit, **facts),
+        f"{facts['share']:.3%} of the sphere is clipped in every photograph, about azimuth "
+        f"{facts['azimuth_deg']:.0f}, elevation {facts['elevation_deg']:.0f} degrees: "
+        f"{facts['illuminance_at_least']:.4g} {unit} at least, {facts['light_share_at_least']:.1%} "
+        "of all light, and more is lost; a shorter exposure, --illuminance or --grey finds it",
     )
 
 

@@ -1,13 +1,14 @@
 """Photographs of different exposure as one picture of linear light.
 
 Each pixel is the mean of what the photographs say, weighed by the inverse of its variance: that of
-photons, of reading out, and of rounding. What is clipped has no say. Source of the weights: Granados
-et al., Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
+photons, of reading out, and of rounding. What is clipped has no say. Source of the weights:
+Granados et al., Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +48,8 @@ def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
         curve: Light of the numbers of coded ones, shape (256, 3).
     """
     shape = shots[0].numbers.shape
-    sums, weights = np.zeros(shape), np.zeros(shape[:2])
+    sums: NDArray[Any] = np.zeros(shape)
+    weights = np.zeros(shape[:2])
     darkest = int(np.argmax(exposures.luminance))
     clipped = np.ones(shape[:2], bool)
     for i, (shot, unit) in enumerate(zip(shots, exposures.luminance, strict=True)):
@@ -60,7 +62,7 @@ def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
             clipped &= top >= _FADE
         sums += weight[..., None] * light * unit
         weights += weight
-    sums = light * unit if len(shots) == 1 else sums / weights[..., None]
+    sums = np.asarray(light * unit if len(shots) == 1 else sums / weights[..., None])
     rgb = shots[0].rgb
     if rgb is not None:
         sums = sums @ rgb.T

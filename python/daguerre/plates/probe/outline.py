@@ -126,7 +126,7 @@ def _best(
     radius: float,
     shape: tuple[int, ...],
 ) -> tuple[float, tuple[float, float]]:
-    """Most votes for a middle at a radius, by length of the circle, and the middle (row, column)."""
+    """Most votes for a middle at a radius, by length of the circle, and it (row, column)."""
     votes = np.zeros(shape[0] * shape[1])
     for side in (radius, -radius):
         middle = np.rint(edges + side * toward).astype(int)
@@ -135,7 +135,8 @@ def _best(
         # A circle whose rim is brighter than its surroundings here and darker there has both.
         votes += np.bincount(at, weights[inside], minlength=votes.size)
     spread = votes.reshape(shape)
-    spread = sum(np.roll(spread, (a, b), (0, 1)) for a in (-1, 0, 1) for b in (-1, 0, 1))
+    near = [np.roll(spread, (a, b), (0, 1)) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    spread = np.sum(near, axis=0)
     row, column = np.unravel_index(int(spread.argmax()), shape)
     return float(spread[row, column]) / math.sqrt(radius), (float(row), float(column))
 

@@ -11,7 +11,11 @@ from daguerre.errors import UsageError
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
-BALLS, SUNS, RESPONSES = ("mirror", "grey"), ("auto", "disc", "off"), ("auto", "recover", "srgb", "linear")
+BALLS, SUNS, RESPONSES = (
+    ("mirror", "grey"),
+    ("auto", "disc", "off"),
+    ("auto", "recover", "srgb", "linear"),
+)
 PHOTOGRAPHS, BALL, SUN, MAP = "The photographs", "The ball", "The sun", "The map"
 
 
@@ -105,7 +109,7 @@ LIGHT_PROBE = Table(
     Parameter(
         "reflectance", "Reflectance of the ball, also R,G,B [mirror: 1; grey: 0.18]", kind="value",
         parse=_list("0.6"), flags=("--reflectance",), metavar="X", panel=BALL,
-        in_python="Reflectance of the ball, one number or RGB; None: 1 for a mirror, 0.18 for grey.",
+        in_python="Reflectance of the ball, one number or RGB; None: 1 of a mirror, 0.18 of grey.",
     ),
     Parameter(
         "ball_direction", "Yaw of the camera, degrees; one for each side of the ball", kind="value",

@@ -3,8 +3,8 @@
 For a pixel i in photograph j with number z and exposure t_j, g(z) = ln E_i + ln t_j, where g is
 the logarithm of the light that makes z. Unknown light E_i is eliminated pixel by pixel, so that the
 normal equations are those of g alone, and every pixel can take part. g is kept near the curve of
-sRGB by the second differences of what it differs from it. Source: Debevec and Malik, Recovering High
-Dynamic Range Radiance Maps from Photographs, SIGGRAPH 1997, equations 3 and 4.
+sRGB by the second differences of what it differs from it. Source: Debevec and Malik, Recovering
+High Dynamic Range Radiance Maps from Photographs, SIGGRAPH 1997, equations 3 and 4.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def _solve(
     total = np.maximum(weights.sum(axis=0), 1e-12)
     known = offsets[:, None] - base[numbers]  # what is left for the curve to explain
     mean = (weights * known).sum(axis=0) / total
-    normal = np.diag(np.bincount(numbers.ravel(), weights.ravel(), NODES))
+    normal = np.diag(np.bincount(numbers.ravel(), weights.ravel(), NODES)).astype(np.float64)
     right = np.bincount(numbers.ravel(), (weights * (known - mean)).ravel(), NODES)
     for a, one in zip(weights, numbers, strict=True):
         for b, other in zip(weights, numbers, strict=True):

@@ -101,7 +101,7 @@ def _irradiance(light: NDArray[np.float32], normals: FloatArray) -> FloatArray:
     )
 
 
-def clipped_facts(light: NDArray[np.float32], clipped: NDArray[np.bool_]) -> dict[str, object]:
+def clipped_facts(light: NDArray[np.float32], clipped: NDArray[np.bool_]) -> dict[str, float]:
     """Share of the sphere that is clipped, where, and the least light that it brings."""
     height, width = light.shape[:2]
     angles = solid_angles(width, height)[:, None] * clipped

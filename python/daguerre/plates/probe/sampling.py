@@ -26,4 +26,6 @@ def between(image: NDArray[Any], x: NDArray[Any], y: NDArray[Any]) -> NDArray[np
     more = (...,) + (None,) * (image.ndim - 2)
     dx, dy = ((v - n).astype(np.float32)[more] for v, n in ((x, column), (y, row)))
     top = image[row, column] * (1 - dx) + image[row, right] * dx
-    return np.asarray(top * (1 - dy) + (image[low, column] * (1 - dx) + image[low, right] * dx) * dy)
+    return np.asarray(
+        top * (1 - dy) + (image[low, column] * (1 - dx) + image[low, right] * dx) * dy
+    )

@@ -46,7 +46,7 @@ def _write_hdr(path: str | os.PathLike[str], image: NDArray[np.float32]) -> None
 
     height, width = image.shape[:2]
     with atomic_path(path) as temp:
-        output = oiio.ImageOutput.create(str(temp))
+        output: Any = oiio.ImageOutput.create(str(temp))
         spec = oiio.ImageSpec(width, height, 3, oiio.FLOAT)
         done = output.open(str(temp), spec) and output.write_image(image) and output.close()
         if not done:
