@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.special import erf
 
 FloatArray = NDArray[np.float64]
-_FINER = 3
+_FINER, _SIDE = 3, 100.0
 
 
 def squares(
@@ -23,7 +23,7 @@ def squares(
     """
     height, width = shape
     y, x = (np.mgrid[: height * _FINER, : width * _FINER] + 0.5) / _FINER
-    angle, side = np.radians(turn), height / 6
+    angle, side = np.radians(turn), _SIDE
     along = x * np.cos(angle) + y * np.sin(angle)
     across = -x * np.sin(angle) + y * np.cos(angle)
 

@@ -12,6 +12,7 @@ from daguerre.plates.match.grain import FOLDED, HALF, Grain
 from daguerre.plates.match.grain_draw import with_grain
 from daguerre.plates.match.grain_measure import grain_of
 from daguerre.plates.photograph import Photograph, encoded
+from tests.support.plate_edges import squares
 from tests.support.plate_frames import of_light
 
 ROWS, COLUMNS, PATCH = 3, 5, 192
@@ -156,3 +157,13 @@ def test_a_picture_without_noise_has_none():
     assert found.deviations.max() == 0
     light = np.full((20, 20, 3), 0.4, np.float32)
     np.testing.assert_array_equal(with_grain(light, found, 1), light)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.8])
+def test_edges_are_no_noise(sigma):
+    """Levels that only edges have, between those of the squares, tell nothing."""
+    light = squares((600, 900), sigma)[..., None] + 0.01 * np.random.default_rng(0).standard_normal(
+        (600, 900, 3)
+    )
+    found = grain_of(Photograph(Path("x.exr"), "linear", light.astype(np.float32), None, {}))
+    np.testing.assert_allclose(found.deviations, 0.01, rtol=0.15)

@@ -19,6 +19,8 @@ Terms = tuple[float, float, float]
 _CELLS = 48
 #: Share of the light by which an even surface may differ from the fit.
 UNEVEN = 0.03
+#: Gradient from the middle to a corner, over the light in the middle, that a surface may have.
+STEEP = 0.25
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,8 @@ def polynomial(terms: Terms, r2: FloatArray) -> FloatArray:
 
 def fitted(
     light: FloatArray, r2: FloatArray, more: FloatArray | None = None
-) -> tuple[Terms, float]:
-    """The polynomial through light at squared radii, and the RMS of what it leaves.
+) -> tuple[Terms, float, FloatArray]:
+    """The polynomial through light at squared radii, RMS of what it leaves, and ``more`` in it.
 
     Args:
         light: Any scale, shape (N,).
@@ -81,7 +83,7 @@ def fitted(
     found = np.linalg.lstsq(columns, light, rcond=None)[0]
     rest = float(np.sqrt(np.mean((light - columns @ found) ** 2)) / found[0])
     k1, k2, k3 = (float(found[k] / found[0]) for k in (1, 2, 3))
-    return (k1, k2, k3), rest
+    return (k1, k2, k3), rest, np.asarray(found[4:] / found[0])
 
 
 def falloff_of(flat: Photograph) -> Falloff:
@@ -92,14 +94,15 @@ def falloff_of(flat: Photograph) -> Falloff:
     Raises:
         InputError: It is clipped, dark, or not even.
     """
-    light = _means(flat)
+    light, y, x = _means(flat)
     if not (light > 0).all():
         raise InputError(f"{flat.path}: flat: wanted light everywhere, got some parts without")
-    rows, columns = light.shape
-    r2 = radii_squared(rows, columns)
-    y, x = np.mgrid[-1 : 1 : rows * 1j, -1 : 1 : columns * 1j]
-    more = np.stack([y.ravel(), x.ravel()], axis=1)
-    terms, rest = fitted(light.ravel(), r2.ravel(), more)
+    terms, rest, slopes = fitted(light, y**2 + x**2, np.stack([y, x], axis=1))
+    if np.hypot(*slopes) > STEEP:
+        raise InputError(
+            f"{flat.path}: flat: wanted an even surface, got light that changes by "
+            f"{2 * np.hypot(*slopes):.0%} from one corner to the other"
+        )
     if rest > UNEVEN:
         raise InputError(
             f"{flat.path}: flat: wanted an even surface, got light that differs by {rest:.1%} from "
@@ -108,8 +111,8 @@ def falloff_of(flat: Photograph) -> Falloff:
     return Falloff(terms, None, rest)
 
 
-def _means(flat: Photograph) -> FloatArray:
-    """Means of light over cells of the picture, as many as fit."""
+def _means(flat: Photograph) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Means of light over cells of the picture, and where they are: the corners are at 1."""
     plane, _ = overview(flat)
     clipped = _top(flat)
     if (plane >= clipped).mean() > 1e-3:
@@ -118,7 +121,12 @@ def _means(flat: Photograph) -> FloatArray:
     rows, columns = (length // side for length in plane.shape)
     cut = plane[: rows * side, : columns * side] - np.float32(_black(flat))
     light = _decoded(flat, cut).reshape(rows, side, columns, side)
-    return np.asarray(light.mean(axis=(1, 3), dtype=np.float64))
+    reach = 0.5 * float(np.hypot(*plane.shape))
+    y = ((np.arange(rows) + 0.5) * side - plane.shape[0] / 2) / reach
+    x = ((np.arange(columns) + 0.5) * side - plane.shape[1] / 2) / reach
+    places = np.meshgrid(y, x, indexing="ij")
+    means = light.mean(axis=(1, 3), dtype=np.float64)
+    return means.ravel(), places[0].ravel(), places[1].ravel()
 
 
 def _top(flat: Photograph) -> float:

@@ -23,6 +23,13 @@ _MOST, LEAST = 9000, 12
 _BINS, _FLATTEST = 16, 0.2
 #: Noise of flat blocks differs little; what has more than this times the usual is texture.
 _TEXTURE = 1.5
+#: Variance of means of 8 x 8 px over that of pixels: white noise has 1/64, grain of 4 px a quarter,
+#: edges nearly 1.
+_COARSE = 0.35
+#: Noise changes slowly with level: a bin whose variance is so many times the next one's is texture.
+_PEAK = 4.0
+#: Variance below which there is none.
+_NOTHING = 1e-14
 _CELL = 8
 #: Share of pixels at either end of the numbers that a channel of a block may have.
 _CLIPPED = 0.15
@@ -49,25 +56,35 @@ class FlatBlocks:
 
 def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
     """The flat blocks of a developed picture; None: there are too few."""
-    all_blocks, structure = _blocks(photograph)
-    order = np.argsort(all_blocks.level.mean(axis=1))
+    blocks, structure = _blocks(photograph)
+    variance = blocks.variance.mean(axis=1)
+    grainy = np.flatnonzero(structure <= _COARSE * np.maximum(variance, _NOTHING))
+    order = grainy[np.argsort(blocks.level[grainy].mean(axis=1))]
     if len(order) < LEAST:
         return None
     found = []
     for part in np.array_split(order, max(min(_BINS, len(order) // (2 * LEAST)), 1)):
         count = max(int(_FLATTEST * len(part)), min(LEAST, len(part)))
-        found.append(part[np.argsort(structure[part])[:count]])
-    best = [chosen[_alike(all_blocks.variance[chosen].mean(axis=1))] for chosen in found]
-    kept = np.concatenate(
-        [part for part, seen in zip(best, found, strict=True) if len(part) >= len(seen) // 2]
-    )
-    return all_blocks.only(kept) if len(kept) >= LEAST else None
+        flattest = part[np.argsort(structure[part])[:count]]
+        found.append(flattest[_alike(variance[flattest])])
+    kept = np.concatenate(_without_peaks(found, variance))
+    return blocks.only(kept) if len(kept) >= LEAST else None
 
 
 def _alike(variance: FloatArray) -> NDArray[np.bool_]:
     """Which variances are those of noise: near the lower ones, which texture does not have."""
     usual = np.quantile(variance, 0.25)
-    return np.asarray(variance <= _TEXTURE * max(float(usual), 1e-14))
+    return np.asarray(variance <= _TEXTURE * max(float(usual), _NOTHING))
+
+
+def _without_peaks(bins: list[NDArray[np.intp]], variance: FloatArray) -> list[NDArray[np.intp]]:
+    """Bins of levels without those whose noise is far above the next ones': texture alone."""
+    each = np.array([variance[part].mean() for part in bins])
+    beside = np.minimum(np.r_[each[1:2], each[:-1]], np.r_[each[1:], each[-2:-1]])
+    if len(each) < 3:
+        return bins
+    limit = _PEAK * np.maximum(beside, _NOTHING)
+    return [part for part, own, most in zip(bins, each, limit, strict=True) if own <= most]
 
 
 def _blocks(photograph: Photograph) -> tuple[FlatBlocks, FloatArray]:
