@@ -90,7 +90,7 @@ def _print(found: PlateCamera) -> None:
 
 def _camera(found: PlateCamera) -> dict[str, str]:
     camera = found.camera
-    focal = camera.zoom or camera.focal_length
+    focal = camera.zoom or camera.focal_length or found.focal_length
     name = camera.lens if isinstance(camera.lens, str) else "thin lens"
     focus = camera.focus_distance
     told = "not known" if focus is None else "inf" if math.isinf(focus) else f"{focus:g} m"

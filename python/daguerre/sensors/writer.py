@@ -6,6 +6,8 @@ import json
 import os
 from typing import Any
 
+import numpy as np
+
 from daguerre.files.atomic import write_bytes
 
 from .curve import Curve
@@ -70,4 +72,5 @@ def members(sensor: Sensor) -> dict[str, Any]:
 def _curve(curve: Curve | None) -> dict[str, Any] | None:
     if curve is None:
         return None
-    return {"wavelengths_nm": curve.wavelengths.tolist(), "transmittance": curve.values.tolist()}
+    columns = (np.asarray(values).tolist() for values in (curve.wavelengths, curve.values))
+    return dict(zip(("wavelengths_nm", "transmittance"), columns, strict=True))

@@ -44,8 +44,8 @@ def over_plate(
     found = plate.changes()
     dropped = {name for group in CAMERA.rivals() if set(group) & set(given) for name in group}
     dropped |= {name for each in given for name in _WITH.get(each, ())}
-    if given.get("lens") in IDEAL and "zoom" in found:
-        found["focal_length"] = found["zoom"]
+    if given.get("lens") in IDEAL and plate.focal_length is not None:
+        found["focal_length"] = plate.focal_length
         dropped.discard("focal_length")
     if calibrated:
         dropped |= {name for name in found if not CAMERA[name].takes("projection")}

@@ -80,6 +80,7 @@ def match_plate(
         noise=noise,
         sharpness=sharpness,
         falloff=falloff,
+        focal_length=found.focal_length,
         look=_look(given["look"], photograph, notes),
         notes=tuple(notes),
     )

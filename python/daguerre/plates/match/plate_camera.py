@@ -37,6 +37,7 @@ class PlateCamera(Value):
         noise: Photon transfer of a raw plate, grain of others; None: no part of it is flat.
         sharpness: Sharpness by edges; None: none was good enough.
         falloff: Vignetting by a flat; None: there was none.
+        focal_length: Focal length that the plate tells, mm; None: it tells none.
         look: Tone curve that pictures are developed by.
         notes: Decisions that were made on the user's behalf.
     """
@@ -50,6 +51,7 @@ class PlateCamera(Value):
     noise: Transfer | Grain | None = None
     sharpness: Sharpness | None = None
     falloff: Falloff | None = None
+    focal_length: float | None = None
     look: str = "neutral"
     notes: tuple[str, ...] = ()
 

@@ -47,6 +47,7 @@ def _plate(root: Item, file: Path) -> PlateCamera:
     plate = root.need("plate")
     columns, rows = (item.integer(1, _MOST_PIXELS) for item in _some(plate.need("resolution"), 2))
     kind = plate.need("kind").choice(KINDS)
+    focal = _known(plate, "focal_length_mm")
     return PlateCamera(
         plate=plate.need("file").text(),
         sha256=plate.need("sha256").text(),
@@ -57,6 +58,7 @@ def _plate(root: Item, file: Path) -> PlateCamera:
         noise=_noise(_known(root, "noise"), kind),
         sharpness=_sharpness(_known(root, "sharpness")),
         falloff=_falloff(_known(root, "vignetting")),
+        focal_length=None if focal is None else focal.number(above=0),
         look=_look(root.need("development").need("look")),
         notes=tuple(item.text() for item in root.list_of("notes")),
     )

@@ -36,11 +36,13 @@ class Settings:
     Attributes:
         camera: The camera.
         body: The library's sensor of the camera, or the one that was given.
+        focal_length: Focal length that the photograph tells, or that was given, mm.
         notes: Decisions, a sentence each.
     """
 
     camera: Camera
     body: Sensor | None
+    focal_length: float | None
     notes: tuple[str, ...]
 
 
@@ -76,7 +78,7 @@ def settings_of(photograph: Photograph, given: Mapping[str, Any]) -> Settings:
         white_balance=wanted.get("white_balance"),
     )
     camera, more = _with_lens(camera, lens, focal)
-    return Settings(camera, sensor, (*notes, *more))
+    return Settings(camera, sensor, focal, (*notes, *more))
 
 
 def _sensor(

@@ -42,6 +42,7 @@ def members(plate: PlateCamera, sensor: str | None) -> dict[str, Any]:
             "sha256": plate.sha256,
             "kind": plate.kind,
             "resolution": list(plate.resolution),
+            "focal_length_mm": plate.focal_length,
         },
         "camera": _camera(plate),
         "sensor": sensor,
