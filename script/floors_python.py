@@ -34,7 +34,6 @@ FLOORS = [
     {"exposure"},
     {"development"},
     {"stocks"},
-    {"plates"},
     {"rendering"},
     {"maps", "labels", "charts"},
     {"plates"},

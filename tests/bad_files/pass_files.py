@@ -160,7 +160,8 @@ def checkpoint(change: Callable[[passes.Pass], passes.Pass]) -> Callable[[Path],
 
 def _locked(drawn: passes.Pass) -> passes.Pass:
     """All words set: among them the lock that a pixel has while a thread writes to it."""
-    return replace(drawn, state={"sums": np.full_like(drawn.state["sums"], 0xFFFFFFFF)})
+    full = np.full_like(drawn.state["sums"], 0xFFFFFFFF)
+    return replace(drawn, state=drawn.state | {"sums": full})
 
 
 def _two(folder: Path) -> Path:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @made_of(MATCH)
 class MatchFlags(TableFlags):
-    """What the photograph does not say."""
+    """Facts that the photograph does not tell."""
 
 
 @with_flags(flags=MatchFlags)

@@ -131,7 +131,7 @@ def read_file(path: Path) -> tuple[NDArray[Any], Any]:
     """Pixels of a picture in their own type, shape (H, W, C), as they lie in the file; its facts.
 
     Args:
-        path: What OpenImageIO decodes. Of PNG and JPEG what is cut off is refused here.
+        path: A picture that OpenImageIO decodes. PNG and JPEG that are cut off are refused here.
 
     Returns:
         The pixels, straight alpha, and OpenImageIO's specification.

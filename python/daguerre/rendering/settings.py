@@ -73,7 +73,7 @@ class Light(_Group):
 
 @dataclass(frozen=True)
 class Backdrop(_Group):
-    """What lies behind the scene, and what glass shows of it."""
+    """Background of the scene, and glass before it."""
 
     background: str = DEFAULT["background"]
     see_through: bool = DEFAULT["see_through"]
@@ -117,7 +117,7 @@ class RenderSettings:
         sampling: Samples: spp, noise, seed, filter.
         film: Pixels: resolution, crop, overscan, aovs, halves, bands.
         light: Light transport: max_depth, light_paths, flare, scatter, diffraction and more.
-        backdrop: What lies behind: background, see_through.
+        backdrop: Background of the scene: background, see_through.
         truth: Ground truth: gt_time, gt_lens, gt_rays, motion.
         reference: Switches for checks: strategy, technique, dispersion.
         threads: Number of threads; 0: all cores.

@@ -11,6 +11,8 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
 from daguerre.parameters.table import Table
 from daguerre.parameters.texts import attributes, page_table, put_between_marks
+from daguerre.plates.match.parameters import MATCH
+from daguerre.plates.probe.parameters import LIGHT_PROBE
 from daguerre.rendering.parameters import FLAGS
 
 PAGE = Path("docs", "cli.md")
@@ -36,6 +38,8 @@ SECTIONS = (
     Section("flags of the camera", CAMERA_FLAGS, CAMERA),
     Section("flags of the shutter", SHUTTER, CAMERA),
     Section("flags of rendering", FLAGS, FLAGS),
+    Section("flags of match-plate", MATCH, MATCH),
+    Section("flags of light-probe", LIGHT_PROBE, LIGHT_PROBE),
 )
 #: Files with the docstring of a record: the record's class, its fields and their table.
 RECORDS = {Path("python", "daguerre", "camera", "camera.py"): (Camera, CAMERA)}

@@ -76,6 +76,34 @@ class SceneFlags:
             panel=_LIGHT,
         ),
     ] = None
+    plate: Annotated[
+        Path | None,
+        option(
+            "--plate",
+            metavar="PHOTO",
+            help="Photograph of the set: mirrors, glass and bounced light see it on the catchers.",
+            panel=_LIGHT,
+        ),
+    ] = None
+    plate_camera: Annotated[
+        Path | None,
+        option(
+            "--plate-camera",
+            metavar="FILE",
+            help="Calibration of the camera that took --plate, from where the scene's camera "
+            "stands [the camera that renders].",
+            panel=_LIGHT,
+        ),
+    ] = None
+    plate_scale: Annotated[
+        Text,
+        option(
+            "--plate-scale",
+            metavar="X",
+            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF; linear files: 1].",
+            panel=_LIGHT,
+        ),
+    ] = None
     allow_dir: Annotated[
         list[Path] | None,
         option(
@@ -104,7 +132,35 @@ class SceneFlags:
         for text in self.catcher or ():
             node, _, effects = text.partition(":") if text not in scene.nodes else (text, "", "")
             scene.set_catcher(node, effects or EFFECTS)
+        self._throw_plate(scene)
         return scene
+
+    def _throw_plate(self, scene: Any) -> None:
+        """Gives the scene the photograph of its set."""
+        from daguerre.cli import console
+        from daguerre.errors import UsageError
+
+        if self.plate is None:
+            for name, value in (("camera", self.plate_camera), ("scale", self.plate_scale)):
+                if value is not None:
+                    raise UsageError(f"--plate-{name}: wanted --plate too")
+            return
+        from daguerre.plates.photo_light import photo_light
+
+        scale = self.plate_scale
+        number = None if scale is None else q.plain_number("--plate-scale", scale, "a luminance")
+        if number is not None and not 0 < number < 1e12:
+            raise UsageError(f"--plate-scale: wanted a luminance above 0, got {scale!r}")
+        pixels, notes = photo_light(self.plate, number)
+        for note in notes:
+            console.note(f"{self.plate}: {note}")
+        camera = None
+        if self.plate_camera is not None:
+            from daguerre.calibration import read_all
+
+            one = next(iter(read_all(self.plate_camera).values()))
+            camera = one.camera(scene.camera(), None)
+        scene.set_plate(pixels, camera)
 
     def _lux(self) -> float | None:
         from daguerre.errors import UsageError

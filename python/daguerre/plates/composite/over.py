@@ -23,7 +23,7 @@ AUTO, RATIO, DIFFERENCE = FORMS = ("auto", "ratio", "difference")
 
 @dataclass(frozen=True)
 class Change:
-    """What becomes of a plate: ``factor`` times it, plus ``light``; shapes (H, W, C)."""
+    """Change of a plate: ``factor`` times it, plus ``light``; shapes (H, W, C)."""
 
     factor: Plane
     light: Plane
@@ -40,7 +40,7 @@ def change_of(
 
     Args:
         light: Light of the objects, premultiplied, shape (H, W, C).
-        alpha: What they cover, shape (H, W).
+        alpha: Share that they cover, shape (H, W).
         catcher: Difference that catchers caught, shape (H, W, C); None: there are none.
         ratio: The same as a factor.
         form: ``auto``, ``ratio`` or ``difference``.

@@ -34,7 +34,7 @@ from .transfer import Transfer, transfer_of
 Path = str | os.PathLike[str]
 #: Relative standard error of the read noise above which a note tells it.
 _UNSURE = 0.1
-#: What a camera's own picture looks like, of those looks that there are.
+#: Look that comes nearest to a camera's own picture.
 _USUAL_LOOK = "standard"
 
 

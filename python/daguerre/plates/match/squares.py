@@ -1,6 +1,6 @@
 """Blocks of squares of four photosites of one colour that touch, as X-Trans and Quad-Bayer have.
 
-Of a square the difference a - b - c + d measures the noise, over two photosites, where pictures
+The difference a - b - c + d of a square measures the noise, over two photosites, where pictures
 have least; its mean is independent of that. Means of 4 x 4 squares judge whether a block is flat.
 """
 

@@ -43,7 +43,7 @@ def recover(pictures: list[NDArray[np.uint8]], stops: tuple[float, ...]) -> Floa
     """Curves of three channels that make photographs agree.
 
     Args:
-        pictures: Of one view, shape (H, W, 3).
+        pictures: Pictures of one view, shape (H, W, 3).
         stops: Exposure of each, EV.
 
     Returns:

@@ -76,7 +76,7 @@ def by_grey_ball(sun: Sun, rest: NDArray[np.float32], shading: Shading) -> Sun:
 
 def _solved(sun: Sun, illuminance: FloatArray, way: str) -> Sun:
     red, green, blue = (float(v) for v in illuminance)
-    # What is clipped looks larger than it is.
+    # A clipped sun looks larger than it is.
     diameter = DIAMETER_DEG if sun.clipped else sun.diameter_deg
     return replace(sun, illuminance=(red, green, blue), diameter_deg=diameter, solved=way)
 

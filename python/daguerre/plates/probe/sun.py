@@ -13,7 +13,7 @@ from daguerre.color.spectra import luminance_of_rgb
 
 from .latlong import FloatArray, centres, luminance, place, solid_angles
 
-#: As seen from the Earth, degrees; 0.524 to 0.542 over the year.
+#: Diameter from the Earth, degrees; 0.524 to 0.542 over the year.
 DIAMETER_DEG = 0.533
 #: Share of all light, integrated over the sphere, from which on a source counts.
 LEAST_SHARE = 0.05
@@ -29,7 +29,7 @@ class Sun:
 
     Attributes:
         direction: Unit vector toward it.
-        illuminance: Of a surface that faces it, RGB, lux where the map is in cd/m2.
+        illuminance: Illuminance of a surface that faces it, RGB, lux where the map is in cd/m2.
         diameter_deg: Its angular diameter, degrees.
         share: Its part of the light of all directions.
         clipped: Whether it is clipped in all photographs.
@@ -86,7 +86,7 @@ def take_out(
 ) -> Taken | None:
     """Finds the sun and fills its place by the light around it; none: None.
 
-    What is taken out and what is left add up to the light that was there.
+    The part that is taken out and the rest add up to the light that was there.
 
     Args:
         light: Environment, shape (H, W, 3).
@@ -161,7 +161,7 @@ def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
 
 
 def _half(found: FloatArray, peak: Any) -> NDArray[np.bool_]:
-    """What hangs together with the peak and is at least half as bright."""
+    """Pixels that hang together with the peak and are at least half as bright."""
     return _connected(found >= 0.5 * found[peak], peak)
 
 
