@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @made_of(MATCH)
 class MatchFlags(TableFlags):
-    """Facts that the photograph does not tell."""
+    """Flags for what the photograph does not say."""
 
 
 @with_flags(flags=MatchFlags)

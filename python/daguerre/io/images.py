@@ -53,7 +53,19 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
     if data.startswith(ktx2.MAGIC):
         _check_size(*ktx2.size(data, where), 4, 1, where)
         return ktx2.decode(data, where)
-    suffix = checked_suffix(data, where)
+    if data.startswith(_PNG_MAGIC):
+        _check_png(data, where)
+        suffix = ".png"
+    elif data.startswith(b"\xff\xd8\xff"):
+        _check_jpeg(data, where)
+        suffix = ".jpg"
+    elif data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+        wanted = 8 + int.from_bytes(data[4:8], "little")
+        if len(data) < wanted:
+            raise InputError(f"{where}: truncated WebP: wanted {wanted} bytes, got {len(data)}")
+        suffix = ".webp"
+    else:
+        raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
     descriptor, name = tempfile.mkstemp(suffix=suffix, prefix="daguerre-")
     try:
         with os.fdopen(descriptor, "wb") as stream:
@@ -68,26 +80,6 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
     if pixels.dtype == np.uint16:
         return pixels.astype(np.float32) / np.float32(65535)
     return pixels.astype(np.float32)
-
-
-def checked_suffix(data: bytes, where: str) -> str:
-    """Ending of names of files of this kind, after a look whether all of the file is there.
-
-    Raises:
-        InputError: It is no PNG, JPEG or WebP, is truncated or corrupt.
-    """
-    if data.startswith(_PNG_MAGIC):
-        _check_png(data, where)
-        return ".png"
-    if data.startswith(b"\xff\xd8\xff"):
-        _check_jpeg(data, where)
-        return ".jpg"
-    if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
-        wanted = 8 + int.from_bytes(data[4:8], "little")
-        if len(data) < wanted:
-            raise InputError(f"{where}: truncated WebP: wanted {wanted} bytes, got {len(data)}")
-        return ".webp"
-    raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
 
 
 def read_environment(path: str | Path) -> NDArray[np.float32]:
@@ -131,7 +123,7 @@ def read_file(path: Path) -> tuple[NDArray[Any], Any]:
     """Pixels of a picture in their own type, shape (H, W, C), as they lie in the file; its facts.
 
     Args:
-        path: A picture that OpenImageIO decodes. PNG and JPEG that are cut off are refused here.
+        path: A format that OpenImageIO decodes. PNG and JPEG that are cut off are refused here.
 
     Returns:
         The pixels, straight alpha, and OpenImageIO's specification.

@@ -52,7 +52,7 @@ def colors_of(pixels: NDArray[Any], where: str) -> tuple[NDArray[Any], list[str]
 
 
 def alpha_notes(alpha: NDArray[Any]) -> list[str]:
-    """Notes on alpha: a plate has none, and what is not opaque is no part of the scene."""
+    """Tells that alpha was left out: what is not opaque is no part of the scene."""
     top = np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
     clear = int(np.count_nonzero(alpha < top))
     share = f"{clear} of {alpha.size} pixels are not opaque" if clear else "all pixels are opaque"
@@ -60,7 +60,7 @@ def alpha_notes(alpha: NDArray[Any]) -> list[str]:
 
 
 def turn_notes(orientation: int) -> list[str]:
-    """Notes on a photograph that does not lie upright in its file."""
+    """Tells that a photograph did not lie upright in its file."""
     return [] if orientation == 1 else [f"turned upright: EXIF orientation {orientation}"]
 
 

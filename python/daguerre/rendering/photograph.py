@@ -28,7 +28,7 @@ class Like(Protocol):
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Facts that frames say of it in their files."""
+        """Facts that frames tell of it in their files."""
 
     def seen(self, frame: Frame, seed: int = 0) -> Frame:
         """A clean frame as that camera sees it."""

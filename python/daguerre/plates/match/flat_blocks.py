@@ -28,6 +28,8 @@ _TEXTURE = 1.5
 _COARSE = 0.35
 #: Noise changes slowly with level: a bin whose variance is so many times the next one's is texture.
 _PEAK = 4.0
+#: Deviation of numbers for screens that no camera's noise has; text and patterns do.
+_LOUDEST = 0.12
 #: Variance below which there is none.
 _NOTHING = 1e-14
 _CELL = 8
@@ -58,7 +60,10 @@ def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
     """The flat blocks of a developed picture; None: there are too few."""
     blocks, structure = _blocks(photograph)
     variance = blocks.variance.mean(axis=1)
-    grainy = np.flatnonzero(structure <= _COARSE * np.maximum(variance, _NOTHING))
+    small = structure <= _COARSE * np.maximum(variance, _NOTHING)
+    if photograph.kind == "display":
+        small &= variance < _LOUDEST**2
+    grainy = np.flatnonzero(small)
     order = grainy[np.argsort(blocks.level[grainy].mean(axis=1))]
     if len(order) < LEAST:
         return None

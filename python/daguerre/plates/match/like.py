@@ -39,7 +39,7 @@ class PlateLook:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Facts of the plate in the file of a frame, for who goes on with it."""
+        """Facts that the file of a frame tells of the plate, for who goes on with it."""
         return {"file": self.plate.plate, "sha256": self.plate.sha256, "kind": self.plate.kind}
 
     def seen(self, frame: Frame, seed: int = 0) -> Frame:

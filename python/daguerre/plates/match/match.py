@@ -34,7 +34,7 @@ from .transfer import Transfer, transfer_of
 Path = str | os.PathLike[str]
 #: Relative standard error of the read noise above which a note tells it.
 _UNSURE = 0.1
-#: Look that comes nearest to a camera's own picture.
+#: Look that is nearest to the pictures that cameras make.
 _USUAL_LOOK = "standard"
 
 

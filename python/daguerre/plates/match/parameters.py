@@ -44,7 +44,11 @@ def _row(name: str, meaning: str, **changes: Any) -> Parameter:
 
 
 MATCH = Table(
-    _row("lens", "Lens of the library or a lens file; `thin`: an ideal one"),
+    _row(
+        "lens",
+        "Lens of the library or a lens file; `thin`: an ideal one",
+        metavar="NAME|FILE|thin",
+    ),
     _row("focal_length", "Focal length, mm; of a zoom where it stands", flags=("--focal-length",)),
     _row("f_stop", "F-number of the shot"),
     replace(

@@ -15,7 +15,7 @@ def raw_of(photograph: Photograph, plate: PlateCamera) -> Raw:
     """The numbers of a raw photograph, upright, with the sensor that was measured in it.
 
     Args:
-        photograph: Photograph from ``plates.files.read``.
+        photograph: The plate, from ``plates.files.read``.
         plate: The camera that was matched to it.
 
     Raises:

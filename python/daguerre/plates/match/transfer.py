@@ -64,7 +64,7 @@ def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where:
     """Fits a photon transfer curve.
 
     Args:
-        blocks: Blocks of one picture, or of several with the same settings.
+        blocks: Those of one picture, or of several with the same settings.
         span: Least and largest number above black, DN.
         channels: Number of channels.
         where: The picture, for messages.
