@@ -57,8 +57,6 @@ class Scene(Value):
     #: other names by which ``camera`` finds one, such as that of the camera in its node
     camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
-    #: photograph of the set, as objects see it in mirrors and glass
-    plate: Plate | None = None
     #: what of all that changes over time
     motion: SceneMotion = field(default_factory=SceneMotion)
     #: length of the animations of a file, s
@@ -71,6 +69,8 @@ class Scene(Value):
     variants: list[str] = field(default_factory=list)
     #: what the reader met and did not understand, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
+    #: photograph of the set, as objects see it in mirrors and glass
+    plate: Plate | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 
