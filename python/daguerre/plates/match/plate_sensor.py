@@ -38,11 +38,15 @@ def plate_sensor(
     base = sensors.load(_STAND_INS[len(raw.channels)]) if stand_in or body is None else body
     rows, columns = raw.mosaic.shape
     low, high = base.iso_range
+    pitch = 1e3 * width_mm / columns
+    # A photosite has as many electrons as the body's own, whatever a pixel of the picture spans.
+    efficiency = np.asarray(base.quantum_efficiency) * (base.pixel_pitch / pitch) ** 2
     made = base.with_(
         name=name,
         pattern=_pattern(raw, notes),
         resolution=(columns, rows),
-        pixel_pitch=1e3 * width_mm / columns,
+        pixel_pitch=pitch,
+        quantum_efficiency=efficiency / max(float(efficiency.max()), 1.0),
         bit_depth=math.ceil(math.log2(raw.white + 1)),
         black_level=round(float(raw.black[raw.cells].mean())),
         iso_range=(min(low, iso), max(high, iso)),
