@@ -34,7 +34,7 @@ def ball(tmp_path_factory):
 
 
 def test_unwrapped_is_the_world(ball):
-    """Turns red with a mirrored direction (84 %), a pixel read half a pixel off (0.9 %)."""
+    """Turns red with a mirrored direction, or without perspective."""
     made = probe(ball)
     truth, angle = world(grid(256, 128)), from_camera()
     off = np.abs(made.image / truth - 1)
@@ -53,6 +53,18 @@ def test_found_outline_and_given_outline_agree(ball):
     given = probe(ball, circle=(x, y, radius))
     off = np.abs(given.image / world(grid(256, 128)) - 1)
     assert off[from_camera() < 120].mean() < 0.01
+
+
+def test_pixels_count_from_their_middles(tmp_path):
+    """Turns red with pixels read half a pixel off, in what is found and in what is unwrapped."""
+    path = save(tmp_path / "axis.exr", ball_picture(mirror(world), middle=(0, 0, -5)))
+    radius = 600 * math.tan(math.asin(1 / 5))
+    found = probe(path).facts["balls"][0]["circle_px"]
+    assert found == pytest.approx((240, 180, radius), abs=0.2)
+    made = probe(path, circle=(240, 180, radius))
+    off = made.image / world(grid(256, 128)) - 1
+    front = from_camera((0, 0, -5)) < 100
+    assert np.abs(off[front]).mean() < 0.001
 
 
 def test_perspective_is_needed_near_a_ball(ball):

@@ -53,10 +53,12 @@ def angle_deg(a, b):
 
 
 @pytest.mark.parametrize(
-    "sun", [(0.5, 0.6, 0.4), (-0.7, 0.3, 0.1), (0.2, 0.9, -0.3), (0.5, 0.3, -0.8)]
+    "sun", [(0.5, 0.6, 0.4), (-0.7, 0.3, 0.1), (0.2, 0.9, -0.3), (0.5, 0.3, -0.8), (0, 0.5, 0.8)]
 )
 def test_the_sun_by_its_terminator(tmp_path, sun):
-    """Turns red with normals mirrored in x (up to 90 degrees off), or without the factor pi."""
+    """Turns red with normals mirrored in x, without the factor pi, or if suns on opposite sides,
+    which leave the same with soft light of either sign, are not told apart.
+    """
     toward = np.array(sun) / np.linalg.norm(sun)
     picture = noisy(ball_picture(matt(toward)))
     made = dg.light_probe(save(tmp_path / "grey.exr", picture), ball="grey", fov=FOV)
@@ -66,6 +68,13 @@ def test_the_sun_by_its_terminator(tmp_path, sun):
     seen = grid(1024, 512) @ (0, 0, 1) > 0.5
     soft = soft_light(grid(1024, 512)[seen])
     assert np.abs(made.rest[seen] / soft - 1).mean() < 0.08
+
+
+def test_a_ball_seen_from_far_away(tmp_path):
+    picture = noisy(ball_picture(matt(), focal=60000, middle=(0, 0, -500)))
+    made = dg.light_probe(save(tmp_path / "grey.exr", picture), ball="grey", fov=0)
+    assert angle_deg(made.sun.direction, SUN) < 1.5
+    assert made.sun.illuminance == pytest.approx(COLOUR, rel=0.05)
 
 
 def test_through_a_camera_with_brackets(tmp_path):

@@ -27,6 +27,8 @@ _ANGLES = 720
 _RIM = 0.4
 #: Least cosine between an edge's gradient and the radius.
 _ASLANT = 0.85
+#: Least step of tones over two pixels that is an edge.
+_STEP = 0.01
 #: Circles that are looked at closely.
 _LOOKS = 12
 
@@ -68,10 +70,10 @@ def find_outline(light: NDArray[np.float32], where: str) -> Outline:
 
 
 def _tones(light: NDArray[np.float32]) -> FloatArray:
-    """Logarithm of luminance, without what lies far below the middle of the picture."""
+    """Luminance with its highlights rolled off; a curve that bends much would shift soft edges."""
     found = luminance(light)
-    usual = float(np.median(found)) or float(found.mean())
-    return np.log2(found + 0.05 * usual)
+    usual = float(np.quantile(found, 0.8)) or float(found.mean())
+    return found / (found + usual)
 
 
 def _candidates(grey: FloatArray) -> list[Circle]:
@@ -177,7 +179,7 @@ def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
     bend = one - 2 * two + three
     shift = np.where(bend < -1e-9, 0.5 * (one - three) / np.minimum(bend, -1e-9), 0)
     place = steps[inner + 2] + 0.5 * np.clip(shift, -1, 1)
-    strong = np.take_along_axis(slope, best[:, None], 1)[:, 0] > 0.05
+    strong = np.take_along_axis(slope, best[:, None], 1)[:, 0] > _STEP
     way = np.stack([np.cos(angle[inside]), np.sin(angle[inside])], axis=1)
     points = (x, y) + (radius + place)[:, None] * way
     return np.asarray(points[strong & _across(grey, points, way)])
