@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from tests.support.light_probes import ball_picture, grid, mirror, save, world
+from tests.support.light_probes import ball_picture, exposure, grid, mirror, save, world
 
 MIDDLE = (0.15, -0.1, -5.0)
 FOV = math.degrees(2 * math.atan(240 / 600))
@@ -65,6 +65,14 @@ def test_pixels_count_from_their_middles(tmp_path):
     off = made.image / world(grid(256, 128)) - 1
     front = from_camera((0, 0, -5)) < 100
     assert np.abs(off[front]).mean() < 0.001
+
+
+def test_focal_length_by_exif(tmp_path):
+    """43 mm over the diagonal of 43.27 mm, which is one of 600 px here."""
+    codes = np.rint(255 * (ball_picture(mirror(world)) / 5) ** (1 / 2.2)).astype(np.uint8)
+    exif = exposure(0.01) | {"Exif:FocalLength": 50.0, "Exif:FocalLengthIn35mmFilm": 43}
+    made = probe(save(tmp_path / "ball.jpg", codes, exif), fov=None)
+    assert made.facts["balls"][0]["focal_px"] == pytest.approx(600 * 43 / 43.267, rel=1e-3)
 
 
 def test_perspective_is_needed_near_a_ball(ball):

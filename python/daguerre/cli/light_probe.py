@@ -111,7 +111,7 @@ def _ball_rows(ball: dict[str, Any]) -> dict[str, str]:
 
 def _sun_rows(sun: dict[str, Any] | None, unit: str) -> dict[str, str]:
     if sun is None:
-        return {"sun": "none found"}
+        return {"sun": "none: no small source brings 5% of the light"}
     red, green, blue = sun["illuminance_rgb"]
     how = f", by --{sun['solved']}" if sun["solved"] else ", clipped" if sun["clipped"] else ""
     return {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -128,7 +127,8 @@ def _reflectance(given: Any, ball: str | None) -> NDArray[np.float64]:
 def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
     """Refuses what would do nothing."""
     flags = ("circle", "reflectance", "ball_direction", "pitch")
-    if ball is None and (idle := [name for name in flags if given[name]]):
+    idle = [n for n in flags if given[n] is not None and not (n == "pitch" and given[n] == 0)]
+    if ball is None and idle:
         raise UsageError(f"--{idle[0].replace('_', '-')}: wanted --ball mirror or grey with it")
     if given["grey"] and (given["illuminance"] or ball == "grey"):
         other = "--ball grey" if ball == "grey" else "--illuminance"
@@ -137,6 +137,5 @@ def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
         for name in ("grey_circle", "grey_direction"):
             if given[name] is not None:
                 raise UsageError(f"--{name.replace('_', '-')}: wanted --grey with it")
-    several = given["ball_direction"] if given["ball"] else ()
-    if ball == "grey" and isinstance(several, Sequence) and len(several) > 1:
+    if ball == "grey" and np.size(given["ball_direction"]) > 1:
         raise UsageError("--ball-direction: wanted one side of a grey ball, got several")

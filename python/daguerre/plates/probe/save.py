@@ -48,9 +48,15 @@ def _write_hdr(path: str | os.PathLike[str], image: NDArray[np.float32]) -> None
     with atomic_path(path) as temp:
         output: Any = oiio.ImageOutput.create(str(temp))
         spec = oiio.ImageSpec(width, height, 3, oiio.FLOAT)
-        done = output.open(str(temp), spec) and output.write_image(image) and output.close()
+        done = (
+            output is not None
+            and output.open(str(temp), spec)
+            and output.write_image(image)
+            and output.close()
+        )
         if not done:
-            reason = str(output.geterror() or "unknown reason").replace(str(temp), str(path))
+            said = oiio.geterror() if output is None else output.geterror()
+            reason = str(said or "unknown reason").replace(str(temp), str(path))
             raise OutputError(f"{path}: cannot write: {reason}")
 
 

@@ -18,6 +18,7 @@ from daguerre.files.notes import Notes
 from daguerre.io.images import read_environment
 from daguerre.plates.display_file import read_display
 from daguerre.plates.files import DISPLAY
+from daguerre.plates.shot_facts import shot_facts
 
 White = float | tuple[float, float] | None
 LINEAR = (".exr", ".hdr")
@@ -112,16 +113,14 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
 def _raw(file: Path, white: White, notes: Notes) -> Shot:
     """A raw file: linear, in units of a developed white."""
     from daguerre.development.camera_raw import read_shot as read_raw
+    from daguerre.development.camera_raw import tags_of
 
     channels = read_raw(file)
     at = channels.as_shot if white is None else illuminants.white_xy(white)
     rgb = rgb_from_xyz() @ adaptation(at, illuminants.D65_XY) @ channels.xyz_from(at)
     unit = channels.unit.astype(np.float32)
-    facts = {
-        name: float(value)
-        for name, value in channels.metadata.items()
-        if name in ("expTime", "aperture", "isoSpeed")
-    }
+    height, width = channels.pixels.shape[:2]
+    facts = shot_facts(tags_of(file), (width, height))
     if white is None:
         notes.add("raw file developed with its own white balance")
     return Shot(file, channels.pixels / unit, channels.full / unit, rgb, facts)
