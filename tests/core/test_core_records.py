@@ -52,10 +52,10 @@ def test_settings_of_a_lens_keep_what_they_are_given() -> None:
 
 def test_a_film_has_the_channels_that_the_core_lists() -> None:
     film = _core.Film(_core.FilmLayout(width=3, height=2, aovs=True))
-    assert {*FILM_CHANNELS, "alpha"} == {*_core.FILM_AOVS, "object_id"}
+    assert set(FILM_CHANNELS) == {*_core.FILM_AOVS, "object_id"}
     for name in _core.FILM_AOVS:
         assert film.aov(name).shape == (2, 3)
-    with pytest.raises(_core.Error, match=r"depth\.Z, P\.X, .*, alpha, got velocity"):
+    with pytest.raises(_core.Error, match=r"depth\.Z, P\.X, .*denoise_normal.Z, got velocity"):
         film.aov("velocity")
     # Sums of each channel, and 16 bytes of counts and the object.
     assert film.state("aovs").shape == (2, 3, 4 * (len(_core.FILM_AOVS) + 1))
