@@ -9,6 +9,7 @@
 #include "film/film.h"
 #include "film/filter.h"
 #include "film/neighbours.h"
+#include "math/error.h"
 #include "spectrum/wavelengths.h"
 
 namespace nb = nanobind;
@@ -56,12 +57,40 @@ using Curves = nb::ndarray<const double, nb::shape<-1, 401>, nb::c_contig, nb::d
 using Words = nb::ndarray<const std::uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using WordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<3>>;
 
+constexpr const char* kObjects = "objects";
+
+/// Lists of objects as words, (H, entries of the longest row, 4).
+WordsView objects(const dg::Film& film) {
+    auto kept = std::make_unique<std::vector<std::uint32_t>>(film.object_words());
+    const std::size_t height = film.layout().height, each = dg::CoverLists::kEntryWords;
+    const std::size_t columns = kept->size() / height / each;
+    const std::uint32_t* const words = kept->data();
+    const nb::capsule owner(kept.release(), [](void* p) noexcept { delete static_cast<std::vector<std::uint32_t>*>(p); });
+    return WordsView(words, {height, columns, each}, owner);
+}
+
+void set_objects(dg::Film& film, const Words& words) {
+    if (words.shape(0) != std::size_t(film.layout().height) || words.shape(2) != dg::CoverLists::kEntryWords)
+        throw dg::input_error("film state", "objects", "entries of 4 words in each row of the film", "another shape");
+    film.set_object_words(std::span(words.data(), words.size()));
+}
+
 /// Part of a film's state, (H, W, words), in place: it lives as long as the film does.
-WordsView state_view(nb::handle film, const std::string& part) {
+WordsView state(nb::handle film, const std::string& part) {
     const auto& f = nb::cast<const dg::Film&>(film);
+    if (part == kObjects && f.layout().objects) return objects(f);
     const auto bytes = f.state(part);
     const std::size_t height = f.layout().height, width = f.layout().width;
     return WordsView(bytes.data(), {height, width, bytes.size() / 4 / height / width}, film);
+}
+
+using Ids = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// Ids and shares (H, W, ranks), pixels with more groups, and the largest share that these leave out.
+auto ranked(const dg::Film& film, const Ids& ids, int ranks) {
+    dg::Ranked found = film.ranked({ids.data(), ids.size()}, ranks);
+    return nb::make_tuple(stacks(film, std::move(found.ids), ranks), stacks(film, std::move(found.shares), ranks),
+                          found.cut_pixels, found.most_cut);
 }
 
 void bind_layout(nb::module_& m) {
@@ -77,6 +106,7 @@ void bind_layout(nb::module_& m) {
         .def_rw("flare", &FilmLayout::flare, "Ghosts may add to any pixel.")
         .def_rw("halves", &FilmLayout::halves, "The picture of every other sample beside that of all.")
         .def_rw("coverage", &FilmLayout::coverage, "Share of each pixel that objects cover.")
+        .def_rw("objects", &FilmLayout::objects, "Share of each object of it.")
         .def_rw("catchers", &FilmLayout::catchers, "Light of the set beside that of the objects.")
         .def_rw("bands", &FilmLayout::bands, "Bands of equal width over all wavelengths.")
         .def_rw("channels", &FilmLayout::channels, "Channels of a sensor (Film.set_responses).");
@@ -113,6 +143,9 @@ void bind_film(nb::module_& m) {
              "odd"_a, "by_light_paths"_a, "The picture of the samples with even, or odd, indices, without ghosts.")
         .def("coverage", [](const Film& f) { return plane(f, f.coverage()); },
              "Share of each pixel that objects cover, (H, W).")
+        .def("ranked", &ranked, "ids"_a, "ranks"_a,
+             "The same by groups of objects, each object's under its id: ids and shares (H, W, ranks), the number of "
+             "pixels with more groups, and the largest share of a pixel that those leave out.")
         .def("set_rgb", [](const Film& f, bool with_objects) { return triples(f, to_rgb(f.set_xyz(with_objects))); },
              "with_objects"_a, "Light of the set, linear Rec.709 (H, W, 3), with the objects there or without.")
         .def("set_channels",
@@ -138,9 +171,17 @@ void bind_film(nb::module_& m) {
                          for (const BadSample& b : f.bad_samples()) out.emplace_back(b.x, b.y, b.sample);
                          return out;
                      })
-        .def("state_parts", &Film::state_parts)
-        .def("state", &state_view, "part"_a, "32-bit words of the sums, (H, W, words), read-only, in place.")
+        .def("state_parts",
+             [](const Film& f) {
+                 std::vector<std::string> parts = f.state_parts();
+                 if (f.layout().objects) parts.push_back(kObjects);
+                 return parts;
+             })
+        .def("state", &state, "part"_a,
+             "32-bit words of the sums, (H, W, words), read-only, in place. The part objects is a copy, whose rows are "
+             "lists: (H, entries of the longest, 4).")
         .def("set_state", [](Film& f, const std::string& part, const Words& words) {
+            if (part == kObjects) return set_objects(f, words);
             f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
         });
     m.def("mean_of_next_colour", &next_colour, "plane"_a, "reach"_a,

@@ -23,12 +23,6 @@ std::array<float, kAovChannels.size()> aov_values(const AovSample& s) {
     return values;
 }
 
-/// Whole steps of a weight of coverage; a sample that is no number has none.
-std::int64_t coverage_steps(float weight) {
-    constexpr float kMost = 0x1p20f, kScale = 0x1p30f;
-    return weight == weight ? std::int64_t(std::clamp(weight, -kMost, kMost) * kScale) : 0;
-}
-
 /// Holds a pixel, or a row, that several threads may write.
 class Lock {
   public:
@@ -58,8 +52,11 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.flare) flare_.resize(pixels);
     if (layout.halves) halves_.resize(pixels);
     if (layout.coverage) coverage_.resize(pixels);
+    if (layout.objects) objects_ = std::make_unique<CoverLists>(pixels);
     if (layout.catchers) catchers_.resize(pixels);
     if (layout.splats || layout.flare) row_locks_.resize(std::size_t(kLockStride) * layout.height);
+    if (layout.objects && !layout.coverage)
+        throw input_error("film", "objects", "coverage, too", "objects alone");
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
                           std::to_string(layout.bands));
@@ -184,7 +181,7 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
 
 void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                        const CameraLight& arrived) {
-    if (layout_.coverage) add_coverage(i, arrived.white, arrived.covered);
+    if (layout_.coverage) add_coverage(i, arrived);
     if (layout_.catchers && !add_set(i, wavelengths, arrived)) return mark_bad(pixels_[i], sample);
     const bool alone = !layout_.catchers;
     if (add_light(pixels_[i], half(i, sample), i, sample, wavelengths, arrived.light, alone) && layout_.channels)
@@ -207,9 +204,12 @@ bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLi
     return true;
 }
 
-void Film::add_coverage(std::size_t i, float white, float covered) {
-    coverage_[i].white += coverage_steps(white);
-    coverage_[i].covered += coverage_steps(covered);
+void Film::add_coverage(std::size_t i, const CameraLight& arrived) {
+    coverage_[i].white += coverage_steps(arrived.white);
+    coverage_[i].covered += coverage_steps(arrived.covered);
+    if (!objects_) return;
+    for (const ObjectCover& c : std::span(arrived.objects.data(), arrived.object_count))
+        objects_->add(i, c.object, coverage_steps(c.covered));
 }
 
 void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths,
@@ -320,6 +320,7 @@ void Film::merge(const Film& other) {
                    (l.aovs ? " with aovs" : " without aovs") +
                    (l.splats ? ", with light paths" : "") + (l.flare ? ", with flare" : "") +
                    (l.halves ? ", with halves" : "") + (l.coverage ? ", with coverage" : "") +
+                   (l.objects ? ", with objects" : "") +
                    (l.catchers ? ", with catchers" : "") +
                    (l.bands ? ", " + std::to_string(l.bands) + " bands" : "") +
                    (l.channels ? ", " + std::to_string(l.channels) + " channels" : "");
@@ -346,6 +347,7 @@ void Film::merge(const Film& other) {
         coverage_[i].white += other.coverage_[i].white;
         coverage_[i].covered += other.coverage_[i].covered;
     }
+    if (objects_) objects_->add(*other.objects_);
     for (std::size_t i = 0; i < catchers_.size(); ++i)
         for (int k = 0; k < 3; ++k) {
             catchers_[i].with[k].add(other.catchers_[i].with[k]);

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "film/aov.h"
+#include "film/cover_lists.h"
 #include "film/fixed_sum.h"
 #include "math/vec.h"
 #include "spectrum/responses.h"
@@ -17,12 +19,21 @@
 
 namespace dg {
 
+/// Part of a sample's coverage that is one object's, by any number.
+struct ObjectCover {
+    std::uint32_t object;
+    float covered;
+};
+
 /// Light that one camera sample brings to one pixel, and how much of the pixel its objects cover. In a film with
 /// catchers `light` is the objects' alone, beside what the set sends with them there and without.
 struct CameraLight {
     Spectrum light{0.f}, with{0.f}, without{0.f};
     float white = 0;     // what a white world would bring: the weight of this sample's coverage
     float covered = 0;   // as much of it as objects cover
+    static constexpr std::size_t kMostObjects = 4;
+    std::array<ObjectCover, kMostObjects> objects{};   // the same by object, of the first
+    std::size_t object_count = 0;
 };
 
 /// A sample that had to be dropped, with the place to look for it.
@@ -39,6 +50,7 @@ struct FilmLayout {
     bool flare = false;              // and so may ghosts
     bool halves = false;             // with the picture of every other sample beside that of all, without ghosts
     bool coverage = false;           // share of each pixel that objects cover
+    bool objects = false;            // and each object's share of that
     bool catchers = false;           // light of the set beside that of the objects
     int bands = 0;                   // of equal width over all wavelengths, kept beside XYZ
     int channels = 0;                // of a sensor, likewise (Film::set_responses)
@@ -52,12 +64,20 @@ struct PixelBox {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
-/// 112 bytes per pixel; 272 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with coverage, 96 with
-/// catchers, 16 with each band, 16 with each channel, as much again if there are splats or flare, and twice if there are
-/// catchers.
+/// Shares of pixels by group of objects, each group under its id: in each pixel those of the largest magnitude first.
+struct Ranked {
+    std::vector<std::uint32_t> ids;   // `ranks` per pixel; 0 where there are no more
+    std::vector<float> shares;
+    std::uint64_t cut_pixels = 0;     // with more groups than ranks
+    float most_cut = 0;               // the largest share of a pixel that these leave out
+};
+
+/// 112 bytes per pixel; 272 more with aovs, 96 with splats, 96 with flare, 112 with halves, 16 with coverage, 4 with
+/// objects and 16 for each of those in the pixel, 96 with catchers, 16 with each band, 16 with each channel, as much again
+/// if there are splats or flare, and twice if there are catchers.
 class Film {
   public:
-    /// Bytes of the sums of one pixel.
+    /// Bytes of the sums of one pixel, in which there are two objects, if objects are kept.
     static std::size_t pixel_bytes(const FilmLayout& layout);
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, bands is 0 .. kMostBands and
     /// channels is 0 .. Responses::kMost.
@@ -129,6 +149,9 @@ class Film {
     std::vector<float> half_xyz(Half half, bool by_light_paths = false) const;
     /// Share of each pixel that objects cover; Error without coverage.
     std::vector<float> coverage() const;
+    /// The same by groups of objects: ids[k] is the id of the group of object k, not 0; an object beyond has none. Error
+    /// without objects.
+    Ranked ranked(std::span<const std::uint32_t> ids, int ranks) const;
     /// Mean XYZ of the light of the set, with the objects there or without; Error without catchers.
     std::vector<float> set_xyz(bool with_objects) const;
     /// The same in the channels.
@@ -166,6 +189,9 @@ class Film {
     static constexpr int kMostBands = 64;
     std::vector<std::string> state_parts() const;
     std::span<const std::byte> state(const std::string& part) const;
+    /// Those of the objects are lists, of any length: rows of CoverLists::words(), made anew; empty without objects.
+    std::vector<std::uint32_t> object_words() const;
+    void set_object_words(std::span<const std::uint32_t> words);
     /// Throws Error for another number of bytes.
     void set_state(const std::string& part, std::span<const std::byte> bytes);
 
@@ -209,7 +235,7 @@ class Film {
     /// Under the pixel's lock, if there is need of one.
     void add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
     bool add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived);
-    void add_coverage(std::size_t i, float white, float covered);
+    void add_coverage(std::size_t i, const CameraLight& arrived);
     /// To XYZ and bands. Splats and samples share the sums of bands: under the pixel's lock. False if bad.
     bool add_light(Sums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance, bool squares = true);
@@ -236,6 +262,7 @@ class Film {
     std::vector<Sums> splats_, flare_;
     std::vector<HalfPixel> halves_;
     std::vector<CoveragePixel> coverage_;
+    std::unique_ptr<CoverLists> objects_;
     std::vector<CatcherPixel> catchers_;
     // Locks of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
     static constexpr int kLockStride = 16;   // one per cache line

@@ -9,6 +9,7 @@
 // mean^2 / n, little where samples scatter by more than their mean. Splats of one camera
 // sample in one pixel would be correlated: the caller adds them up first.
 #include <algorithm>
+#include <cmath>
 
 #include "film/film.h"
 #include "math/error.h"
@@ -72,6 +73,39 @@ std::vector<float> Film::coverage() const {
     shares.reserve(coverage_.size());
     for (const CoveragePixel& p : coverage_) shares.push_back(p.white > 0 ? float(double(p.covered) / double(p.white)) : 0.f);
     return shares;
+}
+
+Ranked Film::ranked(std::span<const std::uint32_t> ids, int ranks) const {
+    if (!objects_) throw Error("film: this film was made without objects");
+    if (ranks < 1) throw input_error("film", "ranks", "at least 1", std::to_string(ranks));
+    Ranked found;
+    found.ids.resize(std::size_t(ranks) * pixels_.size());
+    found.shares.resize(found.ids.size());
+    std::vector<CoverLists::Entry> groups;   // of a pixel
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        if (coverage_[i].white <= 0) continue;
+        groups.clear();
+        for (const CoverLists::Entry& e : objects_->of(i)) {
+            if (e.object >= ids.size()) continue;
+            const auto known = std::ranges::find(groups, ids[e.object], &CoverLists::Entry::object);
+            if (known == groups.end()) groups.push_back({ids[e.object], e.steps});
+            else known->steps += e.steps;
+        }
+        const auto size = [](const CoverLists::Entry& e) { return std::abs(double(e.steps)); };
+        std::ranges::sort(groups, [&](const auto& a, const auto& b) {
+            return size(a) != size(b) ? size(a) > size(b) : a.object < b.object;
+        });
+        const std::size_t kept = std::min(groups.size(), std::size_t(ranks));
+        double left = 0;
+        for (std::size_t k = 0; k < groups.size(); ++k) {
+            const double share = double(groups[k].steps) / double(coverage_[i].white);
+            if (k < kept) found.ids[ranks * i + k] = groups[k].object, found.shares[ranks * i + k] = float(share);
+            else left += share;
+        }
+        found.cut_pixels += kept < groups.size();
+        found.most_cut = std::max(found.most_cut, float(std::abs(left)));
+    }
+    return found;
 }
 
 std::vector<float> Film::set_xyz(bool with_objects) const {

@@ -13,7 +13,8 @@ static_assert(std::endian::native == std::endian::little,
 std::size_t Film::pixel_bytes(const FilmLayout& l) {
     const bool lit = l.splats || l.flare;   // channels have sums of their own for that
     return kSumBytes + (l.aovs ? kAovBytes : 0) + (l.splats ? kSplatBytes : 0) + (l.flare ? kSplatBytes : 0) +
-           (l.halves ? kHalfBytes : 0) + (l.coverage ? kCoverageBytes : 0) + (l.catchers ? kCatcherBytes : 0) +
+           (l.halves ? kHalfBytes : 0) + (l.coverage ? kCoverageBytes : 0) +
+           (l.objects ? CoverLists::kPixelBytes + 2 * CoverLists::kEntryBytes : 0) + (l.catchers ? kCatcherBytes : 0) +
            kBandBytes * std::size_t(l.bands + l.channels * ((lit ? 2 : 1) + (l.catchers ? 2 : 0)));
 }
 
@@ -53,6 +54,15 @@ std::span<const std::byte> Film::state(const std::string& part) const {
     std::string known;
     for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
     throw input_error("film state", "part", known, "'" + part + "'");
+}
+
+std::vector<std::uint32_t> Film::object_words() const {
+    return objects_ ? objects_->words(layout_.width) : std::vector<std::uint32_t>();
+}
+
+void Film::set_object_words(std::span<const std::uint32_t> words) {
+    if (!objects_) throw input_error("film state", "part", "no objects", "'objects'");
+    objects_->set_words(words, layout_.width);
 }
 
 void Film::set_state(const std::string& part, std::span<const std::byte> bytes) {

@@ -81,7 +81,8 @@ TEST_CASE("any order and any split with any order of merging give the same bits"
     for (int trial = 0; trial < 20; ++trial) {
         shuffle(draws, trial);
         const int parts = 1 + trial % 7;
-        std::vector<Film> films(parts, Film(kLayout));
+        std::vector<Film> films;
+        for (int p = 0; p < parts; ++p) films.emplace_back(kLayout);
         for (std::size_t i = 0; i < draws.size(); ++i)
             draw(films[hash64(trial, i) % parts], draws[i]);
         Film merged(kLayout);
@@ -375,7 +376,7 @@ TEST_CASE("the relative variance of one sample, from the variance of the mean") 
 }
 
 TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and added") {
-    dg::Film film({2, 1, 0, 0, true}), other = film;
+    dg::Film film({2, 1, 0, 0, true}), other({2, 1, 0, 0, true});
     for (const std::string& part : film.state_parts()) {
         const std::vector<std::byte> ones(film.state(part).size(), std::byte{0xff});
         film.set_state(part, ones);
@@ -523,6 +524,6 @@ TEST_CASE("bytes of a pixel are those of its parts, whatever the film keeps") {
             const Film film(l);
             std::size_t bytes = 0;
             for (const std::string& part : film.state_parts()) bytes += film.state(part).size();
-            CHECK(bytes == 6 * Film::pixel_bytes(l));
+            CHECK(bytes == 6 * Film::pixel_bytes(l));   // lists of objects are as long as they are
         }
 }

@@ -44,7 +44,8 @@ class CameraPass {
 
     CameraPass(const Picture& picture, const DrawnSamples& drawn, const LightWeight& weight, const PixelCone& cone)
         : scene_(picture.scene), camera_(picture.camera), film_(picture.film), settings_(picture.settings),
-          density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone), path_(picture.settings.path) {
+          density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone), path_(picture.settings.path),
+          instances_(std::uint32_t(picture.scene.description().instances.size())) {
         path_.plate = settings_.plate.get();
         const bool exact = std::holds_alternative<ExactLens>(camera_.lens);
         reprojected_ = exact && settings_.dispersion == Dispersion::reproject;
@@ -152,7 +153,18 @@ class CameraPass {
         const Spectrum luminance = sample.wavelengths.d65 * sample.wavelengths.cie_y * weight;
         all.white = 4 * luminance.average();
         all.covered = all.white * sight.covers.sum();
+        if (film_.layout().objects) add_objects(all, sight.covers);
         return all;
+    }
+
+    /// Coverage by object: instances by their index, then sphere lights.
+    void add_objects(CameraLight& all, const Covers& covers) const {
+        static_assert(CameraLight::kMostObjects >= Covers::kMost);
+        for (const Cover& c : covers) {
+            const bool sphere = c.instance >= Cover::kSpheres;
+            const std::uint32_t object = sphere ? c.instance - Cover::kSpheres + instances_ : c.instance;
+            all.objects[all.object_count++] = {object, all.white * c.share};
+        }
     }
 
     /// Each wavelength at its own film point; those of one pixel are added as one value. Light that only
@@ -192,6 +204,7 @@ class CameraPass {
     const LightWeight& weight_;
     const PixelCone& cone_;
     PathSettings path_;
+    std::uint32_t instances_;
     bool reprojected_, end_secondary_;   // what becomes of secondary wavelengths
     int first_traced_, end_traced_;
 };

@@ -15,6 +15,8 @@ from daguerre.errors import UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.value import Value
 
+from .cryptomatte import Cryptomatte
+
 if TYPE_CHECKING:
     import os
 
@@ -40,6 +42,8 @@ class Frame(Value):
         catcher_ratio: The same as a factor of that part of the plate.
         catcher_channels: ``catcher`` in the channels of the sensor, shape (H, W, C).
         catcher_ratio_channels: ``catcher_ratio`` likewise.
+        cryptomatte: Share of each pixel by name, of objects, materials and assets, if asked for:
+            ``frame.cryptomatte["object"].mask("ball")``.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
         splats: Light that light paths brought to ``rgb``, shape (H, W, 3), beside ``aovs``.
@@ -73,6 +77,7 @@ class Frame(Value):
     catcher_ratio: NDArray[np.float32] | None = None
     catcher_channels: NDArray[np.float32] | None = None
     catcher_ratio_channels: NDArray[np.float32] | None = None
+    cryptomatte: dict[str, Cryptomatte] = field(default_factory=dict)
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 
@@ -132,6 +137,12 @@ class Frame(Value):
             if isinstance(value := getattr(self, f.name), np.ndarray)
         }
         aovs = {name: plane[rows, columns] for name, plane in self.aovs.items()}
+        cut["cryptomatte"] = {
+            name: replace(
+                matte, ids=matte.ids[rows, columns], coverage=matte.coverage[rows, columns]
+            )
+            for name, matte in self.cryptomatte.items()
+        }
         facts = {k: v for k, v in self.metadata.items() if k != "overscan"}
         return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
 

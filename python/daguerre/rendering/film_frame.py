@@ -8,10 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.errors import InputError, MismatchError
+from daguerre.errors import InputError, MismatchError, core_errors
 from daguerre.frame.aovs import FILM_CHANNELS
 from daguerre.frame.catcher import layers
 from daguerre.frame.frame import Frame
+
+from .mattes import mattes_of
+
+#: Part of the sums that is lists: shape (H, entries of the longest row, 4).
+OBJECTS = "objects"
 
 
 def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
@@ -19,13 +24,20 @@ def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: st
 
     Raises:
         MismatchError: A part is missing, unknown or of another size; the film is as it was then.
+        InputError: A list is damaged.
     """
-    shapes = {part: film.state(part).shape for part in film.state_parts()}
-    given = {part: words.shape for part, words in state.items()}
+    shapes = {part: _shape(part, film.state(part)) for part in film.state_parts()}
+    given = {part: _shape(part, words) for part, words in state.items()}
     if given != shapes:
         raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
-    for part, words in state.items():
-        film.set_state(part, np.ascontiguousarray(words, np.uint32))
+    with core_errors(InputError, where):
+        for part, words in state.items():
+            film.set_state(part, np.ascontiguousarray(words, np.uint32))
+
+
+def _shape(part: str, words: NDArray[np.uint32]) -> tuple[int, ...]:
+    """Shape that films of one layout share: of lists the number of rows."""
+    return (words.shape[0], *words.shape[2:]) if part == OBJECTS else words.shape
 
 
 def frame_of(
@@ -62,6 +74,7 @@ def frame_of(
     names = metadata.get("sensor_channels") or []
     if channels is not None and channels.shape[2] != len(names):
         raise InputError(f"sensor_channels: wanted {channels.shape[2]} names, got {names}")
+    layers_of_plates: dict[str, Any] = {**_catchers(film, alpha), **_mattes(film, metadata)}
     return Frame(
         rgb=rgb,
         xyz=xyz,
@@ -76,7 +89,7 @@ def frame_of(
         halves=_halves(film) if "halves" in parts else None,
         channels=channels,
         bands=bands,
-        **_catchers(film, alpha),
+        **layers_of_plates,
     )
 
 
@@ -91,6 +104,17 @@ def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.flo
         pair = film.set_channels(True), film.set_channels(False)
         made["catcher_channels"], made["catcher_ratio_channels"] = layers(*pair, alpha)
     return made
+
+
+def _mattes(film: Any, metadata: dict[str, Any]) -> dict[str, Any]:
+    """Mattes by name, if the film has objects; facts say where there are too many."""
+    facts = metadata.get("mattes")
+    if facts is None or OBJECTS not in film.state_parts():
+        return {}
+    found, cut, most = mattes_of(film, facts)
+    if cut:
+        metadata["mattes_cut"] = {"pixels": cut, "share": most}
+    return {"cryptomatte": found}
 
 
 def _halves(film: Any) -> NDArray[np.float32]:

@@ -21,6 +21,7 @@ TRUTH = 108  # ground truth and its rays
 #: those of scatter are that third again.
 NODES, SCATTER_NODES = 32 / 3, 8 / 3
 FLOAT = 4
+MATTE_PLANES = 36  # of three layers of six ranks: hashes and shares
 #: The frame of a denoised picture and what the denoiser takes: per pixel, and for itself.
 DENOISED, DENOISER = 450, 950_000_000
 
@@ -31,6 +32,7 @@ def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False, scatter: bool 
     planes += len(FILM_CHANNELS) * layout.aovs
     planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
     planes += 4 * (3 + 2 * layout.channels) * layout.catchers  # and two that they are made of
+    planes += MATTE_PLANES * layout.objects
     made = FRAME + FLOAT * planes + TRUTH * truth
     nodes = NODES + SCATTER_NODES * scatter
     drawn = math.ceil(nodes * (6 + layout.channels)) if layout.flare else 0

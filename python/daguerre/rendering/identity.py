@@ -78,6 +78,7 @@ def metadata(session: Drawn) -> dict[str, Any]:
         "diffraction": settings.diffraction.words if settings.diffraction else None,
         "pupils": one.pupils,
         "bands": settings.film.bands or None,
+        "mattes": one.mattes,
         "background": settings.backdrop.background,
         **sensor_metadata(one.sensor),
         "scene_hash": session.key["scene"],
@@ -122,6 +123,8 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
         out["sensor"] = one.sensor.hash
     if settings.film.halves:
         out["halves"] = True
+    if settings.film.cryptomatte:
+        out["objects"] = True
     if settings.film.bands:
         out["bands"] = settings.film.bands
     if one.overscan:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, TypedDict
 
 from .diffraction import Diffraction
@@ -15,6 +16,8 @@ class ViewKeywords(TypedDict, total=False):
     filter: str
     aovs: bool
     halves: bool
+    cryptomatte: str | Sequence[str]
+    cryptomatte_ranks: int
     gt_time: str | None
     gt_lens: str
     gt_rays: int | None

@@ -98,6 +98,7 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         flare=plan.flare > 0 or plan.scatter > 0,
         halves=film.halves,
         coverage=True,
+        objects=bool(film.cryptomatte),
         catchers=one.scene.has_catchers,
         bands=film.bands if waves is None else waves.bands,
         channels=0 if curves is None else len(curves),

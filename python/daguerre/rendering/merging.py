@@ -12,7 +12,7 @@ from daguerre.errors import InputError, MismatchError
 from daguerre.frame.frame import Frame
 from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
-from .film_frame import frame_of, set_film_state
+from .film_frame import OBJECTS, frame_of, set_film_state
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
 
@@ -84,14 +84,14 @@ def film_of(one: Pass) -> Any:
     """The core's film with the sums of a pass."""
     from daguerre._core import Film, FilmLayout
 
-    if not one.state:
+    if not one.state.keys() - {OBJECTS}:
         raise InputError(f"{one.path}: damaged pass file: it has no sums")
-    height, width = next(iter(one.state.values())).shape[:2]
+    height, width = next(w for part, w in one.state.items() if part != OBJECTS).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
     layout = FilmLayout(width=width, height=height, offset_x=int(x0), offset_y=int(y0))
     layout.aovs = _has_aovs(one.state)
     layout.splats, layout.flare = "splats" in one.state, "flare" in one.state
-    for part in ("halves", "coverage", "catchers"):
+    for part in ("halves", "coverage", "objects", "catchers"):
         setattr(layout, part, part in one.state)
     if "bands" in one.state:
         layout.bands = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)

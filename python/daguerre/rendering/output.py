@@ -116,6 +116,11 @@ class Output:
             if self.photograph.sensor is not None:
                 tell.note("denoised: the sensor's channels are fitted from the clean colours")
         frame = session.with_truth(frame)
+        if cut := frame.metadata.get("mattes_cut"):
+            tell.note(
+                f"cryptomatte: {cut['pixels']} pixels have more names than ranks, and lack up to "
+                f"{cut['share']:.2g} of coverage; more --cryptomatte-ranks keep them"
+            )
         if DISPARITY in self.aovs:
             from .rig import disparity
 

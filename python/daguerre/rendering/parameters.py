@@ -11,6 +11,7 @@ import numpy as np
 from daguerre import units
 from daguerre.checks import DEFAULT_RESOLUTION, MAX_SAMPLES, number, short, whole
 from daguerre.errors import UsageError
+from daguerre.frame.cryptomatte import MAX_RANKS, check_layers
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 from daguerre.sensors.bands import LEAST_BANDS, MOST_BANDS, check_bands
@@ -144,6 +145,17 @@ FILM_ROWS = (
         "halves", "Whether to keep the picture of every other sample beside that of all, by which "
         "a denoised picture knows its error", default=False, kind="flag",
         normal=_switch("True or False"),
+    ),
+    Setting(
+        "cryptomatte", "Mattes by the names of objects, materials or assets: shares of each pixel "
+        "that they cover", default=(), kind="value", normal=check_layers,
+        flags=("--cryptomatte",), metavar="object,material,asset", panel=OUTPUT,
+        default_words="none", explained=("plates.md#cryptomatte",),
+    ),
+    Setting(
+        "cryptomatte_ranks", "Names that {cryptomatte} keeps of each pixel", default=6,
+        kind="whole", low=1, high=MAX_RANKS, flags=("--cryptomatte-ranks",), metavar="N",
+        panel=OUTPUT, tells_default=True,
     ),
     Setting(
         "bands", f"Number of wavelength bands to keep, {LEAST_BANDS} to {MOST_BANDS}, from which "

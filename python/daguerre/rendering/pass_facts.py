@@ -12,6 +12,7 @@ from typing import Any
 from daguerre.camera.overscan import NONE, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
+from daguerre.frame.cryptomatte import LAYERS, MAX_RANKS
 from daguerre.io.exr import write as exr
 
 
@@ -54,6 +55,24 @@ def _are_names(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(name, str) for name in value)
 
 
+def _are_mattes(value: Any) -> bool:
+    if not (isinstance(value, dict) and _is_whole(value.get("ranks"), 1, MAX_RANKS)):
+        return False
+    layers = value.get("layers")
+    return (
+        isinstance(layers, dict)
+        and set(layers) <= set(LAYERS)
+        and all(map(_is_layer, layers.values()))
+    )
+
+
+def _is_layer(value: Any) -> bool:
+    if not (isinstance(value, dict) and _are_names(value.get("names"))):
+        return False
+    of, most = value.get("of"), len(value["names"]) - 1
+    return isinstance(of, list) and all(_is_whole(number, 0, most) for number in of)
+
+
 _CHECKS: dict[str, Callable[[Any], bool]] = {
     **dict.fromkeys((*exr.FLOATS, *exr.OWN_NUMBERS), _is_number),
     **dict.fromkeys((*exr.STRINGS, *exr.OWN_STRINGS), lambda value: isinstance(value, str)),
@@ -65,6 +84,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "crop": _is_crop,
     "aovs": _are_names,
     "sensor_channels": _are_names,
+    "mattes": _are_mattes,
     "white_balance": _is_pair,
 }
 

@@ -9,7 +9,8 @@ channels in the same way, and parts ``splats`` and ``flare`` what light paths
 (``daguerre.rendering.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were
 drawn; a part ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among
 the facts (``daguerre.rendering.diffraction``), or those that the frame keeps; parts ``channels``
-and ``channel_splats`` have those of its sensor.
+and ``channel_splats`` have those of its sensor. A part ``objects`` lists which object covers how
+much of which pixel: its rows are as long as the longest list.
 The sums are integers, so adding them in any order gives the same bits.
 The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
 ``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
@@ -32,9 +33,11 @@ from numpy.typing import NDArray
 from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
-from daguerre.io.exr.write import Channels, attributes, channels, jsonable, write_parts
+from daguerre.io.exr.write import Channels, channels, jsonable, write_parts
+from daguerre.io.exr.write import header as picture_header
 
 from .adaptive import Round
+from .film_frame import OBJECTS
 from .pass_facts import are_ranges, bad_fact
 from .ranges import Range
 
@@ -48,14 +51,14 @@ SUMS = "sums"
 ROUND = "round"
 STATE_PARTS = (
     SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", "coverage",
-    "catchers", "catcher_channels", ROUND,
+    OBJECTS, "catchers", "catcher_channels", ROUND,
 )  # fmt: skip
 ROUND_FACTS = ("drawn", "noise", "expected")
 WORDS = {
     "scene": "the scene",
     "camera": "the camera",
     "settings": "resolution, crop, seed, filter, depth, AOVs, light paths, flare, scatter, "
-    "background, diffraction, sensor, bands",
+    "background, cryptomatte, diffraction, sensor, bands",
     "build": "the build of daguerre",
 }
 #: Settings that a header tells as they are.
@@ -110,7 +113,7 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
         begin, count = drawn.round.begin, drawn.round.count
         planes[ROUND] = np.stack([begin, count, 0 * begin, 0 * begin], axis=2)
     parts: list[tuple[str, dict[str, Any], Channels]] = [
-        ("beauty", attributes(frame.metadata), channels(frame)),
+        ("beauty", picture_header(frame), channels(frame)),
         *(_words_part(frame, name, header, words) for name, words in planes.items()),
     ]
     write_parts(path, parts, frame)
@@ -154,7 +157,8 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
             facts = facts or _header(path, spec)
             name = spec.get_string_attribute("oiio:subimagename")
             state[name] = _unfolded(path, words, spec.get_int_attribute("daguerre:words", 0))
-            _check_crop(path, facts, state[name])
+            if name != OBJECTS:
+                _check_crop(path, facts, state[name])
             if name == ROUND:
                 found = _round(path, spec, state.pop(ROUND))
         if facts is None:

@@ -22,6 +22,7 @@ from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
 from .film_parts import area, frame_around, inside
+from .mattes import matte_facts
 from .pixels import Box, crop_within
 from .settings import RenderSettings
 from .truth import focused
@@ -42,6 +43,7 @@ class Prepared:
         crop: Pixels that are drawn, (x0, y0, x1, y1).
         sensor: Sensor whose channels the film has, if the camera names one.
         pupils: Kernels of diffraction, as JSON.
+        mattes: Names of objects for mattes (``mattes.matte_facts``), if any are asked for.
         notes: Remarks for users.
     """
 
@@ -55,6 +57,7 @@ class Prepared:
     crop: Box
     sensor: sensors.Sensor | None
     pupils: dict[str, Any] | None
+    mattes: dict[str, Any] | None
     notes: tuple[str, ...]
 
     @property
@@ -113,8 +116,10 @@ def prepare(
         notes.append(overscan_note(overscan))
     crop = crop_within(settings.film.crop, overscan.region(size))
     sensor = None if camera.sensor is None else sensors.load(camera.sensor)
+    film = settings.film
+    mattes = matte_facts(scene, tuple(film.cryptomatte), film.cryptomatte_ranks)
     made = Prepared(
-        scene, camera, settings, built, setup, interval, overscan, crop, sensor, None,
+        scene, camera, settings, built, setup, interval, overscan, crop, sensor, None, mattes,
         tuple(notes),
     )  # fmt: skip
     return replace(made, pupils=_pupils(made))

@@ -6,7 +6,7 @@ and camera say what is seen; everything else that a picture depends on stands he
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
@@ -55,6 +55,8 @@ class Film(_Group):
     overscan: OverscanLike | None = DEFAULT["overscan"]
     aovs: bool = DEFAULT["aovs"]
     halves: bool = DEFAULT["halves"]
+    cryptomatte: str | Sequence[str] = DEFAULT["cryptomatte"]
+    cryptomatte_ranks: int = DEFAULT["cryptomatte_ranks"]
     bands: int = DEFAULT["bands"]
 
 
@@ -115,7 +117,7 @@ class RenderSettings:
 
     Attributes:
         sampling: Samples: spp, noise, seed, filter.
-        film: Pixels: resolution, crop, overscan, aovs, halves, bands.
+        film: Pixels: resolution, crop, overscan, aovs, halves, cryptomatte, bands.
         light: Light transport: max_depth, light_paths, flare, scatter, diffraction and more.
         backdrop: Background of the scene: background, see_through.
         truth: Ground truth: gt_time, gt_lens, gt_rays, motion.

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from daguerre.color.adaptation import adaptation_of_xyz
 from daguerre.color.spectra import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
+from daguerre.frame.cryptomatte import taken
 from daguerre.frame.frame import Frame
 
 from . import write as exr
@@ -38,6 +39,7 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
     """
     with ExrReader(path) as reader:
         planes = reader.rows(0, reader.height)
+        facts = reader.facts
         metadata = read_metadata(reader.header)
         metadata |= _place(reader)
     planes = {name: _writable(plane) for name, plane in planes.items()}
@@ -61,6 +63,7 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
         catcher_ratio=_group(planes, [f"catcher_ratio.{c}" for c in "RGB"]),
         catcher_channels=_group(planes, [f"catcher_sensor.{name}" for name in names]),
         catcher_ratio_channels=_group(planes, [f"catcher_ratio_sensor.{name}" for name in names]),
+        cryptomatte=taken(planes, facts, str(path)),
     )
     frame.aovs = planes
     count = metadata.get("bad_samples", 0)

@@ -21,6 +21,7 @@ from daguerre.color.illuminants import D65_STATED
 from daguerre.color.spaces import P709
 from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
+from daguerre.frame import cryptomatte
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -61,41 +62,39 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
         metadata: Facts by name, units and frames as the standard has them (matrices act on row
             vectors). Unknown names, and None, are left out.
     """
-    header: dict[str, Any] = {
+    found: dict[str, Any] = {
         "chromaticities": REC709,
         "colorInteropID": "lin_rec709_scene",
         "software": f"daguerre {metadata.get('version', '')}".strip(),
     }
     known = {key: value for key, value in metadata.items() if value is not None}
-    header |= {key: float(known[key]) for key in FLOATS if key in known}
-    header |= {key: str(known[key]) for key in STRINGS if known.get(key)}
-    header |= {key: _pair(known[key]) for key in VECTORS if key in known}
-    header |= {
-        key: np.ascontiguousarray(known[key], np.float32) for key in MATRICES if key in known
-    }
-    header |= {
+    found |= {key: float(known[key]) for key in FLOATS if key in known}
+    found |= {key: str(known[key]) for key in STRINGS if known.get(key)}
+    found |= {key: _pair(known[key]) for key in VECTORS if key in known}
+    found |= {key: np.ascontiguousarray(known[key], np.float32) for key in MATRICES if key in known}
+    found |= {
         key: _rational(known[key]) for key in RATIONALS if key in known and _positive(known[key])
     }
-    header |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
-    header |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
-    header |= {
+    found |= {f"daguerre:{key}": _number(known[key]) for key in OWN_NUMBERS if key in known}
+    found |= {f"daguerre:{key}": str(known[key]) for key in OWN_STRINGS if key in known}
+    found |= {
         f"daguerre:{key}": json.dumps(known[key], default=jsonable)
         for key in OWN_JSON
         if known.get(key)
     }
     if "camera" in known:
         camera = without_infinity(known["camera"])
-        header["daguerre:camera"] = json.dumps(camera, sort_keys=True, default=jsonable)
-    return header
+        found["daguerre:camera"] = json.dumps(camera, sort_keys=True, default=jsonable)
+    return found
 
 
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
     """The channels of a frame by the names of the file, all that it has.
 
     R G B A, its AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
-    samples.Y, those of its sensor (sensor.R; catcher_sensor.R, catcher_ratio_sensor.R) and its
-    bands of wavelengths (bands.0380-0405, nm). An array of three planes stands for three
-    channels, as OpenEXR has it: no copies are made.
+    samples.Y, its mattes (CryptoObject00.R), those of its sensor (sensor.R; catcher_sensor.R,
+    catcher_ratio_sensor.R) and its bands of wavelengths (bands.0380-0405, nm). An array of three
+    planes stands for three channels, as OpenEXR has it: no copies are made.
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
@@ -114,6 +113,7 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
         names = frame.metadata["sensor_channels"]
         planes |= _per_channel("catcher_sensor", frame.catcher_channels, names)
         planes |= _per_channel("catcher_ratio_sensor", frame.catcher_ratio_channels, names)
+    planes |= cryptomatte.planes(frame.cryptomatte)
     if frame.variance is not None:
         planes["variance"] = frame.variance
     if frame.samples is not None:
@@ -135,9 +135,14 @@ def band_names(count: int) -> list[str]:
     return [f"{a:04d}-{b:04d}" for a, b in itertools.pairwise(edges)]
 
 
+def header(frame: Frame) -> dict[str, Any]:
+    """Attributes of a frame, with the names of its mattes."""
+    return attributes(frame.metadata) | cryptomatte.attributes(frame.cryptomatte)
+
+
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
     """Writes a frame, atomically, as one multichannel part."""
-    write_parts(path, [("beauty", attributes(frame.metadata), channels(frame))], frame)
+    write_parts(path, [("beauty", header(frame), channels(frame))], frame)
 
 
 def write_parts(
