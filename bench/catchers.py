@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.plates.composite.over import change_of_rgb
+from daguerre.frame.over import change_of_rgb
 
 GROUND = (-8.0, 8.0)
 MATERIALS = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.plates.composite.over import change_of_rgb
+from daguerre.frame.over import change_of_rgb
 from tests.plates.test_truth import BATCHES, GLASS, MATTE, SIZE, SPP, Case, real, shifted, thin
 from tests.support.statistical import differences
 

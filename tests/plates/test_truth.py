@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.plates.composite.over import AUTO, DIFFERENCE, FORMS, change_of_rgb
+from daguerre.frame.over import AUTO, DIFFERENCE, FORMS, change_of_rgb
 from tests.support import scenes
 from tests.support.statistical import differences
 

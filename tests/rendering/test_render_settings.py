@@ -21,7 +21,7 @@ from daguerre.rendering.settings import GROUPS, names_in
 RICH: dict[str, Any] = {
     "spp": 12, "noise": 0.02, "seed": 2**63, "filter": "gaussian:1.5", "resolution": [32, 20],
     "crop": (1, 2, 30, 18), "overscan": Overscan(1, 2, 3, 4), "aovs": True,
-    "halves": True, "bands": 8,
+    "halves": True, "bands": 8, "cryptomatte": ("object", "asset"), "cryptomatte_ranks": 8,
     "max_depth": 5, "light_paths": (20, 3), "flare": "auto", "flare_order": 4,
     "flare_highlights": "off", "scatter": 7, "diffraction": dg.Diffraction(8, 2),
     "background": "transparent", "see_through": True,

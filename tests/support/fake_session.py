@@ -97,7 +97,10 @@ class FakeSession:
     def with_truth(self, frame: Frame) -> Frame:
         return frame
 
-    def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
+    def over_plate(self, frame: Frame) -> Frame:
+        return frame
+
+    def frame(self, *, truth: bool = True, waves: bool = True, plate: bool = True) -> Frame:
         count = max(1, sum(b - a for a, b in self.ranges))
         grey = (self.sums / count / 65521).astype(np.float32)
         aovs = {}

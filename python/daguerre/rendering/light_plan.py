@@ -17,7 +17,7 @@ from daguerre.setup.resolved import ResolvedCamera
 from .film_memory import check_film
 from .film_parts import FilmPart, area, core_settings
 from .light_paths import OFF, PER_PIXEL, Plan, check_light_paths, check_paths
-from .parameters import TRANSPARENT
+from .parameters import ENVIRONMENT
 from .pixels import parse_filter
 from .plate_light import throw_plate
 from .prepare import Prepared
@@ -183,7 +183,7 @@ def _options(settings: RenderSettings) -> dict[str, Any]:
         "threads": settings.threads,
         "filter": _core.Filter(*parse_filter(settings.sampling.filter)),
         "max_depth": light.max_depth,
-        "transparent": settings.backdrop.background == TRANSPARENT,
+        "transparent": settings.backdrop.background != ENVIRONMENT,
         "see_through": settings.backdrop.see_through,
         "strategy": reference.strategy,
         "dispersion": reference.dispersion,

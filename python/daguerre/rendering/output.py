@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daguerre.errors import OutputError
+from daguerre.errors import OutputError, UsageError
 from daguerre.frame.aovs import Source, names_of
 
+from .parameters import PLATE
 from .photograph import Photograph
 from .reporter import Look, Reporter
 
@@ -85,11 +86,13 @@ class Output:
             return None
         from .denoise import noise_after
 
-        return lambda session: noise_after(session.frame(truth=False))
+        return lambda session: noise_after(session.frame(truth=False, plate=False))
 
     def check(self, metadata: dict[str, Any], tell: Reporter) -> None:
         """Refuses a camera that cannot give what is asked for, before anything is drawn."""
         self.photograph.check(metadata, self.paths, tell)
+        if metadata.get("background") == PLATE:
+            self._check_plate()
         if DISPARITY in self.aovs:
             from .rig import check_straight
 
@@ -99,9 +102,23 @@ class Output:
 
             luminance_exposure(metadata)  # or an error that names what is missing
 
+    def _check_plate(self) -> None:
+        """Refuses what a plate in the picture would go through twice, or get lost in.
+
+        Raises:
+            UsageError: The message says what to do instead.
+        """
+        exposed = [path for path in self.paths if self.photograph.exposes(path)]
+        if self.is_pass or exposed:
+            what = "a pass" if self.is_pass else f"{exposed[0]}, which is exposed and developed,"
+            raise UsageError(
+                f"background: plate: {what} holds no plate; wanted --background transparent, and "
+                "daguerre composite after it"
+            )
+
     def frame(self, session: Session, samples: float, tell: Reporter) -> Frame:
         """The picture so far, with the channels that were asked for."""
-        frame = session.frame(truth=False)
+        frame = session.frame(truth=False, plate=False)
         facts = {
             "resolution": (session.width, session.height),
             "crop": session.crop,
@@ -115,7 +132,7 @@ class Output:
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
             if self.photograph.sensor is not None:
                 tell.note("denoised: the sensor's channels are fitted from the clean colours")
-        frame = session.with_truth(frame)
+        frame = session.with_truth(session.over_plate(frame))
         if cut := frame.metadata.get("mattes_cut"):
             tell.note(
                 f"cryptomatte: {cut['pixels']} pixels have more names than ranks, and lack up to "

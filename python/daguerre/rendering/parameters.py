@@ -26,7 +26,7 @@ from .truth import GT_LENSES, GT_RAYS, GT_TIMES, MAX_RAYS
 DEFAULT_SPP = 64
 MAX_SEED = (1 << 64) - 1
 OUTPUT, SAMPLING = "Output", "Sampling"
-ENVIRONMENT, TRANSPARENT = BACKGROUNDS = ("environment", "transparent")
+ENVIRONMENT, TRANSPARENT, PLATE = BACKGROUNDS = ("environment", "transparent", "plate")
 
 
 @dataclass(frozen=True)
@@ -217,10 +217,10 @@ LIGHT_ROWS = (
 )
 PLATE_ROWS = (
     Setting(
-        "background", "Background behind the scene: the environment as the lens sees it, or "
-        "nothing, for a plate to come there. It gives light in either case",
+        "background", "Background behind the scene: the environment as the lens sees it, nothing, "
+        "or the photograph of the set. The environment gives light in any case",
         default="environment", kind="choice", choices=BACKGROUNDS,
-        flags=("--background",), metavar="environment|transparent", panel=OUTPUT,
+        flags=("--background",), metavar="environment|transparent|plate", panel=OUTPUT,
         tells_default=True, explained=("plates.md#alpha",),
     ),
     Setting(

@@ -21,6 +21,7 @@ from daguerre.setup.camera import set_up
 from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
+from .backdrop import check_backdrop
 from .film_parts import area, frame_around, inside
 from .mattes import matte_facts
 from .pixels import Box, crop_within
@@ -116,6 +117,7 @@ def prepare(
         notes.append(overscan_note(overscan))
     crop = crop_within(settings.film.crop, overscan.region(size))
     sensor = None if camera.sensor is None else sensors.load(camera.sensor)
+    check_backdrop(scene, settings)
     film = settings.film
     mattes = matte_facts(scene, tuple(film.cryptomatte), film.cryptomatte_ranks)
     made = Prepared(

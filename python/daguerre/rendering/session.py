@@ -21,6 +21,7 @@ from daguerre.setup.built_scene import BuiltScene
 
 from . import identity
 from .adaptive import Round
+from .backdrop import over_plate, shows_plate
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of
@@ -155,16 +156,22 @@ class Session:
         return True
 
     @core_errors(InputError, "render")
-    def frame(self, *, truth: bool = True, waves: bool = True) -> Frame:
+    def frame(self, *, truth: bool = True, waves: bool = True, plate: bool = True) -> Frame:
         """Returns the picture of the samples drawn so far, with all channels asked for.
 
         Args:
             truth: Whether to add ground truth.
             waves: Whether to add diffraction, which takes time.
+            plate: Whether to put it over the plate, if that is the background.
         """
         aovs = self.settings.film.aovs
         frame = frame_of(self._whole_film(), self.metadata, aovs=aovs, waves=waves)
+        frame = self.over_plate(frame) if plate else frame
         return self.with_truth(frame) if truth else frame
+
+    def over_plate(self, frame: Frame) -> Frame:
+        """The frame over the plate of the scene, if that is the background."""
+        return over_plate(frame, self.scene.plate) if shows_plate(self.settings) else frame
 
     def with_truth(self, frame: Frame) -> Frame:
         """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""

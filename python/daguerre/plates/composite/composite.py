@@ -17,6 +17,7 @@ from daguerre.development.looks import GREY
 from daguerre.errors import InputError, UsageError
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.frame.frame import Frame
+from daguerre.frame.over import AUTO, change_of_rgb
 from daguerre.frame.picture import Picture
 from daguerre.frame.raw import Raw
 from daguerre.io.exr.read import read_frame
@@ -29,7 +30,6 @@ from daguerre.plates.photograph import Photograph, encoded
 from daguerre.sensors.sensor import GREY_LX_S
 
 from .in_raw import composite_raw
-from .over import AUTO, change_of_rgb
 
 PathLike = str | os.PathLike[str]
 Composite = Frame | Raw | Picture

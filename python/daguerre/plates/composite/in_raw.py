@@ -22,11 +22,10 @@ from daguerre.checks import short, whole
 from daguerre.errors import InputError, UsageError
 from daguerre.exposure.expose import chosen_ev, light_of
 from daguerre.frame.frame import Frame
+from daguerre.frame.over import AUTO, RATIO, Change, change_of
 from daguerre.frame.raw import Raw
 from daguerre.frame.seen_by import seen_of
 from daguerre.sensors.sensor import Sensor
-
-from .over import AUTO, RATIO, Change, change_of
 
 Mosaic = NDArray[np.float32]
 #: Effect below which a photosite keeps its number: that share of its light, or of an electron.

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from daguerre.checks import short
 from daguerre.errors import UsageError, suggest
-from daguerre.frame.frame import Frame
+
+from .frame import Frame
 
 Plane = NDArray[np.float32]
 AUTO, RATIO, DIFFERENCE = FORMS = ("auto", "ratio", "difference")

@@ -1,0 +1,83 @@
+"""The photograph of the set behind a picture: objects over it, with what catchers catch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color.spectra import xyz_of
+from daguerre.errors import InputError, UsageError
+from daguerre.frame.frame import Frame
+from daguerre.frame.over import change_of_rgb
+from daguerre.scene.parts import Plate
+from daguerre.scene.scene import Scene
+
+from .parameters import PLATE
+from .settings import RenderSettings
+
+#: Difference of two pictures' sides, px of the smaller one, that is rounding.
+_ROUNDING = 1.0
+
+
+def shows_plate(settings: RenderSettings) -> bool:
+    """Whether the plate is the background."""
+    return settings.backdrop.background == PLATE
+
+
+def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
+    """Refuses a plate as background that is none, or of another camera or shape.
+
+    Raises:
+        UsageError: There is no plate, or another camera took it.
+        InputError: Its sides have another ratio than the picture's.
+    """
+    if not shows_plate(settings):
+        return
+    plate = scene.plate
+    if plate is None:
+        raise UsageError("background: plate: wanted a photograph (--plate), got none")
+    if plate.camera is not None:
+        raise UsageError(
+            "background: plate: wanted one by the camera that renders, got one with a camera of "
+            "its own (--plate-camera)"
+        )
+    (height, width), (wide, high) = plate.pixels.shape[:2], settings.film.resolution
+    scale = min(wide / width, high / height, 1.0)
+    if (
+        max(abs(wide * height / high - width), abs(high * width / wide - height)) * scale
+        > _ROUNDING
+    ):
+        raise InputError(
+            f"background: plate: wanted the picture's shape, {wide} x {high} px or as many times "
+            f"that, got {width} x {height} px"
+        )
+
+
+def over_plate(frame: Frame, plate: Plate | None) -> Frame:
+    """The frame over its plate; alpha and all layers stay those of the objects."""
+    assert plate is not None
+    rgb = change_of_rgb(frame).of(behind(frame, plate.pixels))
+    return replace(frame, rgb=rgb, xyz=xyz_of(rgb))
+
+
+def behind(frame: Frame, pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Pixels of a plate behind those of a frame, (H, W, 3): 0 in the overscan."""
+    wide, high = frame.metadata.get("resolution") or (frame.width, frame.height)
+    left, top = (frame.metadata.get("crop") or (0, 0))[:2]
+    whole = pixels if pixels.shape[:2] == (high, wide) else _resized(pixels, wide, high)
+    shown = np.zeros((frame.height, frame.width, 3), np.float32)
+    x0, y0 = max(left, 0), max(top, 0)
+    cut = whole[y0 : max(top + frame.height, 0), x0 : max(left + frame.width, 0)]
+    shown[y0 - top : y0 - top + cut.shape[0], x0 - left : x0 - left + cut.shape[1]] = cut
+    return shown
+
+
+def _resized(pixels: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
+    import OpenImageIO as oiio
+
+    source = oiio.ImageBuf(np.ascontiguousarray(pixels))
+    roi = oiio.ROI(0, width, 0, height, 0, 1, 0, 3)
+    made = oiio.ImageBufAlgo.resize(source, filtername="triangle", roi=roi)
+    return np.asarray(made.get_pixels(oiio.FLOAT), np.float32)
