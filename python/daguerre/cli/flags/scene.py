@@ -114,14 +114,18 @@ class SceneFlags:
         ),
     ] = None
 
+    @property
+    def start(self) -> float:
+        """Time of the scene, s: that of frame 0."""
+        return 0.0 if self.time is None else q.time_s("--time", self.time)
+
     def load(self, path: Path) -> Any:
         """Reads the scene and lights it."""
         import daguerre
 
-        time = q.time_s("--time", self.time) if self.time is not None else 0.0
         lux, environment = self._lux(), self._environment()
         scene = daguerre.load(
-            path, time=time, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
+            path, time=self.start, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
         )
         if environment:
             scene.set_environment(**environment)

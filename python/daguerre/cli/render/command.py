@@ -54,7 +54,8 @@ def render(
     plate = read_plate(job_flags.like_plate)
     given = camera_flags.changes() | shutter_flags.changes()
     changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))
-    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate)
+    start = scene_flags.start
+    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate, start)
     plan = plan_of(job_flags, settings_flags, map_flags, cameras)
     labels = coco_of(job_flags.coco, job_flags.categories, plan)
     launched = time.monotonic()
@@ -64,6 +65,7 @@ def render(
         return interrupted_early()
     for warning in scene.warnings:
         console.warn(f"{scene_path}: {warning}")
+    cameras.check_frames(plan.pictures, job_flags.stereo, scene)
     if job_flags.dry_run:
         return describe(plan, scene, scene_path)
     return run(plan, scene, scene_path, labels, launched)
