@@ -100,7 +100,8 @@ class SceneFlags:
         option(
             "--plate-scale",
             metavar="X",
-            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF; linear files: 1].",
+            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF or "
+            "--like-plate; linear files: 1].",
             panel=_LIGHT,
         ),
     ] = None
@@ -119,8 +120,13 @@ class SceneFlags:
         """Time of the scene, s: that of frame 0."""
         return 0.0 if self.time is None else q.time_s("--time", self.time)
 
-    def load(self, path: Path) -> Any:
-        """Reads the scene and lights it."""
+    def load(self, path: Path, taken: Any = None) -> Any:
+        """Reads the scene and lights it.
+
+        Args:
+            path: Its file.
+            taken: Camera of ``--like-plate``, which took the plate; None: there is none.
+        """
         import daguerre
 
         lux, environment = self._lux(), self._environment()
@@ -136,10 +142,10 @@ class SceneFlags:
         for text in self.catcher or ():
             node, _, effects = text.partition(":") if text not in scene.nodes else (text, "", "")
             scene.set_catcher(node, effects or EFFECTS)
-        self._throw_plate(scene)
+        self._throw_plate(scene, taken)
         return scene
 
-    def _throw_plate(self, scene: Any) -> None:
+    def _throw_plate(self, scene: Any, taken: Any) -> None:
         """Gives the scene the photograph of its set."""
         from daguerre.cli import console
         from daguerre.errors import UsageError
@@ -155,7 +161,7 @@ class SceneFlags:
         number = None if scale is None else q.plain_number("--plate-scale", scale, "a luminance")
         if number is not None and not 0 < number < 1e12:
             raise UsageError(f"--plate-scale: wanted a luminance above 0, got {scale!r}")
-        pixels, notes = photo_light(self.plate, number)
+        pixels, notes = photo_light(self.plate, number, taken)
         for note in notes:
             console.note(f"{self.plate}: {note}")
         camera = None

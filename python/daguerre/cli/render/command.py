@@ -60,7 +60,7 @@ def render(
     labels = coco_of(job_flags.coco, job_flags.categories, plan)
     launched = time.monotonic()
     try:
-        scene = scene_flags.load(scene_path)
+        scene = scene_flags.load(scene_path, None if plate is None else plate.camera)
     except KeyboardInterrupt:
         return interrupted_early()
     for warning in scene.warnings:
