@@ -115,3 +115,30 @@ def test_commands_of_a_tracked_sequence(tmp_path: Path, monkeypatch: pytest.Monk
         assert np.array_equal(dg.load_frame(f"shot.{n}.exr").rgb, wanted)
     one, two = (dg.load_frame(f"shot.{n}.exr").rgb for n in FRAMES)
     assert np.abs(one - two).mean() > 0.01 * one.mean()
+
+
+def test_each_frame_sees_its_own_plate(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Plates that are thrown onto the catchers go with the frames, as a call for each would."""
+    monkeypatch.chdir(tmp_path)
+    ground_and_ball(tmp_path / "set.gltf", {})
+    how = ["--sky", "1,1,1", "--spp", "4", "--res", "36x24", "--lens", "pinhole", "-q"]
+    how += ["--catcher", "ground"]
+    for n, value in ((0, 0.5), (1, 0.2), (2, 2.0)):
+        plate = np.full((24, 36, 3), value, np.float32)
+        dg.Frame(rgb=plate, xyz=plate, metadata={}).save(f"plate.{n:02d}.exr")
+    run = ["render", "set.gltf", *how, "--plate", "plate.##.exr", "-o", "o.#.exr"]
+    assert main([*run, "--frames", "0-2"]) == 0
+    found = [dg.load_frame(f"o.{n}.exr").rgb for n in (0, 1, 2)]
+    for n in (0, 1, 2):
+        one = ["--plate", f"plate.{n:02d}.exr", "--frames", str(n), "-o", "one.#.exr"]
+        assert main(["render", "set.gltf", *how, *one]) == 0
+        assert np.array_equal(found[n], dg.load_frame(f"one.{n}.exr").rgb)
+    assert not np.array_equal(found[1], found[2])
+    assert not np.array_equal(found[0], found[1])
+    assert main([*run, "--frames", "1-4"]) == 3
+    assert "frame 3: plate.03.exr: wanted a photograph, got no file" in capfd.readouterr().err
+    alone = ["--plate", "plate.##.exr", "-o", "o.exr"]
+    assert main(["render", "set.gltf", *how, *alone]) == 2
+    assert "--plate plate.##.exr: # stands for the number" in capfd.readouterr().err
