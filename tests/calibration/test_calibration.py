@@ -487,8 +487,8 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path, chain: Path) -> None:
 
 
 def test_a_take_is_no_calibration(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="from_opentrackio"):
-        calibration.read(tmp_path / "take.jsonl")
+    with pytest.raises(InputError, match="wanted one calibration, got lines of several"):
+        calibration.read(tmp_path / "take.jsonl", format="ros")
 
 
 def test_formats_that_always_say_the_size_take_none(chain: Path) -> None:

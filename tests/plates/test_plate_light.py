@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import daguerre as dg
+from daguerre.cli import main
 from daguerre.frame.over import change_of_rgb
+from daguerre.plates.photo_light import photo_light
+from tests.plates.test_catchers import ground_and_ball
 from tests.plates.test_truth import BATCHES, GLASS, MATTE, SIZE, SPP, Case, real, shifted, thin
 from tests.support.statistical import differences
 
@@ -71,3 +76,40 @@ def test_bad_plates_are_refused() -> None:
         )
     with pytest.raises(dg.UsageError, match="camera: wanted a Camera"):
         scene.set_plate(np.zeros((4, 4, 3)), "there")  # type: ignore[arg-type]
+
+
+def test_the_matched_camera_says_what_exif_lacks(tmp_path: Path) -> None:
+    """ISO 12232: 1 is 4 / pi * 10 / 0.18 * N^2 / (t S) cd/m2."""
+    path = tmp_path / "plate.png"
+    Image.fromarray(np.full((8, 12, 3), 255, np.uint8)).save(path)
+    light, notes = photo_light(path)
+    assert light.max() == pytest.approx(1, rel=1e-3)
+    assert "EXIF lacks exposure time, f-number, ISO" in notes[0]
+    assert "--plate-scale gives one" in notes[0]
+    taken = dg.Camera(f_stop=2.8, shutter_time=1 / 60, iso=400)
+    light, notes = photo_light(path, taken=taken)
+    assert light.max() == pytest.approx(70.7355 * 2.8**2 * 60 / 400, rel=1e-3)
+    assert not any("lacks" in note for note in notes)
+    light, _ = photo_light(path, 3.0, taken)
+    assert light.max() == pytest.approx(3, rel=1e-3)
+
+
+def test_the_command_takes_the_exposure_of_the_matched_camera(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    scene, plate, camera = (str(tmp_path / name) for name in ("a.gltf", "plate.png", "c.json"))
+    ground_and_ball(tmp_path / "a.gltf", {})
+    dice = np.random.default_rng(1)
+    Image.fromarray(dice.integers(90, 99, (48, 72, 3), np.uint8).astype(np.uint8)).save(plate)
+    facts = [
+        "--f-stop=2.8",
+        "--shutter=1/60",
+        "--iso=400",
+        "--sensor=ff",
+        "--focal-length=35",
+        "-q",
+    ]
+    assert main(["match-plate", plate, "-o", camera, *facts]) == 0
+    flags = ["--like-plate", camera, "--plate", plate, "--catcher", "ground", "--sky", "9,9,9"]
+    assert main(["render", scene, *flags, "--spp", "1", "-o", str(tmp_path / "o.exr")]) == 0
+    assert "EXIF lacks" not in capfd.readouterr().err

@@ -10,13 +10,15 @@ from .opencv import read_opencv
 from .opentrackio import read_opentrackio
 from .ros import read_ros
 from .stereo import read_stereo
-from .track import read_track
+from .take import Take
+from .track import read_take, read_track
 from .transforms import read_transforms
 
 __all__ = [
     "FORMATS",
     "WRITTEN",
     "Calibration",
+    "Take",
     "pick",
     "read",
     "read_all",
@@ -26,6 +28,7 @@ __all__ = [
     "read_opentrackio",
     "read_ros",
     "read_stereo",
+    "read_take",
     "read_track",
     "read_transforms",
     "write",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,13 @@ class Calibration:
             given = mounted(given, self.rig_from_camera)
         made = given.with_(**changes)
         return delayed(made, self.delay_s) if timeshift else made
+
+    def starting(self, time_s: float) -> Self:
+        """The same with frame 0 at a time, s; one that knows no frames stays as it is."""
+        return self
+
+    def check(self, frame: int | None, time_s: float, fps: float) -> None:
+        """Refuses frames at which it is not known: none, but of a :class:`Take`."""
 
 
 def delayed(camera: Camera, seconds: float) -> Camera:

@@ -10,7 +10,7 @@ from daguerre.files.source import Source
 from .files import read
 from .opentrackio import read_opentrackio
 from .ros import read_ros
-from .track import read_track
+from .track import is_take, read_track
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -76,6 +76,6 @@ def from_opentrackio(
     pixel_pitch: float | None,
 ) -> Camera:
     """A tracked camera of one sample, or with keys of several."""
-    if isinstance(calibration, list):
+    if isinstance(calibration, list) or is_take(calibration):
         return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
     return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from daguerre.checks import short
 from daguerre.errors import UsageError, suggest
+from daguerre.files.numbered import has_place
 from daguerre.files.source import Source
 
-from . import colmap, kalibr, opencv, opentrackio, ros, stereo, transforms
+from . import colmap, kalibr, opencv, opentrackio, ros, stereo, track, transforms
 from .calibration import Calibration
 from .source import load
+from .take import Take, take_of
 
 FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms")
 WRITTEN = FORMATS[:4]
@@ -22,6 +25,8 @@ def format_of(source: Source) -> str:
     """Which format a file has, by the names in it."""
     if colmap.is_colmap(source):
         return "colmap"
+    if track.is_take(source):
+        return "opentrackio"
     names = set(load(source).value)
     if "cam0" in names:
         return "kalibr"
@@ -48,7 +53,9 @@ def read(
 
     Args:
         source: File, or the same as a dict; for COLMAP the folder.
-        camera: Which of several, such as ``cam1``; None: the first.
+        camera: Which of several, such as ``cam1``; None: the first. Of pictures with poses also a
+            name with # for a number, ``IMG_####.jpg``: a camera that moves, with frame n as it
+            was in the picture of that number.
         format: One of ``FORMATS``; None: recognized by the names in the file.
         model: Model of OpenCV's files: opencv or fisheye; None: the file's, else opencv.
         size: Size of the picture, px, where the file does not say it.
@@ -108,20 +115,24 @@ def read_all(
         )
     if kind == "ros":
         found = ros.read_ros(source, rectified=rectified)
+    elif kind == "opentrackio" and track.is_take(source):
+        found = track.read_take(source, size=size)
     elif kind == "opentrackio":
         found = opentrackio.read_opentrackio(source, size=size)
     else:
         found = opencv.read_opencv(source, model=model, size=size)
-    return {"camera" if isinstance(source, dict) else Path(source).stem: found}
+    return {Path(source).stem if isinstance(source, str | os.PathLike) else "camera": found}
 
 
 def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
-    """One of several; without a name the first.
+    """One of several; without a name the first, and with # in it a take of those numbered so.
 
     Raises:
         UsageError: There is none of that name; the nearest is suggested.
     """
     wanted = next(iter(cameras)) if name is None else name
+    if wanted not in cameras and has_place(wanted):
+        return take_of(cameras, wanted, where)
     if wanted not in cameras:
         known = ", ".join(cameras)
         raise UsageError(f"{where}: wanted {known}; got {wanted!r}{suggest(wanted, cameras)}")
@@ -144,6 +155,8 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
 
     kind = _format(format, WRITTEN)
     several = [calibration] if isinstance(calibration, Calibration) else list(calibration)
+    if any(isinstance(one, Take) for one in several):
+        raise UsageError(f"calibration: {kind}: wanted one moment of a camera, got a take of many")
     if kind == "kalibr":
         text = kalibr.write_kalibr(several)
     elif len(several) != 1:

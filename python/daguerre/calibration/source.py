@@ -17,8 +17,9 @@ from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
 FloatArray = NDArray[np.float64]
-#: A calibration has some thousand bytes: what is so large is another kind of file.
-MAX_BYTES = 1 << 20
+#: A calibration has some thousand bytes: what is so large is another kind of file. JSON may hold
+#: all frames of a long shot.
+MAX_BYTES, MAX_JSON_BYTES = 1 << 20, 1 << 26
 
 
 def load(source: Source) -> Item:
@@ -34,8 +35,7 @@ def load(source: Source) -> Item:
     path = Path(source)
     if path.suffix.lower() == ".jsonl":
         raise InputError(
-            f"{path}: wanted one calibration, got lines of several: a take of OpenTrackIO is read "
-            "by Camera.from_opentrackio, as a list of its samples"
+            f"{path}: wanted one calibration, got lines of several, as of a take of OpenTrackIO"
         )
     data = read_bytes(path)
     parse = json_text.parse if path.suffix.lower() == ".json" else yaml_text.parse
@@ -48,15 +48,16 @@ def load(source: Source) -> Item:
 
 
 def read_bytes(path: Path) -> bytes:
-    """A file of at most ``MAX_BYTES``."""
+    """A file of at most ``MAX_BYTES``, or of JSON ``MAX_JSON_BYTES``."""
+    most = MAX_JSON_BYTES if path.suffix.lower() in (".json", ".jsonl") else MAX_BYTES
     try:
         with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+            data = file.read(most + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{path}: wanted a calibration file: {reason}") from None
-    if len(data) > MAX_BYTES:
-        raise InputError(f"{path}: wanted a calibration of at most 1 MiB, got more")
+    if len(data) > most:
+        raise InputError(f"{path}: wanted a calibration of at most {most >> 20} MiB, got more")
     return data
 
 

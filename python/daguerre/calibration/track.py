@@ -2,79 +2,135 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from daguerre.errors import InputError
+from daguerre.files import json_text
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
-from daguerre.motion.values import keys
 
+from .calibration import Calibration
 from .opentrackio import read_opentrackio
-from .source import load
+from .source import load, read_bytes
+from .take import Take
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
 
-#: Facts of a camera that samples hold, beside its projection.
-TRACKED = ("transform", "f_stop", "focus_distance")
+Samples = Source | Sequence[Source]
+
+
+def is_take(source: object) -> bool:
+    """Whether these are several samples: a list of them, lines, or a JSON file with a list."""
+    if isinstance(source, list | tuple):
+        return True
+    if not isinstance(source, str | os.PathLike):
+        return False
+    path = Path(source)
+    if path.suffix.lower() != ".json":
+        return path.suffix.lower() == ".jsonl"
+    return read_bytes(path).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"[")
+
+
+def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
+    """Reads the camera of several samples; the first is at 0 s.
+
+    Facts that are the same for all of a take (``static``) may be in the first of them alone.
+
+    Args:
+        samples: Samples as dicts or files; or one file of them, as lines (.jsonl) or as a list.
+        size: Size of the picture, px, if they have no ``activeSensorResolution``.
+
+    Raises:
+        InputError: A sample cannot be used, or times do not rise; the message names it.
+    """
+    file, listed = _listed(samples)
+    if not listed:
+        raise InputError(f"{file}: wanted at least one, got none")
+    still: dict[str, Any] = {}
+    found: list[tuple[float, Calibration]] = []
+    begin = (0.0, 0.0)
+    for i, (where, sample) in enumerate(listed):
+        try:
+            root = sample if isinstance(sample, Item) else load(sample)
+            if not isinstance(root.value, dict):
+                root.fail("wanted a sample, names and values")
+            still = still | {k: v for k, v in root.value.items() if k == "static"}
+            clock = _time(root, i)
+            one = read_opentrackio(still | root.value, size=size)
+        except InputError as error:
+            text = str(error)
+            raise InputError(text if text.startswith(where) else f"{where}: {text}") from None
+        begin = begin if found else clock
+        time = (clock[0] - begin[0]) + (clock[1] - begin[1])
+        if found and time <= found[-1][0]:
+            raise InputError(
+                f"{where}: timing: wanted times that rise strictly, "
+                f"got {found[-1][0]:g} s then {time:g} s"
+            )
+        found.append((time, one))
+    first = found[0][1]
+    settings = first.settings | _rate(load(still))
+    return Take(
+        first.projection,
+        Path(file).stem,
+        first.rig_from_camera,
+        first.pixel_pitch,
+        settings,
+        samples=tuple(found),
+        file=file,
+    )
 
 
 def read_track(
-    samples: Sequence[Source],
+    samples: Samples,
     *,
     size: tuple[int, int] | None = None,
     camera: Camera | None = None,
     pixel_pitch: float | None = None,
 ) -> Camera:
-    """The camera of several samples, keyed at their times; the first is at 0 s.
-
-    Facts that are the same for all of a take (``static``) may be in the first of them alone.
+    """The camera of several samples, keyed at their times; see :func:`read_take`.
 
     Args: those of :meth:`Camera.from_opentrackio`.
-
-    Raises:
-        InputError: A sample cannot be used, or times do not rise; the message names it.
     """
-    if not samples:
-        raise InputError("samples: wanted at least one, got none")
-    still: dict[str, Any] = {}
-    cameras, times = [], []
-    for i, sample in enumerate(samples):
-        try:
-            root = load(sample)
-            still = still | {k: v for k, v in root.value.items() if k == "static"}
-            times.append(_time(root, i))
-            found = read_opentrackio(still | root.value, size=size)
-        except InputError as error:
-            raise InputError(f"samples[{i}]: {error}") from None
-        cameras.append(found.camera(camera, pixel_pitch))
-    first = cameras[0]
-    changes: dict[str, Any] = {
-        "projection": keys(
-            [(t - times[0], c.projection) for t, c in zip(times, cameras, strict=True)]
-        )
-    }
-    for name in TRACKED:
-        known = [
-            (t - times[0], getattr(c, name))
-            for t, c in zip(times, cameras, strict=True)
-            if getattr(c, name) is not None
-        ]
-        if known and any(not np.array_equal(value, known[0][1]) for _, value in known):
-            changes[name] = keys(known)
-    return first.with_(**changes)
+    return read_take(samples, size=size).camera(camera, pixel_pitch)
 
 
-def _time(root: Item, index: int) -> float:
-    """When the sample was taken, s: by its time stamp, or by its number and the rate."""
+def _listed(samples: Samples) -> tuple[str, list[tuple[str, Any]]]:
+    """Name of the whole, and samples with their places."""
+    if not isinstance(samples, str | os.PathLike):
+        given = [samples] if isinstance(samples, dict) else list(samples)
+        return "samples", [(f"samples[{i}]", one) for i, one in enumerate(given)]
+    path = Path(samples)
+    data = read_bytes(path)
+    if path.suffix.lower() != ".jsonl":
+        items = list(json_text.parse(data, str(path)))
+        return str(path), [(f"{path}: [{i}]", one) for i, one in enumerate(items)]
+    lines = [(f"{path}: line {i}", line) for i, line in enumerate(data.splitlines(), 1)]
+    return str(path), [(at, json_text.parse(line, at)) for at, line in lines if line.strip()]
+
+
+def _time(root: Item, index: int) -> tuple[float, float]:
+    """When the sample was taken: by its time stamp, or by its number and the rate.
+
+    Seconds and what is more, s: their sum since 1970 would lose a quarter of a microsecond.
+    """
     timing = root.get("timing")
     stamp = None if timing is None else timing.get("sampleTimestamp")
     if stamp is not None:
-        return stamp.need("seconds").number() + 1e-9 * stamp.number_of("nanoseconds", 0.0)
+        return stamp.need("seconds").number(), 1e-9 * stamp.number_of("nanoseconds", 0.0)
     rate = None if timing is None else timing.get("sampleRate")
     if rate is None:
         root.fail("missing: wanted timing.sampleTimestamp or timing.sampleRate, got neither")
-    return index * rate.number_of("denom", 1.0) / rate.need("num").number(above=0)
+    return 0.0, index * rate.number_of("denom", 1.0) / rate.need("num").number(above=0)
+
+
+def _rate(root: Item) -> dict[str, float]:
+    """Frames per second of the camera, if the take says them."""
+    rate = root.need("static").need("camera").get("captureFrameRate")
+    if rate is None:
+        return {}
+    return {"fps": rate.need("num").number(above=0) / rate.number_of("denom", 1.0)}

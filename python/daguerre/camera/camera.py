@@ -299,7 +299,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads the camera of a picture of a COLMAP text model, with its pose in COLMAP's world.
 
-        Args: those of :meth:`from_opencv`; ``name`` is that of the picture.
+        Args: those of :meth:`from_opencv`; ``name`` is that of the picture. With # for a number,
+        ``IMG_####.jpg``, the camera moves: picture n is at n / fps, s.
         """
         from daguerre.calibration.cameras import from_colmap
 
@@ -316,7 +317,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads a tracked camera: lens, f-stop, focus and pose of OpenTrackIO samples.
 
-        Args: those of :meth:`from_opencv`; a list of samples makes keys, the first at 0 s.
+        Args: those of :meth:`from_opencv`; several samples make keys, the first at 0 s: a list of
+        them, or a file of lines or of a list.
         """
         from daguerre.calibration.cameras import from_opentrackio
 

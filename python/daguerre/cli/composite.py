@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from daguerre import units as q
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError
+from daguerre.rendering.progress import FrameStatus
 
-from . import console
-from .flags.groups import Text, option
+from . import console, progress
+from .flags.composite import PlacingFlags, SequenceFlags
+from .flags.groups import option, with_flags
+from .render.frames import check_names, frame_numbers
+
+if TYPE_CHECKING:
+    from daguerre.plates.composite.shots import Shot
 
 
+@with_flags(placing=PlacingFlags, sequence=SequenceFlags)
 def composite(
     plate: Annotated[
-        Path, typer.Argument(metavar="PLATE", help="Photograph: .dng, .exr, .jpg, .png, .tif.")
+        Path,
+        typer.Argument(
+            metavar="PLATE",
+            help="Photograph: .dng, .exr, .jpg, .png, .tif; with --frames plate.####.dng, or one "
+            "for all frames.",
+        ),
     ],
     objects: Annotated[
-        Path, typer.Argument(metavar="OBJECT.exr", help="Render with alpha and catchers.")
+        Path,
+        typer.Argument(
+            metavar="OBJECT.exr",
+            help="Render with alpha and catchers; with --frames object.####.exr.",
+        ),
     ],
     output: Annotated[
         list[Path],
@@ -27,52 +43,56 @@ def composite(
             "-o", "--output", metavar="OUT.exr|dng|jpg|png|tif", help="File to write; repeatable."
         ),
     ],
-    like_plate: Annotated[
-        Path | None,
-        option(
-            "--like-plate",
-            metavar="CAMERA.json",
-            help="Matched camera of the plate: objects get its blur and noise. Raw plates need it.",
-        ),
-    ] = None,
-    form: Annotated[
-        str,
-        option(
-            "--form",
-            metavar="auto|ratio|difference",
-            help="How catchers change the plate: light is taken as a share and added as light "
-            "[auto], or one of the two.",
-        ),
-    ] = "auto",
-    scale: Annotated[
-        Text,
-        option(
-            "--plate-scale",
-            metavar="X",
-            help="Light of the render that a plate's 1 stands for; by the exposure of both for "
-            "developed plates, else 1.",
-        ),
-    ] = None,
-    seed: Annotated[
-        int, option("--seed", metavar="N", help="Seed of the noise of what is added [0].")
-    ] = 0,
-    quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
+    *,
+    placing: PlacingFlags,
+    sequence: SequenceFlags,
 ) -> int:
     """Puts rendered objects into a photograph: in light, or in the electrons of a raw file."""
     from daguerre.files.atomic import check_writable
+    from daguerre.plates.composite.shots import shots_of
+
+    console.quiet = sequence.quiet
+    if sequence.resume and sequence.frames is None:
+        raise UsageError("--resume: needs --frames")
+    numbers = None if sequence.frames is None else frame_numbers("--frames", sequence.frames)
+    check_names(output, numbers)
+    shots = shots_of(plate, objects, output, numbers, placing.seed)
+    for path in (path for shot in shots for path in shot.outputs):
+        check_writable(path)
+    silent = sequence.quiet or numbers is None
+    with progress.choose(quiet=silent, as_json=sequence.json_progress) as shown:
+        _run(shots, placing.given(), shown, resume=sequence.resume)
+    return 0
+
+
+def _run(shots: list[Shot], how: dict[str, Any], shown: progress.Silent, *, resume: bool) -> None:
+    """Makes one frame after the other."""
+    began, made = time.monotonic(), 0
+    for i, shot in enumerate(shots):
+        if shot.frame is not None:
+            console.note(f"frame {shot.frame} ({i + 1} of {len(shots)})")
+        if resume and shot.is_complete:
+            console.note(f"{shot.outputs[0]} is complete")
+        else:
+            _make(shot, how, shown)
+            made += 1
+        done, elapsed = i + 1, time.monotonic() - began
+        left = (len(shots) - done) * elapsed / made if made else None
+        shown.update(FrameStatus(done / len(shots), done, len(shots), elapsed, left))
+
+
+def _make(shot: Shot, how: dict[str, Any], shown: progress.Silent) -> None:
     from daguerre.plates.composite.composite import composite as put
     from daguerre.plates.composite.composite import save
 
-    console.quiet = quiet
-    for path in output:
-        if any(
-            path.exists() and each.exists() and path.samefile(each) for each in (plate, objects)
-        ):
-            raise UsageError(f"{path}: wanted another file than those that are read")
-        check_writable(path)
-    number = None if scale is None else q.plain_number("--plate-scale", scale, "a number above 0")
-    made = put(plate, objects, like_plate=like_plate, form=form, scale=number, seed=seed)
-    for path in output:
+    try:
+        made = put(shot.plate, shot.objects, **how, seed=shot.seed)
+    except InputError as error:
+        if shot.frame is None:
+            raise
+        raise InputError(f"frame {shot.frame}: {error}") from None
+    for path in shot.outputs:
         save(made, path)
         console.note(f"wrote {path}")
-    return 0
+    frame = {} if shot.frame is None else {"frame": shot.frame}
+    shown.event("done", **frame, outputs=[str(path) for path in shot.outputs])

@@ -52,6 +52,7 @@ class Job:
         opened: Called when a picture's scene is built, before its first sample.
         written: Called when a picture is in its files.
         skipped: Called with a picture that was there already.
+        staged: Called with a frame's number and its scene, to give it what files know of the frame.
         done: Number of pictures that are complete.
     """
 
@@ -70,7 +71,9 @@ class Job:
         self.opened: Hook = _nothing
         self.written: Hook = _nothing
         self.skipped: Callable[[Picture], None] = lambda picture: None
+        self.staged: Callable[[int, Scene], None] = lambda frame, scene: None
         self.done = 0
+        self._staged: tuple[int, Scene] | None = None
         self._warned: set[str] = set()
         self._seen: Scene | None = None
         self._built: BuiltScene | None = None
@@ -101,6 +104,14 @@ class Job:
 
     def scene_of(self, picture: Picture) -> Scene:
         """The scene at the time of a frame: the same one for all cameras of a rate."""
+        scene = self._moment(picture)
+        frame, last = picture.frame, self._staged
+        if frame is not None and (last is None or last[0] != frame or last[1] is not scene):
+            self.staged(frame, scene)
+            self._staged = frame, scene
+        return scene
+
+    def _moment(self, picture: Picture) -> Scene:
         if not picture.frame:
             return self.scene
         when = self.scene.time + picture.frame / picture.view.camera(self.scene).fps

@@ -5,21 +5,20 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from daguerre.files.numbered import PLACE, has_place, with_number
+
 #: Place of a camera's name in the name of a file.
 CAMERA = "{camera}"
-_FRAME = re.compile(r"#+(?=[^#]*$)")  # the last run of #
 
 
 def has_frame(path: Path) -> bool:
     """Whether the name has a place for the number of a frame."""
-    return _FRAME.search(path.name) is not None
+    return has_place(path.name)
 
 
 def numbered(path: Path, frame: int) -> Path:
     """``shot.####.exr`` with the frame in the place of #, with as many digits at least."""
-    return path.with_name(
-        _FRAME.sub(lambda place: f"{frame:0{len(place[0])}d}", path.name, count=1)
-    )
+    return path.with_name(with_number(path.name, frame))
 
 
 def named(path: Path, camera: str, *, several: bool) -> Path:
@@ -36,7 +35,7 @@ def named(path: Path, camera: str, *, several: bool) -> Path:
 
 def _before_number(path: Path, word: str) -> Path:
     """``shot.####.exr`` as ``shot.WORD.####.exr``; ``shot.exr`` as ``shot.WORD.exr``."""
-    place = _FRAME.search(path.name)
+    place = PLACE.search(path.name)
     cut = place.start() if place else len(path.stem)
     head, tail = path.name[:cut].rstrip("."), path.name[cut:].lstrip(".")
     return path.with_name(".".join(part for part in (head, word, tail) if part))

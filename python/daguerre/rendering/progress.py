@@ -64,7 +64,31 @@ class RowStatus:
         return [f"{quantity(self.pixels_per_s)} pixels/s"]
 
 
-AnyStatus = Status | RowStatus
+@dataclass(frozen=True)
+class FrameStatus:
+    """How far a sequence is whose frames are made once, one after the other.
+
+    Attributes:
+        fraction: Share of the frames that is made, 0 .. 1.
+        frames: Frames that are made.
+        frames_wanted: Frames in the end.
+        elapsed_s: Since the first one was begun.
+        left_s: Estimated time left; None until there is a rate.
+    """
+
+    fraction: float
+    frames: int
+    frames_wanted: int
+    elapsed_s: float
+    left_s: float | None
+
+    @property
+    def words(self) -> list[str]:
+        """How many frames."""
+        return [f"{self.frames}/{self.frames_wanted} frames"]
+
+
+AnyStatus = Status | RowStatus | FrameStatus
 
 
 def _noise(status: Status) -> str:

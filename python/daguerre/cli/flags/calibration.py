@@ -3,6 +3,7 @@
 Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -28,7 +29,8 @@ class CalibrationFlags:
             "--calibration",
             metavar="FILE[:NAME,...|all]",
             help="Calibration instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO or COLMAP; "
-            "cameras of a file by name, or all; repeatable.",
+            "cameras of a file by name, or all; NAME with # takes the picture of each frame; "
+            "repeatable.",
             panel=_CAMERA,
         ),
     ] = None
@@ -162,7 +164,8 @@ class CalibrationFlags:
         if calibration is not None:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
-            camera = calibration.camera(camera, um)
+            rate = {"fps": changes["fps"]} if "fps" in changes else {}
+            camera = calibration.camera(camera.with_(**rate), um)
             if changes.get("lens") in WITHOUT_IRIS:
                 changes = {name: value for name, value in changes.items() if name != "lens"}
                 camera = camera.with_(f_stop=None)
@@ -206,9 +209,24 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     if not names:
         first = next(iter(known))
         if len(known) > 1:
-            console.note(f"{file} has {', '.join(known)}; {first} is taken (:all takes all)")
+            hint = ":all takes all, a name with # the picture of each frame"
+            console.note(f"{file} has {_some(known)}; {first} is taken ({hint})")
         return {first: known[first]}
     wanted = [names] if names in known else [name.strip() for name in names.split(",")]
     if twice := [name for name in wanted if wanted.count(name) > 1]:
         raise UsageError(f"--calibration {text}: wanted each name once, got {twice[0]!r} twice")
-    return {name: pick(known, name, file) for name in wanted}
+    found: dict[str, Any] = {}
+    for name in wanted:
+        one = pick(known, name, file)
+        label = name if name in known else one.name
+        if label in found:
+            raise UsageError(f"--calibration {text}: wanted different names, got {label!r} twice")
+        found[label] = one
+    return found
+
+
+def _some(names: Iterable[str]) -> str:
+    """Names between commas; of many the first."""
+    listed = list(names)
+    more = f" and {len(listed) - 8} more" if len(listed) > 8 else ""
+    return ", ".join(listed[:8]) + more

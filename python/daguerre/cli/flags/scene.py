@@ -3,11 +3,13 @@
 Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.rendering.names import has_frame, numbered
 from daguerre.scene.catcher import EFFECTS
 
 from .groups import Text, option
@@ -81,7 +83,8 @@ class SceneFlags:
         option(
             "--plate",
             metavar="PHOTO",
-            help="Photograph of the set: mirrors, glass and bounced light see it on the catchers.",
+            help="Photograph of the set: mirrors, glass and bounced light see it on the catchers; "
+            "with # that of each frame.",
             panel=_LIGHT,
         ),
     ] = None
@@ -100,7 +103,8 @@ class SceneFlags:
         option(
             "--plate-scale",
             metavar="X",
-            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF; linear files: 1].",
+            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF or "
+            "--like-plate; linear files: 1].",
             panel=_LIGHT,
         ),
     ] = None
@@ -114,14 +118,23 @@ class SceneFlags:
         ),
     ] = None
 
-    def load(self, path: Path) -> Any:
-        """Reads the scene and lights it."""
+    @property
+    def start(self) -> float:
+        """Time of the scene, s: that of frame 0."""
+        return 0.0 if self.time is None else q.time_s("--time", self.time)
+
+    def load(self, path: Path, taken: Any = None) -> Any:
+        """Reads the scene and lights it.
+
+        Args:
+            path: Its file.
+            taken: Camera of ``--like-plate``, which took the plate; None: there is none.
+        """
         import daguerre
 
-        time = q.time_s("--time", self.time) if self.time is not None else 0.0
         lux, environment = self._lux(), self._environment()
         scene = daguerre.load(
-            path, time=time, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
+            path, time=self.start, variant=self.variant, allow_dirs=tuple(self.allow_dir or ())
         )
         if environment:
             scene.set_environment(**environment)
@@ -132,11 +145,42 @@ class SceneFlags:
         for text in self.catcher or ():
             node, _, effects = text.partition(":") if text not in scene.nodes else (text, "", "")
             scene.set_catcher(node, effects or EFFECTS)
-        self._throw_plate(scene)
+        if not self.plate_moves:
+            self.throw_plate(scene, taken)
         return scene
 
-    def _throw_plate(self, scene: Any) -> None:
-        """Gives the scene the photograph of its set."""
+    @property
+    def plate_moves(self) -> bool:
+        """Whether each frame has a plate of its own."""
+        return self.plate is not None and has_frame(self.plate)
+
+    def check_plates(self, frames: Iterable[int | None]) -> None:
+        """Refuses a sequence of plates of which one is missing.
+
+        Raises:
+            UsageError: There are no frames.
+            InputError: The message names the first frame and its file.
+        """
+        from daguerre.errors import InputError, UsageError
+
+        if self.plate is None or not self.plate_moves:
+            return
+        for frame in frames:
+            if frame is None:
+                raise UsageError(
+                    f"--plate {self.plate}: # stands for the number of a frame; wanted --frames"
+                )
+            if not (path := numbered(self.plate, frame)).exists():
+                raise InputError(f"frame {frame}: {path}: wanted a photograph, got no file")
+
+    def throw_plate(self, scene: Any, taken: Any, frame: int = 0) -> None:
+        """Gives the scene the photograph of its set, of a sequence that of a frame.
+
+        Args:
+            scene: The scene, at the time of the frame.
+            taken: Camera of ``--like-plate``; None: there is none.
+            frame: Number of the frame.
+        """
         from daguerre.cli import console
         from daguerre.errors import UsageError
 
@@ -147,13 +191,15 @@ class SceneFlags:
             return
         from daguerre.plates.photo_light import photo_light
 
+        path = numbered(self.plate, frame)
+
         scale = self.plate_scale
         number = None if scale is None else q.plain_number("--plate-scale", scale, "a luminance")
         if number is not None and not 0 < number < 1e12:
             raise UsageError(f"--plate-scale: wanted a luminance above 0, got {scale!r}")
-        pixels, notes = photo_light(self.plate, number)
+        pixels, notes = photo_light(path, number, taken)
         for note in notes:
-            console.note(f"{self.plate}: {note}")
+            console.note(f"{path}: {note}")
         camera = None
         if self.plate_camera is not None:
             from daguerre.calibration import read_all

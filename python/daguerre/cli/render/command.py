@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -54,16 +55,22 @@ def render(
     plate = read_plate(job_flags.like_plate)
     given = camera_flags.changes() | shutter_flags.changes()
     changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))
-    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate)
+    start = scene_flags.start
+    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate, start)
     plan = plan_of(job_flags, settings_flags, map_flags, cameras)
+    scene_flags.check_plates(picture.frame for picture in plan.pictures)
     labels = coco_of(job_flags.coco, job_flags.categories, plan)
     launched = time.monotonic()
     try:
-        scene = scene_flags.load(scene_path)
+        taken = None if plate is None else plate.camera
+        scene = scene_flags.load(scene_path, taken)
     except KeyboardInterrupt:
         return interrupted_early()
     for warning in scene.warnings:
         console.warn(f"{scene_path}: {warning}")
+    cameras.check_frames(plan.pictures, job_flags.stereo, scene)
+    if scene_flags.plate_moves:
+        plan = replace(plan, stage=lambda n, now: scene_flags.throw_plate(now, taken, n))
     if job_flags.dry_run:
         return describe(plan, scene, scene_path)
     return run(plan, scene, scene_path, labels, launched)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from daguerre import units as q
@@ -13,6 +14,7 @@ from daguerre.errors import UsageError
 from daguerre.rendering.output import DISPARITY, Output
 from daguerre.rendering.picture import Picture, in_order, path_of
 from daguerre.rendering.settings import RenderSettings
+from daguerre.scene.scene import Scene
 
 from . import checks
 from .frames import check_names, frame_numbers
@@ -29,12 +31,14 @@ class Plan:
         maps: Maps of each camera.
         flags: Flags of the job.
         interval_s: Time between checkpoints, s.
+        stage: Called with a frame's number and its scene, before it is drawn.
     """
 
     pictures: list[Picture]
     maps: MapFlags
     flags: JobFlags
     interval_s: float
+    stage: Callable[[int, Scene], None] = lambda frame, scene: None
 
     def maps_of(self, picture: Picture) -> MapFlags:
         """The maps of a picture, in files of their own."""

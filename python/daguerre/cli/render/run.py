@@ -95,6 +95,7 @@ def _job(plan: Plan, scene: Scene, path: Path) -> Job:
     )
     job = Job(scene, plan.pictures, told, Signals(), plan.interval_s)
     job.name = str(path)
+    job.staged = plan.stage
     return job
 
 

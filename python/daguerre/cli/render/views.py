@@ -7,7 +7,7 @@ alone.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -71,16 +71,35 @@ class Cameras:
         flags: Calibrations that replace lenses.
         changes: Parameters that the command line changes.
         plate: Camera of a photograph, whose size pictures have; None: there is none.
+        start: Time of frame 0, s.
     """
 
     names: str | None
     flags: CalibrationFlags
     changes: dict[str, Any]
     plate: PlateCamera | None = None
+    start: float = 0.0
 
     def views(self, stereo: str | None) -> list[View]:
         """The cameras, with those of a stereo pair."""
-        return views_of(self.names, self.flags.found, stereo)
+        found = {name: one.starting(self.start) for name, one in self.flags.found.items()}
+        return views_of(self.names, found, stereo)
+
+    def check_frames(
+        self, pictures: Sequence[picture.Picture], stereo: str | None, scene: Scene
+    ) -> None:
+        """Refuses frames at which a camera that was followed is not known.
+
+        Raises:
+            InputError: The message names the frame.
+        """
+        calibrated = {view.name: view.calibration for view in self.views(stereo)}
+        rates: dict[str, float] = {}
+        for one in pictures:
+            name, found = one.view.name, calibrated[one.view.name]
+            if found is not None:
+                fps = rates.setdefault(name, one.view.camera(scene).fps)
+                found.check(one.frame, scene.time + (one.frame or 0) / fps, fps)
 
     def size(self, view: View, res: str | None) -> tuple[int, int]:
         """Size of a camera's picture, px."""

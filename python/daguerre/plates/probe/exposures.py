@@ -45,7 +45,11 @@ class Exposures:
 
 
 def exposures_of(
-    shots: list[Shot], ev: Sequence[float] | None, scale: float | None, notes: Notes
+    shots: list[Shot],
+    ev: Sequence[float] | None,
+    scale: float | None,
+    notes: Notes,
+    flag: str = "--scale",
 ) -> Exposures:
     """Exposures by ``ev`` where given, else by EXIF.
 
@@ -54,6 +58,7 @@ def exposures_of(
         ev: Exposure of each, EV, more is brighter; None: by EXIF.
         scale: Luminance of a value of 1, cd/m2: at 0 EV, in linear files, or without EXIF.
         notes: Says what was not known.
+        flag: Flag of ``scale``, for the notes.
 
     Raises:
         UsageError: There are more or fewer ``ev`` than photographs.
@@ -72,10 +77,10 @@ def exposures_of(
                 f"{shots[1].path}: exposure: linear files do not say it; wanted --ev, such as -4,0"
             )
         return Exposures((scale or 1.0,), True)
-    return _by_exif(shots, scale, notes)
+    return _by_exif(shots, scale, notes, flag)
 
 
-def _by_exif(shots: list[Shot], scale: float | None, notes: Notes) -> Exposures:
+def _by_exif(shots: list[Shot], scale: float | None, notes: Notes, flag: str) -> Exposures:
     known = {name: [shot.facts.get(name) for shot in shots] for name in _WORDS}
     if len(shots) > 1:
         _refuse_missing(shots, known)
@@ -89,7 +94,7 @@ def _by_exif(shots: list[Shot], scale: float | None, notes: Notes) -> Exposures:
     if absolute:
         return Exposures(tuple(_WHITE / factors), True)
     missing = [_WORDS[name] for name, values in known.items() if None in values]
-    notes.add(f"EXIF lacks {', '.join(missing)}: values have no known unit; --scale gives one")
+    notes.add(f"EXIF lacks {', '.join(missing)}: values have no known unit; {flag} gives one")
     return Exposures(tuple(np.median(factors) / factors), False)
 
 

@@ -1,0 +1,148 @@
+"""A camera that was followed: a calibration for each of several moments, or frames.
+
+Between them it moves evenly, and turns evenly about one axis, so that its pictures have motion blur
+and its lines are exposed where it stood then. Source of poses: OpenTrackIO by time; pictures of
+COLMAP and ``transforms.json`` by the number in their names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+from typing import Any, Self
+
+import numpy as np
+
+from daguerre.camera.camera import Camera
+from daguerre.errors import InputError, UsageError
+from daguerre.files.numbered import PLACE, numbers_in, with_number
+from daguerre.motion.values import keys
+
+from .calibration import Calibration
+
+#: Facts of a camera that may change from one moment to the next.
+CHANGING = ("projection", "transform", "f_stop", "focus_distance")
+
+
+@dataclass(frozen=True)
+class Take(Calibration):
+    """Calibrations of one camera, one after the other; it is itself that of the first.
+
+    Attributes:
+        samples: Moments, s, rising, and the camera then; with a pattern numbers of frames.
+        pattern: Name of the pictures with # for the number of the frame; empty: moments are times.
+        file: Name of the file, for messages.
+        start: Time of frame 0, s.
+    """
+
+    samples: tuple[tuple[float, Calibration], ...] = ()
+    pattern: str = ""
+    file: str = "calibration"
+    start: float = 0.0
+
+    def camera(
+        self,
+        camera: Camera | None = None,
+        pixel_pitch: float | None = None,
+        *,
+        timeshift: bool = False,
+    ) -> Camera:
+        """A camera that moves so; frames are as far apart as those of the camera that is given.
+
+        Args: those of :meth:`Calibration.camera`.
+        """
+        made = super().camera(camera, pixel_pitch, timeshift=timeshift)
+        return made.with_(**self._changes(made.fps))
+
+    def starting(self, time_s: float) -> Self:
+        """The same take with frame 0 at another time, s; takes by time have times of their own."""
+        return replace(self, start=time_s) if self.pattern else self
+
+    def check(self, frame: int | None, time_s: float, fps: float) -> None:
+        """Refuses frames at which nobody knows where the camera was.
+
+        Args:
+            frame: Number of the frame; None: there is no sequence.
+            time_s: Its time in the scene, s.
+            fps: Frames per second.
+
+        Raises:
+            UsageError: There is no number for a pattern.
+            InputError: The frame is none of the take.
+        """
+        first, last = self.samples[0][0], self.samples[-1][0]
+        if self.pattern and frame is None:
+            raise UsageError(
+                f"--calibration {self.file}:{self.pattern}: # stands for the number of a frame; "
+                "wanted --frames"
+            )
+        if self.pattern and frame not in {moment for moment, _ in self.samples}:
+            raise InputError(
+                f"{self.file}: frame {frame}: wanted the pose of "
+                f"{with_number(self.pattern, frame or 0)}, got none; it has {len(self.samples)} "
+                f"frames of {first:g} .. {last:g}"
+            )
+        if not self.pattern and not first - 0.5 / fps <= time_s <= last + 0.5 / fps:
+            which = "the picture" if frame is None else f"frame {frame}"
+            raise InputError(
+                f"{self.file}: {which} is at {time_s:.6g} s: wanted a time of the take, "
+                f"{first:g} .. {last:.6g} s (--time moves frames)"
+            )
+
+    def _changes(self, fps: float) -> dict[str, Any]:
+        """Keys of what changes."""
+        found: dict[str, Any] = {}
+        for name in CHANGING:
+            known = [
+                (self.start + moment / fps if self.pattern else moment, value)
+                for moment, one in self.samples
+                if (value := _fact(one, name)) is not None
+            ]
+            if any(not np.array_equal(value, known[0][1]) for _, value in known):
+                found[name] = keys(known)
+        return found
+
+
+def _fact(one: Calibration, name: str) -> Any:
+    return one.projection if name == "projection" else one.settings.get(name)
+
+
+def take_of(cameras: Mapping[str, Calibration], pattern: str, file: str) -> Take:
+    """The take of pictures whose names have the number of the frame.
+
+    Args:
+        cameras: Pictures by their names.
+        pattern: Name with # for the number.
+        file: Name of their file, for messages.
+
+    Raises:
+        UsageError: No picture has such a name.
+    """
+    found = numbers_in(cameras, pattern)
+    if not found:
+        names = list(cameras)
+        more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+        raise UsageError(
+            f"{file}: wanted pictures named {pattern}, got {', '.join(names[:4])}{more}"
+        )
+    samples = tuple((float(n), cameras[name]) for n, name in found.items())
+    first = samples[0][1]
+    return Take(
+        first.projection,
+        label(pattern),
+        first.rig_from_camera,
+        first.pixel_pitch,
+        first.settings,
+        first.notes,
+        samples=samples,
+        pattern=pattern,
+        file=file,
+    )
+
+
+def label(pattern: str) -> str:
+    """Name of a camera whose pictures are named so: without number and ending."""
+    bare = PLACE.sub("", str(PurePosixPath(pattern).with_suffix("")), count=1)
+    return re.sub(r"[\W_]+$", "", bare) or "camera"
