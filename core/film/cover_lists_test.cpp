@@ -77,6 +77,7 @@ TEST_CASE("lists are the same in any order, split over threads and films") {
     again.add(0, 5, 5);   // is replaced
     again.set_words(words, kWidth);
     CHECK(again.words(kWidth) == words);
+    for (std::size_t i = 0; i < kPixels; ++i) CHECK(again.of(i) == forward.of(i));
 }
 
 TEST_CASE("words that are no lists are refused") {
@@ -116,6 +117,10 @@ TEST_CASE("shares of groups are ranked by magnitude, and what they leave out is 
     CHECK(two.cut_pixels == 1);
     CHECK(two.most_cut == 0.125f);
     CHECK(film.ranked(std::span(ids).first(2), 1).ids[0] == 70);   // objects beyond have no group
+    add({{1, -2.f}});   // lobes of a filter are negative
+    const Ranked negative = film.ranked(ids, 2);
+    CHECK(negative.ids == std::vector<std::uint32_t>{70, 80, 0, 0});
+    CHECK(negative.shares[1] == -0.3f);
     CHECK_THROWS_AS(Film({.width = 1, .height = 1, .coverage = true}).ranked(ids, 2), Error);
     CHECK_THROWS_AS(Film({.width = 1, .height = 1, .objects = true}), Error);
 }
