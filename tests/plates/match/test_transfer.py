@@ -9,6 +9,7 @@ from daguerre import sensors
 from daguerre.errors import InputError
 from daguerre.plates.match import cut, transfer
 from tests.support.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
+from tests.support.plate_textures import TEXTURES
 
 SHAPE = (1600, 2400)
 MODES = [
@@ -104,6 +105,23 @@ def test_texture_alone_tells_nothing():
     rough = np.exp(0.5 * np.random.default_rng(0).standard_normal(SHAPE)) * ramp(SHAPE)
     with pytest.raises(InputError, match="--flat FILE"):
         measured(shot("sony-a7r-ii", 100, rough))
+
+
+@pytest.mark.parametrize("name", ["sony-a7r-ii", "fujifilm-x-t4"])
+@pytest.mark.parametrize("iso", [160, 3200])
+@pytest.mark.parametrize("texture", TEXTURES)
+def test_fine_texture_is_refused_or_told(texture, iso, name):
+    """Either the gain is right within 7 %, or the stated error covers it, or there is none."""
+    raw = shot(name, iso, TEXTURES[texture]())
+    found, message = None, ""
+    try:
+        found = measured(raw)
+    except InputError as error:
+        message = str(error)
+    if found is None:
+        assert "--flat FILE" in message or "does not grow with light" in message
+    else:
+        assert abs(found.gain / raw.gain - 1) < max(0.07, 2 * found.gain_error)
 
 
 @pytest.mark.parametrize("light", [np.full((40, 40), 0.3), np.full((800, 800), 50.0)])
