@@ -60,8 +60,12 @@ def composite(
 ) -> int:
     """Puts rendered objects into a photograph: in light, or in the electrons of a raw file."""
     from daguerre.files.atomic import check_writable
+    from daguerre.io.exr.read import read_frame
+    from daguerre.plates.composite import remarks
     from daguerre.plates.composite.composite import composite as put
     from daguerre.plates.composite.composite import save
+    from daguerre.plates.files import read
+    from daguerre.plates.match.reader import read_plate_camera
 
     console.quiet = quiet
     for path in output:
@@ -71,7 +75,12 @@ def composite(
             raise UsageError(f"{path}: wanted another file than those that are read")
         check_writable(path)
     number = None if scale is None else q.plain_number("--plate-scale", scale, "a number above 0")
-    made = put(plate, objects, like_plate=like_plate, form=form, scale=number, seed=seed)
+    camera = None if like_plate is None else read_plate_camera(like_plate)
+    source, frame = read(plate), read_frame(objects)
+    made = put(source, frame, like_plate=camera, form=form, scale=number, seed=seed)
+    notes = [] if camera is None else remarks.of_camera(camera)
+    for text in (*remarks.of_plate(source, camera), *notes, *remarks.of_objects(frame, objects)):
+        console.note(text)
     for path in output:
         save(made, path)
         console.note(f"wrote {path}")

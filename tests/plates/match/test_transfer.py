@@ -8,6 +8,7 @@ import pytest
 from daguerre import sensors
 from daguerre.errors import InputError
 from daguerre.plates.match import cut, transfer
+from daguerre.plates.match.blocks import Blocks
 from tests.support.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
 from tests.support.plate_textures import TEXTURES
 
@@ -128,3 +129,20 @@ def test_fine_texture_is_refused_or_told(texture, iso, name):
 def test_small_and_clipped_pictures_are_refused(light):
     with pytest.raises(InputError, match="wanted at least 64 "):
         measured(shot("sony-a7r-ii", 100, light))
+
+
+def test_colours_that_tell_another_gain_are_no_sensor():
+    """Noise of one channel grows with light, that of a few blocks of the other does not."""
+    random = np.random.default_rng(2)
+    level = random.uniform(50, 4000, 8000)
+    channel = (np.arange(8000) % 40 == 0).astype(np.intp)
+    variance = 4 + np.where(channel == 0, level, 0.3 * level)
+
+    def squares(count):
+        return variance * random.chisquare(count, 8000) / count
+
+    found = Blocks(level, squares(9), squares(16), 2 * squares(2), channel)
+    with pytest.raises(InputError, match="tell each colour another gain"):
+        transfer.transfer_of(found, (0, 1e5), 2, "x.dng")
+    one = found.only(channel == 0)
+    assert transfer.transfer_of(one, (0, 1e5), 2, "x.dng").gain == pytest.approx(1, rel=0.03)
