@@ -49,6 +49,7 @@ def composite(
 ) -> int:
     """Puts rendered objects into a photograph: in light, or in the electrons of a raw file."""
     from daguerre.files.atomic import check_writable
+    from daguerre.plates.composite.remarks import of_camera
     from daguerre.plates.composite.shots import shots_of
 
     console.quiet = sequence.quiet
@@ -59,9 +60,11 @@ def composite(
     shots = shots_of(plate, objects, output, numbers, placing.seed)
     for path in (path for shot in shots for path in shot.outputs):
         check_writable(path)
-    silent = sequence.quiet or numbers is None
+    silent, how = sequence.quiet or numbers is None, placing.given()
+    for text in of_camera(how["like_plate"]):
+        console.note(text)
     with progress.choose(quiet=silent, as_json=sequence.json_progress) as shown:
-        _run(shots, placing.given(), shown, resume=sequence.resume)
+        _run(shots, how, shown, resume=sequence.resume)
     return 0
 
 
@@ -82,17 +85,26 @@ def _run(shots: list[Shot], how: dict[str, Any], shown: progress.Silent, *, resu
 
 
 def _make(shot: Shot, how: dict[str, Any], shown: progress.Silent) -> None:
+    from daguerre.io.exr.read import read_frame
+    from daguerre.plates.composite import remarks
     from daguerre.plates.composite.composite import composite as put
     from daguerre.plates.composite.composite import save
+    from daguerre.plates.files import read
 
     try:
-        made = put(shot.plate, shot.objects, **how, seed=shot.seed)
+        source, frame = read(shot.plate), read_frame(shot.objects)
+        made = put(source, frame, **how, seed=shot.seed)
     except InputError as error:
         if shot.frame is None:
             raise
         raise InputError(f"frame {shot.frame}: {error}") from None
+    camera = how["like_plate"]
+    # A sequence has one camera file, which was matched to one of its plates.
+    known = camera if shot.frame is None else None
+    for text in (*remarks.of_plate(source, known), *remarks.of_objects(frame, shot.objects)):
+        console.note(text)
     for path in shot.outputs:
         save(made, path)
         console.note(f"wrote {path}")
-    frame = {} if shot.frame is None else {"frame": shot.frame}
-    shown.event("done", **frame, outputs=[str(path) for path in shot.outputs])
+    number = {} if shot.frame is None else {"frame": shot.frame}
+    shown.event("done", **number, outputs=[str(path) for path in shot.outputs])

@@ -8,7 +8,9 @@ import pytest
 from daguerre import sensors
 from daguerre.errors import InputError
 from daguerre.plates.match import cut, transfer
+from daguerre.plates.match.blocks import Blocks
 from tests.support.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
+from tests.support.plate_textures import TEXTURES
 
 SHAPE = (1600, 2400)
 MODES = [
@@ -106,7 +108,41 @@ def test_texture_alone_tells_nothing():
         measured(shot("sony-a7r-ii", 100, rough))
 
 
+@pytest.mark.parametrize("name", ["sony-a7r-ii", "fujifilm-x-t4"])
+@pytest.mark.parametrize("iso", [160, 3200])
+@pytest.mark.parametrize("texture", TEXTURES)
+def test_fine_texture_is_refused_or_told(texture, iso, name):
+    """Either the gain is right within 7 %, or the stated error covers it, or there is none."""
+    raw = shot(name, iso, TEXTURES[texture]())
+    found, message = None, ""
+    try:
+        found = measured(raw)
+    except InputError as error:
+        message = str(error)
+    if found is None:
+        assert "--flat FILE" in message or "does not grow with light" in message
+    else:
+        assert abs(found.gain / raw.gain - 1) < max(0.07, 2 * found.gain_error)
+
+
 @pytest.mark.parametrize("light", [np.full((40, 40), 0.3), np.full((800, 800), 50.0)])
 def test_small_and_clipped_pictures_are_refused(light):
     with pytest.raises(InputError, match="wanted at least 64 "):
         measured(shot("sony-a7r-ii", 100, light))
+
+
+def test_colours_that_tell_another_gain_are_no_sensor():
+    """Noise of one channel grows with light, that of a few blocks of the other does not."""
+    random = np.random.default_rng(2)
+    level = random.uniform(50, 4000, 8000)
+    channel = (np.arange(8000) % 40 == 0).astype(np.intp)
+    variance = 4 + np.where(channel == 0, level, 0.3 * level)
+
+    def squares(count):
+        return variance * random.chisquare(count, 8000) / count
+
+    found = Blocks(level, squares(9), squares(16), 2 * squares(2), channel)
+    with pytest.raises(InputError, match="tell each colour another gain"):
+        transfer.transfer_of(found, (0, 1e5), 2, "x.dng")
+    one = found.only(channel == 0)
+    assert transfer.transfer_of(one, (0, 1e5), 2, "x.dng").gain == pytest.approx(1, rel=0.03)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli import console
 
 if TYPE_CHECKING:
     from daguerre.plates.match.plate_camera import PlateCamera
@@ -21,12 +22,16 @@ _WITH = {
 
 
 def read_plate(path: Path | None) -> PlateCamera | None:
-    """The camera file of the flag, if it was given."""
+    """The camera file of the flag, if it was given, with notes of what it lacks."""
     if path is None:
         return None
+    from daguerre.plates.composite.remarks import of_camera
     from daguerre.plates.match.reader import read_plate_camera
 
-    return read_plate_camera(path)
+    plate = read_plate_camera(path)
+    for text in of_camera(plate):
+        console.note(text)
+    return plate
 
 
 def over_plate(

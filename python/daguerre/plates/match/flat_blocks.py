@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from daguerre.plates.photograph import Photograph, encoded
 
 from .grain import SIDE
+from .texture import roughness
 
 FloatArray = NDArray[np.float64]
 #: Blocks that are looked at, and those that must be flat.
 _MOST, LEAST = 9000, 12
 _BINS, _FLATTEST = 16, 0.2
-#: Noise of flat blocks differs little; what has more than this times the usual is texture.
-_TEXTURE = 1.5
+#: Noise of flat blocks differs little; what has more than this times the low ones is texture.
+_TEXTURE, _USUAL = 1.6, 0.1
 #: Variance of means of 8 x 8 px over that of pixels: white noise has 1/64, grain of 4 px a quarter,
 #: edges nearly 1.
 _COARSE = 0.35
@@ -32,6 +33,8 @@ _PEAK = 4.0
 _LOUDEST = 0.12
 #: Variance below which there is none.
 _NOTHING = 1e-14
+#: Median roughness of a level's blocks; of noise 0.6. Those that texture leaves are nearer to 1.
+_SMOOTH = 0.72
 _CELL = 8
 #: Share of pixels at either end of the numbers that a channel of a block may have.
 _CLIPPED = 0.15
@@ -64,21 +67,37 @@ def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
     if photograph.kind == "display":
         small &= variance < _LOUDEST**2
     grainy = np.flatnonzero(small)
+    rough = np.ones(len(variance), np.float32)
+    rough[grainy] = roughness(photograph, blocks.corner[grainy], rounding(photograph))
+    grainy = grainy[rough[grainy] < 1]
     order = grainy[np.argsort(blocks.level[grainy].mean(axis=1))]
     if len(order) < LEAST:
         return None
     found = []
-    for part in np.array_split(order, max(min(_BINS, len(order) // (2 * LEAST)), 1)):
+    for part in np.array_split(order, max(min(_BINS, len(order) // LEAST), 1)):
         count = max(int(_FLATTEST * len(part)), min(LEAST, len(part)))
         flattest = part[np.argsort(structure[part])[:count]]
-        found.append(flattest[_alike(variance[flattest])])
+        flattest = flattest[alike(variance[flattest])]
+        if np.median(rough[flattest]) < _SMOOTH:
+            found.append(flattest)
+    if not found:
+        return None
     kept = np.concatenate(_without_peaks(found, variance))
     return blocks.only(kept) if len(kept) >= LEAST else None
 
 
-def _alike(variance: FloatArray) -> NDArray[np.bool_]:
+def rounding(photograph: Photograph) -> float:
+    """Variance of rounding to whole numbers, which a file made of the noise adds again."""
+    pixels = photograph.pixels
+    assert pixels is not None
+    if not np.issubdtype(pixels.dtype, np.integer):
+        return 0.0
+    return float(1 / 12 / np.iinfo(pixels.dtype).max ** 2)
+
+
+def alike(variance: FloatArray) -> NDArray[np.bool_]:
     """Which variances are those of noise: near the lower ones, which texture does not have."""
-    usual = np.quantile(variance, 0.25)
+    usual = np.quantile(variance, _USUAL)
     return np.asarray(variance <= _TEXTURE * max(float(usual), _NOTHING))
 
 

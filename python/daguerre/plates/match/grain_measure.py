@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from daguerre.plates.photograph import Photograph, encoded
 
-from .flat_blocks import FlatBlocks, flat_blocks
+from .flat_blocks import FlatBlocks, flat_blocks, rounding
 from .grain import FOLDED, HALF, SIDE, Grain, whole_spectrum
+from .likely import likely
 
 FloatArray = NDArray[np.float64]
 #: Levels at which the noise is told, at most, and blocks for each, at least.
@@ -20,11 +21,43 @@ _LEVELS, _EACH = 10, 6
 _MOST = 1500
 
 
-def grain_of(photograph: Photograph) -> Grain | None:
-    """The noise of a developed picture; None: nothing in it is flat."""
+def grain_of(
+    photograph: Photograph, electrons: float | None = None, notes: list[str] | None = None
+) -> Grain | None:
+    """The noise of a developed picture; None: nothing in it is flat.
+
+    Args:
+        photograph: A developed picture.
+        electrons: Those of a white pixel, against which noise is judged; None: it is not.
+        notes: Takes a sentence where parts were left out, or all.
+    """
+    notes = [] if notes is None else notes
     found = flat_blocks(photograph)
     if found is None:
+        notes.append("noise: no part of the picture is flat: none was measured")
         return None
+    if electrons is not None and photograph.kind == "display":
+        found = _likely(photograph, found, electrons, notes)
+    return None if found is None else _grain(photograph, found)
+
+
+def _likely(
+    photograph: Photograph, found: FlatBlocks, electrons: float, notes: list[str]
+) -> FlatBlocks | None:
+    """Flat blocks that are no texture, with a note of the others."""
+    kept, fault = likely(photograph, found, electrons)
+    if fault is not None:
+        count = 0 if kept is None else len(kept.corner)
+        notes.append(
+            f"noise: {len(found.corner) - count} of {len(found.corner)} parts that look flat are "
+            f"texture: alike in all colours, and {fault.times:.1f} times what light of that ISO "
+            f"explains: {'left out' if count else 'none was measured'}"
+        )
+    return kept
+
+
+def _grain(photograph: Photograph, found: FlatBlocks) -> Grain:
+    """The noise of flat blocks."""
     linear = photograph.kind == "linear"
     curves = [_curve(found.level[:, c], found.variance[:, c], photograph) for c in range(3)]
     count = min(len(levels) for levels, _ in curves)
@@ -42,16 +75,7 @@ def _curve(
     parts = np.array_split(order, max(min(_LEVELS, len(order) // _EACH), 1))
     levels = np.array([level[part].mean() for part in parts])
     each = np.array([variance[part].mean() for part in parts])
-    return levels, np.sqrt(np.maximum(each - _rounding(photograph), 0))
-
-
-def _rounding(photograph: Photograph) -> float:
-    """Variance of rounding to whole numbers, which a file made of the noise adds again."""
-    pixels = photograph.pixels
-    assert pixels is not None
-    if not np.issubdtype(pixels.dtype, np.integer):
-        return 0.0
-    return float(1 / 12 / np.iinfo(pixels.dtype).max ** 2)
+    return levels, np.sqrt(np.maximum(each - rounding(photograph), 0))
 
 
 def _spectra(photograph: Photograph, found: FlatBlocks, plain: Grain) -> FloatArray:

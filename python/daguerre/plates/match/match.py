@@ -24,6 +24,7 @@ from .falloff import Falloff, falloff_of
 from .grain import Grain
 from .grain_measure import grain_of
 from .lens_model import bench_of, lens_falloff, lens_response
+from .likely import white_electrons
 from .parameters import MATCH, MatchKeywords
 from .plate_camera import PlateCamera
 from .plate_sensor import UNKNOWN, plate_sensor, responsivity, with_transfer
@@ -34,6 +35,8 @@ from .transfer import Transfer, transfer_of
 Path = str | os.PathLike[str]
 #: Relative standard error of the read noise above which a note tells it.
 _UNSURE = 0.1
+#: The same of the gain.
+_UNSURE_GAIN = 0.05
 #: Look that is nearest to the pictures that cameras make.
 _USUAL_LOOK = "standard"
 
@@ -106,10 +109,7 @@ def _noise(
 ) -> tuple[Camera, Sensor | None, Transfer | Grain | None]:
     """The camera as it is exposed, its sensor, and the noise."""
     if photograph.raw is None:
-        grain = grain_of(photograph)
-        if grain is None:
-            notes.append("noise: no part of the picture is flat: none was measured")
-        return camera, None, grain
+        return camera, None, _grain(photograph, flats, camera, body, notes)
     iso = float(camera.iso)
     sensor, more = plate_sensor(
         photograph.raw, body, iso, camera.sensor_size[0], f"{photograph.path.stem}-sensor"
@@ -128,6 +128,29 @@ def _noise(
     return camera, sensor, measured
 
 
+def _grain(
+    photograph: Photograph,
+    flats: list[Photograph],
+    camera: Camera,
+    body: Sensor | None,
+    notes: list[str],
+) -> Grain | None:
+    """Grain of a developed photograph, or of the first flat that has some."""
+    pixel = 1e3 * camera.sensor_size[0] / photograph.size[0]
+    if body is not None:  # a part of a picture seems to have larger ones
+        pixel = min(pixel, body.pixel_pitch)
+    found = grain_of(photograph, white_electrons(float(camera.iso), pixel), notes)
+    if found is not None:
+        return found
+    for flat in flats:
+        found = grain_of(flat)
+        if found is not None:
+            notes.append(f"noise: that of {flat.path.name} was taken")
+            return found
+    notes.append("noise: objects get no grain; --flat FILE brings an even surface that has it")
+    return None
+
+
 def _transfer(
     photograph: Photograph, flats: list[Photograph], body: Sensor | None, notes: list[str]
 ) -> Transfer | None:
@@ -144,6 +167,11 @@ def _transfer(
             raise
         notes.append(f"{error}; gain and noise are those of {body.name}")
         return None
+    if found.gain_error > _UNSURE_GAIN:
+        notes.append(
+            "noise: few parts are flat, or texture is among them: gain known within "
+            f"{found.gain_error:.0%}; --flat FILE brings an even surface"
+        )
     if found.read_noise_error > UNKNOWN:
         notes.append("read noise: nothing in the picture is dark: that of the library was taken")
     elif found.read_noise_error > _UNSURE:

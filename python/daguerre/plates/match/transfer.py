@@ -31,6 +31,13 @@ _STEEP = 1000.0
 #: Standard deviations between a block's mean and the ends of the numbers.
 _CLEAR = 5.0
 ROUNDING = 1 / 12  # DN^2
+#: Relative difference of the gains that channels tell, at most.
+_ONE_GAIN = 0.5
+#: Share of what blocks have too much that the gain is off by, and how much is chance: a part, and
+#: a number over the root of the number of blocks, of the spread and of the mean of low squares.
+_OFF, _CHANCE, _BY_COUNT = 0.4, 0.05, (5.0, 1.5)
+#: Such an error from which on the gain is not told.
+_TOO_MIXED = 0.3
 #: No sensor has photosites that differ so much; texture looks like them.
 MOST_PRNU = 0.05
 
@@ -41,7 +48,7 @@ class Transfer:
 
     Attributes:
         gain: DN per electron.
-        gain_error: Its standard error, relative.
+        gain_error: Its standard error, relative; larger where texture is among the flat blocks.
         read_noise: Noise in the dark, DSNU included, e-.
         read_noise_error: Its standard error, relative; infinite if the picture has nothing dark.
         prnu: Standard deviation of the photosites' responses, relative.
@@ -87,18 +94,30 @@ def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where:
             "flat blocks whose noise does not grow with light; is it a raw file as the camera "
             "wrote it?"
         )
+    by_channel = tuple(_gain_of(flat, c, line) for c in range(channels))
+    if any(abs(gain - g) > _ONE_GAIN * g for gain in by_channel):
+        raise InputError(
+            f"{where}: noise: wanted flat parts of different brightness, got {len(flat.level)} "
+            "flat blocks that tell each colour another gain: --flat FILE brings an even surface"
+        )
+    mixed = _texture_among(flat, line)
+    if mixed > _TOO_MIXED:
+        raise InputError(
+            f"{where}: noise: wanted flat parts, got texture that is nearly flat, which leaves the "
+            f"gain unknown by {mixed:.0%}; --flat FILE brings an even surface"
+        )
     dark = a - ROUNDING
     read = float(np.sqrt(max(dark, 0.0))) / g
     spread = error[0] / (2 * dark) if dark > 0 else np.inf
     return Transfer(
         gain=float(g),
-        gain_error=float(error[1] / g),
+        gain_error=float(np.hypot(error[1] / g, mixed)),
         read_noise=read,
-        read_noise_error=float(np.hypot(spread, error[1] / g)),
+        read_noise_error=float(np.hypot(spread, np.hypot(error[1] / g, mixed))),
         prnu=float(np.sqrt(q)),
         blocks=len(flat.level),
         darkest=float(np.quantile(flat.level, 0.01) / g),
-        by_channel=tuple(_gain_of(flat, c, line) for c in range(channels)),
+        by_channel=by_channel,
     )
 
 
@@ -208,6 +227,20 @@ def _inverse(columns: FloatArray) -> FloatArray:
     scale[scale == 0] = 1
     unit = columns / scale
     return np.asarray(np.linalg.pinv(unit.T @ unit) / np.outer(scale, scale))
+
+
+def _texture_among(flat: Blocks, line: _Line) -> float:
+    """Relative error of the gain by texture that was taken for flat; 0 where there is none.
+
+    Mean squares of noise spread about their mean by a known amount, and low frequencies have as
+    much as high ones; texture makes both larger.
+    """
+    expected = line(flat.level)
+    spread = float(np.square(flat.high / expected - 1).mean() * HIGH_COUNT / 2)
+    low = float((flat.low / expected).mean())
+    chance = [1 + _CHANCE + share / np.sqrt(len(flat.level)) for share in _BY_COUNT]
+    found = [value - 1 for value, most in zip((spread, low), chance, strict=True) if value > most]
+    return _OFF * max(found, default=0.0)
 
 
 def _gain_of(flat: Blocks, channel: int, line: _Line) -> float:

@@ -1,0 +1,119 @@
+"""Grain that light can have made: texture that looks like noise is told by its size and colours.
+
+Even texture (grass far away, plaster, felt) has blocks like those of noise. Two things tell it.
+Photosites know nothing of each other, so slow changes of red are not those of green, while texture
+is dark and light in all colours at once. And the number of electrons, which ISO and size of a pixel
+tell, sets how large noise can be: where noise is alike in all colours (of cameras that smooth
+colours, of mono sensors), it is not above what that number explains.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import srgb
+from daguerre.plates.photograph import Photograph, encoded
+
+from .flat_blocks import LEAST, FlatBlocks, alike, rounding
+from .grain import SIDE
+
+FloatArray = NDArray[np.float64]
+#: Electrons that 1 um^2 gives for 1 lx s: sensors of the library have 1400 to 3600 (mono 10000).
+_YIELD = 2000.0
+#: White of a picture is 78 lx s / ISO (ISO 12232).
+_WHITE_LX_S = 78.0
+#: Noise in the dark: electrons, and a share of white.
+_DARK, _DARK_SHARE = 3.0, 1e-4
+#: Largest pixel that is believed, um: parts of pictures seem to have larger ones.
+_LARGEST = 6.0
+#: Deviation over what electrons explain, at most, where red and green are alike by ``_ALIKE``; it
+#: grows as they become less so. Developed shots by the library's sensors have up to 2.4 at -0.7 to
+#: -0.2, its mono sensors up to 1.2 at 1.
+_MOST, _ALIKE = 1.5, 0.5
+#: Likeness that noise has by chance: no more is no texture, unless most of the others are.
+_HARDLY, _HARDLY_IN_TEXTURE = 0.15, 0.08
+_BINS = 16
+
+
+@dataclass(frozen=True)
+class Signs:
+    """Signs of texture in blocks that look flat.
+
+    Attributes:
+        times: Their deviation over what electrons explain, the median.
+        alike: Correlation of their colours' slow changes.
+    """
+
+    times: float
+    alike: float
+
+    @property
+    def limit(self) -> float:
+        """Most that the deviation of noise can be, over what electrons explain."""
+        return np.inf if self.alike < _HARDLY else _MOST * _ALIKE / min(self.alike, _ALIKE)
+
+
+def white_electrons(iso: float, pixel_um: float) -> float:
+    """Electrons of a white pixel of an ordinary sensor."""
+    return _YIELD * _WHITE_LX_S / iso * min(pixel_um, _LARGEST) ** 2
+
+
+def likely(
+    photograph: Photograph, found: FlatBlocks, electrons: float
+) -> tuple[FlatBlocks | None, Signs | None]:
+    """Flat blocks whose noise light can have made.
+
+    Args:
+        photograph: A picture encoded for screens.
+        found: Its flat blocks.
+        electrons: Electrons of a white pixel.
+
+    Returns:
+        Blocks of levels that are likely, or None where too few are left; and signs of the others,
+        or None where all are likely.
+    """
+    order = np.argsort(found.level.mean(axis=1))
+    noise = expected(found.level[:, 1], electrons) + rounding(photograph)
+    times = np.sqrt(found.variance[:, 1] / noise)
+    parts = np.array_split(order, max(min(_BINS, len(order) // LEAST), 1))
+    parts = [part[alike(times[part] ** 2)] for part in parts]
+    signs = [
+        Signs(float(np.median(times[part])), _likeness(photograph, found.only(part)))
+        for part in parts
+    ]
+    faults = [sign for sign in signs if sign.times > sign.limit]
+    mostly = 2 * len(faults) > len(parts)  # what is left of texture is a little less so
+    good = [
+        part
+        for part, sign in zip(parts, signs, strict=True)
+        if sign.times <= sign.limit and not (mostly and sign.alike > _HARDLY_IN_TEXTURE)
+    ]
+    middle = sorted(faults, key=lambda one: one.times)[len(faults) // 2] if faults else None
+    kept = np.sort(np.concatenate([np.zeros(0, np.intp), *good]))
+    return (found.only(kept) if len(kept) >= LEAST else None), middle
+
+
+def expected(level: FloatArray, electrons: float) -> FloatArray:
+    """Variance of numbers for screens that electrons and reading explain, shape of the levels."""
+    light = np.maximum(srgb.to_linear(level), 1e-6)
+    slope = (srgb.from_linear(light * 1.001) - srgb.from_linear(light * 0.999)) / (0.002 * light)
+    dark = np.hypot(_DARK / electrons, _DARK_SHARE)
+    return np.asarray(slope**2 * (light / electrons + dark**2))
+
+
+def _likeness(photograph: Photograph, part: FlatBlocks) -> float:
+    """Correlation of green's slow changes with those of red and blue, the mean."""
+    pixels = photograph.pixels
+    assert pixels is not None
+    blocks = np.stack([pixels[y : y + SIDE, x : x + SIDE] for y, x in part.corner])
+    window = np.hanning(SIDE + 1)[:SIDE]
+    light = encoded(blocks)
+    light = light - light.mean(axis=(1, 2), keepdims=True)
+    waves = np.fft.fft2(light * (window[:, None] * window)[:, :, None], axes=(1, 2))
+    slow = np.r_[waves[:, 2:5, :5].reshape(-1, 3), waves[:, -4:-1, 1:5].reshape(-1, 3)]
+    power = (slow[:, :, None] * slow[:, None].conj()).real.sum(axis=0)
+    own = np.sqrt(np.maximum(np.diag(power), 1e-30))
+    return float((power / np.outer(own, own))[1, [0, 2]].mean())

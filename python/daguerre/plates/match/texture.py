@@ -1,0 +1,130 @@
+"""Texture that is finer than what judges flat blocks: fabric, floors, leaves, bricks.
+
+Noise of a block has a smooth spectrum and is alike all over it. Regular texture has lines in its
+spectrum; leaves, bricks and text are rough in one corner and even in another. Blocks with either
+are no flat ones, however little they have that is coarse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.plates.photograph import Photograph, encoded
+
+from .blocks import cosines
+from .grain import FOLDED, SIDE
+
+Floats = NDArray[np.float32]
+#: Mean power of 3 x 3 frequencies over the 72 around them; noise of 1 block in 100 has more.
+_LINE = 6.5
+#: Power that is added to both, of the mean: zeros of JPEG are not what lines stand out of.
+_FLOOR = np.float32(0.02)
+#: Deviation of the variances of a block's 16 cells, over their mean; noise of a sensor has 0.2 to
+#: 0.4. JPEG leaves some cells more than others: it grows by the share of cosines that it made zero.
+_UNEVEN, _UNEVEN_ZEROS, _ZEROS = 0.45, 2.2, 0.55
+#: Cosines that count as zero, standard deviations of rounding.
+_ZERO = 2.4
+_CELL, _SMOOTH = 8, 5
+#: Rounding's variances below which a block holds too few numbers to be judged.
+_FEW = 4.0
+_AT_ONCE = 512
+#: Frequencies that are judged: not what is coarser, nor the mosaic's own pattern of two pixels.
+_JUDGED = (
+    (FOLDED[:, None] < SIDE // 2 - 1)
+    & (FOLDED < SIDE // 2 - 1)
+    & (np.hypot(FOLDED[:, None], FOLDED) > 3)
+)
+
+
+def roughness(
+    photograph: Photograph, corner: NDArray[np.intp], rounding: float
+) -> NDArray[np.float32]:
+    """How much texture blocks have.
+
+    Args:
+        photograph: A developed picture.
+        corner: Upper left pixels of blocks, y and x, shape (N, 2).
+        rounding: Variance of rounding to whole numbers.
+
+    Returns:
+        float32, shape (N,): about 0.6 for noise, which 1 block in 50 brings above 1; 0 for what
+        has hardly a number beside the mean.
+    """
+    found = [np.zeros(0, np.float32)]
+    for light in _greys(photograph, corner):
+        variance = np.square(light).mean(axis=(1, 2))
+        zeros = np.maximum(_zeros(light, np.sqrt(rounding)) - _ZEROS, 0)
+        uneven = _unevenness(light) / (_UNEVEN + _UNEVEN_ZEROS * zeros)
+        rough = np.maximum(uneven, _line(light) / _LINE)
+        found.append(np.where(variance > _FEW * rounding, rough, 0).astype(np.float32))
+    return np.concatenate(found)
+
+
+def _greys(photograph: Photograph, corner: NDArray[np.intp]) -> Iterator[Floats]:
+    """Means of the channels of blocks without their planes, some hundred at once, (n, 32, 32)."""
+    pixels = photograph.pixels
+    assert pixels is not None
+    for at in range(0, len(corner), _AT_ONCE):
+        blocks = [pixels[y : y + SIDE, x : x + SIDE] for y, x in corner[at : at + _AT_ONCE]]
+        yield _without_planes(encoded(np.stack(blocks)).mean(axis=3))
+
+
+def _without_planes(light: Floats) -> Floats:
+    ramp = (np.arange(SIDE) - (SIDE - 1) / 2).astype(np.float32)
+    unit = np.float32(np.square(ramp).sum() * SIDE)
+    rest = light - light.mean(axis=(1, 2), keepdims=True)
+    down = (rest.sum(axis=2) @ ramp / unit)[:, None, None] * ramp[:, None]
+    across = (rest.sum(axis=1) @ ramp / unit)[:, None, None] * ramp
+    return np.asarray(rest - down - across, np.float32)
+
+
+def _line(light: Floats) -> Floats:
+    """How far the strongest line of a block's spectrum stands out, shape (n,)."""
+    window = np.hanning(SIDE + 1)[:SIDE].astype(np.float32)
+    waves = np.fft.fft2(light * window[:, None] * window)
+    power = np.asarray(np.square(waves.real) + np.square(waves.imag), np.float32)
+    inner, outer = _averaged(power, _ring(3)), _averaged(power, _ring(9))
+    around = (81 * outer - 9 * inner) / 72
+    floor = _FLOOR * power.mean(axis=(1, 2)) + np.finfo(np.float32).tiny
+    ratio = (inner / (around + floor[:, None, None]))[:, _JUDGED]
+    return np.asarray(ratio.max(axis=1), np.float32)
+
+
+def _zeros(light: Floats, rounding: float) -> Floats:
+    """Share of the cosines of 8 x 8 px, as JPEG has them, that are about zero, shape (n,)."""
+    cells = SIDE // _CELL
+    basis = np.kron(np.eye(cells, dtype=np.float32), cosines(_CELL))
+    return np.asarray((np.abs(basis @ light @ basis.T) < _ZERO * rounding).mean(axis=(1, 2)))
+
+
+def _unevenness(light: Floats) -> Floats:
+    """Relative deviation of the variances of cells, of what is finer than 5 px, shape (n,)."""
+    fine = light - _averaged(light, _row(_SMOOTH))
+    cells = SIDE // _CELL
+    squares = np.square(fine).reshape(-1, cells, _CELL, cells, _CELL).mean(axis=(2, 4))
+    squares = squares.reshape(-1, cells * cells)
+    mean = np.maximum(squares.mean(axis=1), np.finfo(np.float32).tiny)
+    return np.asarray(squares.std(axis=1, ddof=1) / mean, np.float32)
+
+
+def _averaged(blocks: Floats, mean: Floats) -> Floats:
+    """Means over squares: along rows and columns by the same matrix."""
+    return np.asarray(mean @ blocks @ mean.T, np.float32)
+
+
+def _ring(width: int) -> Floats:
+    """Matrix of means over so many neighbours, of which the first is beside the last."""
+    apart = np.abs(np.subtract.outer(np.arange(SIDE), np.arange(SIDE)))
+    near = np.minimum(apart, SIDE - apart) <= width // 2
+    return np.asarray(near / np.float32(width), np.float32)
+
+
+def _row(width: int) -> Floats:
+    """Matrix of means over so many neighbours; the ends go on as they are."""
+    at = np.clip(np.add.outer(np.arange(SIDE), np.arange(width) - width // 2), 0, SIDE - 1)
+    found = np.zeros((SIDE, SIDE), np.float32)
+    np.add.at(found, (np.arange(SIDE)[:, None], at), np.float32(1 / width))
+    return found
