@@ -24,9 +24,9 @@ as a raw file. From then on nothing knows how it was made: the camera is found f
 `--denoise` is the extra of that name; a pixel of these pictures is a photosite, as in a crop of the
 body's at 100 %.
 """
-#: The sheet whose making measures, and figures of the difference, by region.
-MEASURED = "plates_difference"
+#: Figures of differences, by picture and region, and the sheets whose making measures them.
 FIGURES = PAGES / "plates.json"
+MEASURED = {"plates_difference": "difference", "plates_modelled": "modelled"}
 CAMERA = (
     "--lens nikon-ai-s-50mm-f1.8 --f-stop 2.8 --focus 0.76 --shutter 1/125 "
     "--sensor sony-a7r-ii --iso 6400 --res 750x500"
@@ -36,8 +36,9 @@ LAYER_TIMES = 3
 
 
 def sheets() -> tuple[Sheet, ...]:
-    """Plate, objects, catchers, composite, truth and difference."""
-    return (_plate(), _objects(), _catchers(), _composite(), _truth(), _difference())
+    """Plate, objects, catchers, composite, truth and differences."""
+    first = _plate(), _objects(), _catchers(), _composite(), _truth()
+    return (*first, _difference(), _modelled())
 
 
 def _plate() -> Sheet:
@@ -109,47 +110,77 @@ def _truth() -> Sheet:
 
 
 def _difference() -> Sheet:
-    command = (
-        f"python script/docs/gallery/plate_difference.py {OUT}/shot.dng {OUT}/truth.dng "
-        f"{OUT}/object.exr out/plates/shot.glb {OUT}/camera.json sony-a7r-ii {OUT}/difference.png"
-    )
-    caption = "composite less truth: pixels x 2, and means of 8 x 8 pixels x 8"
-    panel = Photograph(caption, (command,), "difference.png")
-    return Sheet(MEASURED, "The difference", _figures(), 1, (panel,))
-
-
-def keep_figures() -> None:
-    """Puts the figures that were measured beside the page."""
-    FIGURES.write_text((ROOT / OUT / "difference.json").read_text())
-
-
-def _figures() -> str:
-    """Text of the difference, with its table if it was measured."""
     text = (
         "Composite less truth as they are developed, around middle grey. Both have noise, so the "
-        "difference has noise, everywhere; what is wrong would be seen as a shape. "
+        "difference has noise, everywhere; what is wrong is seen as a shape."
     )
-    if not FIGURES.exists():
-        return text
+    text = "\n\n".join([text, _OF_FIGURES, _OF_PLATE, *_table("difference")])
+    panel = Photograph(_LESS, (_compared("shot", "object", "difference"),), "difference.png")
+    return Sheet("plates_difference", "The difference", text, 1, (panel,))
+
+
+def _modelled() -> Sheet:
+    """The same without `--plate`: the set gives light as it is modelled."""
+    commands = (
+        f"daguerre render out/plates/shot.glb --like-plate {OUT}/camera.json --catcher set "
+        f"--background transparent --aov object_id --spp 28 --denoise -o {OUT}/alone.exr",
+        f"daguerre composite {OUT}/plate.dng {OUT}/alone.exr --like-plate {OUT}/camera.json "
+        f"-o {OUT}/modelled.dng",
+        _compared("modelled", "alone", "modelled"),
+    )
+    text = (
+        "Without `--plate` the objects see the set as it is modelled, here as well as can be. Now "
+        "they have the light of the truth. What is left in glass and steel are fine reflections, "
+        "of which both renders have few samples."
+    )
+    panel = Photograph(_LESS, commands, "modelled.png")
+    title = "The difference without the photograph as light"
+    return Sheet("plates_modelled", title, "\n\n".join([text, *_table("modelled")]), 1, (panel,))
+
+
+def _compared(shot: str, objects: str, to: str) -> str:
+    return (
+        f"python script/docs/gallery/plate_difference.py {OUT}/{shot}.dng {OUT}/truth.dng "
+        f"{OUT}/{objects}.exr out/plates/shot.glb {OUT}/camera.json sony-a7r-ii {OUT}/{to}.png"
+    )
+
+
+def keep_figures(sheet: str) -> None:
+    """Puts the figures that a sheet measured, if it does, beside the page."""
+    if sheet in MEASURED:
+        name = MEASURED[sheet]
+        known = _known() | {name: json.loads((ROOT / OUT / f"{name}.json").read_text())}
+        FIGURES.write_text(json.dumps(known, indent=1) + "\n")
+
+
+def _known() -> dict[str, dict[str, dict[str, float]]]:
+    return json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
+
+
+def _table(name: str) -> list[str]:
+    """The figures of a difference, if it was measured."""
+    if name not in _known():
+        return []
     rows = ["| | of the picture | light | mean | rms | rms, 8 x 8 |", "|---|---|---|---|---|---|"]
-    for name, f in json.loads(FIGURES.read_text()).items():
+    for region, f in _known()[name].items():
         rows.append(
-            f"| {name} | {f['share']:.0%} | {f['light']:.3f} | {f['mean']:+.3f} | "
+            f"| {region} | {f['share']:.0%} | {f['light']:.3f} | {f['mean']:+.3f} | "
             f"{f['rms']:.3f} | {f['rms_of_squares']:.2f} |"
         )
-    return f"{text}\n\n{_OF_FIGURES}\n\n" + "\n".join(rows)
+    return ["\n".join(rows)]
 
 
+_LESS = "composite less truth: pixels x 2, and means of 8 x 8 pixels x 8"
 _OF_FIGURES = """\
 In numbers, of the electrons of photosites that are not clipped: *light* is that of the composite
 over that of the truth; *mean* and *rms* are of the difference, in units of the noise that both
 shots have. Noise alone has an rms of 1, also as means of 8 x 8 photosites, where an error that a
-single photosite hides stands out. *The rest* compares two renders of the empty set: what it has
-above 1 is noise of rendering that denoising has left.
-
-Glass and steel show the photograph, and it is not all that there was: lamp and page are clipped in
-it, and the table mirrors them toward the camera only. That costs them light. Without `--plate`,
-the set being modelled as well as here, they have that of the truth within half a per cent."""
+single photosite hides stands out. *The rest* compares two renders of the set where pawns change
+nothing: what it has above 1 is noise of rendering that denoising has left."""
+_OF_PLATE = """\
+The set has the light of the truth to 0.2 %: shadows, reflections, colour that bleeds. Objects that
+get their light from the photograph are a little dark: it clips the lamp, which is a third to a half
+of it, and shows the set from one side only. The next picture is without it."""
 
 #: The row in the gallery and at the head of the walk: pictures of the sheets, smaller.
 OVERVIEW = (("plate.png", "objects.png"), ("catcher.png", "shot.png"))

@@ -196,8 +196,7 @@ def main() -> None:
         for sheet in sheets:
             if not given.only or sheet.name in given.only:
                 photograph_page.make(sheet, lambda command: run(command, None))
-                if sheet.name == into_plate.MEASURED:
-                    into_plate.keep_figures()
+                into_plate.keep_figures(sheet.name)
         if not given.only or any(name.startswith("calibrated") for name in given.only):
             photograph_page.overview("calibrated", calibrations.OVERVIEW)
         if not given.only or any(name.startswith("plates") for name in given.only):
