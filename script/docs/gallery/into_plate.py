@@ -179,8 +179,9 @@ single photosite hides stands out. *The rest* compares two renders of the set wh
 nothing: what it has above 1 is noise of rendering that denoising has left."""
 _OF_PLATE = """\
 The set has the light of the truth to 0.2 %: shadows, reflections, colour that bleeds. Objects that
-get their light from the photograph are a little dark: it clips the lamp, which is a third to a half
-of it, and shows the set from one side only. The next picture is without it."""
+get their light from the photograph are a little dark: it clips the lamp, and of what is glossy, as
+the table is, it has the light toward the camera alone. (With a set without gloss and a plate
+without clipping the red pawn has 1.000 of its light.) The next picture is without it."""
 
 #: The row in the gallery and at the head of the walk: pictures of the sheets, smaller.
 OVERVIEW = (("plate.png", "objects.png"), ("catcher.png", "shot.png"))
