@@ -19,9 +19,9 @@ Parts = list[tuple[Shape, int]]
 def add_papers(stage: Stage) -> None:
     """All of them."""
     _add_board(stage)
-    _add_books(stage)
-    _add_notebook(stage)
-    _add_pencils(stage)
+    add_books(stage)
+    add_notebook(stage)
+    add_pencils(stage)
     _add_rule(stage)
 
 
@@ -37,7 +37,7 @@ def _add_board(stage: Stage) -> None:
     put(stage, "board", parts, translation=on_desk(-0.365, 0.185), rotation=turn_y(16))
 
 
-def _add_books(stage: Stage) -> None:
+def add_books(stage: Stage) -> None:
     """Four in a pile, each turned another way."""
     leaves = stage.glb.add_picture("leaves", textures.png(textures.pages()))
     paper = stage.matter("leaves", baseColorTexture=leaves, roughnessFactor=0.9)
@@ -65,7 +65,7 @@ def _book(cloth: int, paper: int, wide: float, deep: float, thick: float) -> Par
     ]
 
 
-def _add_notebook(stage: Stage) -> None:
+def add_notebook(stage: Stage) -> None:
     """Open, two pages that bend into the fold."""
     page = stage.glb.add_picture("page", textures.jpeg(pictures.squared(), 88))
     paper = stage.matter("page", baseColorTexture=page, roughnessFactor=0.9)
@@ -97,7 +97,7 @@ def _upward(shape: Shape) -> Shape:
     return Shape(shape.positions, -shape.normals, uv, shape.indices[:, ::-1].copy())
 
 
-def _add_pencils(stage: Stage) -> None:
+def add_pencils(stage: Stage) -> None:
     """Seven in a cup of steel mesh."""
     tin = stage.matter(
         "tin", baseColorFactor=[0.09, 0.10, 0.11, 1], metallicFactor=1.0, roughnessFactor=0.35

@@ -64,8 +64,8 @@ def _around_the_window() -> list[shapes.Shape]:
     return parts
 
 
-def add_window(stage: Stage) -> None:
-    """A frame of four panes, a sill, and the day outside."""
+def add_window(stage: Stage, sky: float = DAY) -> None:
+    """A frame of four panes, a sill, and the day outside; `sky` is its luminance, cd/m2."""
     z0, z1, y0, y1 = WINDOW
     paint = stage.matter("window paint", baseColorFactor=[0.8, 0.8, 0.78, 1], roughnessFactor=0.35)
     wide, high, depth = z1 - z0, y1 - y0, 0.14
@@ -85,7 +85,7 @@ def add_window(stage: Stage) -> None:
         "day",
         pbrMetallicRoughness={"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0.0},
         emissiveTexture=view,
-        **stage.emission([DAY, DAY, DAY]),
+        **stage.emission([sky, sky, sky]),
     )
     outside = shapes.turned(shapes.square(wide, high), about_y(90))
     put(stage, "outside", [(outside, day)], translation=[LEFT - depth, (y0 + y1) / 2, at[2]])

@@ -21,10 +21,10 @@ BULB = 0.030, 800.0  # radius of the bulb, m, and what it gives, lm
 def add_things(stage: Stage) -> None:
     """All of them."""
     _add_lamp(stage)
-    _add_mug(stage)
-    _add_apple(stage)
+    add_mug(stage)
+    add_apple(stage)
     _add_fan(stage)
-    _add_plant(stage)
+    add_plant(stage)
 
 
 def _add_lamp(stage: Stage) -> None:
@@ -58,7 +58,7 @@ def _add_lamp(stage: Stage) -> None:
     put(stage, "lamp", parts, translation=on_desk(0.62, -0.30))
 
 
-def _add_mug(stage: Stage) -> None:
+def add_mug(stage: Stage) -> None:
     """Stoneware, blue outside and white inside, with coffee."""
     blue = stage.matter("glaze", baseColorFactor=[0.03, 0.10, 0.24, 1], roughnessFactor=0.18)
     white = stage.matter("white glaze", baseColorFactor=[0.8, 0.79, 0.75, 1], roughnessFactor=0.2)
@@ -76,7 +76,8 @@ def _add_mug(stage: Stage) -> None:
     put(stage, "mug", parts, translation=on_desk(0.14, 0.01), rotation=turn_y(-35))
 
 
-def _add_apple(stage: Stage) -> None:
+def add_apple(stage: Stage) -> None:
+    """Red, with a stalk."""
     red = stage.matter("apple", baseColorFactor=[0.50, 0.05, 0.03, 1], roughnessFactor=0.3)
     bark = stage.matter("stalk", baseColorFactor=[0.10, 0.06, 0.03, 1], roughnessFactor=0.9)
     profile = [(0, 0.006), (0.010, 0.002), (0.020, 0.001), (0.034, 0.018), (0.039, 0.042)]
@@ -137,7 +138,7 @@ def _blade(turned: float) -> Shape:
     return shapes.join(shapes.surface(grid), shapes.surface(grid[::-1]))
 
 
-def _add_plant(stage: Stage) -> None:
+def add_plant(stage: Stage) -> None:
     """A rubber plant in a pot of clay."""
     clay = stage.matter("clay", baseColorFactor=[0.50, 0.20, 0.11, 1], roughnessFactor=0.9)
     soil = stage.matter("soil", baseColorFactor=[0.03, 0.02, 0.014, 1], roughnessFactor=1.0)

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from daguerre.plates.composite.over import AUTO
 from numpy.typing import NDArray
 
 import daguerre as dg
-from daguerre.plates.composite.in_raw import composite_raw, mixed
+from daguerre.plates.composite.in_raw import composite_raw, kept_and_added, mixed
 from tests.plates.test_truth import CASES, SIZE
 
 SENSOR = "nikon-d5100"
@@ -63,9 +64,9 @@ def test_what_is_left_and_added_has_the_noise_of_one_shot(
         assert (kept * plate + added).var() < 0.8 * wanted.var()
 
 
-def frames(sensor: str, iso: float = 800.0) -> dict[str, dg.Frame]:
+def frames(sensor: str, iso: float = 800.0, name: str = "matte ground") -> dict[str, dg.Frame]:
     """The whole scene, the set, and the objects with what catchers caught, nearly without noise."""
-    case = CASES["matte ground"]
+    case = CASES[name]
     camera = case.camera.with_(sensor=sensor, iso=iso, shutter_time=1 / 30)
     return {
         kind: dg.render(
@@ -112,6 +113,29 @@ def test_photosites_without_a_change_keep_their_numbers() -> None:
     assert np.array_equal(raw.mosaic[far], plate.mosaic[far])
     assert np.array_equal(raw.mosaic, composite_raw(plate, made["caught"], seed=2).mosaic)
     assert not np.array_equal(raw.mosaic, plate.mosaic)
+
+
+def test_clean_objects_bring_what_their_catchers_caught() -> None:
+    """Denoising leaves no channels of the beauty; those of the catchers count as before."""
+    made = {kind: bright(frame) for kind, frame in frames(SENSOR, name="lamp").items()}
+    caught = made["caught"]
+    plate = made["empty"].expose(seed=1)
+    drawn = kept_and_added(plate, caught, AUTO)
+    clean = kept_and_added(plate, replace(caught, channels=None), AUTO)
+    assert np.array_equal(clean[0], drawn[0])
+    beside = maximum_of_neighbours(caught.alpha) == 0  # crosstalk brings light of the next one
+    bleeds = beside & (drawn[1] > 1)  # electron
+    assert bleeds.sum() > 40
+    assert clean[1][bleeds] == pytest.approx(drawn[1][bleeds], rel=1e-4)
+    covered = caught.alpha > 0.99
+    assert clean[1][covered].mean() == pytest.approx(drawn[1][covered].mean(), rel=0.05)
+
+
+def maximum_of_neighbours(plane: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The largest number of 5 x 5 pixels."""
+    padded = np.pad(plane, 2, mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (5, 5))
+    return np.asarray(windows.max(axis=(2, 3)))
 
 
 def test_bad_plates_are_refused() -> None:

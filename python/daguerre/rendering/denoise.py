@@ -20,6 +20,7 @@ from daguerre.color.spectra import xyz_of
 from daguerre.errors import InputError, UsageError
 
 from .adaptive import DARK
+from .denoise_catchers import clean_catchers
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -45,7 +46,7 @@ def check_available() -> None:
 
 
 def denoise(frame: Frame) -> Frame:
-    """A copy of the frame with a clean ``rgb``; the other channels stay as they are.
+    """A copy of the frame with clean ``rgb`` and layers of catchers; the rest stays as it is.
 
     Ghosts of the lens stay as they were drawn: the guides know nothing of them. Scattered light
     without ghosts is cleaned by itself. The frame has no channels of a sensor and no bands: noisy
@@ -62,7 +63,8 @@ def denoise(frame: Frame) -> Frame:
         InputError: It failed.
     """
     check_available()
-    clean, left = _cleaned(frame)
+    cleaner = Cleaner.of(frame)
+    clean, left = _cleaned(frame, cleaner)
     facts: dict[str, Any] = {"denoised": f"{PACKAGE} {version(PACKAGE)}"}
     if left is not None:
         facts["denoised_noise"] = left
@@ -71,7 +73,7 @@ def denoise(frame: Frame) -> Frame:
     rgb = clean if frame.flare is None else clean + _by_the_lens(frame.flare, frame.metadata)
     return replace(
         frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None,
-        metadata={**frame.metadata, **facts},
+        metadata={**frame.metadata, **facts}, **clean_catchers(frame, cleaner),
     )  # fmt: skip
 
 
@@ -84,12 +86,11 @@ def _by_the_lens(flare: Image, facts: Mapping[str, Any]) -> Image:
 
 def noise_after(frame: Frame) -> float | None:
     """The relative error that denoising this frame would leave; None: it cannot be known."""
-    return _cleaned(frame)[1]
+    return _cleaned(frame, Cleaner.of(frame))[1]
 
 
-def _cleaned(frame: Frame) -> tuple[Image, float | None]:
+def _cleaned(frame: Frame, cleaner: Cleaner) -> tuple[Image, float | None]:
     """The scene without noise and without ghosts, and the error that is left; None: not known."""
-    cleaner = Cleaner.of(frame)
     scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
     clean = cleaner(scene)
     return clean, _error_left(frame, cleaner, scene, clean)

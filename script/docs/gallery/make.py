@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 
 import calibrations
+import into_plate
 import numpy as np
 import OpenImageIO as oiio
 import photograph_page
@@ -36,6 +37,7 @@ SCENES = (
     ["imperfections.py"],
     ["exposure.py"],
     ["calibrated.py"],
+    ["plates.py"],
 )
 
 INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
@@ -76,6 +78,14 @@ ABOUT_CALIBRATED = """## Calibrated cameras
 
 One desk through files as OpenCV, ROS and Kalibr write them: a phone, a fisheye of 190 degrees, the
 left one of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
+"""
+
+ABOUT_PLATES = """## Into the plate
+
+![A desk; pawns alone; the light that they take and add; the desk with the pawns.](plates.jpg)
+
+A plate, objects with alpha, what the set catches of them, and the composite; and how far it is from
+the photograph that there would have been. [Larger, with the commands](plates.md).
 """
 
 ABOUT_NOISE = """## Noise in the same time
@@ -166,11 +176,11 @@ def section(pictures: list[Picture]) -> list[str]:
 def main() -> None:
     """Renders what was asked for, then writes the page."""
     every = [*PICTURES, *GLASS, *LIGHT, *MOTION]
-    sheets = [*photographs.SHEETS, *calibrations.SHEETS]
+    sheets = [*photographs.SHEETS, *calibrations.SHEETS, *into_plate.sheets()]
     names = [picture.name for picture in [*every, *WORDS, *sheets]]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path)
-    parser.add_argument("--only", action="append", choices=["calibrated", *names])
+    parser.add_argument("--only", action="append", choices=["calibrated", "plates", *names])
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     if not given.page:
@@ -186,10 +196,13 @@ def main() -> None:
         for sheet in sheets:
             if not given.only or sheet.name in given.only:
                 photograph_page.make(sheet, lambda command: run(command, None))
+                into_plate.keep_figures(sheet.name)
         if not given.only or any(name.startswith("calibrated") for name in given.only):
             photograph_page.overview("calibrated", calibrations.OVERVIEW)
+        if not given.only or any(name.startswith("plates") for name in given.only):
+            photograph_page.overview("plates", into_plate.OVERVIEW, 900)
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
-    page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED]
+    page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED, ABOUT_PLATES]
     page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_NOISE, ABOUT_BLENDER]
     page += [ABOUT_MOTION, *section(MOTION)]
     (PAGES / "README.md").write_text("\n".join(page) + CREDITS)
@@ -199,6 +212,9 @@ def main() -> None:
     )
     (PAGES / "calibrated.md").write_text(
         photograph_page.page(calibrations.INTRODUCTION, calibrations.SHEETS)
+    )
+    (PAGES / "plates.md").write_text(
+        photograph_page.page(into_plate.INTRODUCTION, into_plate.sheets())
     )
 
 

@@ -20,11 +20,10 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.checks import short, whole
 from daguerre.errors import InputError, UsageError
-from daguerre.exposure.expose import chosen_ev, light_of
+from daguerre.exposure.expose import Light, chosen_ev, light_of
 from daguerre.frame.frame import Frame
 from daguerre.frame.over import AUTO, RATIO, Change, change_of
 from daguerre.frame.raw import Raw
-from daguerre.frame.seen_by import seen_of
 from daguerre.sensors.sensor import Sensor
 
 Mosaic = NDArray[np.float32]
@@ -57,7 +56,7 @@ def composite_raw(plate: Raw, frame: Frame, *, form: str = AUTO, seed: int = 0) 
             f"composite: size: wanted the plate's {plate.width} x {plate.height} px, "
             f"got {shown.width} x {shown.height} px"
         )
-    kept, added = _mosaics(plate, shown, form)
+    kept, added = kept_and_added(plate, shown, form)
     rng = np.random.Generator(np.random.Philox(whole(seed, "seed", 0, 2**64 - 1)))
     read = plate.sensor.read_noise_at(plate.iso)
     electrons = mixed(plate.electrons(), kept, added, read, rng)
@@ -88,11 +87,11 @@ def mixed(
     return np.asarray(kept * plate + noise + rng.poisson(np.maximum(added, 0)), np.float32)
 
 
-def _mosaics(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
+def kept_and_added(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
     """Kept share and added electrons of each photosite, behind the sensor's filters."""
     body = plate.sensor
     light = light_of(frame, body, chosen_ev(frame, None))
-    change = _change(frame, body, light.planes, light.electrons, form)
+    change = _change(frame, body, light, form)
     one = np.eye(len(body.channels), dtype=np.float32)
     kept = _core.expected_electrons(_planes(np.clip(change.factor, 0, 1)), _shot(body, one, 0.0))
     # More than all of the plate (the ratio alone does that) is light that comes to it.
@@ -104,17 +103,19 @@ def _mosaics(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
     return np.asarray(kept), np.asarray(added)
 
 
-def _change(
-    frame: Frame, body: Sensor, planes: Mosaic, electrons: NDArray[np.float64], form: str
-) -> Change:
-    """The change in electrons of each channel of the sensor."""
-    weights = electrons.T.astype(np.float32)
-    light = np.asarray(planes @ weights)
+def _change(frame: Frame, body: Sensor, light: Light, form: str) -> Change:
+    """The change in electrons of each channel of the sensor.
+
+    Light of the objects may be fitted from colours, which denoising leaves alone; what catchers
+    caught is a change of the sensor's own channels, which denoising leaves as they were drawn.
+    """
+    added = np.asarray(light.planes @ light.electrons.T.astype(np.float32))
     if frame.catcher is None:
-        return change_of(light, frame.alpha, None, None, form)
-    if frame.catcher_channels is not None and seen_of(frame, body).source == "channels":
-        caught = frame.catcher_channels @ weights
-        return change_of(light, frame.alpha, caught, frame.catcher_ratio_channels, form)
+        return change_of(added, frame.alpha, None, None, form)
+    if frame.catcher_channels is not None and frame.metadata.get("sensor_hash") == body.hash:
+        per_one = (body.electrons_per_lux_s() * light.lux_s).astype(np.float32)
+        caught = frame.catcher_channels * per_one
+        return change_of(added, frame.alpha, caught, frame.catcher_ratio_channels, form)
     raise InputError(
         "composite: catchers in raw: wanted a frame with the channels of the plate's sensor "
         f"(render with --sensor {body.name})"

@@ -1,0 +1,72 @@
+"""Layers of catchers without noise: what is added and what is taken away, each by itself.
+
+The denoiser takes light, which is never below 0, and a change is. Filtered apart, both parts keep
+their means, and so does their difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
+
+Image = NDArray[np.float32]
+
+#: Layers, and the value that says that nothing changes.
+_NEUTRAL = {
+    "catcher": 0.0,
+    "catcher_ratio": 1.0,
+    "catcher_channels": 0.0,
+    "catcher_ratio_channels": 1.0,
+}
+#: Pixels around a change beyond which there is none: there a plate keeps its bits.
+REACH = 8
+
+
+def clean_catchers(frame: Frame, clean: Callable[[Image], Image]) -> dict[str, Any]:
+    """The layers of a frame's catchers without noise, by name; empty if it has none.
+
+    Args:
+        frame: The picture as it was drawn.
+        clean: Filter of pictures (H, W, 3) of at least 0.
+    """
+    made: dict[str, Any] = {}
+    for name, neutral in _NEUTRAL.items():
+        layer: Image | None = getattr(frame, name)
+        if layer is not None:
+            change = np.nan_to_num(layer - np.float32(neutral))
+            made[name] = np.asarray(_change(change, clean) + np.float32(neutral), np.float32)
+            if neutral:
+                np.maximum(made[name], 0, out=made[name])
+    return made
+
+
+def _change(change: Image, clean: Callable[[Image], Image]) -> Image:
+    """A change without noise, shape (H, W, C); 0 where none is near."""
+    parts = [np.maximum(sign * change, 0) for sign in (1, -1)]
+    more, less = (_of_channels(part, clean) if part.any() else part for part in parts)
+    near = _near(np.asarray(change.any(axis=2)))
+    return np.where(near[..., None], more - less, np.float32(0))
+
+
+def _of_channels(light: Image, clean: Callable[[Image], Image]) -> Image:
+    """Light of any number of channels: three at once, others one by one."""
+    if light.shape[2] == 3:
+        return clean(light)
+    alone = [clean(np.repeat(light[..., c, None], 3, axis=2)) for c in range(light.shape[2])]
+    return np.stack([image.mean(axis=2) for image in alone], axis=2)
+
+
+def _near(changed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Pixels with a changed one in the square of ``REACH`` around them."""
+    found = changed
+    for axis in (0, 1):
+        wide = np.pad(found, [(REACH, REACH) if a == axis else (0, 0) for a in (0, 1)])
+        windows = np.lib.stride_tricks.sliding_window_view(wide, 2 * REACH + 1, axis)
+        found = np.asarray(windows.any(axis=2))
+    return found
