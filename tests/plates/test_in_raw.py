@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from daguerre.plates.composite.over import AUTO
 from numpy.typing import NDArray
 
 import daguerre as dg
+from daguerre.frame.over import AUTO
 from daguerre.plates.composite.in_raw import composite_raw, kept_and_added, mixed
 from tests.plates.test_truth import CASES, SIZE
 

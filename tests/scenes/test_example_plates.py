@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import typer.main
-from daguerre.plates.composite.over import change_of_rgb
 
 import daguerre as dg
 from daguerre import cli
+from daguerre.frame.over import change_of_rgb
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "script" / "docs" / "gallery"))
