@@ -7,7 +7,9 @@ namespace dg::embree {
 
 Device::Device() : handle_(rtcNewDevice(nullptr)) {
     if (!handle_) {
-        throw Error("Embree: no device: error " + std::to_string(rtcGetDeviceError(nullptr)) +
+        const RTCError code = rtcGetDeviceError(nullptr);   // asking forgets it
+        if (code == RTC_ERROR_OUT_OF_MEMORY) throw Error("Embree: no device: out of memory");
+        throw Error("Embree: no device: error " + std::to_string(code) +
                     " (the CPU or the installation of Embree is not supported)");
     }
     rtcSetDeviceErrorFunction(handle_.get(), &Device::on_error, this);
