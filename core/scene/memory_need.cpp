@@ -35,7 +35,7 @@ void check_memory(const SceneDescription& d) {
     const std::string counted = std::to_string(need.triangles) + " triangles of " +
                                 std::to_string(MemoryNeed::kTriangle) + " bytes and " + std::to_string(need.lamps) +
                                 " emissive ones of " + std::to_string(MemoryNeed::kLamp);
-    throw input_error("memory", counted, "at most the " + gigabytes(d.free_memory) + " that are free",
+    throw input_error("memory", counted, "at most the " + gigabytes(d.free_memory) + " that are left",
                       gigabytes(need.bytes()));
 }
 

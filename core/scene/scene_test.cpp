@@ -72,7 +72,7 @@ TEST_CASE("a scene that does not fit into memory is refused with what it needs")
     CHECK(build_error(d) == "");
     d.free_memory = needed - 1;
     CHECK(build_error(d) ==
-          "memory: 2 triangles of 50 bytes and 2000 emissive ones of 400: wanted at most the 0.0008 GB that are free, "
+          "memory: 2 triangles of 50 bytes and 2000 emissive ones of 400: wanted at most the 0.0008 GB that are left, "
           "got 0.0008 GB");
     for (Instance& instance : d.instances) instance.material = 1;
     CHECK(build_error(d) == "");

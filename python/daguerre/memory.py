@@ -1,11 +1,72 @@
-"""Memory that this machine still has for us, so that what cannot fit is refused and not killed."""
+"""Memory that we may still take, so that what cannot fit is refused and not killed.
+
+That is what the machine and its control groups have free, as long as the process stays below its
+limit: 80 % of what they give in all, or what was asked for (``set_limit``).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
+from .errors import UsageError
+
 PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
+#: Share of what there is in all that a process takes, if nobody says another limit.
+SHARE = 0.8
+_asked: float | None = None
+
+
+def set_limit(limit: float | None) -> None:
+    """Limits what this process takes.
+
+    Args:
+        limit: Bytes, or a share of what the machine or the control group gives if at most 1; None:
+            ``SHARE``.
+
+    Raises:
+        UsageError: It is not above 0.
+    """
+    global _asked
+    if limit is not None and not 0 < limit < math.inf:
+        raise UsageError(f"memory: wanted a number of bytes, or a share up to 1; got {limit!r}")
+    _asked = limit
+
+
+def left_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
+    """Memory that this process may still take, bytes; None: nobody tells."""
+    free, most = free_bytes(proc, groups), limit_bytes(proc, groups)
+    told = [
+        count
+        for count in (free, None if most is None else most - own_bytes(proc))
+        if count is not None
+    ]
+    return max(min(told), 0) if told else None
+
+
+def limit_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
+    """Memory that this process may take in all, bytes; None: nobody tells what there is."""
+    if _asked is not None and _asked > 1:
+        return int(_asked)
+    given = total_bytes(proc, groups)
+    return None if given is None else int((SHARE if _asked is None else _asked) * given)
+
+
+def total_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
+    """Memory of the machine, or less where a control group of ours has a limit; without swap."""
+    facts = _numbers(proc / "meminfo")
+    found = [1024 * facts["MemTotal:"]] if "MemTotal:" in facts else []
+    for folder in _groups(proc, groups):
+        limits = (_number(folder / name) for name in ("memory.max", "memory.limit_in_bytes"))
+        found += [limit for limit in limits if limit is not None]
+    return min(found) if found else None
+
+
+def own_bytes(proc: Path = PROC) -> int:
+    """Memory that is this process's own: files that it reads can be dropped."""
+    facts = _numbers(proc / "self" / "status")
+    return 1024 * (facts.get("RssAnon:", 0) + facts.get("VmSwap:", 0))
 
 
 def free_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:

@@ -197,6 +197,20 @@ def sample_range(flag: str, text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def memory_bytes(flag: str, text: str) -> float:
+    """Bytes, or a share of what there is, up to 1: 8GB, 512MiB, 50%."""
+    wanted = "an amount of memory above 0 such as 8GB, 512MiB or 50%"
+    plain = text.strip().lower()
+    share = plain.endswith("%")
+    units = {"b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
+    units |= {"kib": 2.0**10, "mib": 2.0**20, "gib": 2.0**30, "tib": 2.0**40}
+    units = {"share": 0.01} if share else units
+    value = _quantity(flag, plain.removesuffix("%"), units, "share" if share else "", wanted)
+    if not (0 < value <= 1 if share else 1 < value < math.inf):
+        raise _bad(flag, wanted, text)
+    return value
+
+
 def _quantity(flag: str, text: str, units: dict[str, float], default: str, wanted: str) -> float:
     match = _NUMBER.fullmatch(text.strip())
     unit = (match[2] or default) if match else ""

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from daguerre import memory
+import daguerre as dg
+from daguerre import memory, units
+from daguerre.cli import main
+from daguerre.errors import UsageError
+from daguerre.rendering.session import Session
+from tests.support.make_gltf import triangle
 
 GB = 10**9
 
@@ -75,3 +81,84 @@ def test_where_nobody_tells(tmp_path: Path) -> None:
 )
 def test_words(count: float, words: str) -> None:
     assert memory.shown(count) == words
+
+
+@pytest.mark.parametrize(
+    ("limit", "group", "left"),
+    [
+        (None, None, 9 << 30),
+        (None, 4 * GB, int(0.8 * 4 * GB) - GB),  # of the container, not of the machine
+        (0.5, None, (8 << 30) - GB),
+        (2 * GB, None, GB),
+        (GB // 2, None, 0),
+        (100 * GB, None, 9 << 30),  # what is free is all that there is
+    ],
+)
+def test_a_process_stays_below_its_limit(
+    tmp_path: Path, limit: float | None, group: int | None, left: int
+) -> None:
+    files = {"memory.max": "max\n" if group is None else f"{group}\n", "memory.current": "0\n"}
+    machine(tmp_path, NEW, files)
+    status = f"VmRSS:\t 5000000 kB\nRssAnon:\t {GB // 1024} kB\nVmSwap:\t 0 kB\n"
+    (tmp_path / "proc/self/status").write_text(status)
+    try:
+        memory.set_limit(limit)
+        found = memory.left_bytes(tmp_path / "proc", tmp_path / "groups")
+    finally:
+        memory.set_limit(None)
+    assert found == pytest.approx(left, abs=1024)
+
+
+def test_limits_as_people_type_them() -> None:
+    for text, value in {"8GB": 8e9, "512 MiB": 2**29, "50%": 0.5, "1.5tb": 1.5e12}.items():
+        assert units.memory_bytes("--memory", text) == pytest.approx(value)
+    for text in ("0", "8", "-1GB", "150%", "0%", "8G B", "inf", "x", ""):
+        with pytest.raises(UsageError, match="--memory: wanted an amount of memory above 0"):
+            units.memory_bytes("--memory", text)
+    with pytest.raises(UsageError, match="memory: wanted a number of bytes"):
+        memory.set_limit(0)
+
+
+def test_a_render_above_its_limit_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = str(triangle().glb(tmp_path / "one.glb"))
+    out = tmp_path / "a.exr"
+    command = ["render", scene, "--res", "4000x3000", "--lens", "pinhole", "-o", str(out), "-q"]
+    try:
+        assert main([*command, "--memory", "1GB"]) == 3
+    finally:
+        memory.set_limit(None)
+    told = capsys.readouterr().err
+    assert "picture: memory: wanted at most the" in told
+    assert "--memory" in told
+    assert not out.exists()
+
+
+def test_memory_that_ends_within_a_pass_is_one_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = str(triangle().glb(tmp_path / "one.glb"))
+    command = ["render", scene, "--res", "40x30", "--lens", "pinhole", "--sky", "1,1,1", "-q"]
+    command += ["--spp", "64", "--checkpoint", "0.000001", "-o", "a.exr"]
+    draw, passes = Session._add, 0
+
+    def fails(self: Session, *arguments: object) -> bool:
+        nonlocal passes
+        passes += 1
+        if passes == 3:
+            raise MemoryError
+        return draw(self, *arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Session, "_add", fails)
+    assert main(command) == 3
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "a.checkpoint.exr keeps the samples before; --resume" in told
+    monkeypatch.setattr(Session, "_add", draw)
+    assert main([*command, "--resume"]) == 0
+    resumed = dg.load_frame("a.exr")
+    Path("a.exr").unlink()
+    assert main(command) == 0
+    assert np.array_equal(resumed.rgb, dg.load_frame("a.exr").rgb)

@@ -26,7 +26,7 @@ def test_it_is_held_against_what_is_free() -> None:
     needed = 500_000 * film_memory.pixel_bytes(layout())
     film_memory.check_film(layout(), free=needed)
     with pytest.raises(
-        InputError, match=r"memory: wanted at most the .* that are free, got"
+        InputError, match=r"memory: wanted at most the .* that are left, got"
     ) as got:
         film_memory.check_film(layout(), free=needed // 2)
     assert "1000 x 500 px" in str(got.value)
@@ -45,7 +45,7 @@ def test_what_is_kept_counts(keeps: str) -> None:
 
 
 def test_a_session_refuses_before_there_is_a_film(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "free_bytes", lambda: 10_000_000)
+    monkeypatch.setattr(memory, "left_bytes", lambda: 10_000_000)
     scene = scenes.furnace(dg.Material(dg.Diffuse((0.5,) * 3)))
     with pytest.raises(InputError, match="2000 x 1000 px of 180 bytes: 360 MB"):
         Session(scene, dg.Camera(), resolution=(2000, 1000), light_paths="off")
@@ -64,7 +64,7 @@ class Watching(Reporter):
 def test_a_job_refuses_before_its_first_look(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(memory, "free_bytes", lambda: 10_000_000)
+    monkeypatch.setattr(memory, "left_bytes", lambda: 10_000_000)
     scene = scenes.furnace(dg.Material(dg.Diffuse((0.5,) * 3)))
     settings = dg.RenderSettings.of(resolution=(2000, 1000), light_paths="off")
     output = Output((tmp_path / "a.exr",))

@@ -17,7 +17,8 @@ from typing import Any
 
 import typer
 
-from daguerre.errors import DaguerreError, suggest
+from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.memory import left_bytes, shown
 
 from . import console
 
@@ -106,6 +107,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except (KeyboardInterrupt, typer.Abort):
         return _fail("interrupted", INTERRUPTED)
+    except MemoryError:
+        return _fail(
+            f"memory: wanted more than there is ({shown(left_bytes() or 0)} are left); "
+            "try smaller pictures or files",
+            InputError.exit_code,
+        )
     except Exception as error:
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)
@@ -137,8 +144,6 @@ def _internal(error: Exception) -> int:
     if os.environ.get("DAGUERRE_DEBUG") == "1":
         traceback.print_exception(error)
     what = f"{type(error).__name__}: {error}"
-    if isinstance(error, MemoryError):
-        what = "not enough memory"
     return _fail(
         f"internal: {what}; this is a fault of daguerre, please report it with the command "
         "and the output of DAGUERRE_DEBUG=1",

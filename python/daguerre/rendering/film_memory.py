@@ -48,7 +48,7 @@ def check_film(
         layout: Layout of the film.
         truth: Whether the frame gets ground truth.
         scatter: Whether scattered light is drawn.
-        free: Bytes that there are; None: as the machine tells.
+        free: Bytes that may be taken; None: as ``memory.left_bytes`` tells.
 
     Raises:
         InputError: The message tells how many pixels there is room for.
@@ -70,13 +70,13 @@ def check_denoised(size: tuple[int, int], *, free: int | None = None) -> None:
 
 
 def _check(size: tuple[int, int], each: int, fixed: int, advice: str, free: int | None) -> None:
-    free = memory.free_bytes() if free is None else free
+    free = memory.left_bytes() if free is None else free
     (width, height), shown = size, memory.shown
     if free is None or (needed := each * width * height + fixed) <= free:
         return
     most = max((free - fixed) // each, 1)
     raise InputError(
-        f"picture: memory: wanted at most the {shown(free)} that are free, got {width} x {height} "
+        f"picture: memory: wanted at most the {shown(free)} that are left, got {width} x {height} "
         f"px of {each} bytes: {shown(needed)}; draw it in parts of at most {most:,} pixels "
-        f"(--crop) and join them (daguerre merge), {advice}, or draw fewer pixels"
+        f"(--crop) and join them (daguerre merge), {advice}, draw fewer pixels, or raise --memory"
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
-from daguerre.errors import DaguerreError
+from daguerre.errors import DaguerreError, InputError
 from daguerre.scene.scene import Scene
 
 from .checkpoint import INTERVAL_S, Checkpoint
@@ -206,11 +206,27 @@ class Drawing:
             self.tell.note(f"resuming at {self._samples()} of {work.total():.6g} samples")
         elif resume:
             self.tell.note(f"nothing to resume: no {self.checkpoint.path}; starting anew")
-        if not self.loop.run():
+        try:
+            complete = self.loop.run()
+        except MemoryError as error:
+            raise InputError(self._out_of_memory()) from error
+        if not complete:
             self._stop()
             return False
         self._finish()
         return True
+
+    def _out_of_memory(self) -> str:
+        """Tells what to do where memory ended within a pass, whose sums are of no use."""
+        kept = (
+            f"{self.checkpoint.path} keeps the samples before; --resume goes on, or "
+            if (self.checkpoint.exists)
+            else ""
+        )
+        return (
+            f"picture: memory: wanted more than there is while drawing; {kept}draw it in parts "
+            "(--crop), with fewer --threads, or beside less"
+        )
 
     def _finish(self) -> None:
         try:

@@ -44,7 +44,7 @@ def build(
         moving = MovingParts(scene, seen, [] if notes is None else notes)
         _add_all(builder, scene, moving)
         moving.finish()
-        free = memory.free_bytes()
+        free = memory.left_bytes()
         return builder.build(free_memory=0 if free is None else max(free, 1))
 
 

@@ -191,9 +191,9 @@ def test_an_image_is_decoded_once_for_all_its_uses(tmp_path, monkeypatch):
 
 def test_images_take_a_share_of_the_memory_that_is_free(tmp_path, monkeypatch):
     b = with_material({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, png(RED))
-    monkeypatch.setattr(memory, "free_bytes", lambda: 10)  # the image has 6 bytes
+    monkeypatch.setattr(memory, "left_bytes", lambda: 10)  # the image has 6 bytes
     read(b, tmp_path)
-    monkeypatch.setattr(memory, "free_bytes", lambda: 9)
+    monkeypatch.setattr(memory, "left_bytes", lambda: 9)
     with pytest.raises(InputError, match=r"at most 5 bytes of decoded images \(60% of the 9 B"):
         read(b, tmp_path)
 

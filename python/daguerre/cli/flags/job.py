@@ -159,6 +159,16 @@ class JobFlags:
     resume: Annotated[
         bool, option("--resume", help="Resume from OUT.checkpoint.exr.", panel=SAMPLING)
     ] = False
+    memory: Annotated[
+        Text,
+        option(
+            "--memory",
+            metavar="8GB|50%",
+            help="Memory that the render may take, or share of what the machine or its control "
+            "group gives; what needs more is refused before it begins [80%].",
+            panel=SAMPLING,
+        ),
+    ] = None
     checkpoint: Annotated[
         str,
         option(

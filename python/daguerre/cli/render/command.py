@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from daguerre import memory, units
 from daguerre.cli import console
 from daguerre.cli.flags.calibration import CalibrationFlags
 from daguerre.cli.flags.camera import CameraFlags
@@ -52,6 +53,9 @@ def render(
     Ctrl-C stops: samples that were drawn are kept, and the command that resumes is printed.
     """
     console.quiet = job_flags.quiet
+    memory.set_limit(
+        None if job_flags.memory is None else units.memory_bytes("--memory", job_flags.memory)
+    )
     plate = read_plate(job_flags.like_plate)
     given = camera_flags.changes() | shutter_flags.changes()
     changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))

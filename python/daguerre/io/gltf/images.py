@@ -131,8 +131,8 @@ def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def _budget() -> Budget:
     """Bytes that images may take, decoded."""
-    free = memory.free_bytes()
+    free = memory.left_bytes()
     if free is None or _SHARE * free >= _MAX_TOTAL_BYTES:
         return Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
-    what = f"bytes of decoded images ({_SHARE:.0%} of the {memory.shown(free)} that are free)"
+    what = f"bytes of decoded images ({_SHARE:.0%} of the {memory.shown(free)} that are left)"
     return Budget(int(_SHARE * free), what)
