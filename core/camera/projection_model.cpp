@@ -190,9 +190,11 @@ void ProjectionModel::find_fold() {
             if (!(radial_slope(r) > 0)) last = last_rising([&](double x) { return radial_slope(x); }, before, r);
             before = r;
         }
+        if (last < kInfinity && !(radial_factor(last) > 0))   // a pole before the first step, say
+            throw input_error("projection", "parameters", "a radius that grows from the middle on", "one that falls");
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
-        largest_radius_ = last < kInfinity ? bent({last, 0}).point.x : kInfinity;
+        largest_radius_ = last < kInfinity ? last * radial_factor(last) : kInfinity;
         if (kind_ == Kind::omni) {
             const double xi = k_[0], inside = 1 + (1 - xi * xi) * last * last;   // of the sphere's points there
             largest_angle_ = std::acos(xi <= 1 ? -xi : -1 / xi);
@@ -206,6 +208,13 @@ void ProjectionModel::find_fold() {
     }
     default: return;
     }
+}
+
+/// The distorted radius over the ideal one, by the radial terms alone.
+double ProjectionModel::radial_factor(double r) const {
+    const double r2 = r * r;
+    const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = radial_;
+    return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) * (1 / (1 + r2 * (k4 + r2 * (k5 + r2 * k6))));
 }
 
 /// How fast the distorted radius grows with the ideal one, by the radial terms alone.
@@ -393,8 +402,9 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
         const double alpha = k_[0], beta = k_[1], r2 = p.x * p.x + p.y * p.y;
         const double inside = 1 - (2 * alpha - 1) * beta * r2;
         if (!(inside >= 0)) return std::nullopt;
-        const double z = (1 - beta * alpha * alpha * r2) / (alpha * std::sqrt(inside) + 1 - alpha);
-        return normalize(Vec3d{p.x, p.y, z});
+        const double over = alpha * std::sqrt(inside) + 1 - alpha;
+        if (!(over > 0)) return std::nullopt;   // the rim of alpha 1
+        return normalize(Vec3d{p.x, p.y, (1 - beta * alpha * alpha * r2) / over});
     }
     default: break;
     }

@@ -60,6 +60,7 @@ struct ProjectionModel {
         double area() const { return by_x.x * by_y.y - by_x.y * by_y.x; }   // at most 0 where it folds
     };
     Bent bent(Vec2d ideal) const;
+    double radial_factor(double radius) const;
     double radial_slope(double radius) const;
     void find_fold();
 

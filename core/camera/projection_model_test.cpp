@@ -58,6 +58,18 @@ TEST_CASE("solid angle is the area of the sphere that a piece of the picture cov
     }
 }
 
+TEST_CASE("the rim of an eucm of alpha 1 sees nothing") {
+    const ProjectionModel model(Kind::eucm, {1, 1});
+    CHECK(model.unproject({0.999999, 0}).has_value());
+    CHECK_FALSE(model.unproject({1, 0}).has_value());
+}
+
+TEST_CASE("ends of the field are those of the radial part, however far a prism bends the rest to one side") {
+    const ProjectionModel plain(Kind::opencv, {-0.3}), bent(Kind::opencv, {-0.3, 0, 0, 0, 0, 0, 0, 0, -5});
+    CHECK(bent.largest_radius() == plain.largest_radius());
+    CHECK(bent.largest_angle() == plain.largest_angle());
+}
+
 TEST_CASE("the inverse of opencv takes points of the picture to ideal ones by its terms") {
     const std::array<double, ProjectionModel::kMost> k{-0.2, 0.03, 2e-3, -3e-3, 0.01, -0.05};
     const ProjectionModel there(Kind::opencv, k), back(Kind::opencv_inverse, k);
