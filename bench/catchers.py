@@ -2,12 +2,13 @@
 
     python bench/catchers.py [--json] [--spp 64] [--res 240x160]
 
-Three pictures of one view: ``whole``, the object on its ground as one scene; ``caught``, the same
-with the ground as a catcher, put over the ground's own picture; ``alone``, the object without the
-ground. ``error`` is the mean square difference of two seeds, halved, over the square of the mean:
+Four pictures of one view: ``whole``, the object on its ground as one scene; ``caught``, the same
+with the ground as a catcher, put over the ground's own picture; ``holdout``, with a ground that
+catches nothing, so without the layer; ``alone``, the object without the ground. ``error`` is the mean square difference of two seeds, halved, over the square of the mean:
 that of the picture that users see. ``cpu`` is the CPU time of one, the least of three. ``ratio`` is
-CPU time x error of the composite over that of the whole scene, ``over_alone`` the CPU time over
-that of the object alone, whose pixels are mostly empty.
+CPU time x error of the composite over that of the whole scene, ``over_holdout`` the CPU time over
+that of the same picture without the layer, ``over_alone`` over that of the object alone, whose
+pixels are mostly empty.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.frame.over import change_of_rgb
+from daguerre.scene.catcher import EFFECTS
 
 GROUND = (-8.0, 8.0)
 MATERIALS = {
@@ -30,7 +32,7 @@ MATERIALS = {
     "glossy": dg.Gltf(base_color=(0.3, 0.25, 0.2), metallic=0.6, roughness=0.25),
 }
 OBJECTS = {"matte": dg.Diffuse((0.8, 0.15, 0.1)), "glass": dg.Dielectric(ior=1.5, alpha=0.0)}
-WAYS = ("whole", "caught", "alone")
+WAYS = ("whole", "caught", "holdout", "alone")
 
 
 def ball(segments: int = 32, radius: float = 0.5) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -60,8 +62,8 @@ def scene(way: str, ground: Any, thing: Any) -> dg.Scene:
     lamp[:3, 3] = 1.5, 2.5, 0.5
     made.add_light(dg.SphereLight(luminance=(30, 27, 22), radius=0.3), lamp)
     made.set_environment(color=(0.5, 0.6, 0.8))
-    if way == "caught":
-        made.set_catcher("ground")
+    if way in ("caught", "holdout"):
+        made.set_catcher("ground", "holdout" if way == "holdout" else EFFECTS)
     return made
 
 
@@ -83,7 +85,7 @@ def cpu(run: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def measure(ground: Any, thing: Any, size: tuple[int, int], spp: int) -> dict[str, Any]:
-    """The three pictures."""
+    """The four pictures."""
     options: dict[str, Any] = {"resolution": size, "light_paths": "off"}
     plate = dg.render(scene("empty", ground, thing), camera(), spp=8 * spp, seed=9, **options).rgb
     found: dict[str, Any] = {}
@@ -105,6 +107,7 @@ def measure(ground: Any, thing: Any, size: tuple[int, int], spp: int) -> dict[st
     whole, caught = found["whole"], found["caught"]
     found["ratio"] = caught["cpu"] * caught["error"] / (whole["cpu"] * whole["error"])
     found["over_whole"] = caught["cpu"] / whole["cpu"]
+    found["over_holdout"] = caught["cpu"] / found["holdout"]["cpu"]
     found["over_alone"] = caught["cpu"] / found["alone"]["cpu"]
     return found
 
@@ -129,7 +132,8 @@ def main() -> None:
         return
     for name, one in found.items():
         print(
-            f"{name:16} CPU {one['caught']['cpu']:.2f} s, whole {one['whole']['cpu']:.2f} s, alone "
+            f"{name:16} CPU {one['caught']['cpu']:.2f} s, without the layer "
+            f"{one['holdout']['cpu']:.2f} s, whole {one['whole']['cpu']:.2f} s, alone "
             f"{one['alone']['cpu']:.2f} s; CPU x error {one['ratio']:.2f} of the whole scene's"
         )
 
