@@ -4,11 +4,11 @@
 
 Four pictures of one view: ``whole``, the object on its ground as one scene; ``caught``, the same
 with the ground as a catcher, put over the ground's own picture; ``holdout``, with a ground that
-catches nothing, so without the layer; ``alone``, the object without the ground. ``error`` is the mean square difference of two seeds, halved, over the square of the mean:
-that of the picture that users see. ``cpu`` is the CPU time of one, the least of three. ``ratio`` is
-CPU time x error of the composite over that of the whole scene, ``over_holdout`` the CPU time over
-that of the same picture without the layer, ``over_alone`` over that of the object alone, whose
-pixels are mostly empty.
+catches nothing, so without the layer; ``alone``, the object without the ground. ``error`` is the
+mean square difference of two seeds, halved, over the square of the mean: that of the picture that
+users see. ``cpu`` is the CPU time of one, the least of three. ``ratio`` is CPU time x error of the
+composite over that of the whole scene, ``over_holdout`` the CPU time over that of the same picture
+without the layer, ``over_alone`` over that of the object alone, whose pixels are mostly empty.
 """
 
 from __future__ import annotations
