@@ -98,16 +98,16 @@ BAD: dict[str, tuple[str, bytes | Callable[[Path], bytes], str]] = {
     "exr of -1": ("e.exr", exr(-1), r"pixel \(0, 0\): wanted non-negative light"),
     "exr of 3e38": ("e.exr", exr(3e38), r"pixel \(0, 0\): wanted finite light"),
     "exr of depth": ("e.exr", exr(1, names="ZXA"), r"channels: wanted R, G, B or one grey"),
-    "exr cut to a half": ("e.exr", cut(exr(1), 0.5), "cannot be decoded"),
-    "exr cut to nine tenths": ("e.exr", cut(exr(1, 64, 64), 0.9), "cannot be decoded"),
-    "exr of a magic": ("e.exr", cut(exr(1), 0.02), "cannot be decoded"),
-    "exr data window 2^31": ("e.exr", windows(dataWindow=HUGE), "cannot be decoded|image size"),
-    "exr display window 2^31": ("e.exr", windows(displayWindow=HUGE), "cannot be dec|image size"),
-    "exr inside out": ("e.exr", windows(dataWindow=(5, 5, 0, 0)), "cannot be decoded|image size"),
+    "exr cut to a half": ("e.exr", cut(exr(1), 0.5), "a header without an end"),
+    "exr cut to nine tenths": ("e.exr", cut(exr(1, 64, 64), 0.9), "cut off or damaged"),
+    "exr of a magic": ("e.exr", cut(exr(1), 0.02), "wanted an OpenEXR file"),
+    "exr data window 2^31": ("e.exr", windows(dataWindow=HUGE), "dataWindow: wanted corners"),
+    "exr display window 2^31": ("e.exr", windows(displayWindow=HUGE), "displayWindow: wanted 1 to"),
+    "exr inside out": ("e.exr", windows(dataWindow=(5, 5, 0, 0)), "corners in order"),
     "exr 16384x8192": (
         "e.exr",
         windows(dataWindow=(0, 0, 16383, 8191), displayWindow=(0, 0, 16383, 8191)),
-        "cannot be decoded|truncated",
+        "512 blocks of pixels: wanted 4447 bytes at least, got",
     ),
 }
 

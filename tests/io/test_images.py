@@ -127,12 +127,12 @@ def test_bad_environments(tmp_path):
         read_environment(whole)
     whole = write(tmp_path / "cut.exr", ramp(64, 64))
     whole.write_bytes(whole.read_bytes()[:900])
-    with pytest.raises(InputError, match=r"cut\.exr: cannot be decoded"):
+    with pytest.raises(InputError, match=r"cut\.exr: .*the file is cut off"):
         read_environment(whole)
     with pytest.raises(InputError, match="EXPOSURE: wanted a positive number"):
         read_environment(rgbe(tmp_path / "e.hdr", b"EXPOSURE=zero\n", width=4))
     path = write(tmp_path / "depth.exr", ramp(channels=2), names=("Z", "ZBack"))
-    with pytest.raises(InputError, match=r"channels: wanted R, G, B or one grey, got Z, ZBACK"):
+    with pytest.raises(InputError, match=r"channels: wanted R, G, B or one grey, got Z, ZBack"):
         read_environment(path)
 
 

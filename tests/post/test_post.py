@@ -300,10 +300,10 @@ def bad_files(tmp_path: Path) -> dict[str, tuple[bytes, str]]:
     return {
         "empty": (b"", "wanted an OpenEXR file"),
         "text": (b"#?RADIANCE\n\n", "wanted an OpenEXR file"),
-        "header cut off": (whole[:60], "a broken one"),
+        "header cut off": (whole[:60], "a header without an end"),
         "rows cut off": (whole[: len(whole) // 2], ""),
         "deep": (whole[:4] + struct.pack("<i", 2 | 0x800) + whole[8:], "got deep ones"),
-        "huge": (huge, "wanted 1 to 65536 pixels each way"),
+        "huge": (huge, "dataWindow: wanted corners in order"),
         "no colour": (lacking, "wanted R, G, B or Y, got U"),
     }
 

@@ -23,6 +23,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import short
 
 from . import ktx2
+from .exr.reader import ExrReader, is_exr, light_names
 
 MAX_PIXELS = 16384 * 16384
 #: Decoded, of one texture and of one environment (16384 x 8192 in float is 1.5 GiB).
@@ -97,17 +98,21 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     file = Path(path)
     if not file.is_file():
         raise InputError(f"{file}: wanted an image file, got no such file")
+    if is_exr(file):
+        return _checked_light(file, upright(*_linear(file)))
     pixels, spec, kind = _read(str(file), str(file), MAX_ENVIRONMENT_BYTES)
     if np.issubdtype(pixels.dtype, np.integer):
         scale = np.float32(np.iinfo(pixels.dtype).max)
         rgb = srgb.to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
     else:
         rgb = _rgb(pixels, spec, file).astype(np.float32)
-    if kind == "openexr":
-        rgb = _uncrop(rgb, spec)
     if kind == "hdr":
         rgb /= np.float32(_radiance_exposure(file))
-    rgb = upright(rgb, spec.get_int_attribute("Orientation", 1))
+    return _checked_light(file, upright(rgb, spec.get_int_attribute("Orientation", 1)))
+
+
+def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Light that is finite and not negative, everywhere."""
     for name, bad in (("finite", ~(np.abs(rgb) <= MAX_LIGHT)), ("non-negative", rgb < 0)):
         count = int(bad.any(axis=2).sum())
         if count:
@@ -133,6 +138,8 @@ def read_file(path: Path) -> tuple[NDArray[Any], Any]:
     """
     with path.open("rb") as stream:
         start = stream.read(8)
+    if is_exr(path):
+        raise InputError(f"{path}: wanted a picture of another kind, got an OpenEXR by its bytes")
     if start.startswith(_PNG_MAGIC):
         _check_png(path.read_bytes(), str(path))
     elif start.startswith(b"\xff\xd8\xff"):
@@ -238,19 +245,23 @@ def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
     raise InputError(f"{file}: channels: wanted R, G, B or one grey, got {', '.join(names[:8])}")
 
 
-def _uncrop(rgb: NDArray[np.float32], spec: Any) -> NDArray[np.float32]:
-    """EXR data window into its display window; outside it the light is 0."""
-    full = (spec.full_height, spec.full_width)
-    x, y = spec.x - spec.full_x, spec.y - spec.full_y
-    if (x, y) == (0, 0) and full == rgb.shape[:2]:
-        return rgb
-    _check_size(full[1], full[0], 3, 4, "EXR display window", MAX_ENVIRONMENT_BYTES)
-    canvas = np.zeros((*full, 3), np.float32)
+def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
+    """Light of an EXR in its display window, outside of its data 0, and its orientation."""
+    with ExrReader(file) as reader:
+        names = light_names(list(reader.channels), str(file))
+        full = (reader.full_size[1], reader.full_size[0])
+        _check_size(reader.width, reader.height, 3, 4, str(file), MAX_ENVIRONMENT_BYTES)
+        _check_size(full[1], full[0], 3, 4, f"{file}: display window", MAX_ENVIRONMENT_BYTES)
+        planes = reader.rows(0, reader.height, names)
+        x, y = (a - b for a, b in zip(reader.corner, reader.full_corner, strict=True))
+        turn = reader.facts.get("Orientation", 1)
+    rgb = np.zeros((*full, 3), np.float32)
     x0, y0 = max(x, 0), max(y, 0)
-    x1, y1 = min(x + rgb.shape[1], full[1]), min(y + rgb.shape[0], full[0])
+    x1, y1 = min(x + reader.width, full[1]), min(y + reader.height, full[0])
     if x1 > x0 and y1 > y0:
-        canvas[y0:y1, x0:x1] = rgb[y0 - y : y1 - y, x0 - x : x1 - x]
-    return canvas
+        for i, name in enumerate(names):
+            rgb[y0:y1, x0:x1, i] = planes[name][y0 - y : y1 - y, x0 - x : x1 - x]
+    return rgb, turn if isinstance(turn, int) else 1
 
 
 def _radiance_exposure(file: Path) -> float:

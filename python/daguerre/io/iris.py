@@ -10,9 +10,15 @@ from numpy.typing import NDArray
 
 from daguerre.errors import InputError
 
+from .exr.reader import ExrReader, is_exr, light_names
+
 
 def read_grey(path: Path) -> NDArray[np.float32]:
-    """The opening of an iris, shape (H, W): 1 lets light through, 0 stops it."""
+    """The opening of an iris, shape (H, W): 1 lets light through, 0 stops it.
+
+    Raises:
+        InputError: It cannot be read, or has no opening.
+    """
     pixels = _read(path)[:, :, :3]
     grey = np.ascontiguousarray(pixels.mean(axis=2), np.float32)
     if not (np.isfinite(grey).all() and grey.min() >= 0 and grey.max() > 0):
@@ -22,10 +28,12 @@ def read_grey(path: Path) -> NDArray[np.float32]:
 
 def _read(path: Path) -> NDArray[np.float32]:
     """Pixels (H, W, C), integers scaled to 0 .. 1."""
-    import OpenImageIO as oiio
-
     if not path.is_file():
         raise InputError(f"{path}: no such picture")
+    if is_exr(path):
+        return _of_exr(path)
+    import OpenImageIO as oiio
+
     source: Any = oiio.ImageInput.open(str(path))
     if source is None:
         raise InputError(f"{path}: not a readable picture: {oiio.geterror()}")
@@ -36,3 +44,10 @@ def _read(path: Path) -> NDArray[np.float32]:
     finally:
         source.close()
     return np.atleast_3d(np.asarray(pixels, np.float32))
+
+
+def _of_exr(path: Path) -> NDArray[np.float32]:
+    with ExrReader(path) as reader:
+        names = light_names(list(reader.channels), str(path))
+        planes = reader.rows(0, reader.height, names)
+    return np.stack([planes[name] for name in names], axis=2, dtype=np.float32)

@@ -9,7 +9,9 @@ import numpy as np
 
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
-from daguerre.io.exr.rows import ExrReader, Planes
+from daguerre.files.json_item import clean
+from daguerre.io.exr.parts import Planes
+from daguerre.io.exr.reader import ExrReader
 
 from .picture import Band, Canvas, Image
 
@@ -94,7 +96,9 @@ def _colors(names: list[str], where: str) -> tuple[str, ...]:
     for colors in (("R", "G", "B"), ("Y",)):
         if all(name in names for name in colors):
             return (*colors, "A") if "A" in names else colors
-    raise InputError(f"{where}: channels: wanted R, G, B or Y, got {', '.join(names[:24])}")
+    raise InputError(
+        f"{where}: channels: wanted R, G, B or Y, got {', '.join(map(clean, names[:24]))}"
+    )
 
 
 def _typed(plane: Image, dtype: str) -> Image:

@@ -22,7 +22,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,9 +30,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
+from daguerre.io.exr.layout import Layout, read_layouts
+from daguerre.io.exr.parts import PartReader
 from daguerre.io.exr.write import Channels, channels, jsonable, write_parts
 from daguerre.io.exr.write import header as picture_header
 
@@ -47,7 +48,9 @@ if TYPE_CHECKING:
     from .session import Session
 
 State = dict[str, NDArray[np.uint32]]
+Facts = Mapping[str, Any]
 SUMS = "sums"
+BAND = 256  # rows of words that are read at once
 ROUND = "round"
 STATE_PARTS = (
     SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", "coverage",
@@ -136,40 +139,31 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
     Raises:
         InputError: Missing, damaged, or an EXR without sums.
     """
-    import OpenImageIO as oiio
-
     path = Path(path)
     if not path.is_file():
         raise InputError(f"{path}: no such pass file")
-    source = oiio.ImageInput.open(str(path))
-    if source is None:
-        reason = (oiio.geterror().splitlines() or ["no reason given"])[0]
-        raise InputError(f"{path}: not a readable EXR: {reason[:300]}")
-    try:
-        state: State = {}
-        facts = found = None
-        for index in _state_parts(source):
-            spec = source.spec()
-            _check_size(path, spec)
-            words = source.read_image(index, 0, 0, spec.nchannels, oiio.UINT)
-            if words is None:
-                raise InputError(f"{path}: damaged pass file: {source.geterror()}")
-            facts = facts or _header(path, spec)
-            name = spec.get_string_attribute("oiio:subimagename")
-            state[name] = _unfolded(path, words, spec.get_int_attribute("daguerre:words", 0))
-            if name != OBJECTS:
-                _check_crop(path, facts, state[name])
-            if name == ROUND:
-                found = _round(path, spec, state.pop(ROUND))
-        if facts is None:
-            raise InputError(
-                f"{path}: holds no sums, only a picture; "
-                "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
-            )
-        truth = _read_truth(path, source) if facts.metadata.get("gt_time") else {}
-        return replace(facts, state=state, path=path, round=found, truth=truth)
-    finally:
-        source.close()
+    parts = read_layouts(path)
+    state: State = {}
+    facts = found = None
+    for part in parts:
+        if part.name not in STATE_PARTS:
+            continue
+        header = part.header.facts
+        words = _words(part, header.get("daguerre:words"))
+        facts = facts or _header(path, header)
+        if part.name != OBJECTS:
+            _check_crop(path, facts, words)
+        if part.name == ROUND:
+            found = _round(path, header, words)
+        else:
+            state[part.name] = words
+    if facts is None:
+        raise InputError(
+            f"{path}: holds no sums, only a picture; "
+            "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
+        )
+    truth = _read_truth(parts[0]) if facts.metadata.get("gt_time") else {}
+    return replace(facts, state=state, path=path, round=found, truth=truth)
 
 
 def check_key(first: Pass, other: Pass) -> None:
@@ -205,57 +199,39 @@ def _value(fact: Any) -> str:
     return ",".join(map(str, fact)) if isinstance(fact, list | tuple) else str(fact)
 
 
-def _state_parts(source: Any) -> Iterator[int]:
-    """The subimages with sums; each is the current one of the source while it is yielded."""
-    index = 0
-    while source.seek_subimage(index, 0):
-        if source.spec().get_string_attribute("oiio:subimagename") in STATE_PARTS:
-            yield index
-        index += 1
+def _words(part: Layout, count: Any) -> NDArray[np.uint32]:
+    """Undoes :func:`_words_part`: the words (H, W, count) of a part."""
+    names = [f"words.{color}" for color in "RGBA"]
+    if sorted(names) != list(part.channels) or set(part.channels.values()) != {"uint32"}:
+        raise InputError(f"{part.path}: damaged pass file: part {part.name} has no words")
+    size = 4 * part.width
+    if not isinstance(count, int) or count < 1 or size % count:
+        raise InputError(f"{part.path}: damaged pass file: daguerre:words is {count}")
+    with PartReader(part) as reader:
+        reader.check_memory(2 * part.size)
+        words = np.empty((part.height, part.width, 4), np.uint32)
+        for top in range(0, part.height, BAND):
+            bottom = min(top + BAND, part.height)
+            planes = reader.rows(top, bottom)
+            for i, name in enumerate(names):
+                words[top:bottom, :, i] = planes[name]
+    return words.reshape(part.height, size // count, count)
 
 
-def _read_truth(path: Path, source: Any) -> dict[str, NDArray[Any]]:
+def _read_truth(part: Layout) -> dict[str, NDArray[Any]]:
     """The channels of ground truth of the picture in a pass."""
-    import OpenImageIO as oiio
-
     from daguerre.frame.aovs import EXACT, channels_of
 
-    source.seek_subimage(0, 0)
-    spec = source.spec()
-    _check_size(path, spec)
-    known = channels_of(*EXACT)
-    planes: dict[str, NDArray[Any]] = {}
-    for i, name in enumerate(spec.channelnames):
-        if name in known:
-            kind = oiio.UINT if name.endswith("_id") else oiio.FLOAT
-            plane = source.read_image(0, 0, i, i + 1, kind)
-            if plane is None:
-                raise InputError(f"{path}: damaged pass file: {source.geterror()}")
-            planes[name] = plane.reshape(spec.height, spec.width)
-    return planes
+    names = [name for name in part.channels if name in channels_of(*EXACT)]
+    with PartReader(part) as reader:
+        planes = reader.rows(0, part.height, names)
+    kinds = {name: np.uint32 if name.endswith("_id") else np.float32 for name in names}
+    return {name: planes[name].astype(kinds[name], copy=False) for name in names}
 
 
-def _check_size(path: Path, spec: Any) -> None:
-    """Refuses sums that the file is too short for, before memory is taken for them."""
-    size = spec.width * spec.height * spec.nchannels * 4
-    if size > path.stat().st_size * DEFLATE_LIMIT:
-        raise InputError(
-            f"{path}: damaged pass file: {spec.width}x{spec.height} words cannot be in "
-            f"{path.stat().st_size} bytes"
-        )
-
-
-def _unfolded(path: Path, words: NDArray[np.uint32], count: int) -> NDArray[np.uint32]:
-    """Undoes :func:`_words_part`."""
-    height, size = words.shape[0], words.shape[1] * words.shape[2]
-    if count < 1 or size % count:
-        raise InputError(f"{path}: damaged pass file: daguerre:words is {count}")
-    return words.reshape(height, size // count, count)
-
-
-def _field(path: Path, spec: Any, name: str, check: Callable[[Any], bool]) -> Any:
+def _field(path: Path, header: Facts, name: str, check: Callable[[Any], bool]) -> Any:
     """A JSON attribute of the sums."""
-    text = spec.get_string_attribute(f"daguerre:{name}")
+    text = str(header.get(f"daguerre:{name}", ""))
     try:
         value = json.loads(text)
     except (ValueError, RecursionError):
@@ -265,7 +241,7 @@ def _field(path: Path, spec: Any, name: str, check: Callable[[Any], bool]) -> An
     return value
 
 
-def _round(path: Path, spec: Any, words: NDArray[np.uint32]) -> Round:
+def _round(path: Path, header: Facts, words: NDArray[np.uint32]) -> Round:
     def is_facts(value: Any) -> bool:
         return (
             isinstance(value, dict)
@@ -273,7 +249,7 @@ def _round(path: Path, spec: Any, words: NDArray[np.uint32]) -> Round:
             and math.isfinite(value["drawn"])
         )
 
-    facts = _field(path, spec, "round", is_facts)
+    facts = _field(path, header, "round", is_facts)
     if words.shape[2] < 2:
         raise InputError(f"{path}: damaged pass file: wanted 2 words of a round, got 1")
     begin, count = (np.ascontiguousarray(words[:, :, i]) for i in range(2))
@@ -290,14 +266,14 @@ def _check_crop(path: Path, facts: Pass, words: NDArray[np.uint32]) -> None:
         )
 
 
-def _header(path: Path, spec: Any) -> Pass:
+def _header(path: Path, header: Facts) -> Pass:
     def are_strings(value: Any) -> bool:
         return isinstance(value, dict) and bool(value) and all(map(is_text, value.values()))
 
     def is_text(value: Any) -> bool:
         return isinstance(value, str)
 
-    metadata = _field(path, spec, "metadata", lambda value: isinstance(value, dict))
+    metadata = _field(path, header, "metadata", lambda value: isinstance(value, dict))
     wrong = bad_fact(metadata)
     if wrong is not None:
         raise InputError(
@@ -305,8 +281,8 @@ def _header(path: Path, spec: Any) -> Pass:
         )
     return Pass(
         {},
-        [(r[0], r[1]) for r in _field(path, spec, "ranges", are_ranges)],
-        _field(path, spec, "key", are_strings),
+        [(r[0], r[1]) for r in _field(path, header, "ranges", are_ranges)],
+        _field(path, header, "key", are_strings),
         metadata,
     )
 

@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.atomic import atomic_path
+from daguerre.files.json_item import clean
 
 from .header import ExrHeader
-from .rows import ExrReader, ExrWriter
+from .reader import ExrReader
+from .rows import ExrWriter
 
 BAND = 64  # rows at a time
 Box = tuple[int, int, int, int]  # first column and row, and those past the last
@@ -82,7 +84,7 @@ def _difference(name: str, first: ExrReader, other: ExrReader) -> str:
     """A name, and its values where they are short."""
     values = [str(one.facts.get(name, "none")) for one in (other, first)]
     short = all(len(value) <= 40 for value in values) and values[0] != values[1]
-    return f"{name} ({values[0]}, wanted {values[1]})" if short else name
+    return f"{clean(name)} ({values[0]}, wanted {values[1]})" if short else clean(name)
 
 
 def _window(crops: list[ExrReader]) -> Box:

@@ -1,4 +1,4 @@
-"""The header of an OpenEXR file as bytes: what nobody here understands is kept all the same.
+"""Headers of an OpenEXR file as bytes: what nobody here understands is kept all the same.
 
 Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
 """
@@ -14,8 +14,13 @@ from typing import Any
 from daguerre.errors import InputError
 
 MAGIC = 20000630
-LONG_NAMES, DEEP, MULTIPART = 0x400, 0x800, 0x1000
-MAX_HEADER = 1 << 26  # bytes
+TILED, LONG_NAMES, DEEP, MULTIPART = 0x200, 0x400, 0x800, 0x1000
+KNOWN_FLAGS = TILED | LONG_NAMES | DEEP | MULTIPART
+#: Bytes that are read for headers at first, and at most.
+FIRST_READ, MAX_HEADER = 1 << 16, 1 << 26
+#: Attributes of all headers together, and bytes of a name.
+MAX_ATTRIBUTES, MAX_NAME = 1 << 16, 255
+MAX_CHANNELS = 4096
 PIXEL_TYPES = ("uint32", "float16", "float32")
 
 
@@ -30,7 +35,7 @@ class ExrChannel:
 
 @dataclass(frozen=True)
 class ExrHeader:
-    """The header of a file's first part.
+    """The header of a part.
 
     Attributes:
         attributes: Type and bytes by name, in the file's order.
@@ -50,51 +55,90 @@ class ExrHeader:
 
     @property
     def channels(self) -> list[ExrChannel]:
-        """In the order of the file: that of their names' bytes."""
-        data, found, at = self.attributes["channels"][1], [], 0
+        """In the order of the file: that of their names' bytes.
+
+        Raises:
+            ValueError: The list is broken, or has more than 4096.
+        """
+        data, at = self.attributes["channels"][1], 0
+        found: list[ExrChannel] = []
         while data[at] != 0:
-            end = data.index(b"\0", at)
-            kind, _, x, y = struct.unpack_from("<4i", data, end + 1)
-            name = data[at:end].decode("utf-8", "surrogateescape")
+            if len(found) == MAX_CHANNELS:
+                raise ValueError("channels")
+            name, end = _name(data, at)
+            kind, _, x, y = struct.unpack_from("<4i", data, end)
+            if not (0 <= kind < len(PIXEL_TYPES) and x >= 1 and y >= 1):
+                raise ValueError("channels")
             found.append(ExrChannel(name, PIXEL_TYPES[kind], (x, y) != (1, 1)))
-            at = end + 17
+            at = end + 16
         return found
 
 
-def read_header(path: Path) -> ExrHeader:
-    """The header of the first part.
+@dataclass(frozen=True)
+class ExrHeaders:
+    """The headers of a file: where they end, and how long the file is, in bytes."""
+
+    parts: list[ExrHeader]
+    end: int
+    size: int
+
+
+class _CutError(ValueError):
+    """The bytes end before the header does."""
+
+
+def read_headers(path: Path) -> ExrHeaders:
+    """The headers of all parts; no more of a file is read than they have.
 
     Raises:
-        InputError: It is no OpenEXR file, is cut off, or has deep pixels.
+        InputError: It is no OpenEXR file, is cut off, or its headers are broken or endless.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe might never end
         raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
     try:
         with path.open("rb") as stream:
-            data = stream.read(MAX_HEADER)
+            size, data, wanted = path.stat().st_size, b"", FIRST_READ
+            while True:
+                data += stream.read(wanted - len(data))
+                try:
+                    parts, end = _headers(data, path)
+                    return ExrHeaders(parts, end, size)
+                except _CutError:
+                    if len(data) < wanted or wanted >= MAX_HEADER:
+                        raise InputError(_broken(path, "a header without an end")) from None
+                wanted *= 8
     except OSError as error:
         raise InputError(f"{path}: cannot read: {error.strerror or error}") from error
+
+
+def _broken(path: Path, got: str) -> str:
+    return f"{path}: header: wanted that of an OpenEXR file, got {got}"
+
+
+def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
     if len(data) < 8 or struct.unpack_from("<i", data)[0] != MAGIC:
         raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
-    flags = struct.unpack_from("<i", data, 4)[0]
-    if flags & DEEP:
-        raise InputError(f"{path}: format: wanted flat pixels, got deep ones")
+    flags = struct.unpack_from("<I", data, 4)[0]
+    if flags & 0xFF != 2 or (flags & ~0xFF) & ~KNOWN_FLAGS:
+        raise InputError(f"{path}: format: wanted OpenEXR 2, got version and flags {flags:#x}")
+    found: list[dict[str, tuple[str, bytes]]] = []
+    at = 8
     try:
-        first, at = _attributes(data, 8)
-        parts = 1
-        while flags & MULTIPART and data[at] != 0:
-            _, at = _attributes(data, at)
-            parts += 1
-        header = ExrHeader(first, flags, parts)
-        if not header.channels:
-            raise InputError(f"{path}: channels: wanted some, got none")
-    except (IndexError, KeyError, ValueError, struct.error) as error:
-        if isinstance(error, InputError):
+        while True:
+            attributes, at = _attributes(data, at, sum(len(part) for part in found))
+            found.append(attributes)
+            if not flags & MULTIPART:
+                break
+            if at >= len(data):
+                raise _CutError
+            if data[at] == 0:
+                at += 1
+                break
+    except (ValueError, struct.error) as error:
+        if isinstance(error, _CutError):
             raise
-        raise InputError(f"{path}: header: wanted that of an OpenEXR file, got a broken one") from (
-            error
-        )
-    return header
+        raise InputError(_broken(path, "a broken one")) from error
+    return [ExrHeader(attributes, flags, len(found)) for attributes in found], at
 
 
 def header_bytes(header: ExrHeader) -> bytes:
@@ -142,22 +186,32 @@ def _text(text: str) -> bytes:
     return text.encode("utf-8", "surrogateescape") + b"\0"
 
 
-def _attributes(data: bytes, at: int) -> tuple[dict[str, tuple[str, bytes]], int]:
-    found = {}
-    while data[at] != 0:
+def _attributes(data: bytes, at: int, before: int) -> tuple[dict[str, tuple[str, bytes]], int]:
+    """Attributes of one part, and where it ends; ``before`` of them were read already."""
+    found: dict[str, tuple[str, bytes]] = {}
+    while True:
+        if at >= len(data):
+            raise _CutError
+        if data[at] == 0:
+            return found, at + 1
         name, at = _name(data, at)
         kind, at = _name(data, at)
+        if at + 4 > len(data):
+            raise _CutError
         (size,) = struct.unpack_from("<i", data, at)
         at += 4
-        if size < 0 or at + size > len(data):
-            raise ValueError("cut off")
+        if size < 0 or name in found or before + len(found) >= MAX_ATTRIBUTES:
+            raise ValueError(name)
+        if at + size > len(data):
+            raise _CutError
         found[name] = (kind, data[at : at + size])
         at += size
-    return found, at + 1
 
 
 def _name(data: bytes, at: int) -> tuple[str, int]:
-    end = data.index(b"\0", at)
+    end = data.find(b"\0", at, at + MAX_NAME + 1)
+    if end < 0:
+        raise _CutError if len(data) <= at + MAX_NAME else ValueError("name")
     return data[at:end].decode("utf-8", "surrogateescape"), end + 1
 
 

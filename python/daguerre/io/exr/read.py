@@ -6,7 +6,7 @@ adapted, so that (1, 1, 1) stays white.
 
 from __future__ import annotations
 
-import json
+import math
 import os
 from typing import Any
 
@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 from daguerre.color.adaptation import adaptation_of_xyz
 from daguerre.color.spectra import rgb_from_xyz, xyz_of
 from daguerre.errors import InputError
+from daguerre.files.json_item import clean
 from daguerre.frame.cryptomatte import taken
 from daguerre.frame.frame import Frame
 
 from . import write as exr
-from .header import ExrHeader
-from .rows import ExrReader, Planes
+from .facts import read_facts
+from .parts import Planes
+from .reader import ExrReader
 
 
 def read_frame(path: str | os.PathLike[str]) -> Frame:
@@ -40,7 +42,7 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
     with ExrReader(path) as reader:
         planes = reader.rows(0, reader.height)
         facts = reader.facts
-        metadata = read_metadata(reader.header)
+        metadata = read_facts(facts)
         metadata |= _place(reader)
     planes = {name: _writable(plane) for name, plane in planes.items()}
     rgb = _rgb(planes, path)
@@ -68,36 +70,11 @@ def read_frame(path: str | os.PathLike[str]) -> Frame:
     frame.aovs = planes
     count = metadata.get("bad_samples", 0)
     places = metadata.get("bad_sample_places", [])
-    frame.bad_samples = (int(count), [(x, y, sample) for x, y, sample in places])
+    frame.bad_samples = (
+        int(count) if math.isfinite(count) else 0,
+        [(x, y, sample) for x, y, sample in places],
+    )
     return frame
-
-
-def read_metadata(header: ExrHeader) -> dict[str, Any]:
-    """Facts by the names of ``Frame.metadata``: of the standard and of Daguerre."""
-    facts = header.facts
-    names = (*exr.FLOATS, *exr.STRINGS, *exr.VECTORS, *exr.RATIONALS)
-    found: dict[str, Any] = {name: facts[name] for name in names if name in facts}
-    for name in exr.MATRICES:
-        if name in facts:
-            found[name] = np.array(facts[name], np.float64).reshape(4, 4)
-    own = {
-        name.removeprefix("daguerre:"): value
-        for name, value in facts.items()
-        if name.startswith("daguerre:")
-    }
-    return found | {name: _own(name, value) for name, value in own.items()}
-
-
-def _own(name: str, value: Any) -> Any:
-    """JSON as what it says; a whole number that travelled as text as a number."""
-    if not isinstance(value, str):
-        return value
-    try:
-        if name in exr.OWN_NUMBERS:
-            return int(value)
-        return json.loads(value) if name in (*exr.OWN_JSON, "camera") else value
-    except (ValueError, RecursionError):
-        return value
 
 
 def _place(reader: ExrReader) -> dict[str, Any]:
@@ -110,7 +87,7 @@ def _place(reader: ExrReader) -> dict[str, Any]:
 
 
 def _writable(plane: NDArray[Any]) -> NDArray[Any]:
-    return plane.copy() if plane.dtype == np.uint32 else plane.astype(np.float32)
+    return plane if plane.dtype == np.uint32 else plane.astype(np.float32, copy=False)
 
 
 def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
@@ -123,16 +100,18 @@ def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
 def _rgb(planes: Planes, path: str | os.PathLike[str]) -> NDArray[np.float32]:
     rgb = _group(planes, ["R", "G", "B"])
     if rgb is not None:
-        return rgb
+        return rgb.astype(np.float32, copy=False)
     if "Y" in planes:
-        return np.repeat(planes.pop("Y")[:, :, None], 3, axis=2)
-    names = ", ".join(list(planes)[:12])
+        return np.repeat(planes.pop("Y")[:, :, None], 3, axis=2).astype(np.float32, copy=False)
+    names = ", ".join(clean(name) for name in list(planes)[:12])
     raise InputError(f"{path}: channels: wanted R, G, B or Y, got {names}")
 
 
 def _to_rec709(chromaticities: Any) -> NDArray[np.float64] | None:
     """Rec.709 from RGB of other primaries and white; None: they are Rec.709."""
-    if chromaticities is None or np.allclose(chromaticities, exr.REC709, atol=2e-4):
+    if not isinstance(chromaticities, tuple) or len(chromaticities) != 8:
+        return None
+    if np.allclose(chromaticities, exr.REC709, atol=2e-4):
         return None
     x, y = np.reshape(chromaticities, (4, 2)).T
     if not (np.isfinite([x, y]).all() and (y > 0).all()):

@@ -1,8 +1,8 @@
-"""OpenEXR in bands of rows, so that a picture need not fit into memory.
+"""OpenEXR written in bands of rows, so that a picture need not fit into memory.
 
-Reading is OpenEXR's own, of any kind of file. Its Python module writes whole pictures only, and
-drops attributes that it does not know when it writes rows; so rows are written here, as the format
-describes it: scanline blocks, plain or deflated (https://openexr.com/en/latest/OpenEXRFileLayout.html,
+OpenEXR's Python module writes whole pictures only, and drops attributes that it does not know when
+it writes rows; so rows are written here, as the format describes it: scanline blocks, plain or
+deflated (https://openexr.com/en/latest/OpenEXRFileLayout.html,
 "Predictor and interleaving": OpenEXR Technical Introduction).
 """
 
@@ -14,90 +14,18 @@ import zlib
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from daguerre.checks import MAX_RESOLUTION
-from daguerre.errors import InputError, OutputError
+from daguerre.errors import OutputError
 
-from .header import ExrHeader, header_bytes, read_header
+from .header import ExrHeader, header_bytes
+from .parts import Planes
 
 NO_COMPRESSION, ZIP = 0, 3
 BLOCK_ROWS = {NO_COMPRESSION: 1, ZIP: 16}
 DEFLATE_LEVEL = 4  # OpenEXR's own default
-Planes = dict[str, NDArray[Any]]
-
-
-class ExrReader:
-    """The first part of a file; ``rows`` reads some of them, in any order."""
-
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Opens a file.
-
-        Raises:
-            InputError: It cannot be read, or its windows make no sense.
-        """
-        import OpenEXR
-
-        self.path = Path(path)
-        self.header = read_header(self.path)
-        self.facts = self.header.facts
-        x0, y0, x1, y1 = self._window("dataWindow")
-        self.corner, self.width, self.height = (x0, y0), x1 - x0 + 1, y1 - y0 + 1
-        x0, y0, x1, y1 = self._window("displayWindow")
-        self.full_corner, self.full_size = (x0, y0), (x1 - x0 + 1, y1 - y0 + 1)
-        for channel in self.header.channels:
-            if channel.subsampled:
-                raise InputError(
-                    f"{self.path}: channel {channel.name!r}: wanted a value for every pixel, "
-                    "got a subsampled one"
-                )
-        self.channels = {channel.name: channel.dtype for channel in self.header.channels}
-        OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
-        try:
-            self._file = OpenEXR.InputFile(str(self.path))
-        except (RuntimeError, OSError, ValueError) as error:
-            raise InputError(f"{self.path}: cannot be decoded: {error}") from error
-
-    def rows(self, begin: int, end: int) -> Planes:
-        """Rows [begin, end), counted from the first of the data window, by channel.
-
-        Raises:
-            InputError: The file is damaged there.
-        """
-        top = self.corner[1]
-        names = list(self.channels)
-        try:
-            raw = self._file.channels(names, scanLine1=top + begin, scanLine2=top + end - 1)
-        except (RuntimeError, OSError, ValueError, TypeError) as error:
-            raise InputError(f"{self.path}: rows {begin} .. {end - 1}: {error}") from error
-        shape = (end - begin, self.width)
-        return {
-            name: np.frombuffer(data, self.channels[name]).reshape(shape)
-            for name, data in zip(names, raw, strict=True)
-        }
-
-    def close(self) -> None:
-        """Lets go of the file."""
-        self._file.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def _window(self, name: str) -> tuple[int, int, int, int]:
-        x0, y0, x1, y1 = self.facts.get(name, (0, 0, -1, -1))
-        width, height = x1 - x0 + 1, y1 - y0 + 1
-        if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):
-            raise InputError(
-                f"{self.path}: {name}: wanted 1 to {MAX_RESOLUTION} pixels each way, "
-                f"got {width} x {height}"
-            )
-        return x0, y0, x1, y1
 
 
 class ExrWriter:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from daguerre.convolution.rows import Rows
 from daguerre.distortion import Distortion
 from daguerre.errors import InputError, UsageError
-from daguerre.io.exr.rows import ExrReader
+from daguerre.io.exr.reader import ExrReader
 from daguerre.post.array import step_on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.parameter import REQUIRED, Parameter

@@ -1,0 +1,124 @@
+"""Facts of a picture out of its attributes, each with the type that it has where we write it.
+
+A stranger's file may say ``expTime`` as a text, or places of bad samples that are none: what has
+another type than the standard gives it, or than we give it, is no fact and is left out.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from . import write as exr
+
+
+def read_facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Facts by the names of ``Frame.metadata``: of the standard and of Daguerre."""
+    standard: tuple[tuple[tuple[str, ...], Callable[[Any], bool]], ...] = (
+        (exr.FLOATS, _is_number),
+        (exr.STRINGS, _is_text),
+        (exr.VECTORS, _are_two),
+        (exr.RATIONALS, _is_fraction),
+    )
+    found: dict[str, Any] = {
+        name: attributes[name]
+        for names, fits in standard
+        for name in names
+        if fits(attributes.get(name))
+    }
+    for name in exr.MATRICES:
+        if _are_sixteen(attributes.get(name)):
+            found[name] = np.array(attributes[name], np.float64).reshape(4, 4)
+    own = {
+        name.removeprefix("daguerre:"): value
+        for name, value in attributes.items()
+        if name.startswith("daguerre:")
+    }
+    typed = ((name, _own(name, value)) for name, value in own.items())
+    return found | {name: value for name, value in typed if value is not None}
+
+
+def _own(name: str, value: Any) -> Any:
+    """JSON as what it says; a whole number that travelled as text as a number; None: no fact."""
+    if name in exr.OWN_NUMBERS:
+        number = _whole(value) if isinstance(value, str) else value
+        return number if _is_number(number) else None
+    if name in exr.OWN_STRINGS:
+        return value if isinstance(value, str) else None
+    if name not in _JSON:
+        return value
+    try:
+        told = json.loads(value) if isinstance(value, str) else None
+    except (ValueError, RecursionError):
+        return None
+    return told if _JSON[name](told) else None
+
+
+def _whole(text: str) -> int | None:
+    try:
+        return int(text) if len(text) < 40 else None
+    except ValueError:
+        return None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_fraction(value: Any) -> bool:
+    return isinstance(value, Fraction)
+
+
+def _are_two(value: Any) -> bool:
+    return isinstance(value, tuple) and len(value) == 2
+
+
+def _are_sixteen(value: Any) -> bool:
+    return isinstance(value, tuple) and len(value) == 16
+
+
+def _are_places(value: Any) -> bool:
+    """Lists of column, row and sample."""
+    return isinstance(value, list) and all(
+        isinstance(place, list) and len(place) == 3 and all(map(_is_number, place))
+        for place in value
+    )
+
+
+def _are_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(map(_is_text, value))
+
+
+def _is_balance(value: Any) -> bool:
+    """Checks for x and y of a white."""
+    return isinstance(value, list) and len(value) == 2 and all(map(_is_finite, value))
+
+
+def _is_finite(value: Any) -> bool:
+    return _is_number(value) and math.isfinite(value)
+
+
+def _is_object(value: Any) -> bool:
+    return isinstance(value, dict)
+
+
+def _is_there(value: Any) -> bool:
+    return value is not None
+
+
+_JSON: dict[str, Callable[[Any], bool]] = {
+    **dict.fromkeys((*exr.OWN_JSON, "camera"), _is_there),
+    "bad_sample_places": _are_places,
+    "sensor_channels": _are_texts,
+    "white_balance": _is_balance,
+    "camera": _is_object,
+}

@@ -1,0 +1,92 @@
+"""OpenEXR files as pictures: the first part, with its windows and facts."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from daguerre.checks import MAX_RESOLUTION
+from daguerre.errors import InputError
+from daguerre.files.json_item import clean
+
+from .header import MAGIC
+from .layout import read_layouts
+from .parts import PartReader
+
+
+class ExrReader(PartReader):
+    """The first part of a file.
+
+    Attributes:
+        header: Its header.
+        facts: The values of its attributes.
+        corner: First pixel of the data window, px.
+        full_corner: First pixel of the display window, px.
+        full_size: Width and height of the display window, px.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Opens a file.
+
+        Raises:
+            InputError: It cannot be read, or its windows make no sense.
+        """
+        layout = read_layouts(Path(path), 0)[0]
+        self.path = layout.path
+        self.header = layout.header
+        self.facts = self.header.facts
+        self._window("dataWindow")
+        self.corner = layout.box[:2]
+        x0, y0, x1, y1 = self._window("displayWindow")
+        self.full_corner, self.full_size = (x0, y0), (x1 - x0 + 1, y1 - y0 + 1)
+        super().__init__(layout)
+
+    def _window(self, name: str) -> tuple[int, int, int, int]:
+        box = self.facts.get(name)
+        if not (isinstance(box, tuple) and self.header.attributes[name][0] == "box2i"):
+            raise InputError(f"{self.path}: header: {name}: wanted a box2i, got another or none")
+        x0, y0, x1, y1 = box
+        width, height = x1 - x0 + 1, y1 - y0 + 1
+        if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):
+            raise InputError(
+                f"{self.path}: {name}: wanted 1 to {MAX_RESOLUTION} pixels each way, "
+                f"got {width} x {height}"
+            )
+        return x0, y0, x1, y1
+
+
+def is_exr(path: str | os.PathLike[str]) -> bool:
+    """Whether a file begins as OpenEXR does, whatever its name; False if it cannot be read."""
+    try:
+        with Path(path).open("rb") as stream:
+            return stream.read(4) == MAGIC.to_bytes(4, "little")
+    except OSError:
+        return False
+
+
+def light_names(names: Sequence[str], where: str) -> list[str]:
+    """The channels of red, green and blue, or one of grey three times.
+
+    Those of no layer come first; a layer has all three of its own.
+
+    Args:
+        names: Names of all channels.
+        where: The file, for complaints.
+
+    Raises:
+        InputError: There are none.
+    """
+    layers = sorted(
+        {name.rpartition(".")[0] for name in names}, key=lambda name: (name != "", name)
+    )
+    plain = {name.lower(): name for name in reversed(names)}
+    for layer in layers:
+        wanted = [f"{layer}.{color}".lstrip(".").lower() for color in "RGB"]
+        if all(name in plain for name in wanted):
+            return [plain[name] for name in wanted]
+    grey = [name for name in names if name.rpartition(".")[2].upper() in ("Y", "I", "L")]
+    if not grey and len(names) > 1:
+        got = ", ".join(clean(name) for name in names[:8])
+        raise InputError(f"{where}: channels: wanted R, G, B or one grey, got {got}")
+    return [(grey or list(names))[0]] * 3
