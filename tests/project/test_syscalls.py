@@ -52,6 +52,7 @@ def system_folders() -> list[str]:
     small = [
         "/etc/ld.so.cache",
         "/etc/localtime",
+        "/etc/ssl/openssl.cnf",
         "/etc/locale.alias",
         "/dev/null",
         "/dev/urandom",
