@@ -13,6 +13,7 @@ import pytest
 
 from daguerre.export import aim, languages, lens_code, osl
 from daguerre.export.expression import Function, Name
+from daguerre.export.facts import facts
 from daguerre.export.horner import derivative, horner
 from tests.support.lens_plans import evaluated, made_up
 
@@ -215,3 +216,32 @@ def test_the_aim_and_the_whole_pupil_expose_alike(kind, film):
     assert e1 < 0.6 * e2
     if film == (0.0, 0.0):
         assert by_aim == pytest.approx(1, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        '"""; raise SystemExit(9); """',
+        '"""\nraise SystemExit(9)\n"""',
+        "\\",
+        "\\N{x}",
+        'a"',
+        "*/ x \\\n y",
+    ],
+)
+def test_no_word_of_a_lens_file_becomes_code(name: str) -> None:
+    """Exported code is run by whoever gets it; a lens's name and source are a stranger's."""
+    setting = {"zoom_mm": None, "focus_m": None, "source": name, "f_stop": 2.0}
+    error = {"direction_rad": (0, 0), "film_um": (0, 0), "transmittance": (0, 0), "rays": 1}
+    data = {
+        "lens": name, "degree": 3, "setting": setting, "error": {"all": error},
+        "film": {"half": (18, 12)}, "symmetry": {"axial": True},
+    }  # fmt: skip
+    plan, said = replace(PLANS["one segment"], name=name), facts(data)
+    assert all(line.isprintable() for line in said)
+    room: dict[str, object] = {}
+    exec(compile(languages.numpy_file(plan, said), "exported", "exec"), room)
+    assert str(room["__doc__"]).startswith(said[0])
+    for text in (languages.c_file(plan, said), languages.glsl_file(plan, said)):
+        head = text.splitlines()[: len(said)]
+        assert all(line.startswith("//") and not line.endswith("\\") for line in head)

@@ -82,10 +82,10 @@ def _top(
     if version:
         from daguerre import __version__
 
-        print(f"daguerre {__version__}")
+        console.show(f"daguerre {__version__}")
         raise typer.Exit(0)
     if context.invoked_subcommand is None:
-        print(context.get_help())
+        console.show(context.get_help())
         raise typer.Exit(2)
     return None
 
@@ -113,6 +113,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "try smaller pictures or files",
             InputError.exit_code,
         )
+    except UnicodeEncodeError as error:  # readers of pictures take names as text alone
+        return _fail(f"{error.object}: wanted a name in UTF-8", InputError.exit_code)
     except Exception as error:
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)

@@ -96,7 +96,7 @@ def calibrate(
     if json:
         from json import dumps
 
-        print(dumps(_facts(made), indent=2))
+        console.show(dumps(_facts(made), indent=2))
     else:
         _print(made)
     return 0
@@ -107,12 +107,14 @@ def _compare(fits: list[ProjectionFit], *, json: bool) -> None:
     if json:
         from json import dumps
 
-        print(dumps([_facts(made) for made in fits], indent=2))
+        console.show(dumps([_facts(made) for made in fits], indent=2))
         return
-    print(f"{'model':16} {'terms':>5} {'RMS, px':>9} {'at most':>9}")
+    console.show(f"{'model':16} {'terms':>5} {'RMS, px':>9} {'at most':>9}")
     for made in fits:
         model = made.projection
-        print(f"{model.model:16} {len(model.parameters):5} {made.rms:9.3g} {made.largest:9.3g}")
+        console.show(
+            f"{model.model:16} {len(model.parameters):5} {made.rms:9.3g} {made.largest:9.3g}"
+        )
 
 
 def _check_files(output: Path | None, file_format: str | None, residuals: Path | None) -> None:
@@ -176,7 +178,7 @@ def _print(made: ProjectionFit) -> None:
     bench = made.bench
     focus = "inf" if math.isinf(bench.focus_mm) else f"{bench.focus_mm / 1e3:g} m"
     width, height = model.size
-    print(f"{bench.lens.name}, f/{bench.f_stop:.3g}, focus {focus}, {width} x {height} px")
+    console.show(f"{bench.lens.name}, f/{bench.f_stop:.3g}, focus {focus}, {width} x {height} px")
     rows = [
         ("model", model.model),
         ("focal lengths", "{:.6f}, {:.6f} px".format(*model.focal)),
@@ -188,4 +190,4 @@ def _print(made: ProjectionFit) -> None:
     if made.unseen:
         rows.append(("unseen", f"{made.unseen} points of the picture"))
     for what, value in rows:
-        print(f"  {what:16} {value}")
+        console.show(f"  {what:16} {value}")

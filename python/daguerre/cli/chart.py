@@ -58,9 +58,9 @@ def chart(
 
     if list_charts:
         for known, make in charts.KINDS.items():
-            print(f"{known}: {(inspect.getdoc(make) or '').splitlines()[0]}")
+            console.show(f"{known}: {(inspect.getdoc(make) or '').splitlines()[0]}")
             for p in inspect.signature(make).parameters.values():
-                print(f"    {p.name}: {_about(make, p.name)} [{p.default}]")
+                console.show(f"    {p.name}: {_about(make, p.name)} [{p.default}]")
         return 0
     if name is None or output is None:
         raise UsageError("chart: wanted NAME -o FILE.glb (see `daguerre chart --list`)")

@@ -16,9 +16,29 @@ writer: Callable[[str], None] | None = None
 quiet = False
 
 
+def plain(text: str) -> str:
+    r"""The text with what a terminal would obey, or that cannot be encoded, written as ``\x1b``.
+
+    Names of files and words of pictures come from strangers: escape sequences in them could clear
+    the screen, retitle the window, or type. Lines stay lines.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else _escaped(c) for c in text)
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def show(text: object = "") -> None:
+    """Lines on stdout: what was asked for."""
+    print(plain(str(text)))
+
+
 def say(text: str) -> None:
     """A line on stderr, whatever ``--quiet`` says."""
-    line = " ".join(text.split())
+    line = plain(" ".join(text.split()))
     try:
         if writer is not None:
             writer(line)

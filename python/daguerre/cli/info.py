@@ -67,15 +67,15 @@ def info(
     if json:
         _print_json(content, facts, warnings, scene.default_camera)
         return 0
-    print("\n".join(_scene_lines(content)))
+    console.show("\n".join(_scene_lines(content)))
     for name, one in facts.items():
         default = " (default)" if name == scene.default_camera else ""
-        print(f"camera {name!r}{default}")
-        print(
+        console.show(f"camera {name!r}{default}")
+        console.show(
             "\n".join(f"  {key:20} {value}" for key, value in camera_rows(one, sizes[name]).items())
         )
     if not facts:
-        print("no camera")
+        console.show("no camera")
     for name, found in warnings.items():
         for text in found:
             console.warn(f"{scene_path}: camera {name!r}: {text}")
@@ -182,7 +182,7 @@ def _print_json(
         name: {**asdict(one), "default": name == default, "warnings": warnings[name]}
         for name, one in facts.items()
     }
-    print(dumps(without_infinity({**content, "cameras": cameras}), indent=2))
+    console.show(dumps(without_infinity({**content, "cameras": cameras}), indent=2))
 
 
 def _angles(angles: tuple[float, float, float]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from . import console
 from .flags.groups import option
 
 
@@ -15,7 +16,7 @@ def lenses(json: Annotated[bool, option("--json", help="Print a JSON list.")] = 
     from daguerre.lenses.library import entries
 
     if json:
-        print(dumps([{**asdict(e), "source": e.patent} for e in entries()], indent=2))
+        console.show(dumps([{**asdict(e), "source": e.patent} for e in entries()], indent=2))
         return 0
     rows = [
         (e.name, f"{e.year or ''}", e.focal_length, f"f/{e.f_number:.3g}", e.format, e.patent)
@@ -23,7 +24,7 @@ def lenses(json: Annotated[bool, option("--json", help="Print a JSON list.")] = 
     ]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
-        print(
+        console.show(
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         )
     return 0

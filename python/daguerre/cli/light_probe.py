@@ -54,9 +54,9 @@ def light_probe(
     if sun_out is not None:
         made.save_sun(sun_out)
     if json:
-        print(json_text.dumps(made.facts, indent=2))
+        console.show(json_text.dumps(made.facts, indent=2))
     elif not quiet:
-        print("\n".join(f"{name:20} {text}" for name, text in _rows(made).items()))
+        console.show("\n".join(f"{name:20} {text}" for name, text in _rows(made).items()))
     for remark in made.notes:
         console.note(remark)
     for remark in made.warnings:

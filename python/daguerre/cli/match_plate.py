@@ -71,7 +71,7 @@ def match_plate(
 
         from daguerre.plates.match.writer import members
 
-        print(dumps(members(found, _sensor_name(found, target)), indent=2))
+        console.show(dumps(members(found, _sensor_name(found, target)), indent=2))
     elif not quiet:
         _print(found)
     return 0
@@ -83,9 +83,9 @@ def _sensor_name(found: PlateCamera, target: Path) -> str | None:
 
 def _print(found: PlateCamera) -> None:
     width, height = found.resolution
-    print(f"{found.plate}: {width} x {height} px, {found.kind}")
+    console.show(f"{found.plate}: {width} x {height} px, {found.kind}")
     for what, text in {**_camera(found), **_measured(found)}.items():
-        print(f"  {what:12} {text}")
+        console.show(f"  {what:12} {text}")
 
 
 def _camera(found: PlateCamera) -> dict[str, str]:

@@ -63,7 +63,7 @@ def post(
     console.quiet = quiet
     if list_effects:
         for entry in EFFECTS.values():
-            print("\n".join(_described(entry)))
+            console.show("\n".join(_described(entry)))
         return 0
     if picture is None or output is None:
         raise UsageError("post: wanted IN.exr -o OUT.exr (see `daguerre post --help`)")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from . import console
 from .drawings import check_drawing
 from .flags.groups import option
 
@@ -43,7 +44,7 @@ def sensor(
 
         from .lens.command import _finite
 
-        print(dumps(_finite(facts(item)), indent=2))
+        console.show(dumps(_finite(facts(item)), indent=2))
     elif plot is None:
         _print(item, facts(item))
     return 0
@@ -51,12 +52,12 @@ def sensor(
 
 def _print(item: Sensor, numbers: dict[str, Any]) -> None:
     columns, rows = item.resolution
-    print(f"{item.name}: {item.make} {item.model}, {item.pattern.name}, {columns} x {rows}")
-    print(f"source: {item.source}")
+    console.show(f"{item.name}: {item.make} {item.model}, {item.pattern.name}, {columns} x {rows}")
+    console.show(f"source: {item.source}")
     if item.note:
-        print(f"note: {item.note}")
+        console.show(f"note: {item.note}")
     for text in item.assumed:
-        print(f"assumed: {text}")
+        console.show(f"assumed: {text}")
     peaks = ", ".join(f"{k} {v:.3g}" for k, v in numbers["peak_quantum_efficiency"].items())
     made = ", ".join(f"{k} {v:.0f}" for k, v in numbers["electrons_per_lux_s"].items())
     dark = item.dark_current
@@ -73,14 +74,14 @@ def _print(item: Sensor, numbers: dict[str, Any]) -> None:
         "hot pixels": f"{item.hot_pixels.share:.2g} of all, {item.hot_pixels.rate:g} e-/s",
     }
     for key, value in lines.items():
-        print(f"  {key:20} {value}")
-    print("      ISO    DN/e-  read e-   most e-  range EV  SNR 18 %, dB")
+        console.show(f"  {key:20} {value}")
+    console.show("      ISO    DN/e-  read e-   most e-  range EV  SNR 18 %, dB")
     for row in numbers["by_iso"]:
         _print_iso(row)
 
 
 def _print_iso(row: dict[str, float]) -> None:
-    print(
+    console.show(
         f"  {row['iso']:7.0f} {row['gain_dn_per_e']:8.3g} {row['read_noise_e']:8.2f} "
         f"{row['saturation_e']:9.0f} {row['dynamic_range_stops']:9.1f} {row['grey_snr_db']:13.1f}"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from . import console
 from .flags.groups import option
 
 
@@ -17,7 +18,7 @@ def sensors(json: Annotated[bool, option("--json", help="Print a JSON list.")] =
     if json:
         from daguerre.sensors.facts import facts
 
-        print(dumps([facts(sensor) for sensor in library], indent=2))
+        console.show(dumps([facts(sensor) for sensor in library], indent=2))
         return 0
     rows = [
         (
@@ -34,7 +35,7 @@ def sensors(json: Annotated[bool, option("--json", help="Print a JSON list.")] =
     ]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
-        print(
+        console.show(
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         )
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from . import console
 from .flags.groups import option
 
 
@@ -22,7 +23,7 @@ def version(json: Annotated[bool, option("--json", help="Print one JSON object."
         except metadata.PackageNotFoundError:
             continue
     if json:
-        print(dumps(facts))
+        console.show(dumps(facts))
     else:
-        print("\n".join(f"{name} {value}" for name, value in facts.items()))
+        console.show("\n".join(f"{name} {value}" for name, value in facts.items()))
     return 0

@@ -47,8 +47,9 @@ def with_aim(plan: LensPlan) -> LensPlan:
 def callables(plan: LensPlan) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """``evaluate`` and ``sample`` as numpy functions."""
     room: dict[str, Any] = {}
-    exec(compile(languages.numpy_file(plan, []), f"<{plan.name}>", "exec"), room)
     name = languages.identifier(plan.name)
+    # Our own code of numbers: without facts the one word of the lens's file in it is this name.
+    exec(compile(languages.numpy_file(plan, []), f"<{name}>", "exec"), room)
     return room[f"{name}_evaluate"], room[f"{name}_sample"]
 
 

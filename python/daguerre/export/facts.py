@@ -6,11 +6,12 @@ import math
 from typing import Any
 
 from daguerre._core import __version__
+from daguerre.files.json_item import clean
 
 
 def facts(data: dict[str, Any]) -> list[str]:
-    """Lines of text, from ``LensFit.to_dict()``."""
-    setting, error = data["setting"], data["error"]["all"]
+    """Lines of text, from ``LensFit.to_dict()``; no word of a lens's file ends a line."""
+    name, setting, error = clean(data["lens"]), data["setting"], data["error"]["all"]
     angle, film, light = error["direction_rad"], error["film_um"], error["transmittance"]
     zoom = f" at {setting['zoom_mm']:.4g} mm" if setting["zoom_mm"] else ""
     focus = setting["focus_m"]
@@ -22,8 +23,8 @@ def facts(data: dict[str, Any]) -> list[str]:
         else f"film {2 * half_x:.4g} x {2 * half_y:.4g} mm"
     )
     return [
-        f"{data['lens']}{zoom}: polynomials of degree {data['degree']}, fitted to exact rays.",
-        f"Prescription: {setting['source'] or 'source not named'}.",
+        f"{name}{zoom}: polynomials of degree {data['degree']}, fitted to exact rays.",
+        f"Prescription: {clean(setting['source']) or 'source not named'}.",
         f"f/{setting['f_stop']:.3g}, in focus at {distance} from the entrance pupil; {film_size}.",
         f"Error on {error['rays']} fresh rays, RMS and worst: direction {angle[0]:.2g} and "
         f"{angle[1]:.2g} rad;",

@@ -62,6 +62,8 @@ def glsl_file(plan: LensPlan, facts: Sequence[str]) -> str:
 def numpy_file(plan: LensPlan, facts: Sequence[str]) -> str:
     """A module that needs numpy alone; inputs are numbers or arrays that broadcast."""
     head = "\n".join([*_start(plan, facts), "Inputs are numbers or arrays that broadcast."])
+    # A lens's name comes from a stranger: it must not end the text and become code.
+    head = head.replace("\\", "\\\\").replace('"', '\\"')
     one_of = '''
 def _one_of(conditions, functions, *arguments):
     """Per element the outputs of the first function whose condition holds, or of the last."""

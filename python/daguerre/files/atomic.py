@@ -61,6 +61,10 @@ def check_writable(target: str | os.PathLike[str]) -> None:
 
 def _resolved(target: str | os.PathLike[str]) -> Path:
     path = Path(target)
+    try:
+        os.fspath(path).encode()
+    except UnicodeEncodeError:  # writers of pictures take text alone
+        raise OutputError(f"{target}: cannot write: wanted a name in UTF-8") from None
     with _os_errors(path):
         path = path.resolve()
         if not path.parent.is_dir():

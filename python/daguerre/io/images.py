@@ -158,6 +158,10 @@ def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], 
     """Pixels in their own type, the specification, and the name of the format; straight alpha."""
     import OpenImageIO as oiio  # 30 MB that a scene without pictures does without
 
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        raise InputError(f"{where}: cannot be decoded: wanted a name in UTF-8") from None
     config = oiio.ImageSpec()
     config.attribute("oiio:UnassociatedAlpha", 1)
     source = oiio.ImageInput.open(name, config)

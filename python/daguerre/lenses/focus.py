@@ -78,10 +78,13 @@ def focused(lens: Lens, setting: LensSetting) -> Focused:
 
 
 def path_of(lens: Lens) -> Path | None:
-    """The way of the groups at the lens's zoom position; None: the whole lens moves."""
-    if all(c.at_infinity for c in lens.configurations):
-        return None
+    """The way of the groups at the lens's zoom position; None: the whole lens moves.
+
+    A file without a configuration at infinity does not say where the way begins: the whole moves.
+    """
     found = positions(lens)
+    if not found or all(c.at_infinity for c in lens.configurations):
+        return None
     if lens.zoom_mm is None:
         low, high, share = found[0], found[0], 0.0
     else:

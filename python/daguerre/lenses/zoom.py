@@ -82,15 +82,33 @@ def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
 def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
     """The positions around a focal length, and how far it is from the first to the second."""
     found = positions(lens)
+    if not found:
+        raise LensError(
+            f"{lens.source}: zoom: wanted a lens with a configuration at infinity, got none",
+            "lens-zoom",
+        )
     short, long = found[0].efl, found[-1].efl
-    if not short * (1 - TOLERANCE) <= zoom_mm <= long * (1 + TOLERANCE):
+    if not short - TOLERANCE * abs(short) <= zoom_mm <= long + TOLERANCE * abs(long):
         wanted = f"{short:.4g} mm" if len(found) == 1 else f"{short:.4g} to {long:.4g} mm"
         raise LensError(f"{lens.source}: zoom: wanted {wanted}, got {zoom_mm:g} mm", "lens-zoom")
     mm = min(max(zoom_mm, short), long)
     for low, high in itertools.pairwise(found):
         if low.efl <= mm <= high.efl:
-            return low, high, math.log(mm / low.efl) / math.log(high.efl / low.efl)
+            return low, high, _share(lens, low, high, mm)
     return found[0], found[0], 0.0
+
+
+def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:
+    """How far a focal length is on the way between two positions, by ratios; 0: they are equal."""
+    if mm == low.efl:  # of two equal positions the first
+        return 0.0
+    if low.efl <= 0 <= high.efl:
+        raise LensError(
+            f"{lens.source}: zoom: wanted focal lengths of one sign around {mm:.4g} mm, got "
+            f"{low.efl:.4g} and {high.efl:.4g} mm",
+            "lens-zoom",
+        )
+    return math.log(mm / low.efl) / math.log(high.efl / low.efl)
 
 
 def with_stop(lens: Lens, semi_diameter: float | None) -> Lens:
@@ -122,7 +140,7 @@ def _between(lens: Lens, low: Position, high: Position, zoom_mm: float) -> dict[
     """Newton's method in all moving gaps, with the smallest steps that meet the conditions."""
     moving = [i for i in low.gaps if low.gaps[i] != high.gaps[i]]
     ends = np.array([[p.gaps[i] for i in moving] for p in (low, high)])
-    share = math.log(zoom_mm / low.efl) / math.log(high.efl / low.efl)
+    share = _share(lens, low, high, zoom_mm)
     gaps = ends[0] + share * (ends[1] - ends[0])
     goal = np.array([zoom_mm, 0.0])
     goal[1] = (1 - share) * _state(lens, moving, ends[0])[1]

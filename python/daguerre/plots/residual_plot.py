@@ -35,6 +35,7 @@ def plot_residuals(fit: ProjectionFit, kind: str) -> bytes:
         f"{fit.bench.lens.name} by {fit.projection.model}: {fit.rms:.3g} px RMS, "
         f"{fit.largest:.3g} px at most",
         fontsize=10,
+        parse_math=False,  # a lens's name is text, whatever signs are in it
     )
     out = io.BytesIO()
     figure.savefig(out, format=kind, dpi=110, metadata={"Title": "residuals"})

@@ -31,7 +31,7 @@ def page(sensor: Sensor, kind: str) -> bytes:
     _by_iso(axes[0, 1], axes[1, 1], sensor)
     _signal_to_noise(axes[1, 0], sensor)
     figure.suptitle(f"{sensor.make} {sensor.model} ({sensor.name})")
-    with rc_context({"svg.hashsalt": "daguerre"}):
+    with rc_context({"svg.hashsalt": "daguerre", "text.parse_math": False}):
         return saved(figure, kind, sensor.name)
 
 

@@ -37,6 +37,7 @@ STYLE: Any = {  # matplotlib's keys
     "legend.fontsize": 5.2,
     "legend.frameon": False,
     "legend.handlelength": 1.6,
+    "text.parse_math": False,  # names of files are text, whatever signs are in them
     "svg.hashsalt": "daguerre",
     "svg.fonttype": "path",
 }

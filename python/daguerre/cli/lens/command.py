@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from daguerre.camera.parameters.bench import F_STOP, FOCUS, ZOOM, focus_by
+from daguerre.cli import console
 from daguerre.cli.console import note
 from daguerre.cli.flags.from_table import made_of
 from daguerre.cli.flags.groups import option, with_flags
@@ -137,7 +138,7 @@ def _write_figures(
 
         order = asdict(item.first_order(wavelength))
         # JSON has no NaN or infinity: null.
-        print(dumps(_finite({**_facts(item, order), "bench": facts(made)}), indent=2))
+        console.show(dumps(_finite({**_facts(item, order), "bench": facts(made)}), indent=2))
 
 
 def _finite(value: Any) -> Any:
@@ -153,11 +154,11 @@ def _print(item: Lens, wavelength: float) -> None:
         order = asdict(item.first_order(wavelength))
     except InputError as error:
         raise InputError(f"{item.source}: {error}") from None
-    print(item)
-    print(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")
+    console.show(item)
+    console.show(f"at {wavelength:g} nm, lengths in mm, z = 0 at the first vertex")
     for key, value in order.items():
         if key != "wavelength_nm":
-            print(f"  {key.replace('_', ' '):22} {_show(value)}")
+            console.show(f"  {key.replace('_', ' '):22} {_show(value)}")
 
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:

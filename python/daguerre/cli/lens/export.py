@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli import console
 from daguerre.cli.drawings import check_drawing
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.errors import UsageError
@@ -102,13 +102,12 @@ class FileFlags(TableFlags):
                 break
         fitted.save(path)
         error = fitted.error
-        print(
+        console.say(
             f"{path}: degree {fitted.degree}, direction {error.direction_rad[0]:.2g} rad RMS, "
-            f"{error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film",
-            file=sys.stderr,
+            f"{error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film"
         )
         if weak := weak_region(fitted):
-            print(f"{path}: {weak}", file=sys.stderr)
+            console.say(f"{path}: {weak}")
 
     def _fitted(self, item: Lens, setting: dict[str, Any], segments: int) -> LensFit:
         from daguerre.polynomial import fit

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli import console
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.cli.flags.setting import BENCH
 from daguerre.errors import UsageError
@@ -112,7 +113,7 @@ class FlareFlags(TableFlags):
             "angle_deg": angle,
             "ghosts": ghosts.facts(),
         }
-        print(dumps(facts, indent=2))
+        console.show(dumps(facts, indent=2))
         return 0
 
 
@@ -134,25 +135,25 @@ def _print(ghosts: Ghosts) -> None:
     bench, width, height = ghosts.bench, *ghosts.film
     total = sum(g.light for g in ghosts.all)
     lit = sum(g.light > 0 for g in ghosts.all)
-    print(
+    console.show(
         f"{bench.lens.name}, f/{bench.f_stop:.3g}, light from {ghosts.angle_deg:g} deg off the "
         f"axis, film {width:.3g} x {height:.3g} mm"
     )
-    print(
+    console.show(
         f"{len(ghosts.all)} ghosts, {lit} reach the film, with {_share(total)} of the light of the "
         "picture of the same source straight ahead"
     )
-    print("surfaces      of picture   of ghosts   centre x, y mm    RMS radius mm")
+    console.show("surfaces      of picture   of ghosts   centre x, y mm    RMS radius mm")
     for g in ghosts.all[:SHOWN]:
         if g.light <= 0:
             break
         x, y = g.center
-        print(
+        console.show(
             f"{'-'.join(str(i) for i in g.surfaces):12}  {_share(g.light):>10}   "
             f"{g.light / total:9.2%}   {x:7.2f} {y:7.2f}   {g.radius:13.3f}"
         )
     if lit > SHOWN:
-        print(f"... and {lit - SHOWN} more (--json shows all)")
+        console.show(f"... and {lit - SHOWN} more (--json shows all)")
 
 
 def _share(value: float) -> str:

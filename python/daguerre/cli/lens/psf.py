@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.cli import console
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.cli.flags.setting import BENCH
 from daguerre.errors import InputError, UsageError
@@ -93,7 +94,7 @@ class PsfFlags(TableFlags):
         if json:
             from json import dumps
 
-            print(dumps({**where, "films": rows}, indent=2))
+            console.show(dumps({**where, "films": rows}, indent=2))
         else:
             _print(where, rows)
         return 0
@@ -114,14 +115,14 @@ def _light(bench: Bench, field: float, is_angle: bool, distance_m: float) -> Pen
 
 def _print(where: dict[str, Any], rows: list[dict[str, Any]]) -> None:
     distance, focus = where["distance_m"], where["focus_m"]
-    print(
+    console.show(
         f"{where['name']}, f/{where['f_stop']:.3g}, focused at "
         f"{'infinity' if focus is None else f'{focus:g} m'}: a point "
         f"{'infinitely far' if distance is None else f'at {distance:g} m'}, "
         f"{where['angle_deg']:.2f} deg off the axis, {where['height_mm']:.3f} mm on the film"
     )
     head = ("film mm", "RMS um", "50 % um", "80 % um", "width um", "MTF 20/mm S", "T", "by")
-    print("  ".join(f"{name:>8}" for name in head))
+    console.show("  ".join(f"{name:>8}" for name in head))
     for row in rows:
         sagittal, tangential = row["mtf_20_per_mm"]
         cells = (
@@ -134,4 +135,6 @@ def _print(where: dict[str, Any], rows: list[dict[str, Any]]) -> None:
             f"{tangential:.3f}",
             "waves" if row["diffraction"] else "rays",
         )
-        print("  ".join(f"{cell:>{max(8, len(h))}}" for cell, h in zip(cells, head, strict=True)))
+        console.show(
+            "  ".join(f"{cell:>{max(8, len(h))}}" for cell, h in zip(cells, head, strict=True))
+        )

@@ -69,7 +69,7 @@ def describe(plan: Plan, scene: Scene, path: Path) -> int:
     first = [picture for picture in plan.pictures if picture.frame == frame]
     told = {picture.view.name: _facts(job, picture, path) for picture in first}
     facts = {"cameras": told} if len(first) > 1 else next(iter(told.values()))
-    print(json.dumps(without_infinity(facts), indent=2, default=jsonable))
+    console.show(json.dumps(without_infinity(facts), indent=2, default=jsonable))
     return 0
 
 

@@ -1,0 +1,182 @@
+"""Renders ask the system for their own files alone: no other open, no connection, no program.
+
+Measured by strace over the catalogue of bad files and a dozen good scenes (docs/threat-model.md).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from tests.bad_files import CASES
+from tests.bad_files.bases import seen
+from tests.support.make_gltf import png
+
+STRACE = shutil.which("strace")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(STRACE is None, reason="needs strace (apt-get install strace)"),
+]
+ROOT = Path(__file__).resolve().parents[2]
+CALLS = "open,openat,openat2,creat,connect,sendto,bind,listen,execve,execveat"
+CALL = re.compile(r"^\d+\s+(?P<name>\w+)\((?P<arguments>.*)\)\s+=\s+(?P<result>-?\d+)")
+#: Runs many command lines in one process, after everything that they import.
+PROGRAM = """
+import json, sys
+from daguerre.cli import main
+for words in json.load(open(sys.argv[1])):
+    main(words)
+"""
+
+
+def system_folders() -> list[str]:
+    """The package, the interpreter, packages and libraries, and what the kernel tells."""
+    own = [
+        sys.prefix,
+        sys.base_prefix,
+        *sysconfig.get_paths().values(),
+        Path(dg.__file__).parents[1],
+    ]
+    packages = [Path(np.__file__).parents[1]]
+    fixed = ["/proc", "/sys", "/dev/shm", "/lib", "/lib64", "/usr/lib", "/usr/share", "/usr/local"]
+    small = [
+        "/etc/ld.so.cache",
+        "/etc/localtime",
+        "/etc/ssl/openssl.cnf",
+        "/etc/locale.alias",
+        "/dev/null",
+        "/dev/urandom",
+        "/usr/bin/pyvenv.cfg",
+    ]
+    return [os.path.realpath(p) for p in (*own, *packages)] + [str(p) for p in own] + fixed + small
+
+
+def traced(jobs: list[list[str]], folder: Path, program: str = PROGRAM) -> list[str]:
+    """Lines of strace of a process that runs command lines."""
+    (folder / "jobs.json").write_text(json.dumps(jobs))
+    log = folder / "calls.txt"
+    environment = {
+        **os.environ,
+        "TMPDIR": str(folder / "tmp"),
+        "DAGUERRE_CACHE": str(folder / "cache"),
+        "HOME": str(folder / "home"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    (folder / "tmp").mkdir(exist_ok=True)
+    command = [str(STRACE), "-f", "-qq", "-s", "4096", "-o", str(log), "-e", f"trace={CALLS}"]
+    run = [*command, sys.executable, "-c", program, str(folder / "jobs.json")]
+    subprocess.run(run, env=environment, cwd=ROOT, capture_output=True, timeout=900, check=False)
+    return log.read_text(errors="replace").splitlines()
+
+
+def refused(lines: list[str], declared: list[Path]) -> list[str]:
+    """Calls that are not of a render: opens that succeed elsewhere, connections, programs."""
+    allowed = [*system_folders(), *(os.path.realpath(p) for p in declared)]
+    found, started = [], False
+    for line in lines:
+        call = CALL.match(line)
+        if call is None:
+            continue
+        name, arguments = call["name"], call["arguments"]
+        if name.startswith("exec"):
+            if started:  # the first is the process itself
+                found.append(line)
+            started = True
+        elif not name.startswith(("open", "creat")):
+            found.append(line)
+        elif int(call["result"]) >= 0:
+            said = re.search(r'"((?:[^"\\]|\\.)*)"', arguments)
+            text = said[1].encode().decode("unicode_escape") if said else "?"
+            path = os.path.realpath(ROOT / text)
+            if path != str(ROOT) and not any(
+                path == a or path.startswith(a + "/") for a in allowed
+            ):
+                found.append(line)
+    assert started, "strace saw no process"
+    return found
+
+
+def good_jobs(folder: Path) -> list[list[str]]:
+    """A dozen scenes with textures, an environment, lenses, calibrations, passes and previews."""
+    b = seen()
+    picture = png(np.full((8, 8, 3), 90, np.uint8))
+    (folder / "t.png").write_bytes(picture)
+    b.json["images"] = [{"uri": "t.png"}]
+    scene = (
+        str(b.gltf(folder / "scene.gltf")) if hasattr(b, "gltf") else str(b.glb(folder / "s.glb"))
+    )
+    draw = ["render", scene, "--spp", "1", "--res", "16x9", "--threads", "2", "-o"]
+    out = [str(folder / f"o{i}.exr") for i in range(12)]
+    camera = str(folder / "camera.yaml")
+    return [
+        ["calibrate", "tessar-50mm-f2.8", "--res", "64x48", "-o", camera],
+        [*draw, out[0]],
+        [*draw, out[1], "--sky", "1,1,1"],
+        [*draw, out[2], "--env", str(folder / "t.png")],
+        [*draw, out[3], "--lens", "tessar-50mm-f2.8", "--sky", "1,1,1"],
+        [*draw, out[4], "--calibration", camera, "--sky", "1,1,1"],
+        [*draw, out[5], "--sky", "1,1,1", "--samples", "0:1"],
+        [*draw, out[6], "--sky", "1,1,1", "--samples", "1:2"],
+        ["merge", out[5], out[6], "-o", out[7]],
+        ["post", out[0], "-o", out[8], "--glow"],
+        [*draw, str(folder / "o.png"), "--sky", "1,1,1", "--aov", "all"],
+        ["info", scene],
+        ["lens", "tessar-50mm-f2.8", "--drawing", str(folder / "x.svg")],
+    ]
+
+
+def test_good_scenes_stay_in_their_folders(tmp_path: Path) -> None:
+    jobs = good_jobs(tmp_path)
+    found = refused(traced(jobs, tmp_path), [tmp_path])
+    assert found == []
+    assert len(list(tmp_path.glob("o*.exr"))) >= 8  # they were drawn
+
+
+def test_bad_files_stay_in_their_folders(tmp_path: Path) -> None:
+    jobs = []
+    for i, case in enumerate(CASES):
+        folder = tmp_path / str(i)
+        folder.mkdir()
+        if "device" in case.name:  # it is refused by its kind, which needs no open
+            continue
+        bad = case.make(folder)
+        jobs.append(case.words(bad, folder / "out"))
+    found = refused(traced(jobs, tmp_path), [tmp_path])
+    assert found == []
+
+
+FAULTS = {
+    "connect": "import socket; socket.socket().connect_ex(('127.0.0.1', 9))",
+    "execve": "import subprocess; subprocess.run(['true'])",
+    "open": "open('/etc/passwd').close()",
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_seen(tmp_path: Path, name: str) -> None:
+    assert any(name in line for line in refused(traced([], tmp_path, FAULTS[name]), [tmp_path]))
+
+
+def test_a_link_to_another_file_is_not_followed(tmp_path: Path) -> None:
+    """A texture that is a link out of the folder is refused before it is opened."""
+    b = seen()
+    b.json["images"] = [{"uri": "t.png"}]
+    (tmp_path / "t.png").symlink_to("/etc/passwd")
+    scene = str(b.glb(tmp_path / "s.glb"))
+    job = ["render", scene, "-o", str(tmp_path / "o.exr"), "--spp", "1", "--res", "8x8"]
+    assert refused(traced([job], tmp_path), [tmp_path]) == []
+    wall = (
+        "from daguerre.files import uris; uris.Folder.resolve = lambda self, uri: self._path(uri)\n"
+    )
+    without = traced([job], tmp_path, wall + PROGRAM)
+    assert any("passwd" in line or "t.png" in line for line in refused(without, [tmp_path]))
