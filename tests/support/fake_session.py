@@ -45,6 +45,7 @@ class FakeSession:
         **keywords: Any,
     ) -> None:
         self.built = built or self
+        self.torn = False
         self.settings = settings_of(settings, keywords)
         film, sampling = self.settings.film, self.settings.sampling
         if camera.f_stop is not None and camera.f_stop <= 0:

@@ -17,7 +17,7 @@ from typing import Any
 
 import typer
 
-from daguerre.errors import DaguerreError, InputError, suggest
+from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
@@ -94,6 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command line; returns its exit code."""
     console.argv = list(sys.argv[1:] if arguments is None else arguments)
     console.quiet, console.writer = False, None
+    console.open_streams()
     try:
         first = console.argv[0] if console.argv else ""
         code = _command(first)(args=console.argv, prog_name="daguerre", standalone_mode=False)
@@ -118,6 +119,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)
+        if isinstance(error, OSError) and console.is_stuck(error):
+            console.nobody_reads(sys.stdout)
+            reason = error.strerror or str(error)
+            return _fail(f"standard output: cannot write: {reason}", OutputError.exit_code)
         return _internal(error)
 
 

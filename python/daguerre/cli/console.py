@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TextIO
 
 #: the arguments that this run was started with, without the program's name
@@ -44,13 +46,32 @@ def say(text: str) -> None:
             writer(line)
         else:
             print(line, file=sys.stderr, flush=True)
-    except BrokenPipeError:
+    except OSError:  # the reader or the terminal has gone, or the disk of a log is full
         nobody_reads(sys.stderr)
 
 
 def nobody_reads(stream: TextIO) -> None:
     """Whoever read this stream has gone; the picture is still wanted, words about it are not."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
+
+
+def open_streams() -> None:
+    """Gives streams that were closed before the start somewhere to go.
+
+    Else the next file that is opened has the number of one of them, and words go into it.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            mode = "r" if number == 0 else "w"
+            setattr(sys, name, Path(os.devnull).open(mode))  # noqa: SIM115
+
+
+def is_stuck(error: OSError) -> bool:
+    """Whether a stream could not be written: an error of a file has its name."""
+    stuck = errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO
+    return error.filename is None and error.errno in stuck
 
 
 def note(text: str) -> None:

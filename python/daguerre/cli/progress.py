@@ -80,8 +80,11 @@ class JsonLines(Silent):
         """Prints one object."""
         try:
             print(json.dumps({"event": name, **self._which, **facts}), flush=True)
-        except BrokenPipeError:
+        except OSError as error:  # the picture is still wanted
             console.nobody_reads(sys.stdout)
+            console.writer = None
+            if not isinstance(error, BrokenPipeError):
+                console.warn(f"--json-progress: {error.strerror or error}; no more progress")
 
 
 class Bar(Silent):

@@ -1,9 +1,17 @@
-"""Files that appear under their final name complete or not at all: temp + fsync + rename."""
+"""Files that appear under their final name complete or not at all: temp + fsync + rename.
+
+Power that fails at any moment leaves the old file or the new one: the bytes are on the disk before
+the name is, and the folder with the name is before what the file replaces may go. Writers hold a
+lock on their temporary file, so what a killed one left is known by having none, and goes when the
+same file is written or removed next.
+"""
 
 from __future__ import annotations
 
 import errno
+import fcntl
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -26,10 +34,12 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
         OutputError: No such folder, no permission, disk full; named with the path.
     """
     path = _resolved(target)
-    temp = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.tmp{path.suffix}")
+    _drop_left(path)
+    temp = _temporary(path)
+    lock = None
     try:
         with _os_errors(path):
-            _create(temp)
+            lock = _create(temp)
         with _os_errors(path):  # what the block itself could not write
             yield temp
             _sync(temp)
@@ -38,6 +48,8 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             temp.unlink()
+        if lock is not None:
+            os.close(lock)
 
 
 def write_bytes(target: str | os.PathLike[str], data: bytes) -> None:
@@ -53,10 +65,22 @@ def check_writable(target: str | os.PathLike[str]) -> None:
         OutputError: It could not; said before hours are spent on a picture.
     """
     path = _resolved(target)
-    temp = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.tmp{path.suffix}")
+    temp = _temporary(path)
     with _os_errors(path):
-        _create(temp)
+        os.close(_create(temp))
         temp.unlink()
+
+
+def remove(target: str | os.PathLike[str]) -> None:
+    """Removes a file, if it is there, and what writers of it left when they were killed.
+
+    Raises:
+        OutputError: The folder does not allow it.
+    """
+    path = Path(target)
+    with _os_errors(path):
+        path.unlink(missing_ok=True)
+    _drop_left(path)
 
 
 def _resolved(target: str | os.PathLike[str]) -> Path:
@@ -74,9 +98,39 @@ def _resolved(target: str | os.PathLike[str]) -> Path:
     return path
 
 
-def _create(path: Path) -> None:
+def _temporary(path: Path) -> Path:
+    return path.with_name(f".{path.stem}.{secrets.token_hex(4)}.tmp{path.suffix}")
+
+
+def _create(path: Path) -> int:
+    """Makes an empty file, locked as long as the descriptor that is returned is open."""
     # 0o666 less the umask, as any program; mkstemp would make it unreadable for others.
-    os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+    with suppress(OSError):  # some network file systems have no locks
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+    if os.fstat(descriptor).st_nlink:
+        return descriptor
+    os.close(descriptor)  # another writer took it for one that was left, before it was locked
+    return _create(path)
+
+
+def _drop_left(path: Path) -> None:
+    """Removes temporary files of this target whose writers are dead."""
+    name = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{8}}\.tmp{re.escape(path.suffix)}")
+    with suppress(OSError), os.scandir(path.parent) as entries:
+        for entry in entries:
+            if name.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                _drop_unlocked(Path(entry.path))
+
+
+def _drop_unlocked(path: Path) -> None:
+    with suppress(OSError):
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            path.unlink()
+        finally:
+            os.close(descriptor)
 
 
 def _sync(path: Path) -> None:

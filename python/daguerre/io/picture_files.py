@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -81,7 +82,8 @@ def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
 def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: str) -> bytes:
     """JPEG or PNG by OpenImageIO, with the profile.
 
-    In memory: at a full disk libjpeg ends the whole process.
+    Through a pipe: where a disk, or the size that a file may have, ends, libjpeg ends the whole
+    process.
     """
     import OpenImageIO as oiio
 
@@ -96,13 +98,25 @@ def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: s
     output = oiio.ImageOutput.create(f"memory{suffix}")
     if output is None:
         raise OutputError(f"{path}: cannot write: {oiio.geterror()}")
-    with os.fdopen(os.memfd_create("picture"), "w+b") as memory:
-        name = f"/proc/self/fd/{memory.fileno()}"
+
+    def write(name: str) -> None:
         if not (output.open(name, spec) and output.write_image(numbers) and output.close()):
             reason = str(output.geterror() or "unknown reason").replace(name, path)
             raise OutputError(f"{path}: cannot write: {reason}")
-        memory.seek(0)
-        return memory.read()
+
+    return _through_a_pipe(write)
+
+
+def _through_a_pipe(write: Callable[[str], None]) -> bytes:
+    """Bytes that a function writes to the file that it is given the name of."""
+    pipe, end = os.pipe()
+    with ThreadPoolExecutor(1) as reader, os.fdopen(pipe, "rb") as source:
+        data = reader.submit(source.read)
+        try:
+            write(f"/proc/self/fd/{end}")
+        finally:
+            os.close(end)
+        return data.result()
 
 
 def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:

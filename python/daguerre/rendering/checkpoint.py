@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import TYPE_CHECKING
+
+from daguerre.errors import DaguerreError
+from daguerre.files import atomic
 
 from . import passes
 
@@ -43,6 +48,23 @@ class Checkpoint:
             frame = replace(session.frame(truth=False, waves=False), aovs={})
             passes.write_pass(self.path, frame, passes.pass_of(session))
 
+    def save_elsewhere(self, session: Session) -> Path | None:
+        """Writes the sums to a file of the same name in a new folder for temporary files.
+
+        Returns:
+            The file; None if there is no place for it, either.
+        """
+        assert self.path is not None
+        with suppress(OSError):
+            folder = Path(mkdtemp(prefix="daguerre-"))
+            try:
+                replace(self, path=folder / self.path.name).save(session)
+            except DaguerreError:
+                folder.rmdir()
+            else:
+                return folder / self.path.name
+        return None
+
     def load(self, session: Session, work: Work) -> bool:
         """Takes up the samples of the file, if there is one.
 
@@ -58,6 +80,10 @@ class Checkpoint:
         return True
 
     def remove(self) -> None:
-        """Removes the file: the picture is complete."""
+        """Removes the file: the picture is complete.
+
+        Raises:
+            OutputError: The folder does not allow it.
+        """
         if self.path is not None:
-            self.path.unlink(missing_ok=True)
+            atomic.remove(self.path)

@@ -210,6 +210,9 @@ class Drawing:
             complete = self.loop.run()
         except MemoryError as error:
             raise InputError(self._out_of_memory()) from error
+        except BaseException:
+            self.loop.rescue()
+            raise
         if not complete:
             self._stop()
             return False
@@ -235,8 +238,7 @@ class Drawing:
             self.output.write_noisy(self.session, self.loop.work.done(), self.output.noisy)
         except BaseException:
             # Hours of work must not die with a full disk, or with a channel that cannot be made.
-            if not self.checkpoint.exists:
-                self.loop.save(rescued=True)
+            self.loop.rescue()
             raise
         self.checkpoint.remove()
         if self.tell.previews:
@@ -252,9 +254,9 @@ class Drawing:
     def _stop(self) -> None:
         """Keeps what is drawn; a second request means now: the last checkpoint has to do."""
         work = self.loop.work
-        saved = bool(self.control.stops < 2 and work.done() and self.loop.save())
-        there = self.checkpoint.path if self.checkpoint.exists else None
-        self.tell.stopped(Stopped(work.done(), work.total(), there, saved))
+        saved = self.loop.rescue() if self.control.stops < 2 else None
+        there = saved or (self.checkpoint.path if self.checkpoint.exists else None)
+        self.tell.stopped(Stopped(work.done(), work.total(), there, saved is not None))
 
     def _snapshot(self) -> None:
         paths: list[Path] = [p.with_suffix(f".snapshot{p.suffix}") for p in self.output.paths]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.errors import DaguerreError
@@ -50,6 +51,7 @@ class Loop:
         self.snapshot, self.preview = snapshot, preview
         self.started = time.monotonic()
         self.drawn_here = 0.0
+        self._saved = 0.0
 
     def run(self) -> bool:
         """Draws until all is there, or until the control stops it; True: complete."""
@@ -70,7 +72,7 @@ class Loop:
             seconds = max(time.monotonic() - before, 1e-9)
             limit = size * min(2.0, PASS_S / seconds)
             if self.control.snapshot():
-                self.snapshot()
+                self._snapshot()
             if self.work.done() < self.work.total():
                 self.preview()
             interval = self.checkpoint.interval_s
@@ -88,8 +90,36 @@ class Loop:
         except DaguerreError as error:
             self.reporter.warning(f"checkpoint not saved: {error}")
             return False
-        self.reporter.saved(self.checkpoint.path, self.work.done(), rescued=rescued)
+        self._kept(self.checkpoint.path, rescued=rescued)
         return True
+
+    def rescue(self) -> Path | None:
+        """Keeps what is drawn, as the render ends: beside the picture, else elsewhere.
+
+        Returns:
+            The file that has all of it; None if there is none.
+        """
+        wanted, drawn = self.checkpoint.path, self.work.done()
+        if wanted is None or self.session.torn or not drawn:
+            return None
+        if (drawn == self._saved and wanted.exists()) or self.save(rescued=True):
+            return wanted
+        path = self.checkpoint.save_elsewhere(self.session)
+        if path is not None:
+            self._kept(path, rescued=True)
+            self.reporter.warning(f"--resume finds the samples when {path} is moved to {wanted}")
+        return path
+
+    def _kept(self, path: Path, *, rescued: bool) -> None:
+        self._saved = self.work.done()
+        self.reporter.saved(path, self._saved, rescued=rescued)
+
+    def _snapshot(self) -> None:
+        """Writes a snapshot; one that cannot be written is no reason to stop drawing."""
+        try:
+            self.snapshot()
+        except DaguerreError as error:
+            self.reporter.warning(f"no snapshot: {error}")
 
     def _draw(self, size: float) -> bool:
         """One pass, in a thread of its own: Python runs signal handlers in the main thread only."""

@@ -88,6 +88,11 @@ class Session:
         """The camera with the focus that was found."""
         return self.prepared.focused_camera
 
+    @property
+    def torn(self) -> bool:
+        """Whether a pass was stopped midway, so that the sums are those of no samples."""
+        return self._torn
+
     def _whole_film(self) -> _core.Film:
         if self._torn:
             raise UsageError(

@@ -1,0 +1,1 @@
+"""Faults from outside: kills, full disks, lost power, closed streams, long nights."""
