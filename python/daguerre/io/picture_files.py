@@ -95,15 +95,16 @@ def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: s
     spec.attribute("Compression", f"jpeg:{quality}" if suffix[1] == "j" else "zip:6")
     if quality >= 90:
         spec.attribute("jpeg:subsampling", "4:4:4")
-    output = oiio.ImageOutput.create(f"memory{suffix}")
-    if output is None:
-        raise OutputError(f"{path}: cannot write: {oiio.geterror()}")
+    picture = oiio.ImageBuf(spec)
 
     def write(name: str) -> None:
-        if not (output.open(name, spec) and output.write_image(numbers) and output.close()):
-            reason = str(output.geterror() or "unknown reason").replace(name, path)
+        # One call, which never holds the interpreter's lock: the reader of the pipe needs it.
+        if not picture.write(name, kind, suffix[1:]):
+            reason = str(picture.geterror() or "unknown reason").replace(name, path)
             raise OutputError(f"{path}: cannot write: {reason}")
 
+    if not picture.set_pixels(oiio.ROI.All, numbers):
+        raise OutputError(f"{path}: cannot write: {picture.geterror()}")
     return _through_a_pipe(write)
 
 
