@@ -1,6 +1,6 @@
 """The price of a catcher layer: CPU time and error beside the whole scene and the object alone.
 
-    python bench/catchers.py [--json] [--spp 64] [--res 240x160]
+    python bench/catchers.py [--json] [--spp 64] [--res 240x160] [--noise 0.01]
 
 Four pictures of one view: ``whole``, the object on its ground as one scene; ``caught``, the same
 with the ground as a catcher, put over the ground's own picture; ``holdout``, with a ground that
@@ -8,7 +8,8 @@ catches nothing, so without the layer; ``alone``, the object without the ground.
 mean square difference of two seeds, halved, over the square of the mean: that of the picture that
 users see. ``cpu`` is the CPU time of one, the least of three. ``ratio`` is CPU time x error of the
 composite over that of the whole scene, ``over_holdout`` the CPU time over that of the same picture
-without the layer, ``over_alone`` over that of the object alone, whose pixels are mostly empty.
+without the layer, ``over_alone`` over that of the object alone, whose pixels are mostly empty. With
+``--noise`` each picture is drawn until it has that noise, so CPU times are those of equal noise.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ MATERIALS = {
     "glossy": dg.Gltf(base_color=(0.3, 0.25, 0.2), metallic=0.6, roughness=0.25),
 }
 OBJECTS = {"matte": dg.Diffuse((0.8, 0.15, 0.1)), "glass": dg.Dielectric(ior=1.5, alpha=0.0)}
+MOST = 1 << 16  # samples per pixel of a picture that is drawn until it has its noise
 WAYS = ("whole", "caught", "holdout", "alone")
 
 
@@ -84,10 +86,14 @@ def cpu(run: Callable[[], Any]) -> tuple[Any, float]:
     return made, after.user + after.system - before.user - before.system
 
 
-def measure(ground: Any, thing: Any, size: tuple[int, int], spp: int) -> dict[str, Any]:
+def measure(
+    ground: Any, thing: Any, size: tuple[int, int], spp: int, noise: float | None
+) -> dict[str, Any]:
     """The four pictures."""
     options: dict[str, Any] = {"resolution": size, "light_paths": "off"}
     plate = dg.render(scene("empty", ground, thing), camera(), spp=8 * spp, seed=9, **options).rgb
+    if noise is not None:
+        options, spp = options | {"noise": noise}, MOST
     found: dict[str, Any] = {}
     for way in WAYS:
         made = scene(way, ground, thing)
@@ -118,11 +124,12 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--res", default="240x160")
+    parser.add_argument("--noise", type=float)
     arguments = parser.parse_args()
     width, height = map(int, arguments.res.split("x"))
     found = {
         f"{thing} on {ground}": measure(
-            MATERIALS[ground], OBJECTS[thing], (width, height), arguments.spp
+            MATERIALS[ground], OBJECTS[thing], (width, height), arguments.spp, arguments.noise
         )
         for ground in MATERIALS
         for thing in OBJECTS

@@ -12,29 +12,17 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import statistics
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from catchers import ball, cpu
 
 import daguerre as dg
 from daguerre.rendering.session import Session
 
 HEAD, ENTRY = 4, 16  # bytes of the film per pixel, and of each object in it
-
-
-def ball(radius: float, segments: int = 12) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Vertices and triangles of a ball, seen from outside."""
-    theta, phi = np.linspace(0, np.pi, segments + 1), np.linspace(0, 2 * np.pi, 2 * segments + 1)
-    t, p = np.meshgrid(theta, phi, indexing="ij")
-    points = np.stack([np.sin(t) * np.cos(p), np.cos(t), np.sin(t) * np.sin(p)], -1)
-    number = np.arange(points[..., 0].size).reshape(t.shape)
-    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
-    faces = np.concatenate([np.stack(each, -1).reshape(-1, 3) for each in ((a, b, d), (a, d, c))])
-    return radius * points.reshape(-1, 3), faces
 
 
 def scene(count: int, radius: float, depth: float) -> dg.Scene:
@@ -43,7 +31,7 @@ def scene(count: int, radius: float, depth: float) -> dg.Scene:
     corners = np.array([(-30, -1.2, 10), (30, -1.2, 10), (30, -1.2, -60), (-30, -1.2, -60)])
     ground = made.add_mesh(corners, np.array([(0, 1, 2), (0, 2, 3)]))
     made.add_instance(ground, dg.Diffuse((0.4, 0.4, 0.4)), name="ground")
-    mesh = made.add_mesh(*ball(radius))
+    mesh = made.add_mesh(*ball(12, radius))
     colors = [made.add_material(dg.Diffuse(c)) for c in ((0.7, 0.2, 0.1), (0.1, 0.3, 0.7))]
     rng = np.random.default_rng(1)
     for i in range(count):
@@ -61,14 +49,6 @@ SCENES: dict[str, tuple[Callable[[], dg.Scene], dg.Camera]] = {
 }
 
 
-def cpu(session: Session, spp: int) -> float:
-    """CPU time of drawing, s."""
-    before = os.times()
-    session.draw(0, spp)
-    after = os.times()
-    return after.user + after.system - before.user - before.system
-
-
 def measure(name: str, size: tuple[int, int], spp: int, runs: int) -> dict[str, float]:
     """Pairs of pictures of one scene, with mattes and without."""
     make, camera = SCENES[name]
@@ -79,7 +59,8 @@ def measure(name: str, size: tuple[int, int], spp: int, runs: int) -> dict[str, 
     for _ in range(runs):
         plain = Session(made, camera, built=built, **options)
         keeps = Session(made, camera, built=built, cryptomatte="object,material,asset", **options)
-        ratios.append(cpu(keeps, spp) / cpu(plain, spp))
+        times = [cpu(lambda session=session: session.draw(0, spp))[1] for session in (keeps, plain)]
+        ratios.append(times[0] / times[1])
     words = keeps.state()["objects"]
     entries = int((words[:, :, 0] != 0xFFFFFFFF).sum())
     pixels = size[0] * size[1]

@@ -15,16 +15,20 @@ std::int64_t coverage_steps(float weight) {
 
 CoverLists::CoverLists(std::size_t pixels) : heads_(pixels) {}
 
+int CoverLists::chunk_of(std::uint64_t place) {
+    return int(std::bit_width(place + (std::uint64_t(1) << kFirstBits))) - 1 - kFirstBits;
+}
+
 CoverLists::Node& CoverLists::node(std::uint32_t place) const {
-    const std::uint64_t from = place + (std::uint64_t(1) << kFirstBits);
-    const int chunk = int(std::bit_width(from)) - 1 - kFirstBits;
-    return chunks_[chunk].load(std::memory_order_acquire)[from - (std::uint64_t(1) << (chunk + kFirstBits))];
+    const int chunk = chunk_of(place);
+    const std::uint64_t first = (std::uint64_t(1) << (chunk + kFirstBits)) - (std::uint64_t(1) << kFirstBits);
+    return chunks_[chunk].load(std::memory_order_acquire)[place - first];
 }
 
 std::uint32_t CoverLists::new_node() {
     const std::uint64_t place = used_.fetch_add(1, std::memory_order_relaxed);
     if (place >= kNowhere) throw Error("film: objects: more than 2^32 of them in all pixels together");
-    const int chunk = int(std::bit_width(place + (std::uint64_t(1) << kFirstBits))) - 1 - kFirstBits;
+    const int chunk = chunk_of(place);
     if (!chunks_[chunk].load(std::memory_order_acquire)) {
         const std::lock_guard lock(growing_);
         if (!kept_[chunk]) {

@@ -50,6 +50,7 @@ class CoverLists {
     static_assert(sizeof(Node) == kEntryBytes);
     /// Nodes lie in chunks, each twice as large as the one before: none is ever moved.
     static constexpr int kFirstBits = 10, kChunks = 33 - kFirstBits;
+    static int chunk_of(std::uint64_t place);
     Node& node(std::uint32_t place) const;
     std::uint32_t new_node();
 

@@ -524,6 +524,6 @@ TEST_CASE("bytes of a pixel are those of its parts, whatever the film keeps") {
             const Film film(l);
             std::size_t bytes = 0;
             for (const std::string& part : film.state_parts()) bytes += film.state(part).size();
-            CHECK(bytes == 6 * Film::pixel_bytes(l));   // lists of objects are as long as they are
+            CHECK(bytes == 6 * Film::pixel_bytes(l));
         }
 }

@@ -9,55 +9,35 @@ from pathlib import Path
 from typing import Any
 
 from tests.support import lens_writers as write
+from tests.support.triplet import CROWN, TRIPLET, Data, row
 
 from .bases import beside_scene
 from .case import DRAW, Case
 
-Data = dict[str, Any]
 SHOW = ("lens", "{bad}")
 RENDER = ("render", "{folder}/scene.glb", "--lens", "{bad}", *DRAW, "--sky", "1,1,1")
-CROWN, FLINT = {"nd": 1.62041, "vd": 60.32}, {"nd": 1.6727, "vd": 32.25}
 
 
-def _row(kind: str, radius: float | None, thickness: float, semi: float, glass: Any = None) -> Data:
-    surface = {"kind": kind, "radius": radius, "thickness": thickness}
-    return {**surface, "semi_diameter": semi, "glass": glass}
-
-
-#: A triplet, f = 47 mm, with an iris behind its second glass.
-GOOD: Data = {
-    "name": "triplet",
-    "surfaces": [
-        _row("spherical", 22.01359, 3.795568, 9.5, CROWN),
-        _row("spherical", -435.7602, 6.0, 9.5),
-        _row("spherical", -22.21328, 2.0, 5.0, FLINT),
-        _row("spherical", 20.29192, 1.0, 5.0),
-        _row("stop", None, 3.750246, 4.3),
-        _row("spherical", 79.6836, 2.720573, 7.5, CROWN),
-        _row("spherical", -18.39533, 40.0, 7.5),
-    ],
-    "configurations": [{"name": "infinity", "gaps": {}}],
-}
 ZOOM: Data = {
-    **GOOD,
+    **TRIPLET,
     "configurations": [{"name": "a", "gaps": {}}, {"name": "b", "gaps": {"1": 7.0}}],
 }
 
 
 def changed(surface: int, **members: Any) -> Data:
     """The triplet with members of one surface changed."""
-    data = copy.deepcopy(GOOD)
+    data = copy.deepcopy(TRIPLET)
     data["surfaces"][surface].update(members)
     return data
 
 
 def many(count: int) -> Data:
     """Very many plates."""
-    plate = [_row("spherical", None, 0.01, 9, CROWN), _row("spherical", None, 0.01, 9)]
-    return {**GOOD, "surfaces": [*GOOD["surfaces"][:5], *(plate * (count // 2))]}
+    plate = [row("spherical", None, 0.01, 9, CROWN), row("spherical", None, 0.01, 9)]
+    return {**TRIPLET, "surfaces": [*TRIPLET["surfaces"][:5], *(plate * (count // 2))]}
 
 
-FLAT: Data = copy.deepcopy(GOOD)
+FLAT: Data = copy.deepcopy(TRIPLET)
 for _surface in FLAT["surfaces"]:
     _surface["radius"] = None
 
@@ -381,9 +361,9 @@ def _cases() -> Iterator[Case]:
             text = writer(lens).encode()
             yield Case(f"lens-{form}-{key}", _of_bytes(file, text), error, command=SHOW)
         for key, (change, error) in THEMES[form].items():
-            text = change(writer(GOOD)).encode()
+            text = change(writer(TRIPLET)).encode()
             yield Case(f"lens-{form}-of {key}", _of_bytes(file, text), error, command=SHOW)
-        good = writer(GOOD).encode()
+        good = writer(TRIPLET).encode()
         for key, (flags, error) in ASKED.items():
             put = beside_scene(file, lambda path, good=good: path.write_bytes(good))
             yield Case(f"lens-{form}-asked {key}", put, error, command=(*RENDER, *flags))

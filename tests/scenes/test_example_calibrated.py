@@ -14,6 +14,7 @@ import pytest
 import daguerre as dg
 from daguerre.calibration import read, read_kalibr
 from daguerre.cli import main
+from tests.support.example_scenes import made_twice
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = ROOT / "scenes" / "calibrated"
@@ -23,14 +24,7 @@ COLUMNS, ROWS, SQUARE, MARKER = 8, 5, 0.030, 0.021  # of the board on the desk
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("calibrated")
-    for part in ("a", "b"):
-        script = [sys.executable, ROOT / "scenes" / "calibrated.py", "-o", folder / part]
-        subprocess.run(script, check=True, capture_output=True)
-    first, second = (folder / part / "desk.glb" for part in ("a", "b"))
-    assert first.read_bytes() == second.read_bytes()
-    assert first.stat().st_size < 4_000_000
-    return first
+    return made_twice("calibrated", tmp_path_factory.mktemp("desk"), 4_000_000) / "desk.glb"
 
 
 def test_desk_is_read_without_a_note_and_its_things_are_named(desk: Path) -> None:

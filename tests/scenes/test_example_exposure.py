@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import daguerre as dg
-
-ROOT = Path(__file__).resolve().parents[2]
+from tests.support.example_scenes import made_twice
 
 
 @pytest.fixture(scope="module")
 def pinwheels(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("exposure")
-    for part in ("a", "b"):
-        script = [sys.executable, str(ROOT / "scenes" / "exposure.py"), "-o", str(folder / part)]
-        subprocess.run(script, check=True, capture_output=True)
-    first, second = (folder / part / "pinwheels.glb" for part in ("a", "b"))
-    assert first.read_bytes() == second.read_bytes()
-    return first
+    return made_twice("exposure", tmp_path_factory.mktemp("exposure")) / "pinwheels.glb"
 
 
 def test_pinwheels_turn_twice_a_second(pinwheels: Path) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +11,11 @@ import pytest
 
 import daguerre as dg
 from daguerre.io.gltf.extensions import KNOWN
+from tests.support.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")
 PACKAGES = ("DracoPy", "opengl_basisu")
-
-
-def make(folder: Path, *flags: str) -> None:
-    script = ROOT / "scenes" / "extensions.py"
-    subprocess.run([sys.executable, script, "-o", folder, *flags], check=True, capture_output=True)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for package in PACKAGES:
         pytest.importorskip(package, reason="needs the extra compression")
     made = tmp_path_factory.mktemp("extensions")
-    make(made)
+    make("extensions", made)
     return made
 
 
@@ -63,7 +57,7 @@ def test_loads_without_a_warning_and_shows_something(folder: Path, name: str) ->
 
 def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
     for name in ("packed", "garden"):  # the two with encoders of others in them
-        make(tmp_path, "--only", name)
+        make("extensions", tmp_path, "--only", name)
         assert (tmp_path / f"{name}.glb").read_bytes() == (folder / f"{name}.glb").read_bytes()
 
 

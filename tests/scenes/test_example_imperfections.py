@@ -17,6 +17,7 @@ import daguerre as dg
 from daguerre import analysis, cli
 from daguerre.analysis.ghosts import Ghosts
 from daguerre.post.recipe import from_words
+from tests.support.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 GALLERY = ROOT / "docs" / "gallery"
@@ -37,17 +38,12 @@ COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in pan
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("imperfections")
-    make(made)
+    make("imperfections", made)
     return made
 
 
-def make(folder: Path) -> None:
-    script = ROOT / "scenes" / "imperfections.py"
-    subprocess.run([sys.executable, script, "-o", folder], check=True, capture_output=True)
-
-
 def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
-    make(tmp_path)
+    make("imperfections", tmp_path)
     for name in SCENES:
         assert (tmp_path / f"{name}.glb").read_bytes() == (folder / f"{name}.glb").read_bytes()
         assert (tmp_path / f"{name}.glb").stat().st_size < 5_000_000
@@ -91,7 +87,7 @@ def test_the_page_is_what_the_words_say() -> None:
 def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which the page's commands find their scenes."""
     made = tmp_path_factory.mktemp("page")
-    make(made / "out" / "imperfections")
+    make("imperfections", made / "out" / "imperfections")
     lamps = [ROOT / "scenes" / "lens_scenes.py", "--only", "lamps"]
     subprocess.run([sys.executable, *lamps], check=True, cwd=made, capture_output=True)
     return made

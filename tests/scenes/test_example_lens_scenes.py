@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import daguerre as dg
+from tests.support.example_scenes import make
 
-ROOT = Path(__file__).resolve().parents[2]
 SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics")
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("lens_scenes")
-    make(made)
+    make("lens_scenes", made)
     return made
 
 
-def make(folder: Path, *flags: str) -> None:
-    script = ROOT / "scenes" / "lens_scenes.py"
-    subprocess.run([sys.executable, script, "-o", folder, *flags], check=True, capture_output=True)
-
-
 def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
-    make(tmp_path)
+    make("lens_scenes", tmp_path)
     for name in SCENES:
         assert (tmp_path / f"{name}.glb").read_bytes() == (folder / f"{name}.glb").read_bytes()
         assert (tmp_path / f"{name}.glb").stat().st_size < 5_000_000

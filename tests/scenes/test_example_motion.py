@@ -12,6 +12,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.io.images import decode
+from tests.support.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Moving nodes or cameras by name, and two times at which to look.
@@ -25,20 +26,15 @@ MOVING = {
 }
 
 
-def make(folder: Path) -> None:
-    script = ROOT / "scenes" / "motion.py"
-    subprocess.run([sys.executable, script, "-o", folder], check=True, capture_output=True)
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("motion")
-    make(made)
+    make("motion", made)
     return made
 
 
 def test_same_bytes_every_time(folder: Path, tmp_path: Path) -> None:
-    make(tmp_path)
+    make("motion", tmp_path)
     assert sorted(p.stem for p in folder.iterdir()) == sorted(MOVING)
     for name in MOVING:
         first, again = (d / f"{name}.glb" for d in (folder, tmp_path))

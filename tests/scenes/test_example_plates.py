@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import typer.main
 import daguerre as dg
 from daguerre import cli
 from daguerre.frame.over import change_of_rgb
+from tests.support.example_scenes import made_twice
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "script" / "docs" / "gallery"))
@@ -33,14 +33,7 @@ PAWNS = {"glass", "steel", "vermilion", "ochre"}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made = tmp_path_factory.mktemp("plates")
-    for part in ("a", "b"):
-        script = [sys.executable, ROOT / "scenes" / "plates.py", "-o", made / part]
-        subprocess.run(script, check=True, capture_output=True)
-    for name in ("empty.glb", "shot.glb"):
-        assert (made / "a" / name).read_bytes() == (made / "b" / name).read_bytes()
-        assert (made / "a" / name).stat().st_size < 5_000_000
-    return made / "a"
+    return made_twice("plates", tmp_path_factory.mktemp("plates"))
 
 
 def test_the_shot_is_the_set_and_the_pawns(folder: Path) -> None:

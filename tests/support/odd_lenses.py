@@ -11,31 +11,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from . import lens_writers as write
+from .triplet import CROWN, FLINT, TRIPLET, Data, row
 
-Data = dict[str, Any]
-CROWN, FLINT = {"nd": 1.62041, "vd": 60.32}, {"nd": 1.6727, "vd": 32.25}
 SCHEMA = "daguerre-lens/0.1"
 
 
-def _row(kind: str, radius: float | None, thickness: float, semi: float, glass: Any = None) -> Data:
-    surface = {"kind": kind, "radius": radius, "thickness": thickness}
-    return {**surface, "semi_diameter": semi, "glass": glass}
-
-
-#: A triplet, f = 47 mm, with an iris behind its second glass.
-TRIPLET: Data = {
-    "name": "triplet",
-    "surfaces": [
-        _row("spherical", 22.01359, 3.795568, 9.5, CROWN),
-        _row("spherical", -435.7602, 6.0, 9.5),
-        _row("spherical", -22.21328, 2.0, 5.0, FLINT),
-        _row("spherical", 20.29192, 1.0, 5.0),
-        _row("stop", None, 3.750246, 4.3),
-        _row("spherical", 79.6836, 2.720573, 7.5, CROWN),
-        _row("spherical", -18.39533, 40.0, 7.5),
-    ],
-    "configurations": [{"name": "infinity", "gaps": {}}],
-}
 STOP, LAST = 4, 6
 
 
@@ -87,14 +67,14 @@ def _mirrored() -> Data:
     return data
 
 
-_STOP = _row("stop", None, 1.0, 4.0)
-_BALL = [_row("spherical", 5.0, 10.0, 4.9, CROWN), _row("spherical", -5.0, 5.0, 4.9)]
-_PLATE = [_row("spherical", None, 2.0, 5.0, CROWN), _row("spherical", None, 10.0, 5.0)]
+_STOP = row("stop", None, 1.0, 4.0)
+_BALL = [row("spherical", 5.0, 10.0, 4.9, CROWN), row("spherical", -5.0, 5.0, 4.9)]
+_PLATE = [row("spherical", None, 2.0, 5.0, CROWN), row("spherical", None, 10.0, 5.0)]
 _KEPLER = [
-    _row("spherical", 50.0, 2.0, 5.0, CROWN),
-    _row("spherical", None, 115.0, 5.0),
-    _row("spherical", None, 2.0, 5.0, CROWN),
-    _row("spherical", -50.0, 10.0, 5.0),
+    row("spherical", 50.0, 2.0, 5.0, CROWN),
+    row("spherical", None, 115.0, 5.0),
+    row("spherical", None, 2.0, 5.0, CROWN),
+    row("spherical", -50.0, 10.0, 5.0),
 ]
 
 ODD: dict[str, Data] = {
@@ -187,8 +167,8 @@ ODD: dict[str, Data] = {
     "a ball behind itself": _of(*_BALL, _STOP, *_BALL),
     "half a ball to its rim": _with((0, {"radius": 9.5})),
     "a plate": _of(_STOP, *_PLATE),
-    "one surface": _of(_row("spherical", 20.0, 50.0, 5.0, CROWN), _STOP),
-    "one surface, the iris": _of({**_row("spherical", 20.0, 50.0, 5.0, CROWN), "stop": True}),
+    "one surface": _of(row("spherical", 20.0, 50.0, 5.0, CROWN), _STOP),
+    "one surface, the iris": _of({**row("spherical", 20.0, 50.0, 5.0, CROWN), "stop": True}),
     "a needle": _all(semi_diameter=1e-6),
     "a conic of -1e6": _with((0, {"kind": "aspheric", "conic": -1e6})),
     "a conic of 1e6": _with((0, {"kind": "aspheric", "conic": 1e6})),

@@ -81,7 +81,11 @@ class Calibration:
         if "transform" not in changes and not np.array_equal(self.rig_from_camera, np.eye(4)):
             given = mounted(given, self.rig_from_camera)
         made = given.with_(**changes)
-        return delayed(made, self.delay_s) if timeshift else made
+        return self.moved(delayed(made, self.delay_s) if timeshift else made)
+
+    def moved(self, camera: Camera) -> Camera:
+        """The camera as it moves; one that stands stays as it is."""
+        return camera
 
     def starting(self, time_s: float) -> Self:
         """The same with frame 0 at a time, s; one that knows no frames stays as it is."""

@@ -42,19 +42,9 @@ class Take(Calibration):
     file: str = "calibration"
     start: float = 0.0
 
-    def camera(
-        self,
-        camera: Camera | None = None,
-        pixel_pitch: float | None = None,
-        *,
-        timeshift: bool = False,
-    ) -> Camera:
-        """A camera that moves so; frames are as far apart as those of the camera that is given.
-
-        Args: those of :meth:`Calibration.camera`.
-        """
-        made = super().camera(camera, pixel_pitch, timeshift=timeshift)
-        return made.with_(**self._changes(made.fps))
+    def moved(self, camera: Camera) -> Camera:
+        """The camera that moves so; frames are as far apart as those of the camera."""
+        return camera.with_(**self._changes(camera.fps))
 
     def starting(self, time_s: float) -> Self:
         """The same take with frame 0 at another time, s; takes by time have times of their own."""

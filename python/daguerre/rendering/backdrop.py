@@ -55,17 +55,18 @@ def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
         )
 
 
-def over_plate(frame: Frame, plate: Plate | None) -> Frame:
-    """The frame over its plate; alpha and all layers stay those of the objects."""
-    assert plate is not None
-    rgb = change_of_rgb(frame).of(behind(frame, plate.pixels))
+def over(frame: Frame, pixels: NDArray[np.float32]) -> Frame:
+    """The frame over what is behind it; alpha and all layers stay those of the objects."""
+    rgb = change_of_rgb(frame).of(pixels)
     return replace(frame, rgb=rgb, xyz=xyz_of(rgb))
 
 
-def behind(frame: Frame, pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Pixels of a plate behind those of a frame, (H, W, 3): 0 in the overscan."""
+def behind(frame: Frame, plate: Plate | None) -> NDArray[np.float32]:
+    """Pixels of the plate behind those of a frame, (H, W, 3): 0 in the overscan."""
     wide, high = frame.metadata.get("resolution") or (frame.width, frame.height)
     left, top = (frame.metadata.get("crop") or (0, 0))[:2]
+    assert plate is not None
+    pixels = plate.pixels
     whole = pixels if pixels.shape[:2] == (high, wide) else _resized(pixels, wide, high)
     shown = np.zeros((frame.height, frame.width, 3), np.float32)
     x0, y0 = max(left, 0), max(top, 0)

@@ -223,7 +223,7 @@ class Drawing:
         """Tells what to do where memory ended within a pass, whose sums are of no use."""
         kept = (
             f"{self.checkpoint.path} keeps the samples before; --resume goes on, or "
-            if (self.checkpoint.exists)
+            if self.checkpoint.exists
             else ""
         )
         return (

@@ -14,14 +14,11 @@ from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
 from daguerre.frame.cryptomatte import LAYERS, MAX_RANKS
 from daguerre.io.exr import write as exr
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+from daguerre.io.exr.facts import are_texts, is_number
 
 
 def _are_numbers(value: Any, count: int) -> bool:
-    return isinstance(value, list) and len(value) == count and all(map(_is_number, value))
+    return isinstance(value, list) and len(value) == count and all(map(is_number, value))
 
 
 def _is_whole(value: Any, low: int, high: int) -> bool:
@@ -29,7 +26,7 @@ def _is_whole(value: Any, low: int, high: int) -> bool:
 
 
 def _is_pair(value: Any) -> bool:
-    return _is_number(value) or _are_numbers(value, 2)
+    return is_number(value) or _are_numbers(value, 2)
 
 
 def _is_matrix(value: Any) -> bool:
@@ -51,10 +48,6 @@ def _is_crop(value: Any) -> bool:
     return bool(x0 < x1 and y0 < y1)
 
 
-def _are_names(value: Any) -> bool:
-    return isinstance(value, list) and all(isinstance(name, str) for name in value)
-
-
 def _are_mattes(value: Any) -> bool:
     if not (isinstance(value, dict) and _is_whole(value.get("ranks"), 1, MAX_RANKS)):
         return False
@@ -67,14 +60,14 @@ def _are_mattes(value: Any) -> bool:
 
 
 def _is_layer(value: Any) -> bool:
-    if not (isinstance(value, dict) and _are_names(value.get("names"))):
+    if not (isinstance(value, dict) and are_texts(value.get("names"))):
         return False
     of, most = value.get("of"), len(value["names"]) - 1
     return isinstance(of, list) and all(_is_whole(number, 0, most) for number in of)
 
 
 _CHECKS: dict[str, Callable[[Any], bool]] = {
-    **dict.fromkeys((*exr.FLOATS, *exr.OWN_NUMBERS), _is_number),
+    **dict.fromkeys((*exr.FLOATS, *exr.OWN_NUMBERS), is_number),
     **dict.fromkeys((*exr.STRINGS, *exr.OWN_STRINGS), lambda value: isinstance(value, str)),
     **dict.fromkeys((*exr.VECTORS, *exr.RATIONALS), _is_pair),
     **dict.fromkeys(exr.MATRICES, _is_matrix),
@@ -82,8 +75,8 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "pupils": lambda value: isinstance(value, dict),
     "resolution": _is_size,
     "crop": _is_crop,
-    "aovs": _are_names,
-    "sensor_channels": _are_names,
+    "aovs": are_texts,
+    "sensor_channels": are_texts,
     "mattes": _are_mattes,
     "white_balance": _is_pair,
 }

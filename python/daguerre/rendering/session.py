@@ -21,7 +21,7 @@ from daguerre.setup.built_scene import BuiltScene
 
 from . import identity
 from .adaptive import Round
-from .backdrop import over_plate, shows_plate
+from .backdrop import behind, over, shows_plate
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of
@@ -81,6 +81,7 @@ class Session:
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self._film = new_film(one, self.light_plan)
+        self._plate: NDArray[np.float32] | None = None  # behind every frame, once there is one
         self._torn = False  # a pass was stopped midway: the sums are of no use
 
     @property
@@ -176,7 +177,11 @@ class Session:
 
     def over_plate(self, frame: Frame) -> Frame:
         """The frame over the plate of the scene, if that is the background."""
-        return over_plate(frame, self.scene.plate) if shows_plate(self.settings) else frame
+        if not shows_plate(self.settings):
+            return frame
+        if self._plate is None:
+            self._plate = behind(frame, self.scene.plate)
+        return over(frame, self._plate)
 
     def with_truth(self, frame: Frame) -> Frame:
         """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""

@@ -20,7 +20,7 @@ from . import write as exr
 def read_facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Facts by the names of ``Frame.metadata``: of the standard and of Daguerre."""
     standard: tuple[tuple[tuple[str, ...], Callable[[Any], bool]], ...] = (
-        (exr.FLOATS, _is_number),
+        (exr.FLOATS, is_number),
         (exr.STRINGS, _is_text),
         (exr.VECTORS, _are_two),
         (exr.RATIONALS, _is_fraction),
@@ -47,7 +47,7 @@ def _own(name: str, value: Any) -> Any:
     """JSON as what it says; a whole number that travelled as text as a number; None: no fact."""
     if name in exr.OWN_NUMBERS:
         number = _whole(value) if isinstance(value, str) else value
-        return number if _is_number(number) else None
+        return number if is_number(number) else None
     if name in exr.OWN_STRINGS:
         return value if isinstance(value, str) else None
     if name not in _JSON:
@@ -66,7 +66,8 @@ def _whole(text: str) -> int | None:
         return None
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether it is a number; True and False are none."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -89,12 +90,13 @@ def _are_sixteen(value: Any) -> bool:
 def _are_places(value: Any) -> bool:
     """Lists of column, row and sample."""
     return isinstance(value, list) and all(
-        isinstance(place, list) and len(place) == 3 and all(map(_is_number, place))
+        isinstance(place, list) and len(place) == 3 and all(map(is_number, place))
         for place in value
     )
 
 
-def _are_texts(value: Any) -> bool:
+def are_texts(value: Any) -> bool:
+    """Whether it is a list of texts."""
     return isinstance(value, list) and all(map(_is_text, value))
 
 
@@ -104,7 +106,7 @@ def _is_balance(value: Any) -> bool:
 
 
 def _is_finite(value: Any) -> bool:
-    return _is_number(value) and math.isfinite(value)
+    return is_number(value) and math.isfinite(value)
 
 
 def _is_object(value: Any) -> bool:
@@ -118,7 +120,7 @@ def _is_there(value: Any) -> bool:
 _JSON: dict[str, Callable[[Any], bool]] = {
     **dict.fromkeys((*exr.OWN_JSON, "camera"), _is_there),
     "bad_sample_places": _are_places,
-    "sensor_channels": _are_texts,
+    "sensor_channels": are_texts,
     "white_balance": _is_balance,
     "camera": _is_object,
 }

@@ -21,10 +21,9 @@ import numpy as np
 from daguerre.errors import OutputError
 
 from .header import ExrHeader, header_bytes
+from .layout import COMPRESSIONS, NONE, ZIP
 from .parts import Planes
 
-NO_COMPRESSION, ZIP = 0, 3
-BLOCK_ROWS = {NO_COMPRESSION: 1, ZIP: 16}
 DEFLATE_LEVEL = 4  # OpenEXR's own default
 
 
@@ -39,9 +38,9 @@ class ExrWriter:
             source: Its attributes are kept, but for how pixels are packed.
             attributes: Texts to add.
         """
-        packed = source.facts.get("compression", NO_COMPRESSION)
-        self._compression = NO_COMPRESSION if packed == NO_COMPRESSION else ZIP
-        self._block = BLOCK_ROWS[self._compression]
+        packed = source.facts.get("compression", NONE)
+        self._compression = NONE if packed == NONE else ZIP
+        self._block = COMPRESSIONS[self._compression][1]
         kept = dict(source.attributes)
         for name in ("tiles", "chunkCount", "type", "version", "maxSamplesPerPixel"):
             kept.pop(name, None)
@@ -111,7 +110,7 @@ class ExrWriter:
             for c in self._channels
         ]
         plain = np.concatenate(lines, axis=1).reshape(-1)
-        if self._compression == NO_COMPRESSION:
+        if self._compression == NONE:
             return plain.tobytes()
         halves = np.concatenate([plain[0::2], plain[1::2]])
         halves[1:] = halves[1:] - halves[:-1] + np.uint8(128)
