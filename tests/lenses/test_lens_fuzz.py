@@ -18,9 +18,10 @@ from hypothesis import strategies as st
 from daguerre import lenses
 from daguerre.errors import InputError
 from daguerre.lenses.errors import CODES, LensError
-from tests.bad_files.lens_imports import GOOD, ZOOM
+from tests.bad_files.lens_imports import ZOOM
 from tests.lenses.test_lens_import import ANAMORPHIC, ASPHERE, ODD, PLACED
 from tests.support import lens_writers as write
+from tests.support.triplet import TRIPLET
 
 #: Bytes that these formats give a meaning to, and numbers that break things.
 TOKENS = tuple(
@@ -36,7 +37,7 @@ SEEDS: list[tuple[str, str]] = [
     *((write.zmx(data), ".zmx") for data in (ZOOM, ASPHERE, ODD, PLACED, ANAMORPHIC)),
     *((write.seq(data), ".seq") for data in (ZOOM, ASPHERE, PLACED, ANAMORPHIC)),
     *((write.optical_bench(data), ".txt") for data in (ZOOM, ASPHERE)),
-    (write.pbrt(GOOD), ".dat"),
+    (write.pbrt(TRIPLET), ".dat"),
     (json.dumps({"schema": "daguerre-lens/0.1", **ASPHERE}), ".json"),
 ]
 LIMIT_S = 10.0
