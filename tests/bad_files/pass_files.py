@@ -172,6 +172,15 @@ def _two(folder: Path) -> Path:
     return folder / "bad.exr"
 
 
+def _objects_alone(folder: Path) -> Path:
+    """Lists of objects, and no sums of coverage that they share."""
+    frame, drawn = _drawn()
+    state = {part: words for part, words in drawn.state.items() if part != "coverage"}
+    state["objects"] = np.zeros((*drawn.state["sums"].shape[:2], 4), np.uint32)
+    passes.write_pass(folder / "bad.exr", frame, replace(drawn, state=state))
+    return folder / "bad.exr"
+
+
 def _alien(folder: Path) -> Path:
     """Pass of another scene."""
     frame, drawn = _drawn()
@@ -198,6 +207,7 @@ CASES = [
         Case(f"pass-{name}", make, error, command=MERGE)
         for name, make, error in (
             ("missing", lambda folder: folder / "none.exr", "no such pass file"),
+            ("objects alone", _objects_alone, f"{D}: film: objects: wanted coverage, too"),
             ("pipe", _pipe, "no such pass file"),
             ("empty", _bytes(b""), "wanted an OpenEXR file"),
             ("text", _bytes(b"hello"), "wanted an OpenEXR file"),

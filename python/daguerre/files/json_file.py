@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from daguerre.errors import DaguerreError, InputError, suggest
 
-from .json_item import Item
+from .json_item import Item, short
 from .json_text import parse
 
 Made = TypeVar("Made")
@@ -40,7 +40,7 @@ def read_json_file(
     root = parse(data, str(path))
     named = root.need("schema")
     if named.value != schema:
-        named.fail(f"wanted {schema!r}, got {named.value!r}")
+        named.fail(f"wanted {schema!r}, got {short(named.value)}")
     for member in root.members():
         if member.key not in members:
             member.fail(f"not known{suggest(str(member.key), members)}")

@@ -29,6 +29,11 @@ def clean(name: str) -> str:
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)[:200]
 
 
+def _named(key: str, limit: int = 60) -> str:
+    """A key of a stranger's file as a message shows it."""
+    return key if len(key) <= limit else f"{key[: limit - 20]}... ({len(key)} long)"
+
+
 class Item:
     """A JSON value with its place; the getters check type and range and raise ``InputError``.
 
@@ -61,7 +66,7 @@ class Item:
         keys: list[str] = []
         item: Item = self
         while item.parent is not None:
-            keys.append(f"[{item.key}]" if isinstance(item.key, int) else f".{item.key}")
+            keys.append(f"[{item.key}]" if isinstance(item.key, int) else f".{_named(item.key)}")
             item = item.parent
         return "".join(reversed(keys)).lstrip(".")
 

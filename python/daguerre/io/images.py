@@ -124,11 +124,12 @@ def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(rgb)
 
 
-def read_file(path: Path) -> tuple[NDArray[Any], Any]:
+def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
     """Pixels of a picture in their own type, shape (H, W, C), as they lie in the file; its facts.
 
     Args:
         path: A format that OpenImageIO decodes. PNG and JPEG that are cut off are refused here.
+        floats: Pixels as floats instead, integers scaled to 0 .. 1, premultiplied by alpha.
 
     Returns:
         The pixels, straight alpha, and OpenImageIO's specification.
@@ -144,7 +145,7 @@ def read_file(path: Path) -> tuple[NDArray[Any], Any]:
         _check_png(path.read_bytes(), str(path))
     elif start.startswith(b"\xff\xd8\xff"):
         _check_jpeg(path.read_bytes(), str(path))
-    pixels, spec, _ = _read(str(path), str(path))
+    pixels, spec, _ = _read(str(path), str(path), floats=floats)
     return pixels, spec
 
 
@@ -154,8 +155,10 @@ def _check_jpeg(data: bytes, where: str) -> None:
         raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
 
 
-def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], Any, str]:
-    """Pixels in their own type, the specification, and the name of the format; straight alpha."""
+def _read(
+    name: str, where: str, limit: int = MAX_BYTES, *, floats: bool = False
+) -> tuple[NDArray[Any], Any, str]:
+    """Pixels, the specification, and the name of the format: see :func:`read_file`."""
     import OpenImageIO as oiio  # 30 MB that a scene without pictures does without
 
     try:
@@ -163,14 +166,15 @@ def _read(name: str, where: str, limit: int = MAX_BYTES) -> tuple[NDArray[Any], 
     except UnicodeEncodeError:
         raise InputError(f"{where}: cannot be decoded: wanted a name in UTF-8") from None
     config = oiio.ImageSpec()
-    config.attribute("oiio:UnassociatedAlpha", 1)
+    config.attribute("oiio:UnassociatedAlpha", int(not floats))
     source = oiio.ImageInput.open(name, config)
     if source is None:
         raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
     try:
         spec = source.spec()
-        _check_size(spec.width, spec.height, spec.nchannels, spec.format.basesize(), where, limit)
-        pixels = source.read_image(0, 0, 0, spec.nchannels, spec.format)
+        format = oiio.TypeDesc(oiio.FLOAT) if floats else spec.format
+        _check_size(spec.width, spec.height, spec.nchannels, format.basesize(), where, limit)
+        pixels = source.read_image(0, 0, 0, spec.nchannels, format)
         error, kind = source.geterror(), str(source.format_name())
     finally:
         source.close()

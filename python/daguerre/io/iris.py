@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from daguerre.errors import InputError
 
 from .exr.reader import ExrReader, is_exr, light_names
+from .images import read_file
 
 
 def read_grey(path: Path) -> NDArray[np.float32]:
@@ -32,18 +32,7 @@ def _read(path: Path) -> NDArray[np.float32]:
         raise InputError(f"{path}: no such picture")
     if is_exr(path):
         return _of_exr(path)
-    import OpenImageIO as oiio
-
-    source: Any = oiio.ImageInput.open(str(path))
-    if source is None:
-        raise InputError(f"{path}: not a readable picture: {oiio.geterror()}")
-    try:
-        pixels = source.read_image(0, 0, 0, source.spec().nchannels, oiio.FLOAT)
-        if pixels is None:
-            raise InputError(f"{path}: damaged picture: {source.geterror()}")
-    finally:
-        source.close()
-    return np.atleast_3d(np.asarray(pixels, np.float32))
+    return np.asarray(read_file(path, floats=True)[0], np.float32)
 
 
 def _of_exr(path: Path) -> NDArray[np.float32]:

@@ -211,10 +211,8 @@ class Parameter:
                 self._check_whole(value, where)
             case "choice" if value not in self.choices:
                 words = (" or " if len(self.choices) == 2 else ", ").join(self.choices)
-                words = self.wants or words
-                raise UsageError(
-                    f"{where}: wanted {words}, got {value!r}{suggest(str(value), self.choices)}"
-                )
+                near = suggest(short(value), self.choices)
+                raise UsageError(f"{where}: wanted {self.wants or words}, got {short(value)}{near}")
             case "numbers" | "size":
                 for part in checks.numbers(value, where, self.count, self.wanted):
                     self._check_number(part, where)

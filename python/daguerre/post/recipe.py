@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.json_item import short
 
 from .effect import Effect, Values
 from .effects.catalogue import EFFECTS
@@ -83,8 +84,8 @@ def plan(
     """An effect of the list with values for all its parameters."""
     if not isinstance(name, str) or name not in EFFECTS:
         raise error(
-            f"{where}: effect: wanted a name of `daguerre post --list`, got {name!r}"
-            f"{suggest(str(name), EFFECTS)}"
+            f"{where}: effect: wanted a name of `daguerre post --list`, got {short(name)}"
+            f"{suggest(short(name), EFFECTS)}"
         )
     effect = EFFECTS[name]
     return Planned(effect, effect.values(given, where, error), where, dict(given))

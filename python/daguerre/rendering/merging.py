@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from daguerre.errors import InputError, MismatchError
+from daguerre.errors import InputError, MismatchError, core_errors
 from daguerre.frame.frame import Frame
 from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
@@ -97,7 +97,8 @@ def film_of(one: Pass) -> Any:
         layout.bands = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
     if "channels" in one.state:
         layout.channels = min(one.state["channels"].shape[2] // BAND_WORDS, MOST_CHANNELS)
-    film = Film(layout)
+    with core_errors(InputError, f"{one.path}: damaged pass file"):
+        film = Film(layout)
     set_film_state(film, one.state, str(one.path))
     return film
 

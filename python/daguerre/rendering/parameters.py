@@ -50,7 +50,7 @@ class Setting(Parameter):
             return None
         if self.normal is not None:
             return self.normal(value, where)
-        super().check(value, where)
+        self.check_given(value, where)
         kinds: dict[str, Callable[[Any], Any]] = {"whole": int, "number": float}
         return kinds.get(self.kind, lambda value: value)(value)
 

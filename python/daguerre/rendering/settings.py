@@ -185,13 +185,18 @@ class RenderSettings:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> RenderSettings:
-        """Settings from ``to_json``; groups and values that are absent have their defaults."""
+        """Settings from ``to_json``; groups and values that are absent have their defaults.
+
+        Raises:
+            UsageError: A group or parameter that there is not, or a value that it cannot have.
+        """
         refuse_unknown(data, (*GROUPS, "threads"), "settings")
         groups: dict[str, Any] = {}
         for group in GROUPS.keys() & data.keys():
             refuse_unknown(data[group], names_in(GROUPS[group]), f"settings: {group}")
             given = dict(data[group])
             if isinstance(given.get("diffraction"), dict):
+                refuse_unknown(given["diffraction"], names_in(Diffraction), "settings: diffraction")
                 given["diffraction"] = Diffraction(**given["diffraction"])
             groups[group] = GROUPS[group](**given)
         return cls(**groups, threads=data.get("threads", THREADS.default))
@@ -217,4 +222,4 @@ def refuse_unknown(
     names = list(known)
     for name in given:
         if name not in names:
-            raise error(f"{where}: no parameter {name!r}{suggest(name, names)}")
+            raise error(f"{where}: no parameter {short(name)}{suggest(short(name), names)}")

@@ -267,6 +267,7 @@ FAULTS = [
     (("camera", "sensor_size_mm"), [36], "camera.sensor_size_mm"),
     (("camera",), None, "camera"),
     (("sensor",), "../other.json", "in the same folder"),
+    (("sensor",), "nul\0.json", "in the same folder"),
     (("sensor",), "missing.json", "missing.json"),
     (("noise", "kind"), "display", "noise.kind"),
     (("noise", "gain_dn_per_e"), 0, "noise.gain_dn_per_e"),

@@ -14,7 +14,7 @@ from daguerre import sensors
 from daguerre.camera.camera import Camera
 from daguerre.development.looks import LOOKS
 from daguerre.files.json_file import read_json_file
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 from daguerre.sensors import Sensor
 
 from .blur import Blur
@@ -120,10 +120,10 @@ def _sensor(item: Item | None, file: Path, kind: str) -> Sensor | None:
     if item is None:
         return None
     name = item.text()
-    if Path(name).name != name:
-        item.fail(f"wanted the name of a file in the same folder, got {name!r}")
+    if Path(name).name != name or "\0" in name:
+        item.fail(f"wanted the name of a file in the same folder, got {short(name)}")
     if kind != "raw":
-        item.fail(f"wanted none: a plate of kind {kind} has no mosaic, got {name!r}")
+        item.fail(f"wanted none: a plate of kind {kind} has no mosaic, got {short(name)}")
     return sensors.read(file.with_name(name))
 
 

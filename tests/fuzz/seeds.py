@@ -1,0 +1,137 @@
+"""Good files of each kind that :mod:`tests.fuzz.readers` changes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+import daguerre as dg
+from daguerre import calibration
+from daguerre.calibration import Calibration
+from daguerre.camera.projection import Projection
+from daguerre.rendering.passes import pass_of, write_pass
+from daguerre.rendering.session import Session
+from tests.bad_files import bases
+from tests.bad_files.exr_files import LIE, READ
+from tests.lenses.test_lens_fuzz import SEEDS as LENSES
+from tests.support import tracked
+from tests.support.plate_frames import of_light
+
+#: A file's name and bytes.
+Seed = tuple[str, bytes]
+LIBRARY = Path(dg.__file__).parent
+POINTS = ("opencv", (520.0, 515.0), (331.3, 236.8), (-0.28, 0.09, 1e-3, -2e-3, -0.01))
+
+
+def small(**settings: object) -> Session:
+    """A drawn picture of a few pixels, with an object in it."""
+    scene = dg.Scene()
+    mesh = scene.add_mesh([[-1, -1, -3], [1, -1, -3], [0, 1, -3]], [[0, 1, 2]])
+    scene.add_instance(mesh, dg.Diffuse((0.5, 0.4, 0.3)), name="sail")
+    scene.set_environment(color=(1, 0.9, 0.8))
+    session = Session(scene, dg.Camera(lens_model="pinhole"), resolution=(12, 8), **settings)
+    session.draw(0, 4)
+    return session
+
+
+def scenes(folder: Path) -> Iterator[Seed]:
+    for make in (bases.full, bases.moving, bases.seen):
+        yield "scene.glb", make().glb(folder / "a.glb").read_bytes()
+        yield "scene.gltf", make().gltf(folder / "a.gltf").read_bytes()
+
+
+def lenses(folder: Path) -> Iterator[Seed]:
+    for text, suffix in LENSES:
+        yield f"lens{suffix}", text.encode()
+
+
+def exrs(folder: Path) -> Iterator[Seed]:
+    import OpenImageIO as oiio
+
+    frame = small(aovs=True, cryptomatte="object,material").frame()
+    frame.save(folder / "plain.exr")
+    yield "frame.exr", (folder / "plain.exr").read_bytes()
+    for kind in ("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"):
+        spec = oiio.ImageSpec(12, 8, 3, oiio.HALF)
+        spec.attribute("compression", kind)
+        output = oiio.ImageOutput.create("openexr")
+        output.open(str(folder / "k.exr"), spec)
+        output.write_image(np.ascontiguousarray(frame.rgb))
+        output.close()
+        yield f"{kind}.exr", (folder / "k.exr").read_bytes()
+    for name, made in (*READ.items(), *((n, m) for n, (m, _) in LIE.items())):
+        data = made.data()
+        if len(data) < 20_000:
+            yield f"{name}.exr".replace(" ", "-"), data
+
+
+def passes(folder: Path) -> Iterator[Seed]:
+    for settings in ({}, {"aovs": True, "cryptomatte": "object"}, {"background": "transparent"}):
+        session = small(**settings)
+        write_pass(folder / "pass.exr", session.frame(), pass_of(session))
+        yield "pass.exr", (folder / "pass.exr").read_bytes()
+
+
+def calibrations(folder: Path) -> Iterator[Seed]:
+    model, focal, center, numbers = POINTS
+    made = Calibration(Projection(model, (640, 480), focal, center, numbers))
+    for kind in calibration.WRITTEN:
+        for suffix in ("yaml", "json"):
+            path = folder / f"{kind}.{suffix}"
+            try:
+                calibration.write(path, made, kind)
+            except dg.DaguerreError:
+                continue
+            yield path.name, path.read_bytes()
+    moments = tracked.path(3)
+    yield "take.json", tracked.opentrackio(folder / "take.json", moments).read_bytes()
+    yield "transforms.json", tracked.nerfstudio(folder / "t.json", moments).read_bytes()
+    for name in ("fisheye.yaml", "phone.yaml", "stereo.yaml"):
+        yield name, (LIBRARY.parents[1] / "scenes" / "calibrated" / name).read_bytes()
+
+
+def recipes(folder: Path) -> Iterator[Seed]:
+    """JSON of our own: sensors, stocks, cameras of plates, settings, effects, categories."""
+    for room in ("sensors", "stocks"):
+        for path in sorted((LIBRARY / room / "library").glob("*.json"))[:3]:
+            yield f"{room}.json", path.read_bytes()
+    settings = dg.RenderSettings.of(spp=16, resolution=(12, 8), noise=0.1, aovs=True)
+    yield "settings.json", json.dumps(settings.to_json()).encode()
+    effects = [{"effect": "vignetting", "model": "natural"}, {"effect": "distortion", "k1": 0.01}]
+    yield "effects.json", json.dumps([*effects, {"effect": "glow", "strength": 0.2}]).encode()
+    categories = LIBRARY.parents[1] / "scenes" / "calibrated" / "categories.json"
+    yield "categories.json", categories.read_bytes()
+    shot(folder, "dng")
+    dg.match_plate(folder / "shot.dng").save(folder / "camera.json")
+    yield "camera.json", (folder / "camera.json").read_bytes()
+
+
+def shot(folder: Path, ending: str) -> Path:
+    """A photograph of edges in noise."""
+    light = np.kron(np.random.default_rng(1).random((6, 9)), np.ones((40, 40)))
+    facts = {"expTime": 0.01, "aperture": 4.0, "isoSpeed": 400.0, "nominalFocalLength": 50.0}
+    frame = of_light(light, 0.6 * 78 / 400, **facts)
+    path = folder / f"shot.{ending}"
+    if ending == "exr":
+        frame.save(path)
+    else:
+        frame.expose("sony-a7r-ii", 400).save(path)
+    return path
+
+
+def pictures(folder: Path) -> Iterator[Seed]:
+    import OpenImageIO as oiio
+
+    for ending in ("dng", "jpg", "png", "tif", "exr"):
+        yield f"shot.{ending}", shot(folder, ending).read_bytes()
+    pixels = np.random.default_rng(1).random((9, 14, 3)).astype(np.float32)
+    for ending in ("hdr", "png", "jpg", "tif"):
+        output = oiio.ImageOutput.create(f"a.{ending}")
+        spec = oiio.ImageSpec(14, 9, 3, oiio.FLOAT if ending in ("hdr", "tif") else oiio.UINT8)
+        output.open(str(folder / f"a.{ending}"), spec)
+        output.write_image(pixels)
+        output.close()
+        yield f"a.{ending}", (folder / f"a.{ending}").read_bytes()

@@ -1,0 +1,90 @@
+"""Uses of a file that :mod:`tests.fuzz.readers` changed: read, and what is quick."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import daguerre as dg
+from daguerre import calibration
+from daguerre.errors import InputError
+from daguerre.files import formats
+from daguerre.io.iris import read_grey
+from daguerre.labels.categories import Categories
+from daguerre.plates import files as plates
+from daguerre.post import recipe as effects
+from daguerre.rendering.passes import read_pass
+from daguerre.stocks import load as load_stock
+
+TINY = {"resolution": (8, 6), "spp": 1, "threads": 1}
+
+
+def scene(path: Path) -> None:
+    made = dg.load(path)
+    camera = made.camera() if made.cameras else dg.Camera(lens_model="pinhole")
+    dg.render(made, camera, **TINY)
+
+
+def lens(path: Path) -> None:
+    made = dg.lenses.load(str(path))
+    sky = dg.Scene()
+    sky.set_environment(color=(1, 1, 1))
+    dg.render(sky, dg.Camera(lens=made, focus_distance=5.0), **TINY)
+
+
+def exr(path: Path) -> None:
+    _both(lambda: formats.read("environment", path), lambda: formats.read("frame", path))
+
+
+def samples(path: Path) -> None:
+    dg.merge([read_pass(path)])
+
+
+def calibrated(path: Path) -> None:
+    for one in calibration.read_all(path).values():
+        one.camera()
+
+
+def recipe(path: Path) -> None:
+    """Reads JSON of our own by the kind in its name."""
+    name = path.name.removeprefix("case-")
+    if name == "sensors.json":
+        dg.sensors.load(path)
+    elif name == "stocks.json":
+        load_stock(path)
+    elif name == "effects.json":
+        effects.from_file(path)
+    elif name == "categories.json":
+        Categories.read(path)
+    elif name == "camera.json":
+        dg.read_plate_camera(path)
+    else:
+        try:
+            value = json.loads(path.read_bytes())
+        except (ValueError, RecursionError):
+            raise InputError("no JSON") from None
+        dg.RenderSettings.from_json(value)
+
+
+def picture(path: Path) -> None:
+    """Reads a photograph as light, as plate and as iris."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        _both(
+            lambda: formats.read("environment", path),
+            lambda: plates.read(path),
+            lambda: read_grey(path),
+        )
+
+
+def _both(*ways: object) -> None:
+    """Runs all; raises the last refusal."""
+    refused: dg.DaguerreError | None = None
+    for way in ways:
+        try:
+            way()  # type: ignore[operator]
+        except dg.DaguerreError as error:
+            refused = error
+    if refused is not None:
+        raise refused
