@@ -158,14 +158,13 @@ def in_bytes(rng: Random, data: bytes) -> bytes:
     return bytes(made[:MOST])
 
 
-def in_glb(rng: Random, data: bytes) -> bytes:
-    """A binary glTF with its tree, its buffer or its container changed."""
+def in_glb(rng: Random, data: bytes, buffers: float) -> bytes:
+    """A GLB with its tree, its container, or (in a share of ``buffers``) its buffer changed."""
     length = struct.unpack_from("<I", data, 12)[0]
     tree, rest = data[20 : 20 + length], data[20 + length :]
-    how = rng.random()
-    if how < 0.1:
+    if rng.random() < 0.1:
         return in_bytes(rng, data)
-    if how < 0.3:
+    if rng.random() < buffers:
         rest = rest[:8] + in_bytes(rng, rest[8:])
         rest = struct.pack("<I", len(rest) - 8) + rest[4:] if len(rest) >= 8 else rest
     else:

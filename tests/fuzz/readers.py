@@ -41,6 +41,7 @@ class Reader:
 
 READERS = {
     "gltf": Reader("scenes", "scene"),
+    "packed": Reader("packed", "scene"),
     "lenses": Reader("lenses", "lens"),
     "exr": Reader("exrs", "exr"),
     "pass": Reader("passes", "samples"),
@@ -58,7 +59,7 @@ def changed(rng: Random, name: str, data: bytes) -> bytes:
     if rng.random() < 0.1:
         return changes.in_bytes(rng, data)
     if suffix == ".glb":
-        return changes.in_glb(rng, data)
+        return changes.in_glb(rng, data, 0.8 if name == "packed.glb" else 0.2)
     if suffix == ".png":
         return changes.in_png(rng, data)
     try:

@@ -16,6 +16,9 @@ from daguerre.rendering.passes import pass_of, write_pass
 from daguerre.rendering.session import Session
 from tests.bad_files import bases
 from tests.bad_files.exr_files import LIE, READ
+from tests.io.gltf import test_gltf_compressed_images as ktx2
+from tests.io.gltf import test_gltf_draco as draco
+from tests.io.gltf import test_gltf_meshopt as meshopt
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
 from tests.support import tracked
 from tests.support.plate_frames import of_light
@@ -41,6 +44,23 @@ def scenes(folder: Path) -> Iterator[Seed]:
     for make in (bases.full, bases.moving, bases.seen):
         yield "scene.glb", make().glb(folder / "a.glb").read_bytes()
         yield "scene.gltf", make().gltf(folder / "a.gltf").read_bytes()
+
+
+def packed(folder: Path) -> Iterator[Seed]:
+    """Meshes and textures that libraries unpack, or our own code (meshopt)."""
+    sheet = draco.stream()
+    made = [
+        draco.sheet(sheet, draco.ids(sheet)),
+        meshopt.grid(),
+        meshopt.grid("EXT", "positions v1", "INDICES"),
+    ]
+    made += [
+        ktx2.scene("KHR_texture_basisu", data, plain=False, required=True)
+        for data in ktx2.KTX2.values()
+    ]
+    made.append(ktx2.scene("EXT_texture_webp", ktx2.webp(folder), plain=False, required=True))
+    for one in made:
+        yield "packed.glb", one.glb(folder / "a.glb").read_bytes()
 
 
 def lenses(folder: Path) -> Iterator[Seed]:
