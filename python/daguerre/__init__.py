@@ -165,7 +165,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-@guarded
+@guarded(but=("time",))
 def load(
     path: str | Path,
     *,

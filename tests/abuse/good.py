@@ -416,10 +416,15 @@ ARGS: dict[str, Make] = {
     "dg.post.glare": filmed,
     "dg.post.grain": filmed,
     "dg.post.halo": filmed,
-    "dg.post.unvignette": filmed,
-    "dg.post.vignette": filmed,
+    "dg.post.unvignette": lambda w: {**filmed(w), "focal_length": 50.0},
+    "dg.post.vignette": lambda w: {**filmed(w), "focal_length": 50.0},
     "dg.post.spread_by": lambda w: {"image": w.image, "file": w.kernel},
-    "dg.post.star": lambda w: {"image": w.image, "f_number": 8.0, "blades": 6, **FILM},
+    "dg.post.star": lambda w: {
+        "image": w.image,
+        "f_number": 8.0,
+        "blades": 6,
+        "sensor": (0.048, 0.036),
+    },
     "dg.post.stmap": lambda w: {
         "model": dg.distortion.BrownConrady(-0.1),
         "size": SIZE,

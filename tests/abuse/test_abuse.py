@@ -7,23 +7,27 @@ case is found again by its path and number: ``python -m tests.abuse PATH NUMBER`
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre import analysis
 
 from . import calls
 from .calls import targets
 from .runner import outcomes
+from .world import LENS
 
 #: Cases of each public call: in every run of the tests, and in the long one.
 FEW, MANY = 4, 60
 #: Good arguments that are refused all the same, and why.
 REFUSED = {
     "dg.Session.draw_round": "a round is planned by a driver",
-    "dg.post.unvignette": "arrays know no focal length",
-    "dg.post.vignette": "arrays know no focal length",
-    "dg.post.star": "a picture of 8 x 6 px has no room beside the star's middle",
 }
+
+
+def bench() -> analysis.Bench:
+    return analysis.set_up(dg.lenses.load(LENS))
 
 
 def faults(numbers: range, paths: list[str] | None = None) -> list[str]:
@@ -90,6 +94,14 @@ def test_cases_are_the_same_in_each_run() -> None:
         (lambda: dg.lenses.load(3), "load: name_or_path: wanted a path or a Lens, got 3"),
         (lambda: dg.stereo_pair(dg.Camera(), "x"), "stereo_pair: baseline: wanted a number"),
         (lambda: dg.load("a\0b"), "load: path: wanted a path"),
+        (
+            lambda: dg.post.star(np.ones((6, 8, 3)), f_number=8, sensor=(36, 24)),
+            "star: wanted a picture wide enough",
+        ),
+        (
+            lambda: analysis.lateral_colour(bench(), [5.0], [0.0, 550.0]),
+            "rays: wavelength_nm: wanted wavelengths of 1 to 1e6 nm, got 0",
+        ),
         (lambda: dg.Scene().at(float("nan")), "at: time: wanted a number, got nan"),
     ],
 )

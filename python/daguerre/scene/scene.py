@@ -35,7 +35,7 @@ from .parts import Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 
 
-@guarded(arrays=False, but=("camera", "light", "material", "mesh", "steps"))
+@guarded(arrays=False, but=("camera", "light", "material", "mesh", "shown", "steps"))
 @dataclass(eq=False)
 class Scene(Value):
     """A scene: meshes, materials, lights, cameras and environment.
