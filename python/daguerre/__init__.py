@@ -165,7 +165,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-@guarded(but=("time",))
+@guarded
 def load(
     path: str | Path,
     *,

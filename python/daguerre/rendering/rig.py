@@ -27,7 +27,7 @@ from .settings import RenderSettings
 
 
 @takes(TABLE, RigKeywords)
-@guarded
+@guarded(but=("cameras",))
 def render_rig(
     scene: Scene,
     cameras: Mapping[str, Camera | str],
