@@ -13,6 +13,7 @@ import functools
 import inspect
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar, overload
 
@@ -46,6 +47,19 @@ class _Names(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         return kinds.unseen(name)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Kinds of a function's parameters; None: anything goes.
+
+    Attributes:
+        in_order: Names and kinds of those that a place can give, first to last.
+        by_name: Kinds of all.
+    """
+
+    in_order: tuple[tuple[str, Kind | None], ...]
+    by_name: Mapping[str, Kind | None]
 
 
 @overload
@@ -94,58 +108,52 @@ def _shut(cls: type, name: str, member: Any, arrays: bool, but: tuple[str, ...])
 
 def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> Any:
     """The function behind its checks."""
-    plan: dict[str, Kind] = {}
-    order: list[str] = []
-
-    def prepare() -> None:
-        found = _plan(function)
-        order.extend(found)
-        plan.update(
-            {
-                key: kind
-                for key, kind in found.items()
-                if kind is not None and key not in but and (arrays or not kind.arrays)
-            }
-        )
+    plan: _Plan | None = None
 
     @functools.wraps(function)
     def door(*args: Any, **keywords: Any) -> Any:
-        if not order:
-            prepare()
-        given = [_admitted(plan, key, value, name) for key, value in zip(order, args, strict=False)]
+        nonlocal plan
+        if plan is None:  # threads may both make it; each sees a whole one
+            plan = _plan(function, arrays, but)
+        given = [
+            value if kind is None else _admitted(kind, value, name, key)
+            for (key, kind), value in zip(plan.in_order, args, strict=False)
+        ]
         given.extend(args[len(given) :])
         for key, value in keywords.items():
-            keywords[key] = _admitted(plan, key, value, name)
+            kind = plan.by_name.get(key)
+            if kind is not None:
+                keywords[key] = _admitted(kind, value, name, key)
         return function(*given, **keywords)
 
     door.has_door = True  # type: ignore[attr-defined]
     return door
 
 
-def _admitted(plan: Mapping[str, Kind], key: str, value: Any, name: str) -> Any:
+def _admitted(kind: Kind, value: Any, function: str, parameter: str) -> Any:
     """The value as the function takes it."""
-    kind = plan.get(key)
-    if kind is None:
-        return value
     taken = kind.take(value)
     if taken is kinds.REFUSED:
-        raise UsageError(f"{name}: {key}: wanted {kind.words}, got {shown(value)}")
+        raise UsageError(f"{function}: {parameter}: wanted {kind.words}, got {shown(value)}")
     return taken
 
 
-def _plan(function: Any) -> dict[str, Kind | None]:
-    """Kind of each parameter, in their order; None: anything goes."""
+def _plan(function: Any, arrays: bool, but: tuple[str, ...]) -> _Plan:
     inner = inspect.unwrap(function)
     names = _Names({**vars(builtins), **inner.__globals__, **_KNOWN})
     found: dict[str, Kind | None] = {}
-    for parameter in inspect.signature(inner).parameters.values():
-        hint = parameter.annotation
+    places: list[str] = []
+    for name, parameter in inspect.signature(inner).parameters.items():
         if parameter.kind in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL):
             continue
+        if parameter.kind is not parameter.KEYWORD_ONLY:
+            places.append(name)
+        hint = parameter.annotation
         if isinstance(hint, str):
             hint = eval(hint, {}, names)
-        if hint is parameter.empty:
-            found[parameter.name] = None
+        if hint is parameter.empty or name in but:
+            kind = None
         else:
-            found[parameter.name] = kinds.of(hint, none=parameter.default is None)
-    return found
+            kind = kinds.of(hint, none=parameter.default is None)
+        found[name] = None if kind is None or (kind.arrays and not arrays) else kind
+    return _Plan(tuple((name, found[name]) for name in places), found)

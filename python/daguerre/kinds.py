@@ -20,8 +20,6 @@ from .checks import MAX_NUMBERS
 
 #: Answer of ``take`` to a value of another kind.
 REFUSED: Any = object()
-#: Numbers of an array, at most: a view of few numbers may pretend to be far more.
-MOST = MAX_NUMBERS
 _MOST_PARTS = 100_000
 _WHOLE = 1 << 63
 
@@ -210,10 +208,11 @@ def _text(value: Any) -> Any:
 
 
 def _path(value: Any) -> Any:
-    """A path without a zero byte, which no system takes."""
-    if not isinstance(value, str | PurePath):
-        return REFUSED
-    return REFUSED if "\0" in str(value) else value
+    """A path of text without a zero byte, which no system takes."""
+    if isinstance(value, os.PathLike) and not isinstance(value, PurePath):
+        value = os.fspath(value)
+    fits = isinstance(value, str | PurePath) and "\0" not in str(value)
+    return value if fits else REFUSED
 
 
 def _array(value: Any) -> Any:
@@ -225,7 +224,7 @@ def _array(value: Any) -> Any:
             value = np.asarray(value)
         except (ValueError, TypeError, RecursionError, OverflowError):
             return REFUSED
-    if value.dtype.kind not in "iufb" or value.size > MOST:
+    if value.dtype.kind not in "iufb" or value.size > MAX_NUMBERS:
         return REFUSED
     return np.asarray(value)
 

@@ -54,11 +54,9 @@ class Target:
 
     def bound(self, world: World) -> Callable[..., Any]:
         """The function of an object."""
-        return (
-            getattr(RECEIVERS[self.owner](world), self.path.rpartition(".")[2])
-            if (self.owner)
-            else self.call
-        )
+        if not self.owner:
+            return self.call
+        return getattr(RECEIVERS[self.owner](world), self.path.rpartition(".")[2])
 
     @property
     def signature(self) -> inspect.Signature:

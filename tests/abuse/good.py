@@ -97,6 +97,12 @@ _CAMERA: Make = lambda w: {  # noqa: E731
     "shutter_time": 0.01, "iso": 200.0, "lens": None, "transform": moved(z=1),
 }  # fmt: skip
 
+#: A picture over a photograph, with a catcher and mattes.
+_PLATED: Make = lambda w: {  # noqa: E731
+    "scene": w.plated, "resolution": SIZE, "spp": 2, "background": "plate",
+    "cryptomatte": ("object", "material"), "halves": True,
+}  # fmt: skip
+
 #: Arguments by path.
 ARGS: dict[str, Make] = {
     "dg.Camera": _CAMERA,
@@ -276,7 +282,7 @@ ARGS: dict[str, Make] = {
     "dg.export.code": lambda w: {"data": w.fit.to_dict(), "suffix": ".c"},
     "dg.export.save": lambda w: {"data": w.fit.to_dict(), "path": w.out / "a.c"},
     "dg.exposure.luminance_exposure": lambda w: {"metadata": w.frame.metadata},
-    "dg.iter_render": _RENDER,
+    "dg.iter_render": _PLATED,
     "dg.keys": constant(pairs=[(0.0, 1.0), (1.0, 2.0)], interpolation="linear"),
     "dg.labels.coco.CocoFile": lambda w: {"path": w.out / "coco.json"},
     "dg.labels.coco.CocoFile.add": lambda w: {"seen": w.annotations, "picture": "a.png"},

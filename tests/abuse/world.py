@@ -46,6 +46,16 @@ class World:
         return scene
 
     @property
+    def plated(self) -> dg.Scene:
+        """The scene before a photograph, with a floor that catches the shadow of the thing."""
+        scene = self.scene
+        floor = scene.add_mesh(TRIANGLE * 3, [(0, 1, 2)])
+        scene.add_instance(floor, 0, moved(y=-1, z=-4), name="floor")
+        scene.set_catcher("floor", ("shadow", "reflection"))
+        scene.set_plate(self.image)
+        return scene
+
+    @property
     def session(self) -> dg.Session:
         """A session of one sample of the scene."""
         session = dg.Session(self.scene, resolution=SIZE, halves=True)

@@ -96,15 +96,13 @@ class Bench:
             to_film: From the object to the film, or back.
             clip: Whether clear apertures and the iris stop rays.
         """
-        origins, directions = (
-            rows(origins, "rays: origins", 3),
-            rows(directions, "rays: directions", 3),
-        )
+        origins = rows(origins, "rays: origins", 3)
+        directions = rows(directions, "rays: directions", 3)
         if len(origins) != len(directions):
             raise UsageError(f"rays: directions: wanted {len(origins)}, got {len(directions)}")
         nm = np.full(len(origins), wavelengths(wavelength_nm, "rays: wavelength_nm"))
         points, out, iris, path, transmittance, stopped = self.lens.prescription.rays(
-            np.ascontiguousarray(origins), np.ascontiguousarray(directions), nm, clip, to_film
+            origins, directions, nm, clip, to_film
         )
         passed = stopped < 0
         if clip:

@@ -188,12 +188,8 @@ class _Picture:
     def axis(self) -> FloatArray:
         """Where the lens's axis meets it, px."""
         middle = (np.array(self.size) - 1) / 2
-        return np.asarray(
-            middle
-            + np.array(numbers(self.shift_mm, "calibrate: shift", 2, "two lengths, mm"))
-            / self.pitch_mm
-            * (-1, 1)
-        )
+        shift = np.array(numbers(self.shift_mm, "calibrate: shift", 2, "two lengths, mm"))
+        return np.asarray(middle + shift / self.pitch_mm * (-1, 1))
 
 
 @dataclass(frozen=True)

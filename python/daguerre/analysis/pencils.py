@@ -74,12 +74,11 @@ class Pencil:
 
     def flux(self, at: FloatArray) -> FloatArray:
         """Light through equal cells of the window: 1 in its middle, shape (N,)."""
+        at = rows(at, "flux: at", 2)
         if self.source is None:
-            return np.ones(len(rows(at, "flux: at", 2)))
+            return np.ones(len(at))
         distance2 = float(((self.center - self.source) ** 2).sum())
-        return np.asarray(
-            (distance2 / (distance2 + (rows(at, "flux: at", 2) ** 2).sum(axis=1))) ** 1.5
-        )
+        return np.asarray((distance2 / (distance2 + (at**2).sum(axis=1))) ** 1.5)
 
     def on_film(self, points: FloatArray) -> FloatArray:
         """Film points (N, 2) about the chief ray's, along the sagittal and tangential axes."""
