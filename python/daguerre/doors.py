@@ -51,15 +51,15 @@ class _Names(dict[str, Any]):
 
 @dataclass(frozen=True)
 class _Plan:
-    """Kinds of a function's parameters; None: anything goes.
+    """Parameters of a function that are checked.
 
     Attributes:
-        in_order: Names and kinds of those that a place can give, first to last.
+        by_place: Place, name and kind of those that need no name in a call.
         by_name: Kinds of all.
     """
 
-    in_order: tuple[tuple[str, Kind | None], ...]
-    by_name: Mapping[str, Kind | None]
+    by_place: tuple[tuple[int, str, Kind], ...]
+    by_name: Mapping[str, Kind]
 
 
 @overload
@@ -107,7 +107,9 @@ def _shut(cls: type, name: str, member: Any, arrays: bool, but: tuple[str, ...])
 
 
 def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> Any:
-    """The function behind its checks."""
+    """The function behind its checks; itself if it takes nothing but its object."""
+    if not function.__annotations__.keys() - {"return"}:
+        return function
     plan: _Plan | None = None
 
     @functools.wraps(function)
@@ -115,45 +117,45 @@ def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> 
         nonlocal plan
         if plan is None:  # threads may both make it; each sees a whole one
             plan = _plan(function, arrays, but)
-        given = [
-            value if kind is None else _admitted(kind, value, name, key)
-            for (key, kind), value in zip(plan.in_order, args, strict=False)
-        ]
-        given.extend(args[len(given) :])
+        given, count = list(args), len(args)
+        for place, key, kind in plan.by_place:
+            if place < count:
+                given[place] = taken = kind.take(args[place])
+                if taken is kinds.REFUSED:
+                    raise _refusal(kind, args[place], name, key)
         for key, value in keywords.items():
-            kind = plan.by_name.get(key)
-            if kind is not None:
-                keywords[key] = _admitted(kind, value, name, key)
+            if key in plan.by_name:
+                kind = plan.by_name[key]
+                keywords[key] = taken = kind.take(value)
+                if taken is kinds.REFUSED:
+                    raise _refusal(kind, value, name, key)
         return function(*given, **keywords)
 
     door.has_door = True  # type: ignore[attr-defined]
     return door
 
 
-def _admitted(kind: Kind, value: Any, function: str, parameter: str) -> Any:
-    """The value as the function takes it."""
-    taken = kind.take(value)
-    if taken is kinds.REFUSED:
-        raise UsageError(f"{function}: {parameter}: wanted {kind.words}, got {shown(value)}")
-    return taken
+def _refusal(kind: Kind, value: Any, function: str, parameter: str) -> UsageError:
+    return UsageError(f"{function}: {parameter}: wanted {kind.words}, got {shown(value)}")
 
 
 def _plan(function: Any, arrays: bool, but: tuple[str, ...]) -> _Plan:
     inner = inspect.unwrap(function)
     names = _Names({**vars(builtins), **inner.__globals__, **_KNOWN})
-    found: dict[str, Kind | None] = {}
-    places: list[str] = []
-    for name, parameter in inspect.signature(inner).parameters.items():
+    by_name: dict[str, Kind] = {}
+    by_place: list[tuple[int, str, Kind]] = []
+    for place, parameter in enumerate(inspect.signature(inner).parameters.values()):
+        hint, name = parameter.annotation, parameter.name
         if parameter.kind in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL):
             continue
-        if parameter.kind is not parameter.KEYWORD_ONLY:
-            places.append(name)
-        hint = parameter.annotation
         if isinstance(hint, str):
             hint = eval(hint, {}, names)
         if hint is parameter.empty or name in but:
-            kind = None
-        else:
-            kind = kinds.of(hint, none=parameter.default is None)
-        found[name] = None if kind is None or (kind.arrays and not arrays) else kind
-    return _Plan(tuple((name, found[name]) for name in places), found)
+            continue
+        kind = kinds.of(hint, none=parameter.default is None)
+        if kind is None or (kind.arrays and not arrays):
+            continue
+        by_name[name] = kind
+        if parameter.kind is not parameter.KEYWORD_ONLY:
+            by_place.append((place, name, kind))
+    return _Plan(tuple(by_place), by_name)

@@ -61,6 +61,8 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
     known = [kind for kind in found if kind is not None]
     if PATH in known:  # texts are paths, then, and a path takes no zero byte
         known = [kind for kind in known if kind is not TEXT]
+    if len(known) == 1 and not none:
+        return known[0]
     words = " or ".join(dict.fromkeys([k.words for k in known] + ["None"] * none))
 
     def take(value: Any) -> Any:
@@ -72,7 +74,7 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
                 return taken
         return REFUSED
 
-    return Kind(words, take, ARRAY in known)
+    return Kind(words, take, any(kind.arrays for kind in known))
 
 
 def _is_union(hint: Any) -> bool:
@@ -149,12 +151,13 @@ def _parts(origin: Any, args: tuple[Any, ...]) -> Kind:
             return REFUSED
         if not inner:
             return value
-        taken = []
-        for n, part in enumerate(value):
-            kind = inner[n] if fixed else inner[0]
-            taken.append(part if kind is None else kind.take(part))
-            if taken[-1] is REFUSED:
-                return REFUSED
+        if fixed:
+            taken = [p if k is None else k.take(p) for k, p in zip(inner, value, strict=True)]
+        else:
+            one = inner[0]
+            taken = list(value) if one is None else [one.take(part) for part in value]
+        if any(part is REFUSED for part in taken):
+            return REFUSED
         return tuple(taken) if origin is tuple else (value if lazy else list(taken))
 
     return Kind(words, take)
@@ -232,7 +235,7 @@ def _array(value: Any) -> Any:
 NUMBER = Kind("a number", _number)
 TEXT = Kind("a text", _text)
 PATH = Kind("a path", _path)
-ARRAY = Kind("numbers", _array)
+ARRAY = Kind("numbers", _array, arrays=True)
 _PLAIN: dict[Any, Kind] = {
     float: NUMBER,
     int: Kind("a whole number", _whole),

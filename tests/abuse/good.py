@@ -205,7 +205,11 @@ ARGS: dict[str, Make] = {
     "dg.TextureSlot": constant(texture=0),
     "dg.annotate": lambda w: {"scene": w.scene, "resolution": SIZE},
     "dg.calibrate": lambda w: {"lens": w.lens, "resolution": (80, 60)},
-    "dg.calibrate_all": lambda w: {"lens": w.lens, "resolution": (80, 60)},
+    "dg.calibrate_all": lambda w: {
+        "lens": w.lens,
+        "resolution": (80, 60),
+        "sensor_size": (2.0, 1.5),
+    },
     "dg.calibration.Take": lambda w: {"projection": w.projection},
     "dg.calibration.Calibration.check": constant(frame=1, time_s=0.04, fps=25.0),
     "dg.calibration.Take.check": constant(frame=1, time_s=0.04, fps=24.0),

@@ -126,9 +126,9 @@ class LensFit:
         """
         film, slope = _rows(film_points, "film_points", 2), _rows(slopes, "slopes", 2)
         nm = _each(wavelength_nm, len(film))
-        angles, offsets, iris, mounts, light, within, origins, directions = self.core.evaluate(
-            film, slope, np.ascontiguousarray(nm)
-        )
+        with core_errors(UsageError):
+            found = self.core.evaluate(film, slope, np.ascontiguousarray(nm))
+        angles, offsets, iris, mounts, light, within, origins, directions = found
         return SceneRays(
             origins, directions, iris, light, within.astype(bool), angles, offsets, mounts
         )
@@ -149,7 +149,8 @@ class LensFit:
         """
         points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         nm = _each(wavelength_nm, len(points))
-        film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
+        with core_errors(UsageError):
+            film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
         return film, slopes
 
     def refitted(
@@ -174,11 +175,10 @@ class LensFit:
         """
         film = _rows(film_points, "film_points", 2)
         nm = _each(wavelength_nm, len(film))
-        angles, offsets = self.core.describe(
-            _rows(origins, "origins", 3), _rows(directions, "directions", 3)
-        )
+        points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         slope = _rows(slopes, "slopes", 2)
         with core_errors(UsageError):
+            angles, offsets = self.core.describe(points, toward)
             return LensFit(
                 self.core.refitted(film, slope, np.ascontiguousarray(nm), angles, offsets)
             )
