@@ -16,6 +16,8 @@ from pathlib import Path
 FLOORS = [
     {"errors"},
     {"checks"},
+    {"kinds"},
+    {"doors"},
     {"units", "memory", "files"},
     {"parameters"},
     {"color", "motion", "convolution"},

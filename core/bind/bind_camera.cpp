@@ -97,7 +97,7 @@ std::vector<float> rising(const Column& times, std::size_t wanted, const char* w
 void change_lens(dg::Camera& camera, const Column& times, const std::vector<const dg::Camera*>& cameras) {
     dg::LensMotion motion{rising(times, cameras.size(), "lenses"), {}};
     for (const dg::Camera* at : cameras) {
-        if (at->lens.index() != camera.lens.index())
+        if (!at || at->lens.index() != camera.lens.index())
             throw dg::Error("camera: lenses: wanted all of one kind");
         motion.lenses.push_back(std::visit(
             [&](const auto& kind) -> dg::LensKind {

@@ -7,6 +7,7 @@
 
 #include "bind/arrays.h"
 #include "camera/camera.h"
+#include "math/error.h"
 #include "optics/stray/ghost_spots.h"
 
 namespace nb = nanobind;
@@ -37,6 +38,11 @@ auto spots(const dg::GhostLens& lens, double angle, Pair film_half, const std::v
 /// Points (K, 3) where a ray met the surfaces of its way, then the film; empty if it is stopped.
 auto path(const dg::GhostLens& lens, const dg::Mirrors& mirrors, const std::array<double, 3>& origin,
           const std::array<double, 3>& direction, double nm) {
+    const int count = int(lens.tracer().vertices().size());
+    for (const int mirror : mirrors)
+        if (mirror < 0 || mirror >= count)
+            throw dg::input_error("ghost", "mirrors", "surfaces of 0 .. " + std::to_string(count - 1),
+                                  std::to_string(mirror));
     dg::TracedRay ray{{{origin[0], origin[1], origin[2]},
                        dg::normalize(dg::Vec3d{direction[0], direction[1], direction[2]})}};
     const dg::LensIndices n = lens.tracer().at(nm);
@@ -50,8 +56,8 @@ auto path(const dg::GhostLens& lens, const dg::Mirrors& mirrors, const std::arra
     }
     const dg::Vec3d end = dg::at_plane(ray.ray, lens.film().center.z);
     flat.insert(flat.end(), {end.x, end.y, end.z});
-    const std::size_t count = flat.size() / 3;
-    return dg::bind::to_numpy(std::move(flat), {count, std::size_t(3)});
+    const std::size_t points = flat.size() / 3;
+    return dg::bind::to_numpy(std::move(flat), {points, std::size_t(3)});
 }
 
 dg::SensorStack stack(double thickness, double index, double gap, double reflectance) {

@@ -132,6 +132,18 @@ void bind_error(nb::module_& m) {
         .def_rw("zones", &FitError::zones);
 }
 
+/// The fit, whose parts anybody may have changed since it was made.
+const dg::LensFit& checked(const dg::LensFit& fit) {
+    check_lens_fit(fit);
+    return fit;
+}
+
+std::size_t same_count(std::size_t n, std::size_t other, const char* what) {
+    if (other != n)
+        throw dg::input_error("lens fit", what, std::to_string(n), std::to_string(other));
+    return n;
+}
+
 std::size_t equal_lengths(const Rows2d& film, const Rows2d& slopes, const Column& nm) {
     const std::size_t n = film.shape(0);
     if (slopes.shape(0) != n || nm.shape(0) != n)
@@ -145,7 +157,8 @@ std::size_t equal_lengths(const Rows2d& film, const Rows2d& slopes, const Column
 /// within, origins and unit directions of the scene rays.
 auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
               const Column& nm) {
-    const std::size_t n = equal_lengths(film, slopes, nm), mounts = fit.mounts.size();
+    const std::size_t n = equal_lengths(film, slopes, nm);
+    const std::size_t mounts = checked(fit).mounts.size();
     std::vector<double> direction, offset, iris, mount, light, origin, unit;
     std::vector<std::uint8_t> within;
     for (std::size_t i = 0; i < n; ++i) {
@@ -172,7 +185,9 @@ auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
 /// fit.
 auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions,
              const Column& nm) {
-    const std::size_t n = origins.shape(0);
+    const std::size_t n = same_count(origins.shape(0), directions.shape(0), "directions");
+    same_count(n, nm.shape(0), "wavelengths");
+    checked(fit);
     std::vector<double> film, slope;
     for (std::size_t i = 0; i < n; ++i) {
         const dg::LensRay ray{{origins(i, 0), origins(i, 1), origins(i, 2)},
@@ -213,7 +228,7 @@ void bind_request(nb::module_& m) {
 
 /// Directions (rad) and offsets of scene rays.
 auto describe(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions) {
-    const std::size_t n = origins.shape(0);
+    const std::size_t n = same_count(origins.shape(0), directions.shape(0), "directions");
     std::vector<double> angles, offsets;
     for (std::size_t i = 0; i < n; ++i) {
         const dg::FitDirection d =
@@ -240,7 +255,7 @@ dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& s
         rays.push_back({{film(i, 0), film(i, 1)}, {slopes(i, 0), slopes(i, 1)}, nm(i)});
         scene.push_back({{angles(i, 0), angles(i, 1)}, {offsets(i, 0), offsets(i, 1)}});
     }
-    return dg::refit_rays(fit, rays, scene);
+    return dg::refit_rays(checked(fit), rays, scene);
 }
 
 /// CPU seconds of this thread a ray through the kernels, both ways, over the given film
@@ -248,6 +263,8 @@ dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& s
 Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
                    const Column& nm, int repeats) {
     const std::size_t n = equal_lengths(film, slopes, nm);
+    if (n == 0) throw dg::input_error("lens fit", "film points", "one at least", "none");
+    checked(fit);
     dg::IrisTables iris;
     iris.radius = float(fit.iris_radius);
     const dg::FitTables tables = make_fit_tables(fit, iris);

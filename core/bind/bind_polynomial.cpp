@@ -41,8 +41,11 @@ PolynomialSystem for_nodes(const Numbers& nm, const Make& make) {
 /// The entry of node i; a single one is that of all.
 template <typename T>
 const T& entry(const std::vector<T>& list, std::size_t i) {
-    DG_CHECK(list.size(), >, 0u);
-    return list[list.size() == 1 ? 0 : i];
+    const std::size_t k = list.size() == 1 ? 0 : i;
+    if (k >= list.size())
+        throw dg::input_error("polynomial system", "list", "one entry, or one for each wavelength",
+                              std::to_string(list.size()));
+    return list[k];
 }
 
 PolynomialSystem from_arrays(int degree, const Numbers& nm, const RayList& origin,

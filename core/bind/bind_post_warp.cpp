@@ -46,7 +46,10 @@ auto remap(const Image& image, int first, int height,
            std::pair<int, int> rows, std::string_view filter, bool antialias) {
     const auto [begin, end] = rows;
     std::vector<dg::SourceMap> given;
-    for (const BoundMap* m : maps) given.push_back(m->map);
+    for (const BoundMap* m : maps) {
+        if (!m) throw dg::input_error("remap", "maps", "maps", "None");
+        given.push_back(m->map);
+    }
     const dg::RemapSource source{values_of(image), int(image.shape(1)), height,
                                  int(image.shape(2)), first};
     dg::RemapResult out;

@@ -51,11 +51,11 @@ void for_rays(const dg::Tracer& tracer, const Column& wavelength_nm, const Each&
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, wavelength_nm.shape(0), kGrain),
         [&](const auto& range) {
-            dg::LensIndices index{};
+            std::optional<dg::LensIndices> index;  // no wavelength stands for none
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                if (wavelength_nm(i) != index.wavelength_nm)
+                if (!index || wavelength_nm(i) != index->wavelength_nm)
                     index = tracer.at(wavelength_nm(i));
-                each(i, index);
+                each(i, *index);
             }
         });
 }
@@ -115,6 +115,10 @@ auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& dir
 /// stopped.
 auto path(const dg::Prescription& lens, const Rows3d& origin, const Rows3d& direction,
           double wavelength_nm, bool clip) {
+    if (origin.shape(0) != 1 || direction.shape(0) != 1)
+        throw dg::input_error(lens.name, "path", "one ray",
+                              std::to_string(origin.shape(0)) + " origins and " +
+                                  std::to_string(direction.shape(0)) + " directions");
     const dg::Tracer tracer(lens);
     std::vector<double> flat;
     for (const dg::Vec3d p : tracer.path_to_film(

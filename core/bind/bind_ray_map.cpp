@@ -2,6 +2,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
+#include "bind/region.h"
 #include "render/truth/ray_map.h"
 #include "render/render.h"
 
@@ -10,8 +11,6 @@ using namespace nb::literals;
 
 namespace {
 
-using Region = std::tuple<int, int, int, int>;
-
 auto planes(const std::vector<dg::Vec3d>& values, std::size_t height, std::size_t width) {
     std::vector<double> flat;
     flat.reserve(3 * values.size());
@@ -19,13 +18,13 @@ auto planes(const std::vector<dg::Vec3d>& values, std::size_t height, std::size_
     return dg::bind::to_numpy(std::move(flat), {height, width, std::size_t(3)});
 }
 
-auto rays(const dg::Camera& camera, const dg::RenderSettings& settings, const Region& crop, bool world) {
-    const auto [x0, y0, x1, y1] = crop;
-    const std::size_t height = y1 - y0, width = x1 - x0;
+auto rays(const dg::Camera& camera, const dg::RenderSettings& settings, const dg::bind::Crop& crop, bool world) {
+    const dg::FilmLayout region = dg::bind::region_of(crop, "ray map");
+    const std::size_t height = region.height, width = region.width;
     dg::PixelRays map;
     {
         nb::gil_scoped_release release;
-        map = ray_map(camera, settings.sensor, settings.shutter, {x1 - x0, y1 - y0, x0, y0},
+        map = ray_map(camera, settings.sensor, settings.shutter, region,
                       world ? dg::RayFrame::world : dg::RayFrame::camera, settings.threads);
     }
     return std::tuple{planes(map.origins, height, width), planes(map.directions, height, width),

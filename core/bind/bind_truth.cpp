@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bind/arrays.h"
+#include "bind/region.h"
 #include "math/error.h"
 #include "render/truth/truth_channels.h"
 #include "render/truth/truth_mean.h"
@@ -55,12 +56,9 @@ auto points_of(const dg::FilmLayout& region, const Make& make) {
                                                 std::size_t(region.width), std::size_t(2)});
 }
 
-using Crop = std::tuple<int, int, int, int>;
+using dg::bind::Crop;
 
-dg::FilmLayout region_of(const Crop& crop) {
-    const auto [x0, y0, x1, y1] = crop;
-    return {x1 - x0, y1 - y0, x0, y0};
-}
+dg::FilmLayout region_of(const Crop& crop) { return dg::bind::region_of(crop, "truth"); }
 
 auto places_of(const dg::Truth& truth, const dg::Scene& scene, const dg::Camera& camera,
                const dg::RenderSettings& settings) {
@@ -123,7 +121,7 @@ auto outlines_of(const dg::Scene& scene, const dg::Camera& camera,
     std::vector<std::uint8_t> open;
     {
         nb::gil_scoped_release release;
-        for (const dg::Outline& o : dg::outlines({scene, camera}, settings, given, count)) {
+        for (const dg::GroupOutline& o : dg::outlines({scene, camera}, settings, given, count)) {
             const std::array box{o.low.x, o.low.y, o.high.x, o.high.y};
             for (const double value : box) boxes.push_back(o.empty ? kNone : value);
             open.push_back(o.open);

@@ -81,6 +81,9 @@ Shutter::Shutter(const ShutterSettings& settings, int width, int height) : setti
     check("exposure", settings.exposure_s);
     check("line time", settings.line_time_s);
     const bool scans = settings.scan != ScanOrder::none;
+    if (width < 1 || height < 1)
+        throw input_error("shutter", "resolution", "at least 1 x 1 px",
+                          std::to_string(width) + " x " + std::to_string(height));
     if (scans && settings.leaf) throw Error("shutter: a leaf opens all lines at once; wanted no scan");
     lines_ = !scans ? 1 : scans_columns() ? width : height;
     backward_ = settings.scan == ScanOrder::bottom || settings.scan == ScanOrder::right;

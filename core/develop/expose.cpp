@@ -8,13 +8,16 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "develop/poisson.h"
+#include "math/error.h"
 
 namespace dg {
 namespace {
 
 constexpr int kBlock = 32;   // rows; crosstalk looks one row beyond
+constexpr double kMostLowPass = 1000;   // px
 enum Use { kShot, kPattern };
 
 struct Tap {
@@ -206,6 +209,24 @@ private:
     const std::vector<Tap> taps_;
 };
 
+/// No cell reads a channel, and no channel a plane, that is not there.
+void check(const Planes& light, const Shot& shot) {
+    const auto want = [](bool good, const char* what, const char* wanted, double got) {
+        if (!good) throw input_error("exposure", what, wanted, std::to_string(got));
+    };
+    want(light.width >= 1 && light.height >= 1, "light", "a pixel at least", 0);
+    want(shot.electrons.size() == std::size_t(shot.channels) * light.count, "electrons",
+         "a number for each channel and plane", double(shot.electrons.size()));
+    want(shot.cell_width >= 1 && shot.cell_height >= 1, "cells", "one at least", 0);
+    for (const std::uint8_t cell : shot.cells) want(cell < shot.channels, "cells", "channels", cell);
+    want(shot.low_pass_px >= 0 && shot.low_pass_px <= kMostLowPass, "low-pass filter", "0 to 1000 px",
+         shot.low_pass_px);
+    want(shot.crosstalk >= 0 && shot.crosstalk <= 1, "crosstalk", "a share of 0 to 1", shot.crosstalk);
+    for (const double value : {shot.prnu, shot.dsnu, shot.dark, shot.hot_share, shot.hot_dark, shot.read_noise, shot.gain})
+        want(value >= 0 && std::isfinite(value), "noise and gain", "finite numbers of at least 0", value);
+    want(shot.full_well >= 0, "full well", "electrons", shot.full_well);
+}
+
 template <typename Rows>
 void in_blocks(int height, const Rows& rows) {
     oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<int>(0, height, kBlock),
@@ -216,6 +237,7 @@ void in_blocks(int height, const Rows& rows) {
 }  // namespace
 
 std::vector<float> expected_electrons(const Planes& light, const Shot& shot) {
+    check(light, shot);
     std::vector<float> out(std::size_t(light.width) * light.height);
     Exposed unread;
     Exposing exposing(light, shot, unread);
@@ -224,6 +246,7 @@ std::vector<float> expected_electrons(const Planes& light, const Shot& shot) {
 }
 
 Exposed expose(const Planes& light, const Shot& shot) {
+    check(light, shot);
     Exposed out;
     const std::size_t count = std::size_t(light.width) * light.height;
     out.mosaic.resize(count);

@@ -49,10 +49,10 @@ Vec3f reconstructed(const Vec3f& v, const Vec3f& full) {
     return {out[0], out[1], out[2]};
 }
 
-Vec3f restrained(const Vec3f& balanced, const Vec3f& full, Highlights highlights) {
+Vec3f restrained(const Vec3f& balanced, const Vec3f& full, HighlightRule highlights) {
     if (std::isinf(full.x)) return balanced;
-    if (highlights == Highlights::blend) return blended(balanced, full);
-    if (highlights == Highlights::reconstruct) return reconstructed(balanced, full);
+    if (highlights == HighlightRule::blend) return blended(balanced, full);
+    if (highlights == HighlightRule::reconstruct) return reconstructed(balanced, full);
     return capped(balanced, smallest(full));
 }
 
@@ -98,10 +98,10 @@ void develop_all(const Development& how, std::span<const T> in, std::span<float>
 
 }  // namespace
 
-Highlights highlights_of(std::string_view name) {
-    if (name == "clip") return Highlights::clip;
-    if (name == "blend") return Highlights::blend;
-    if (name == "reconstruct") return Highlights::reconstruct;
+HighlightRule highlights_of(std::string_view name) {
+    if (name == "clip") return HighlightRule::clip;
+    if (name == "blend") return HighlightRule::blend;
+    if (name == "reconstruct") return HighlightRule::reconstruct;
     throw input_error("develop", "highlights", "clip, blend or reconstruct", std::string(name));
 }
 

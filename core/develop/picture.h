@@ -17,15 +17,15 @@ namespace dg {
 /// blend: light above that end keeps its mean, with no more colour than `clip` leaves.
 /// reconstruct: a full channel is what the others are on average, if that is more: highlights are lamps
 /// and their reflections, which are mostly white.
-enum class Highlights { clip, blend, reconstruct };
+enum class HighlightRule { clip, blend, reconstruct };
 
 /// By name. Throws Error.
-Highlights highlights_of(std::string_view name);
+HighlightRule highlights_of(std::string_view name);
 
 struct Development {
     Vec3f balance{1, 1, 1};   // of each channel: after it, the neutral has three equal numbers
     Vec3f full{kNever, kNever, kNever};   // where channels are full, before balance
-    Highlights highlights = Highlights::clip;
+    HighlightRule highlights = HighlightRule::clip;
     std::array<float, 9> rgb_from_balanced{1, 0, 0, 0, 1, 0, 0, 0, 1};   // linear, white is 1; row by row
     Vec3f luminance{0.2126f, 0.7152f, 0.0722f};   // of linear R, G, B
     std::optional<Curve> tone;     // scene to display, both linear; absent: as it is up to 1

@@ -74,12 +74,12 @@ TEST_CASE("highlights: clip is white, blend keeps brightness, reconstruct asks t
     how.balance = {2, 1, 1.5f};
     how.full = {1, 1, 1};
     check_near(one(how, {1, 1, 1}), {1, 1, 1});   // not magenta
-    how.highlights = Highlights::blend;
+    how.highlights = HighlightRule::blend;
     check_near(one(how, {1, 1, 1}), {1.5f, 1.5f, 1.5f});
     check_near(one(how, {0.3f, 0.4f, 0.2f}), {0.6f, 0.4f, 0.3f});
     const Vec3f red = one(how, {1, 0.05f, 0.02f});   // a red lamp stays red
     CHECK(red.x > 3 * red.y);
-    how.highlights = Highlights::reconstruct;
+    how.highlights = HighlightRule::reconstruct;
     check_near(one(how, {1, 1, 1}), {2, 2, 2});
     check_near(one(how, {0.8f, 1, 0.9f}), {1.6f, 1.475f, 1.35f});
     check_near(one(how, {1, 0.05f, 0.02f}), {2, 0.05f, 0.03f});

@@ -24,6 +24,7 @@ std::vector<Neighbour> of_next_colour(int reach) {
 }  // namespace
 
 std::vector<float> mean_of_next_colour(std::span<const float> plane, int width, int reach) {
+    if (plane.empty()) return {};
     const int height = int(plane.size() / width);
     const double mean =
         std::accumulate(plane.begin(), plane.end(), 0.0) / std::max<std::size_t>(1, plane.size());

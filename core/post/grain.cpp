@@ -12,6 +12,7 @@ namespace dg {
 namespace {
 
 constexpr int kCorners = 64;   // of a grain
+constexpr int kMostSide = 1 << 20;
 
 struct Tap {
     int dx, dy;
@@ -56,6 +57,9 @@ float normal_of(std::uint64_t bits) {
 std::vector<float> grain_pattern(const GrainWindow& window, double radius, std::uint64_t seed, int layer) {
     if (!(radius > 0 && radius <= 256))
         throw input_error("grain", "radius", "more than 0 and up to 256 px", std::to_string(radius));
+    for (const int side : {window.width, window.height})
+        if (side < 0 || side > kMostSide)
+            throw input_error("grain", "size", "0 to " + std::to_string(kMostSide) + " px", std::to_string(side));
     const std::vector<Tap> taps = grain_taps(radius);
     const int reach = int(std::ceil(radius * 1.01 + 0.5));
     const int width = window.width + 2 * reach, height = window.height + 2 * reach;

@@ -67,7 +67,8 @@ IrisShape IrisShape::outline(std::span<const Vec2d> corners) {
         const Vec2d a = corners[i], b = corners[(i + 1) % corners.size()];
         area += 0.5 * (a.x * b.y - a.y * b.x);
     }
-    if (!(area > 0)) throw input_error("iris outline", "area", "> 0", std::to_string(area));
+    if (!(area > 0 && std::isfinite(area)))
+        throw input_error("iris outline", "area", "> 0", std::to_string(area));
     const double scale = std::sqrt(kPiD / area);
     IrisShape shape;
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -100,9 +101,10 @@ IrisShape IrisShape::image(int width, int height, std::span<const float> values)
 }
 
 IrisKernel iris_kernel(const IrisShape& shape, double radius) {
-    const int reach = int(std::ceil(std::abs(radius) * shape.outer_radius + 0.5)), side = 2 * reach + 3;
-    if (reach > std::numeric_limits<std::int16_t>::max() / 2)
+    const double extent = std::abs(radius) * shape.outer_radius + 0.5;
+    if (!(extent <= std::numeric_limits<std::int16_t>::max() / 2))
         throw input_error("iris kernel", "radius", "up to 16000 px", std::to_string(radius));
+    const int reach = int(std::ceil(extent)), side = 2 * reach + 3;
     Coverage coverage(-reach - 1, -reach - 1, side, side);
     const auto place = [&](Vec2d p) { return Vec2d{0.5 - p.x * radius, 0.5 + p.y * radius}; };
     const double area = kPiD * radius * radius;

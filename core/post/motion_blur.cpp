@@ -1,6 +1,7 @@
 #include "post/motion_blur.h"
 
 #include <limits>
+#include <string>
 
 #include "math/error.h"
 #include "math/vec.h"
@@ -11,6 +12,8 @@ namespace dg {
 namespace {
 
 constexpr double kGauss = 0.28867513459481288;   // 1 / sqrt(12)
+constexpr double kFarthest = 1e5;   // px of a way: what moves farther passes the widest picture unseen
+constexpr double kMostLayers = 1e9;
 
 class MotionKernel {
   public:
@@ -19,11 +22,13 @@ class MotionKernel {
     /// `motion`: four numbers per pixel, to the next frame and back to the last.
     MotionKernel(std::span<const float> motion, std::span<const float> nearness, double layers_per_step,
                  const ShutterTime& shutter)
-        : motion_(motion), nearness_(nearness), layers_(layers_per_step), shutter_(shutter) {}
+        : motion_(motion), nearness_(nearness), layers_(layers_per_step), shutter_(shutter),
+          frames_(std::max(std::abs(shutter.open), std::abs(shutter.close))) {}
 
     bool takes_part(std::size_t i) const {
         const float* m = motion_.data() + 4 * i;
-        return std::isfinite(nearness_[i]) && std::isfinite(m[0] + m[1] + m[2] + m[3]);
+        const double way = double(std::abs(m[0])) + std::abs(m[1]) + std::abs(m[2]) + std::abs(m[3]);
+        return std::isfinite(nearness_[i]) && frames_ * way <= kFarthest;   // NaN is not
     }
     float reach(std::size_t i) const {
         return 1 + float(std::max(length(place(i, shutter_.open)), length(place(i, shutter_.close))));
@@ -33,7 +38,9 @@ class MotionKernel {
         return float(std::max(length(place(i, shutter_.open) - place(j, shutter_.open)),
                               length(place(i, shutter_.close) - place(j, shutter_.close))));
     }
-    int layer(std::size_t i) const { return int(std::lround(layers_ * nearness_[i])); }
+    int layer(std::size_t i) const {
+        return int(std::lround(std::clamp(layers_ * nearness_[i], -kMostLayers, kMostLayers)));
+    }
 
     void spread(std::size_t i, int x, int y, const SpreadLight& light, SpreadLayer& to) const {
         const double times[] = {shutter_.open, std::clamp(0.0, shutter_.open, shutter_.close), shutter_.close};
@@ -92,7 +99,17 @@ class MotionKernel {
     std::span<const float> motion_, nearness_;
     double layers_;
     const ShutterTime& shutter_;
+    double frames_;
 };
+
+void check(const ShutterTime& shutter) {
+    if (!(std::isfinite(shutter.open) && std::isfinite(shutter.close) && shutter.open <= shutter.close))
+        throw input_error("motion blur", "shutter", "times that do not fall",
+                          std::to_string(shutter.open) + " to " + std::to_string(shutter.close));
+    if (shutter.arrived.size() < 2)
+        throw input_error("motion blur", "light that has arrived", "two shares at least",
+                          std::to_string(shutter.arrived.size()));
+}
 
 std::vector<float> both_ways(const PixelMotion& motion) {
     std::vector<float> out(2 * motion.next.size());
@@ -119,6 +136,9 @@ std::vector<float> motion_blur(int width, std::span<const float> values, const P
     DG_CHECK(values.size(), ==, kSpreadColours * nearness.size());
     DG_CHECK(motion.next.size(), ==, 2 * nearness.size());
     DG_CHECK(motion.last.size(), ==, 2 * nearness.size());
+    check(shutter);
+    if (!(step > 0 && std::isfinite(step)))
+        throw input_error("motion blur", "step", "> 0", std::to_string(step));
     const SpreadPicture picture{width, height, values};
     const std::vector<float> paths = both_ways(motion);
     const MotionKernel kernel(paths, nearness, 1 / step, shutter);

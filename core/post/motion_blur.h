@@ -25,8 +25,8 @@ struct PixelMotion {
 /// Spreads each pixel along its way.
 ///
 /// `values`: four per pixel, row by row. `nearness`: larger hides smaller; surfaces farther apart than `step`
-/// in it hide each other. A pixel where it or the motion is not finite gives no light. Returns the rows asked
-/// for.
+/// in it hide each other. A pixel where it or the motion is not finite, or that moves more than 1e5 px while
+/// the shutter is open, gives no light. Returns the rows asked for.
 std::vector<float> motion_blur(int width, std::span<const float> values, const PixelMotion& motion,
                                std::span<const float> nearness, float step, const ShutterTime& shutter,
                                SpreadRows rows);

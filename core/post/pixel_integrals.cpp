@@ -1,6 +1,7 @@
 #include "post/pixel_integrals.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "math/error.h"
 
@@ -18,7 +19,7 @@ void sum_rows(std::span<const float> samples, int columns, const PixelWeights& d
     const int rows = int(samples.size() / columns), taps = down.taps();
     std::fill(line.begin(), line.end(), 0.f);
     for (int t = 0; t < taps; ++t) {
-        const int row = down.first[pixel] + t;
+        const std::int64_t row = std::int64_t(down.first[pixel]) + t;
         const float weight = down.weights[std::size_t(pixel) * taps + t];
         if (row < 0 || row >= rows || weight == 0) continue;
         const float* from = samples.data() + std::size_t(row) * columns;
@@ -27,11 +28,12 @@ void sum_rows(std::span<const float> samples, int columns, const PixelWeights& d
 }
 
 float sum_columns(const std::vector<float>& line, const PixelWeights& across, int pixel) {
-    const int taps = across.taps(), first = across.first[pixel];
+    const std::int64_t taps = across.taps(), first = across.first[pixel];
     const float* weights = across.weights.data() + std::size_t(pixel) * taps;
-    const int begin = std::max(0, -first), end = std::min(taps, int(line.size()) - first);
+    const std::int64_t begin = std::max<std::int64_t>(0, -first);
+    const std::int64_t end = std::min(taps, std::int64_t(line.size()) - first);
     float sum = 0;
-    for (int t = begin; t < end; ++t) sum += weights[t] * line[first + t];
+    for (std::int64_t t = begin; t < end; ++t) sum += weights[t] * line[first + t];
     return sum;
 }
 

@@ -160,8 +160,21 @@ class Tile {
     int x0_ = 0, y0_ = 0, count_ = 0, top_ = 0, bottom_ = 0;
 };
 
+/// Rows [begin, end) of a picture of some width have cells of the map.
+void check(const SourceMap& m, int width, int begin, int end) {
+    m.check();
+    if (!(0 <= begin && begin <= end))
+        throw input_error("remap", "rows", "some of the picture's",
+                          std::to_string(begin) + " to " + std::to_string(end));
+    if (begin < m.top || end > m.top + m.rows * kCell || width < 1 || width > m.columns * kCell)
+        throw input_error("remap", "map", "cells for all pixels", "fewer");
+}
+
 void check(const RemapSource& s, std::span<const SourceMap> maps,
            std::span<const int> map_of, int begin, int end) {
+    if (s.channels < 1 || s.height < 1 || s.first < 0)
+        throw input_error("remap", "picture", "rows and channels",
+                          std::to_string(s.height) + " and " + std::to_string(s.channels));
     if (int(map_of.size()) != s.channels || maps.empty())
         throw input_error("remap", "maps", "one for each channel",
                           std::to_string(maps.size()));
@@ -169,11 +182,7 @@ void check(const RemapSource& s, std::span<const SourceMap> maps,
         if (m < 0 || m >= int(maps.size()))
             throw input_error("remap", "map of a channel", "one of the maps",
                               std::to_string(m));
-    for (const SourceMap& m : maps) {
-        m.check();
-        if (begin < m.top || end > m.top + m.rows * kCell || s.width > m.columns * kCell)
-            throw input_error("remap", "map", "cells for all pixels", "fewer");
-    }
+    for (const SourceMap& m : maps) check(m, s.width, begin, end);
 }
 
 }  // namespace
@@ -211,9 +220,9 @@ RemapResult remap(const RemapSource& source, std::span<const SourceMap> maps,
 std::vector<std::uint32_t> remap_nearest(std::span<const std::uint32_t> values, int width,
                                          int height, int first, const SourceMap& map,
                                          int begin, int end) {
+    check(map, width, begin, end);
     std::vector<std::uint32_t> out(std::size_t(end - begin) * width);
     const int rows = int(values.size() / width);
-    map.check();
     oneapi::tbb::parallel_for(begin / kCell, (end + kCell - 1) / kCell, [&](int k) {
         CellMap cell;
         for (int column = 0; column * kCell < width; ++column) {

@@ -12,6 +12,7 @@ from .camera.camera import Camera
 from .camera.lens_scatter import LensScatter
 from .camera.projection import Projection
 from .camera.rolling_shutter import RollingShutter
+from .doors import guarded
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
 from .motion.values import Keys, Spin, keys, spin
 from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
@@ -164,6 +165,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
+@guarded
 def load(
     path: str | Path,
     *,
@@ -192,6 +194,7 @@ def load(
     return read(path, time=time, variant=variant, allow_dirs=allow_dirs, **options)
 
 
+@guarded
 def load_frame(path: str | Path) -> Frame:
     """Reads a picture (.exr) with all its channels and facts, of Daguerre or another program.
 

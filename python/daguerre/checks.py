@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from .errors import DaguerreError, InputError, UsageError
 MAX_RESOLUTION = 65536
 DEFAULT_RESOLUTION = (960, 540)
 MAX_SAMPLES = 1 << 31
+#: Numbers of an array that a user hands over, at most.
+MAX_NUMBERS = 1 << 31
 #: Deflate cannot shrink data more than this (zlib's "Technical details").
 DEFLATE_LIMIT = 1032
 
@@ -55,6 +58,8 @@ def to_numbers(
         numbers = np.asarray(values)
     except ValueError:
         raise error(f"{where}: {what}: wanted {wanted}, got rows of unequal length") from None
+    if numbers.size > MAX_NUMBERS:  # a view of few numbers may pretend to be far more
+        raise error(f"{where}: {what}: wanted {wanted}, got {numbers.size} numbers")
     if numbers.dtype.kind not in "iufb":
         raise error(f"{where}: {what}: wanted {wanted}, got {short(values)}")
     return numbers
@@ -64,6 +69,30 @@ def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float
     """A parameter as an array of numbers, of whatever shape: in order, as the core reads it."""
     numbers = to_numbers(values, where, what, wanted, UsageError)
     return np.asarray(numbers, np.float64, order="C")
+
+
+def wavelengths(values: ArrayLike, where: str) -> NDArray[np.float64]:
+    """Wavelengths that glass can be asked for, nm, of any shape."""
+    found = doubles(values, where, "values", "wavelengths in nm")
+    if found.size and not (found.min() >= 1 and found.max() <= 1e6):
+        raise UsageError(f"{where}: wanted wavelengths of 1 to 1e6 nm, got {short(found.tolist())}")
+    return found
+
+
+def rows(values: ArrayLike, where: str, columns: int) -> NDArray[np.float64]:
+    """Points or rays of an analysis as (N, columns); one alone is a row."""
+    numbers = doubles(values, where, "values", f"shape (N, {columns})")
+    if numbers.ndim not in (1, 2) or numbers.shape[-1] != columns:
+        raise UsageError(f"{where}: wanted shape (N, {columns}), got {numbers.shape}")
+    return numbers.reshape(-1, columns)
+
+
+def line(values: ArrayLike, where: str) -> NDArray[np.float64]:
+    """Numbers in a row, shape (N,); one alone is a row of one."""
+    numbers = np.atleast_1d(doubles(values, where, "values", "shape (N,)"))
+    if numbers.ndim != 1:
+        raise UsageError(f"{where}: wanted shape (N,), got {numbers.shape}")
+    return numbers
 
 
 def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
@@ -153,7 +182,7 @@ def number(
 def numbers(value: Any, where: str, count: int, wanted: str) -> tuple[float, ...]:
     """``count`` finite numbers."""
     try:
-        result = tuple(float(v) for v in value)
+        result = tuple(float(v) for v in islice(value, count + 1))
     except (TypeError, ValueError, OverflowError):
         raise UsageError(f"{where}: wanted {wanted}, got {short(value)}") from None
     if len(result) != count or not all(math.isfinite(v) for v in result):
@@ -175,8 +204,23 @@ def whole(value: Any, where: str, low: int, high: int, bounds: str | None = None
 
 def short(value: Any, length: int = 60) -> str:
     """The value as text that fits into a message."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except (ValueError, RecursionError):  # whole numbers of thousands of digits
+        text = type(value).__name__
     return text if len(text) <= length else text[: length - 3] + "..."
+
+
+def shown(value: Any) -> str:
+    """A value of any kind for a message: plain ones as they are, others by what they are."""
+    if isinstance(value, np.ndarray):
+        return f"an array {value.shape} of {value.dtype}"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    plain = value is None or isinstance(
+        value, bool | int | float | complex | str | bytes | tuple | list | dict | np.generic
+    )
+    return short(value) if plain else f"a {type(value).__name__}"
 
 
 def plain_light(pixels: NDArray[Any], where: str, *, infinite: bool = False) -> None:

@@ -124,7 +124,7 @@ def test_filters_of_their_own_can_be_taken_off() -> None:
 def test_iso_beyond_the_sensor_is_refused() -> None:
     sensor = load("ideal").with_(iso_range=(100, 6400))
     for iso in (50, 12800, float("nan"), -100, "400"):
-        with pytest.raises(dg.UsageError, match=r"iso: wanted 100 \.\. 6400, got"):
+        with pytest.raises(dg.UsageError, match=r"iso: wanted (100 \.\. 6400|a number), got"):
             sensor.gain(iso)  # type: ignore[arg-type]
 
 

@@ -148,7 +148,7 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
                           : table_[i];
     };
     const double x = mm / step_mm_;
-    const int i = std::min(int(x), last - 1);
+    const int i = x < last - 1 ? int(x) : last - 1;   // NaN is nowhere
     const double t = x - i;
     if (t >= 1)
         return sum(sum(table_[last], t - 1, table_[last]), 1 - t, table_[last - 1]);

@@ -108,7 +108,8 @@ void PixelCone::measure_along(const Lens& lens, const Sensor& sensor) {
 }
 
 float PixelCone::angle(Vec2f film_mm) const {
-    const float x = std::min(length(film_mm) * steps_per_mm_, float(kSteps) - 1e-3f);
+    const float most = float(kSteps) - 1e-3f, at = length(film_mm) * steps_per_mm_;
+    const float x = at < most ? at : most;   // NaN is nowhere
     const int i = int(x);
     return angles_[i] + (angles_[i + 1] - angles_[i]) * (x - float(i));
 }

@@ -159,7 +159,7 @@ std::optional<AimState> aim_from_bytes(const std::string& bytes, const std::stri
     const std::string_view rest = std::string_view(bytes).substr(2 * kDigits);
     if (bytes.compare(kDigits, kDigits, digest(rest)) != 0) return std::nullopt;
     AimState state;
-    ByteReader r(rest);
+    ArchiveReader r(rest);
     r(state);
     if (!r.ok || !r.rest.empty() || !consistent(state.aim)) return std::nullopt;
     return state;

@@ -65,9 +65,9 @@ class ByteWriter {
 };
 
 /// Fills what it is called with; past the end, or at sizes that cannot be, `ok` turns false.
-class ByteReader {
+class ArchiveReader {
   public:
-    explicit ByteReader(std::string_view from) : rest(from) {}
+    explicit ArchiveReader(std::string_view from) : rest(from) {}
     template <typename... T>
     void operator()(T&... values) {
         (get(values), ...);

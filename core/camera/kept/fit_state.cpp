@@ -86,7 +86,7 @@ std::optional<LensFit> fit_from_bytes(const std::string& bytes) {
     const std::string_view rest = std::string_view(bytes).substr(kDigest);
     if (bytes.compare(0, kDigest, digest(rest)) != 0) return std::nullopt;
     LensFit fit;
-    ByteReader r(rest);
+    ArchiveReader r(rest);
     r(fit);
     if (!r.ok || !r.rest.empty()) return std::nullopt;
     try {

@@ -96,7 +96,8 @@ ChiefMap::ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRecta
 
 Vec2d ChiefMap::slope(Vec2d film, Vec2d iris) const {
     const auto place = [](double u) {
-        return std::clamp(0.5 * (u + 1) * (kSide - 1), 0.0, kSide - 1.0);
+        const double at = 0.5 * (u + 1) * (kSide - 1);
+        return at > 0 ? std::min(at, kSide - 1.0) : 0.0;  // NaN is nowhere
     };
     const double px = place(film.x), py = place(film.y);
     const int x = std::min(int(px), kSide - 2), y = std::min(int(py), kSide - 2);

@@ -72,6 +72,9 @@ RayMap PolynomialSystem::at(double wavelength_nm) const {
 }
 
 std::vector<double> wavelength_nodes(double from_nm, double to_nm, int count) {
+    if (count < 1)
+        throw input_error("polynomial system", "wavelengths", "one at least",
+                          std::to_string(count));
     if (count == 1) return {0.5 * (from_nm + to_nm)};
     const double a = inverse_square(from_nm), b = inverse_square(to_nm);
     std::vector<double> nm;

@@ -38,8 +38,8 @@ double index_of(const AbbeGlass& glass, double nm) {
 // glass is nearly a parabola: exact at every node, continuous, and a plain parabola for
 // three nodes.
 double index_of(const TableGlass& glass, double nm) {
-    const int count = int(glass.nm.size());
-    const auto above = std::upper_bound(glass.nm.begin(), glass.nm.end(), nm);
+    const int count = int(std::min(glass.nm.size(), glass.n.size()));  // equal in a checked one
+    const auto above = std::upper_bound(glass.nm.begin(), glass.nm.begin() + count, nm);
     const int first =
         std::clamp(int(above - glass.nm.begin()) - 2, 0, std::max(0, count - 4));
     const int last = std::min(count, first + 4);

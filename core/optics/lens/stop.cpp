@@ -199,7 +199,7 @@ Vec2d Iris::sample(Vec2d u, double enlargement) const {
     }
     const int triangles = int(blades_.fan.size()) - 1;
     const double scaled = u.x * triangles;
-    const int i = std::min(triangles - 1, int(scaled));
+    const int i = std::clamp(int(scaled), 0, triangles - 1);
     const double r = enlargement * std::sqrt(u.y), t = scaled - i;
     return r * ((1 - t) * blades_.fan[i] + t * blades_.fan[i + 1]);
 }

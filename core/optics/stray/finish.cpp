@@ -68,7 +68,7 @@ double FinishScatter::glossy_albedo(double cosine) const {
 }
 
 double FinishScatter::albedo(double cosine) const {
-    const double x = std::clamp(cosine, 0.0, 1.0) * kSteps;
+    const double x = cosine > 0 ? std::min(cosine, 1.0) * kSteps : 0;   // NaN is none
     const int i = std::min(int(x), kSteps - 1);
     return albedo_[i] + (x - i) * (albedo_[i + 1] - albedo_[i]);
 }

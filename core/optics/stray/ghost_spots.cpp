@@ -62,6 +62,7 @@ struct Entries {
 constexpr int kEnough = 256;    // rays through: what they show needs no closer look
 constexpr int kFew = 8;         // and so many at least to say where a ghost lets light in
 constexpr int kMostLooks = 5;
+constexpr int kMostRays = 1 << 24;
 constexpr int kWideSide = 256;  // rays across, where almost none come through
 
 class Bench {
@@ -202,6 +203,11 @@ class Bench {
 }  // namespace
 
 std::vector<GhostSpot> ghost_spots(const GhostLens& lens, const GhostLight& light, bool with_points) {
+    if (light.nm.empty() || light.weight.size() != light.nm.size())
+        throw input_error("ghosts", "wavelengths", "one at least, each with its weight",
+                          std::to_string(light.nm.size()) + " and " + std::to_string(light.weight.size()));
+    if (light.rays < 1 || light.rays > kMostRays)
+        throw input_error("ghosts", "rays", "1 to " + std::to_string(kMostRays), std::to_string(light.rays));
     const Bench bench(lens, light);
     const double straight = bench.straight();
     if (!(straight > 0))

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "math/error.h"
+
 namespace dg {
 namespace {
 
@@ -29,7 +31,12 @@ LensPath ghost_path(int surfaces, int near, int far, bool toward_film) {
 LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film) {
     LensPath path;
     int at = 0, sign = 1;
+    if (mirrors.size() % 2)
+        throw input_error("ghost", "mirrors", "an even number", std::to_string(mirrors.size()));
     for (const int mirror : mirrors) {
+        if (sign > 0 ? mirror < at : mirror > at)
+            throw input_error("ghost", "mirrors", "surfaces that lie ahead of the light, in turn",
+                              std::to_string(mirror));
         for (; at != mirror; at += sign) path.push_back({at, sign});
         path.push_back({mirror, sign, true});
         sign = -sign, at = mirror + sign;

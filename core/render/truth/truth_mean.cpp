@@ -32,8 +32,11 @@ class PixelRays {
         }
         std::ranges::fill(rays_, CameraRay{});
         generate_rays(view_.camera(), samples_, rays_);
-        for (const CameraRay& r : rays_)
-            if (r.weight > 0) use(to_world(view_.camera(), r.ray), double(r.weight));
+        for (const CameraRay& r : rays_) {
+            if (!(r.weight > 0)) continue;
+            const Ray ray = to_world(view_.camera(), r.ray);
+            if (is_traceable(ray)) use(ray, double(r.weight));
+        }
     }
 
   private:

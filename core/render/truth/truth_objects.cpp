@@ -37,14 +37,14 @@ void join(Silhouette& all, const Silhouette& part) {
     all.y0 = std::min(all.y0, part.y0), all.y1 = std::max(all.y1, part.y1);
 }
 
-void hold(Outline& outline, Vec2d px) {
+void hold(GroupOutline& outline, Vec2d px) {
     if (outline.empty) outline.low = outline.high = px;
     outline.empty = false;
     outline.low = {std::min(outline.low.x, px.x), std::min(outline.low.y, px.y)};
     outline.high = {std::max(outline.high.x, px.x), std::max(outline.high.y, px.y)};
 }
 
-void join(Outline& all, const Outline& part) {
+void join(GroupOutline& all, const GroupOutline& part) {
     all.open |= part.open;
     if (part.empty) return;
     hold(all, part.low), hold(all, part.high);
@@ -76,7 +76,7 @@ class InstanceOutline {
         corners_.resize(mesh_->vertex_count());
         for (std::uint32_t i = 0; i < mesh_->triangles.size(); ++i) add_triangle(i);
     }
-    Outline outline;
+    GroupOutline outline;
 
   private:
     static constexpr double kShort = 4;     // px: edges that cannot bend by much
@@ -201,9 +201,9 @@ std::vector<Silhouette> silhouettes(const TruthFrame& frame, const FilmLayout& r
     return all;
 }
 
-std::vector<Outline> outlines(const TruthFrame& frame, const RenderSettings& settings,
+std::vector<GroupOutline> outlines(const TruthFrame& frame, const RenderSettings& settings,
                               Groups groups, std::size_t count) {
-    std::vector<Outline> of_instances(groups.size()), all(count);
+    std::vector<GroupOutline> of_instances(groups.size()), all(count);
     const TruthView view(frame, settings);
     parallel_tasks(settings.threads, std::int64_t(groups.size()), [&](std::int64_t i) {
         if (groups[i] != kNoGroup)

@@ -24,13 +24,13 @@ std::vector<Silhouette> silhouettes(const TruthFrame& frame, const FilmLayout& r
                                     std::size_t count);
 
 /// The box around all points of a group, px of the full frame, wherever they land.
-struct Outline {
+struct GroupOutline {
     Vec2d low{0, 0}, high{0, 0};
     bool empty = true;  // none has a place
     bool open = false;  // some have none: behind the camera, or past the lens's field
 };
 /// Edges of triangles that the lens bends are followed, to 0.05 px or better.
-std::vector<Outline> outlines(const TruthFrame& frame, const RenderSettings& settings,
+std::vector<GroupOutline> outlines(const TruthFrame& frame, const RenderSettings& settings,
                               Groups groups, std::size_t count);
 
 }  // namespace dg

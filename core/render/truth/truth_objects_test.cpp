@@ -55,14 +55,14 @@ struct World {
         made.scene = Scene::build(std::move(d));
         return made;
     }
-    Outline outline() const {
+    GroupOutline outline() const {
         const Shot made = shot();
         const std::vector<std::uint32_t> groups(squares.size(), 0);
         return outlines(made, made.settings, groups, 1)[0];
     }
 };
 
-void check_box(const Outline& o, double x0, double y0, double x1, double y1, double within) {
+void check_box(const GroupOutline& o, double x0, double y0, double x1, double y1, double within) {
     CHECK(std::abs(o.low.x - x0) < within);
     CHECK(std::abs(o.low.y - y0) < within);
     CHECK(std::abs(o.high.x - x1) < within);
@@ -73,23 +73,23 @@ void check_box(const Outline& o, double x0, double y0, double x1, double y1, dou
 
 TEST_CASE("a square before a pinhole, and one that leaves the frame") {
     const double side = kPixels / 4;
-    const Outline o = World{{square(0.5, {0, 0, -4})}}.outline();
+    const GroupOutline o = World{{square(0.5, {0, 0, -4})}}.outline();
     CHECK(!o.open);
     check_box(o, 20 - side / 2, 15 - side / 2, 20 + side / 2, 15 + side / 2, 1e-4);
-    const Outline left = World{{square(0.5, {-3, 0, -4})}}.outline();
+    const GroupOutline left = World{{square(0.5, {-3, 0, -4})}}.outline();
     check_box(left, 20 - 3.5 * side, 15 - side / 2, 20 - 2.5 * side, 15 + side / 2, 1e-4);
-    const Outline both = World{{square(0.5, {0, 0, -4}), square(0.5, {-3, 0, -4})}}.outline();
+    const GroupOutline both = World{{square(0.5, {0, 0, -4}), square(0.5, {-3, 0, -4})}}.outline();
     check_box(both, 20 - 3.5 * side, 15 - side / 2, 20 + side / 2, 15 + side / 2, 1e-4);
 }
 
 TEST_CASE("a floor that begins behind the camera: open, up to its far edge, and down beyond all") {
-    const Outline o = World{{square(5, {0, -1, 0}, -90)}}.outline();
+    const GroupOutline o = World{{square(5, {0, -1, 0}, -90)}}.outline();
     CHECK(o.open);
     CHECK(o.low.y == doctest::Approx(15 + kPixels / 5).epsilon(1e-6));
     CHECK(o.high.y > 1e4);
     CHECK(o.low.x < -1e4);
     CHECK(o.high.x > 1e4);
-    const Outline behind = World{{square(0.5, {0, 0, 4})}}.outline();
+    const GroupOutline behind = World{{square(0.5, {0, 0, 4})}}.outline();
     CHECK(behind.empty);
     CHECK(behind.open);
 }
@@ -98,7 +98,7 @@ TEST_CASE("edges that a fisheye bends reach as far as their points") {
     const Projection fisheye{ProjectionModel(ProjectionModel::Kind::equidistant), {14, 14}};
     World world{{square(2, {0.7, 0.3, -1.5})}, fisheye};
     const World::Shot shot = world.shot();
-    Outline dense{{1e9, 1e9}, {-1e9, -1e9}};
+    GroupOutline dense{{1e9, 1e9}, {-1e9, -1e9}};
     for (int i = 0; i <= 200; ++i)
         for (int j = 0; j <= 200; ++j) {
             const Vec3d p{0.7 + 2 * (i / 100.0 - 1), 0.3 + 2 * (j / 100.0 - 1), -1.5};
@@ -106,7 +106,7 @@ TEST_CASE("edges that a fisheye bends reach as far as their points") {
             dense.low = {std::min(dense.low.x, px.x), std::min(dense.low.y, px.y)};
             dense.high = {std::max(dense.high.x, px.x), std::max(dense.high.y, px.y)};
         }
-    const Outline o = world.outline();
+    const GroupOutline o = world.outline();
     CHECK(!o.open);
     check_box(o, dense.low.x, dense.low.y, dense.high.x, dense.high.y, 0.06);
     const Vec2d corner = kSensor.px_from_mm(*fisheye.film_point({-1.3, 2.3, -1.5}, 1));

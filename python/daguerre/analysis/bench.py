@@ -11,6 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.checks import number, rows, wavelengths
+from daguerre.doors import guarded
+from daguerre.errors import UsageError
 from daguerre.lenses import FirstOrder, Lens
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
@@ -54,6 +57,7 @@ class Rays:
         return np.asarray(out)
 
 
+@guarded
 @dataclass(frozen=True)
 class Bench:
     """A lens as it is used: focused, its iris set.
@@ -92,9 +96,13 @@ class Bench:
             to_film: From the object to the film, or back.
             clip: Whether clear apertures and the iris stop rays.
         """
-        nm = np.full(len(origins), float(wavelength_nm))
+        origins = rows(origins, "rays: origins", 3)
+        directions = rows(directions, "rays: directions", 3)
+        if len(origins) != len(directions):
+            raise UsageError(f"rays: directions: wanted {len(origins)}, got {len(directions)}")
+        nm = np.full(len(origins), wavelengths(wavelength_nm, "rays: wavelength_nm"))
         points, out, iris, path, transmittance, stopped = self.lens.prescription.rays(
-            np.ascontiguousarray(origins), np.ascontiguousarray(directions), nm, clip, to_film
+            origins, directions, nm, clip, to_film
         )
         passed = stopped < 0
         if clip:
@@ -134,6 +142,7 @@ class Bench:
         return self.projection != "rectilinear"
 
 
+@guarded
 def set_up(
     lens: Lens,
     *,
@@ -239,6 +248,7 @@ def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
             "got neither",
             "lens-f-stop",
         )
+    number(f_stop, f"{lens.name}: f-stop")
     if not (math.isfinite(f_stop) and f_stop > 0):
         raise LensError(
             f"{lens.name}: f-stop: wanted a positive number, got {f_stop:g}", "lens-f-stop"

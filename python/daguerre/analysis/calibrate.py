@@ -13,6 +13,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.parameters.bench import CALIBRATE, SEEN
 from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.lenses import Lens, load
 from daguerre.lenses.setting import By, LensSetting
@@ -101,6 +102,7 @@ class ProjectionFit:
 
 
 @takes(CALIBRATE, CalibrateKeywords)
+@guarded
 def calibrate(
     lens: Lens | str,
     model: str = "opencv",
@@ -127,6 +129,7 @@ def calibrate(
 
 
 @takes(SEEN, SeenKeywords)
+@guarded
 def calibrate_all(
     lens: Lens | str, *, resolution: tuple[int, int], **keywords: Unpack[SeenKeywords]
 ) -> list[ProjectionFit]:
@@ -185,7 +188,8 @@ class _Picture:
     def axis(self) -> FloatArray:
         """Where the lens's axis meets it, px."""
         middle = (np.array(self.size) - 1) / 2
-        return np.asarray(middle + np.array(self.shift_mm) / self.pitch_mm * (-1, 1))
+        shift = np.array(numbers(self.shift_mm, "calibrate: shift", 2, "two lengths, mm"))
+        return np.asarray(middle + shift / self.pitch_mm * (-1, 1))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.checks import line
+from daguerre.doors import guarded
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -41,6 +43,7 @@ class ChiefRays:
         return np.asarray(np.arctan2(np.hypot(d[:, 0], d[:, 1]), d[:, 2]))
 
 
+@guarded
 def chief_rays(
     bench: Bench, film_mm: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> ChiefRays:
@@ -70,9 +73,10 @@ def chief_rays(
     return ChiefRays(film, slopes, rays.points, directions)
 
 
+@guarded
 def film_heights(bench: Bench, angles_deg: ArrayLike) -> FloatArray:
     """Image heights (mm) whose chief rays come from angles (deg) off the axis; NaN: none does."""
-    wanted = np.radians(np.atleast_1d(np.asarray(angles_deg, np.float64)))
+    wanted = np.radians(line(angles_deg, "film_heights: angles_deg"))
     reach = 1.5 * bench.field_mm
     heights = np.linspace(0, reach, 97)
     angles = chief_rays(bench, heights).angles

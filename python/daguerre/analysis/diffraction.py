@@ -27,7 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import pixel_integrals
+from daguerre.checks import line, number, whole
 from daguerre.convolution.fft import fast_sizes, fft, rfft, thread_count
+from daguerre.doors import guarded
+from daguerre.errors import UsageError
 
 from .iris import Floats, Iris
 
@@ -60,6 +63,15 @@ class Pupil(Protocol):
         """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); complex if they bend."""
 
 
+def _line(values: Floats, name: str) -> Floats:
+    """Directions in a row, two at least: their distance is the pitch."""
+    found = line(values, f"amplitude: {name}")
+    if len(found) < 2:
+        raise UsageError(f"amplitude: {name}: wanted two directions at least, got {len(found)}")
+    return np.asarray(found, np.float32)
+
+
+@guarded
 @dataclass(frozen=True)
 class PlainPupil:
     """The pupil of an ideal lens: the iris alone, under the cone of its f-number.
@@ -90,6 +102,7 @@ class PlainPupil:
 
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> Floats:
         """Amplitudes (B, A): no aberration, so they are real."""
+        x, y = _line(x, "x"), _line(y, "y")
         unit = np.float32(2 * self.f_number)
         pitch = float(unit * (x[1] - x[0]))
         return self.iris.amplitude(x[None, :] * unit, y[:, None] * unit, pitch)
@@ -159,6 +172,9 @@ def pattern_of(
     Returns:
         None if the pupil is dark.
     """
+    number(wavelength_nm, "diffraction: wavelength_nm", 1, 1e6)
+    number(pitch_mm, "diffraction: pitch_mm", above=0, high=1000)
+    whole(size, "diffraction: size", 1, 1 << 14)
     spans = [b - a for a, b in zip(pupil.low, pupil.high, strict=True)]
     pixel = pitch_mm / (1e-6 * wavelength_nm)
     window = min(size * pixel, MOST_FRINGES / max(spans))
@@ -178,6 +194,7 @@ def pattern_of(
         return Pattern(_intensity(lines, length, reach, pool), spacing, total) if total else None
 
 
+@guarded
 def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
     """The point spread of one wavelength on pixels.
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.checks import line
+from daguerre.doors import guarded
 from daguerre.lenses import FirstOrder
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -32,6 +34,7 @@ class FieldCurve:
     tangential: FloatArray
 
 
+@guarded
 def field_curvature(
     bench: Bench, heights_mm: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> FieldCurve:
@@ -45,7 +48,7 @@ def field_curvature(
         heights_mm: Image heights along y, mm, shape (N,).
         wavelength_nm: Wavelength, nm.
     """
-    heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
+    heights = line(heights_mm, "field_curvature: heights_mm")
     out = np.full((len(heights), 2), np.nan)
     delta = 1e-3 * bench.pupil_diameter
     near = delta * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]], np.float64)
@@ -91,6 +94,7 @@ class Distortion:
         return np.where(self.height_mm == 0, 0.0, out)
 
 
+@guarded
 def distortion(bench: Bench, heights_mm: ArrayLike) -> Distortion:
     """Distortion by exact chief rays.
 
@@ -101,7 +105,7 @@ def distortion(bench: Bench, heights_mm: ArrayLike) -> Distortion:
         bench: The lens.
         heights_mm: Image heights along y, mm, shape (N,).
     """
-    heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
+    heights = line(heights_mm, "distortion: heights_mm")
     # The first is the scale: a film off the paraxial focus is a little larger or smaller.
     near = np.concatenate([[1e-3 * bench.field_mm], heights])
     angles = chief_rays(bench, near).angles
@@ -120,6 +124,7 @@ def _object_height(bench: Bench, height: float) -> float:
     return float(np.hypot(*light.source[:2]))
 
 
+@guarded
 def lateral_colour(
     bench: Bench, heights_mm: ArrayLike, wavelengths_nm: Sequence[float] = FDC_NM
 ) -> FloatArray:
@@ -158,6 +163,7 @@ def _through_the_middle(light: Pencil, nm: float) -> FloatArray:
     return at[None, :]
 
 
+@guarded
 def axial_colour(bench: Bench, wavelengths_nm: ArrayLike) -> FloatArray:
     """Paraxial focus of each wavelength against that of 587.56 nm, mm, shape (L,).
 
@@ -166,7 +172,7 @@ def axial_colour(bench: Bench, wavelengths_nm: ArrayLike) -> FloatArray:
     z = bench.order.entrance_pupil.z - bench.focus_mm
     orders = (
         bench.lens.first_order(float(nm))
-        for nm in np.atleast_1d(np.asarray(wavelengths_nm, np.float64))
+        for nm in line(wavelengths_nm, "axial_colour: wavelengths_nm")
     )
     return np.array([_image_of(order, z) for order in orders]) - _image_of(bench.order, z)
 
@@ -177,6 +183,7 @@ def _image_of(order: FirstOrder, object_z: float) -> float:
     return order.back_focal_point + order.efl * front / (order.front_focal_point - object_z)
 
 
+@guarded
 def spherical_aberration(
     bench: Bench, shares: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> FloatArray:

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.checks import whole
+from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -53,6 +55,7 @@ class Ghost:
     points: NDArray[np.float32]
 
 
+@guarded(init=True)
 class Ghosts:
     """The ghosts of a lens for light of one direction, brightest first.
 
@@ -153,6 +156,7 @@ class Ghosts:
 
     def picture(self, pixels: int = 600) -> NDArray[np.float64]:
         """All ghosts on the film, upright, shape (H, W): light per mm2, of that of the picture."""
+        whole(pixels, "picture: pixels", 1, 8192)
         width, height = self.film
         columns, rows = pixels, max(1, round(pixels * height / width))
         image = np.zeros((rows, columns))

@@ -13,6 +13,7 @@ import numpy as np
 
 import daguerre._core as _core
 from daguerre.camera.lens_scatter import core_parts
+from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 
 from .ghosts import NM, WEIGHTS
@@ -28,6 +29,7 @@ WALKS = 60000
 _BATCHES = 10
 
 
+@guarded(init=True)
 class VeilingGlare:
     """The veiling glare index, and what makes it.
 

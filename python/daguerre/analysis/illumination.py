@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.checks import line, rows, whole
+from daguerre.doors import guarded
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -42,6 +44,7 @@ class Illumination:
         return np.asarray(self.irradiance / self.irradiance[0])
 
 
+@guarded
 def relative_illumination(
     bench: Bench,
     heights_mm: ArrayLike,
@@ -59,7 +62,7 @@ def relative_illumination(
         wavelength_nm: Wavelength, nm.
         grid: Rays across the pupil.
     """
-    heights = np.atleast_1d(np.asarray(heights_mm, np.float64))
+    heights = line(heights_mm, "relative_illumination: heights_mm")
     chief = chief_rays(bench, heights, wavelength_nm)
     values = [_irradiance(bench, _along_y(h), wavelength_nm, grid) for h in heights]
     reach = bench.film_z - bench.order.exit_pupil.z
@@ -71,6 +74,7 @@ def relative_illumination(
     )
 
 
+@guarded
 def spectral_illumination(
     bench: Bench, film_mm: ArrayLike, wavelengths_nm: ArrayLike, *, grid: int = GRID
 ) -> FloatArray:
@@ -89,8 +93,8 @@ def spectral_illumination(
     Returns:
         Shape (N, L); 0 where it is dark.
     """
-    wavelengths = np.atleast_1d(np.asarray(wavelengths_nm, np.float64))
-    points = np.asarray(film_mm, np.float64).reshape(-1, 2)
+    wavelengths = line(wavelengths_nm, "spectral_illumination: wavelengths_nm")
+    points = rows(film_mm, "spectral_illumination: film_mm", 2)
     return np.array([_by_wavelength(bench, point, wavelengths, grid) for point in points])
 
 
@@ -133,6 +137,7 @@ def within_light(bench: Bench) -> Bench:
     return replace(bench, field_mm=low or bench.field_mm)
 
 
+@guarded
 def pupil_outline(
     bench: Bench,
     height_mm: float,
@@ -152,6 +157,7 @@ def pupil_outline(
         Direction cosines about the middle of the light, closed, shape (corners + 1, 2); of length 0
         if it is dark there.
     """
+    whole(corners, "pupil_outline: corners", 3, 1 << 14)
     film = _along_y(height_mm)
     found = _lit_window(bench, film, wavelength_nm)
     if found is None:
@@ -206,6 +212,7 @@ def _through(
     bench: Bench, film: FloatArray, nm: float, low: FloatArray, high: FloatArray, grid: int
 ) -> float:
     """Area of the light in a window of direction cosines, times its transmittance."""
+    whole(grid, "illumination: grid", 1, 4096)
     cell = (high - low) / grid
     u = np.arange(grid) + 0.5
     at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1)

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.doors import guarded
+from daguerre.errors import UsageError
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float32]
 
 
+@guarded(init=True)
 @dataclass(frozen=True)
 class Iris:
     """An iris shape, and the dirt on it.
@@ -65,6 +68,11 @@ class Iris:
             y: The same upward; the two broadcast.
             pitch: Sides of the cells: edges are as soft as that.
         """
+        try:
+            np.broadcast_shapes(np.shape(x), np.shape(y))
+        except ValueError:
+            shapes = f"{np.shape(x)} and {np.shape(y)}"
+            raise UsageError(f"amplitude: x, y: wanted shapes that agree, got {shapes}") from None
         if self.picture is not None:
             pixel = float(np.sqrt(np.pi / self.picture.sum(dtype=np.float64)))
             open_share = np.sqrt(_sampled(self.picture, x / pixel, y / pixel))

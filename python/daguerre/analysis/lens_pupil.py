@@ -16,6 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 from .bench import Bench, FloatArray
@@ -85,6 +86,7 @@ class LensPupil:
         return np.asarray(np.clip(4 * open_share - 1.5, 0, 1), np.float32)
 
 
+@guarded
 def lens_pupil(
     bench: Bench,
     film_mm: tuple[float, float],

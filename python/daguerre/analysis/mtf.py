@@ -7,6 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.checks import line
+from daguerre.doors import guarded
+
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
 from .pencils import Pencil
 from .psf import grid_for
@@ -14,6 +17,7 @@ from .spots import Spot, spot
 from .wavefronts import ComplexArray, wavefront
 
 
+@guarded
 def geometric_mtf(rays: Spot, freq_per_mm: ArrayLike) -> FloatArray:
     """MTF of rays alone: the modulus of the spot's Fourier transform.
 
@@ -24,13 +28,14 @@ def geometric_mtf(rays: Spot, freq_per_mm: ArrayLike) -> FloatArray:
     Returns:
         Modulation in [0, 1], shape (F, 2): sagittal, tangential.
     """
-    f = np.asarray(freq_per_mm, np.float64)
+    f = line(freq_per_mm, "geometric_mtf: freq_per_mm")
     if not len(rays.weights):
         return np.zeros((len(f), 2))
     waves = np.exp(-2j * np.pi * f[:, None, None] * rays.points[None])
     return np.asarray(np.abs(np.einsum("n,fnk->fk", rays.weights, waves)))
 
 
+@guarded
 def diffraction_mtf(
     light: Pencil,
     freq_per_mm: ArrayLike,
@@ -53,7 +58,7 @@ def diffraction_mtf(
     Returns:
         Modulation in [0, 1], shape (F, 2): sagittal (lines along the radius), tangential.
     """
-    f = np.asarray(freq_per_mm, np.float64)
+    f = line(freq_per_mm, "diffraction_mtf: freq_per_mm")
     total = np.zeros((len(f), 2), np.complex128)
     rays = spot(light, wavelengths_nm, weights, grid=24).moved(dz)
     if not len(rays.weights):
@@ -74,6 +79,7 @@ def diffraction_mtf(
     return np.asarray(np.abs(total) / max(light_sum, 1e-30))
 
 
+@guarded
 def perfect_mtf(freq_per_mm: ArrayLike, f_number: float, wavelength_nm: float) -> FloatArray:
     """MTF of a lens without aberration and a round pupil, shape (F,).
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from daguerre.checks import rows
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -17,6 +19,7 @@ COARSE = 41  # rays across, of the search for the light's outline
 FLAT_FIELD = math.radians(75)  # beyond it a flat object has no place: points lie on a sphere
 
 
+@guarded
 @dataclass(frozen=True)
 class Pencil:
     """Rays from one object point through a window in front of the lens.
@@ -50,6 +53,7 @@ class Pencil:
         self, at: FloatArray, wavelength_nm: float = DESIGN_WAVELENGTH_NM, *, clip: bool = True
     ) -> Rays:
         """Rays through window coordinates (N, 2), mm."""
+        at = rows(at, "trace: at", 2)
         through = self.center + at[:, :1] * self.sagittal + at[:, 1:] * self.tangential
         if self.source is None:
             length = 20.0 * (1 + abs(float(self.bench.lens.vertices[-1])))
@@ -70,6 +74,7 @@ class Pencil:
 
     def flux(self, at: FloatArray) -> FloatArray:
         """Light through equal cells of the window: 1 in its middle, shape (N,)."""
+        at = rows(at, "flux: at", 2)
         if self.source is None:
             return np.ones(len(at))
         distance2 = float(((self.center - self.source) ** 2).sum())
@@ -77,11 +82,12 @@ class Pencil:
 
     def on_film(self, points: FloatArray) -> FloatArray:
         """Film points (N, 2) about the chief ray's, along the sagittal and tangential axes."""
-        off = points - self.film
+        off = rows(points, "on_film: points", 2) - self.film
         r = self.radial
         return np.column_stack([off @ [r[1], -r[0]], off @ r])
 
 
+@guarded
 def pencil(
     bench: Bench,
     film_mm: float | tuple[float, float] = 0.0,

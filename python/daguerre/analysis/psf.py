@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.checks import number, whole
+from daguerre.doors import guarded
+
 from .bench import FloatArray
 from .pencils import Pencil
 from .spots import Spot, spot
@@ -19,6 +22,7 @@ MAX_GRID = 288
 MOST_POINTS = 320  # across the picture of waves, before they are summed to pixels
 
 
+@guarded
 @dataclass(frozen=True)
 class Psf:
     """Light on the film about the chief ray's point.
@@ -55,6 +59,7 @@ class Psf:
         return np.asarray((np.arange(n) + 0.5) * self.pixel_mm - self.half_mm)
 
 
+@guarded
 def geometric_psf(
     light: Pencil,
     wavelengths_nm: Sequence[float] = WHITE_NM,
@@ -82,6 +87,7 @@ def geometric_psf(
 
 def binned(rays: Spot, half_mm: float | None, pixels: int) -> Psf:
     """A spot as a picture of square pixels about its centroid."""
+    whole(pixels, "point spread: pixels", 1, 8192)
     center = rays.centroid
     off = rays.points - center
     half = half_mm or 1.1 * float(np.abs(off).max(initial=1e-4))
@@ -90,6 +96,7 @@ def binned(rays: Spot, half_mm: float | None, pixels: int) -> Psf:
     return Psf(image, half, center, diffraction=False)
 
 
+@guarded
 def diffraction_psf(
     light: Pencil,
     wavelengths_nm: Sequence[float] = WHITE_NM,
@@ -169,6 +176,7 @@ def psf_of(
     return Psf(image, half_mm, center, diffraction=True)
 
 
+@guarded
 def strehl_ratio(wave: Wavefront) -> float:
     """Peak of the light against that of a perfect wave through the same pupil.
 
@@ -183,6 +191,7 @@ def strehl_ratio(wave: Wavefront) -> float:
 
 def grid_for(light: Pencil, nm: float, reach_mm: float) -> int:
     """Directions across so that neighbours differ by less than half a wave at a reach, mm."""
+    number(reach_mm, "point spread: half_mm and dz: reach on the film, mm", 0, 1000)
     sine = 0.5 / light.bench.f_stop
     wanted = 2 * (2 * sine) * reach_mm / (1e-6 * nm) * 1.3
     return max(72, 24 * int(np.ceil(wanted / 24)))
@@ -203,6 +212,7 @@ def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
     return np.asarray(np.abs(field) ** 2 * _normalization(wave) * pixel**2)
 
 
+@guarded
 def point_spread(light: Pencil, *, max_grid: int = MAX_GRID, **options: object) -> Psf:
     """Waves where they matter, rays where the blur is larger than waves can show.
 

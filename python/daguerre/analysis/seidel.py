@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -25,6 +26,7 @@ MEANINGS = (
 WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray of more says little
 
 
+@guarded
 @dataclass(frozen=True)
 class SeidelSums:
     """Welford's sums, mm of wavefront, for the edge of the pupil and of the field.
@@ -43,6 +45,7 @@ class SeidelSums:
         return np.asarray(self.surfaces.sum(axis=0))
 
 
+@guarded
 def seidel_sums(bench: Bench, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> SeidelSums | None:
     """The sums at the bench's aperture, focus and field (45 degrees for wider lenses).
 

@@ -8,12 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.doors import guarded
+from daguerre.errors import UsageError
+
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
 from .pencils import Pencil
 
 GRID = 48
 
 
+@guarded
 @dataclass(frozen=True)
 class Spot:
     """Rays of one object point on the film, of one or more wavelengths.
@@ -63,6 +67,7 @@ class Spot:
         return float(distance[order][last])
 
 
+@guarded
 def spot(
     light: Pencil,
     wavelengths_nm: Sequence[float] = FDC_NM,
@@ -80,6 +85,11 @@ def spot(
         grid: Rays across.
         jitter: Each ray somewhere in its cell, always the same: no pattern of the grid is left.
     """
+    if len(weights) != len(wavelengths_nm):
+        raise UsageError(
+            f"spot: weights: wanted {len(wavelengths_nm)}, one of each wavelength, "
+            f"got {len(weights)}"
+        )
     at = light.grid(grid)
     if jitter:
         cell = (light.high - light.low) / grid
@@ -97,6 +107,7 @@ def spot(
     return Spot(points, share / share.sum() if len(share) else share, nms, slopes)
 
 
+@guarded
 def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
     """Place of the film (mm) with the smallest mean square of several spots' sizes.
 
@@ -110,4 +121,6 @@ def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
         slope = item.slopes - item.weights @ item.slopes
         top += float(item.weights @ (at * slope).sum(axis=1))
         bottom += float(item.weights @ (slope**2).sum(axis=1))
+    if not bottom:
+        raise UsageError("best_film_z: spots: wanted rays of several slopes, got none")
     return film_z - top / bottom

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from daguerre.checks import rows, whole
+from daguerre.doors import guarded
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import BoolArray, FloatArray, Rays
@@ -27,6 +29,7 @@ DEGREE = 5  # in each direction, of the map from directions to the window
 PROBES = 25  # rays across, to fit it
 
 
+@guarded
 @dataclass(frozen=True)
 class Wavefront:
     """The pupil of one image point on a regular grid of directions.
@@ -75,6 +78,7 @@ class Wavefront:
         return Wavefront(self.step, self.cosines, path, self.amplitude, self.wavelength_nm)
 
 
+@guarded
 def wavefront(
     light: Pencil,
     wavelength_nm: float = DESIGN_WAVELENGTH_NM,
@@ -93,6 +97,8 @@ def wavefront(
     Returns:
         None if no light arrives.
     """
+    whole(grid, "wavefront: grid", 2, 4096)
+    about = None if about is None else rows(about, "wavefront: about", 2)[0]
     window, cosines, step = _directions(light, wavelength_nm, grid)
     if window is None:
         return None

@@ -13,6 +13,7 @@ from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, short
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.setup.pose import mounted
 
@@ -31,6 +32,7 @@ OF_LENSES: dict[str, Any] = {
 }
 
 
+@guarded
 @dataclass(frozen=True)
 class Calibration:
     """One camera of a file.

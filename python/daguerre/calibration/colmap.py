@@ -17,6 +17,7 @@ import numpy as np
 
 from daguerre.camera.projection import Projection
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 
 from .calibration import FLIP, Calibration, FloatArray, projection
@@ -46,6 +47,7 @@ def is_colmap(source: object) -> bool:
     return path.is_dir() or path.name in ("cameras.txt", "images.txt")
 
 
+@guarded
 def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[str, Calibration]:
     """The pictures of a model by their names; without ``images.txt`` the cameras by their numbers.
 
@@ -57,7 +59,7 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
         InputError: A file cannot be used; the message names file and line.
     """
     path = Path(source)
-    folder = path if path.is_dir() else path.parent
+    folder = path if os.path.isdir(path) else path.parent  # noqa: PTH112
     cameras = {}
     for where, words in _lines(folder / "cameras.txt"):
         name, made = _camera(where, words)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.numbered import has_place
 from daguerre.files.source import Source
@@ -39,6 +40,7 @@ def format_of(source: Source) -> str:
     return "ros" if {"rectification_matrix", "projection_matrix"} & names else "opencv"
 
 
+@guarded(but=("source",))
 def read(
     source: Source,
     camera: str | None = None,
@@ -74,6 +76,7 @@ def read(
     return pick(found, camera, where)
 
 
+@guarded(but=("source",))
 def read_all(
     source: Source,
     *,
@@ -124,6 +127,7 @@ def read_all(
     return {Path(source).stem if isinstance(source, str | os.PathLike) else "camera": found}
 
 
+@guarded
 def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
     """One of several; without a name the first, and with # in it a take of those numbered so.
 
@@ -134,11 +138,14 @@ def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calib
     if wanted not in cameras and has_place(wanted):
         return take_of(cameras, wanted, where)
     if wanted not in cameras:
-        known = ", ".join(cameras)
-        raise UsageError(f"{where}: wanted {known}; got {wanted!r}{suggest(wanted, cameras)}")
+        known = ", ".join(map(str, cameras))
+        raise UsageError(
+            f"{where}: wanted {known}; got {short(wanted)}{suggest(wanted, map(str, cameras))}"
+        )
     return cameras[wanted]
 
 
+@guarded
 def write(path: str | Path, calibration: Calibration | Sequence[Calibration], format: str) -> None:
     """Writes a calibration file, as a whole or not at all.
 

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from daguerre.camera.projection import Projection
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
@@ -39,6 +40,7 @@ MODELS = {
 }
 
 
+@guarded
 def read_kalibr(source: Source) -> dict[str, Calibration]:
     """All cameras of a chain: cam0, cam1, ...
 

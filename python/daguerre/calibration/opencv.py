@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 from daguerre.camera.projection import Projection
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
@@ -37,6 +38,7 @@ MODELS = {
 }
 
 
+@guarded
 def read_opencv(
     source: Source, *, model: str | None = None, size: tuple[int, int] | None = None
 ) -> Calibration:

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
@@ -37,6 +38,7 @@ UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 MODELS = {DISTORTED_TO_IDEAL: "opencv_inverse", IDEAL_TO_DISTORTED: "opencv"}
 
 
+@guarded
 def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> Calibration:
     """Reads the camera of a sample.
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
@@ -33,6 +34,7 @@ MODELS = {
 }
 
 
+@guarded
 def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
     """A ``camera_info``.
 

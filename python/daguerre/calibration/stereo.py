@@ -18,6 +18,7 @@ import numpy as np
 
 from daguerre.camera.projection import Projection
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
@@ -36,6 +37,7 @@ def is_stereo(root: Item) -> bool:
     return found is not None and isinstance(found.value, dict | list)  # K2 may be a coefficient
 
 
+@guarded
 def read_stereo(
     source: Source,
     *,

@@ -16,6 +16,8 @@ from typing import Any, Self
 import numpy as np
 
 from daguerre.camera.camera import Camera
+from daguerre.checks import number
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.numbered import PLACE, numbers_in, with_number
 from daguerre.motion.values import keys
@@ -26,6 +28,7 @@ from .calibration import Calibration
 CHANGING = ("projection", "transform", "f_stop", "focus_distance")
 
 
+@guarded
 @dataclass(frozen=True)
 class Take(Calibration):
     """Calibrations of one camera, one after the other; it is itself that of the first.
@@ -74,6 +77,7 @@ class Take(Calibration):
                 f"{with_number(self.pattern, frame or 0)}, got none; it has {len(self.samples)} "
                 f"frames of {first:g} .. {last:g}"
             )
+        number(fps, f"{self.file}: fps", above=0)
         if not self.pattern and not first - 0.5 / fps <= time_s <= last + 0.5 / fps:
             which = "the picture" if frame is None else f"frame {frame}"
             raise InputError(

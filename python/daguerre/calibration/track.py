@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import json_text
 from daguerre.files.json_item import Item
@@ -35,6 +36,7 @@ def is_take(source: object) -> bool:
     return read_bytes(path).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"[")
 
 
+@guarded
 def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
     """Reads the camera of several samples; the first is at 0 s.
 
@@ -85,6 +87,7 @@ def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
     )
 
 
+@guarded
 def read_track(
     samples: Samples,
     *,

@@ -14,6 +14,7 @@ import math
 from typing import Any
 
 from daguerre.camera.projection import Projection
+from daguerre.doors import guarded
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
@@ -32,6 +33,7 @@ MODELS: dict[str, tuple[str, tuple[str, ...]]] = {
 COEFFICIENTS = ("k1", "k2", "k3", "k4", "p1", "p2")
 
 
+@guarded
 def read_transforms(
     source: Source, *, size: tuple[int, int] | None = None, unit_m: float = 1.0
 ) -> dict[str, Calibration]:

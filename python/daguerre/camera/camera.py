@@ -7,6 +7,7 @@ for angles.
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import shown
 from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
@@ -190,6 +192,8 @@ class Camera(Value):
                 found[name] = value
             elif name in MOVABLE and moves(value):  # such as a shift of two numbers
                 found[name] = Composite(value)
+        if not isinstance(self.motion, Mapping):
+            raise UsageError(f"camera: motion: wanted a dict, got {shown(self.motion)}")
         for name in {**self.motion, **found}:
             if name not in MOVABLE:
                 raise UsageError(f"camera: {name}: wanted a value that stays, got one over time")

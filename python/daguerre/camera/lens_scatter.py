@@ -10,9 +10,11 @@ from typing import Any
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors
 
 
+@guarded
 @dataclass(frozen=True)
 class LensScatter:
     """How the parts of a lens scatter light; the defaults are a well-made lens.

@@ -88,7 +88,7 @@ def check_overscan(
 def _of_text(text: str, resolution: tuple[int, int], where: str) -> Overscan:
     parts = [part.strip() for part in text.split(",")]
     if len(parts) not in (1, 4):
-        raise UsageError(f"{where}: wanted {WANTED}; got {text!r}")
+        raise UsageError(f"{where}: wanted {WANTED}; got {short(text)}")
     width, height = resolution
     lengths = (width, height, width, height)
     if len(parts) == 1:
@@ -103,7 +103,7 @@ def _pixels(part: str, length: int, text: str, where: str) -> int:
         value = float(digits)
     except ValueError:
         raise UsageError(
-            f"{where}: wanted {WANTED}; got {text!r}{suggest(part, [UNDISTORT])}"
+            f"{where}: wanted {WANTED}; got {short(text)}{suggest(part, [UNDISTORT])}"
         ) from None
     number(value, where, 0, 1e6)
     if percent:

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short, to_numbers, whole
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors, suggest
 from daguerre.files.value import Value
 
@@ -47,6 +48,7 @@ MODELS: dict[str, tuple[str, ...]] = {
 NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
 
 
+@guarded
 @dataclass(frozen=True)
 class Projection(Value):
     """Projection of directions to pixels: a camera model with its numbers.
@@ -69,7 +71,7 @@ class Projection(Value):
 
     def __post_init__(self) -> None:
         where = "projection"
-        if self.model not in MODELS:
+        if str(self.model) not in MODELS:
             raise UsageError(
                 f"{where}: model: wanted {', '.join(MODELS)}; got {short(self.model)}"
                 f"{suggest(str(self.model), MODELS)}"
@@ -78,10 +80,12 @@ class Projection(Value):
         width, height = numbers(self.size, f"{where}: size", 2, wanted)
         for side in (width, height):
             whole(int(side) if side == int(side) else side, f"{where}: size", 1, 65536)
-        for value in numbers(self.focal, f"{where}: focal", 2, "two focal lengths, px"):
+        focal = numbers(self.focal, f"{where}: focal", 2, "two focal lengths, px")
+        for value in focal:
             number(value, f"{where}: focal", 0, 1e9, above=0)
         if self.principal is not None:
-            numbers(self.principal, f"{where}: principal", 2, "a point (x, y), px")
+            point = numbers(self.principal, f"{where}: principal", 2, "a point (x, y), px")
+            object.__setattr__(self, "principal", point)
         names = MODELS[self.model]
         least = NEEDED.get(self.model, 0)
         given = to_numbers(self.parameters, where, "parameters", "numbers", UsageError)
@@ -91,7 +95,7 @@ class Projection(Value):
                 f"{least} to {len(names)} numbers, got shape {given.shape}"
             )
         object.__setattr__(self, "size", (int(width), int(height)))
-        object.__setattr__(self, "focal", tuple(float(f) for f in self.focal))
+        object.__setattr__(self, "focal", focal)
         object.__setattr__(self, "parameters", tuple(float(k) for k in given))
         with core_errors(UsageError):
             _ = self.core

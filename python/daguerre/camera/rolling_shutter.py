@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from daguerre.doors import guarded
+
 #: ``"box"``, ``("trapezoid", efficiency)`` or points (fraction of the time, opening)
 ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 
 
+@guarded
 @dataclass(frozen=True)
 class RollingShutter:
     """Lines of pixels that are exposed one after the other.

@@ -135,11 +135,11 @@ def _check_rolling(camera: Camera) -> None:
             f"{where}: a {camera.shutter_type} shutter exposes all lines at once; "
             "wanted focal_plane, rotary or electronic"
         )
-    order = rolling.scan_order
-    if order not in SCAN_ORDERS:
+    order: object = rolling.scan_order
+    if not isinstance(order, str) or order not in SCAN_ORDERS:
         raise UsageError(
-            f"{where}: scan_order: wanted {', '.join(SCAN_ORDERS)}, got {order!r}"
-            f"{suggest(str(order), SCAN_ORDERS)}"
+            f"{where}: scan_order: wanted {', '.join(SCAN_ORDERS)}, got {short(order)}"
+            f"{suggest(short(order), SCAN_ORDERS)}"
         )
     if (rolling.line_time is None) == (rolling.readout_time is None):
         got = "none" if rolling.line_time is None else "both"

@@ -9,7 +9,8 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
-from daguerre.checks import number
+from daguerre.checks import number, short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 
 from . import boards, color, dead_leaves, siemens_star, slanted_edge, step_wedge
@@ -49,6 +50,7 @@ KINDS: dict[str, Callable[..., Chart]] = {
 }
 
 
+@guarded
 def make(name: str, **parameters: Any) -> Chart:
     """Makes a chart.
 
@@ -60,7 +62,9 @@ def make(name: str, **parameters: Any) -> Chart:
         UsageError: No such chart or parameter, or a value that makes none.
     """
     if name not in KINDS:
-        raise UsageError(f"chart: wanted {', '.join(KINDS)}; got {name!r}{suggest(name, KINDS)}")
+        raise UsageError(
+            f"chart: wanted {', '.join(KINDS)}; got {short(name)}{suggest(name, KINDS)}"
+        )
     known = inspect.signature(KINDS[name]).parameters
     for parameter in parameters:
         if parameter not in known:

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from daguerre.checks import number, whole
+from daguerre.checks import number, rows, whole
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from . import markers
@@ -119,9 +120,10 @@ def apriltag(
     return _board("apriltag", size, shown, truth)
 
 
+@guarded
 def object_points(points_m: ArrayLike) -> FloatArray:
     """Points of a chart as OpenCV has those of boards: y down, z into the board, shape (N, 3)."""
-    points = np.asarray(points_m, np.float64).reshape(-1, 2)
+    points = rows(points_m, "object_points: points_m", 2)
     return np.column_stack([points[:, 0], -points[:, 1], np.zeros(len(points))])
 
 

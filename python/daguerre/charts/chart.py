@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.checks import number
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ LAYER = 5e-6
 GROUND = 2.0
 
 
+@guarded
 @dataclass(frozen=True)
 class Patch:
     """A polygon of one colour.
@@ -50,6 +53,7 @@ class Patch:
     layer: int = 1
 
 
+@guarded
 @dataclass(frozen=True)
 class Chart:
     """A chart and what is known about it.
@@ -89,6 +93,8 @@ class Chart:
 
     def distance(self, focal_length: float, sensor_width: float) -> float:
         """From where a pinhole with this focal length (mm) has the chart fill its width (mm), m."""
+        number(focal_length, "chart: focal_length", above=0)
+        number(sensor_width, "chart: sensor_width", above=0)
         return self.size[0] * focal_length / sensor_width
 
     def scene(self, luminance: float = 100.0) -> Scene:

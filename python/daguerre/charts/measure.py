@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import numbers, to_numbers, whole
-from daguerre.errors import InputError
+from daguerre.checks import line, numbers, rows, to_numbers, whole
+from daguerre.doors import guarded
+from daguerre.errors import InputError, UsageError
 
 from .chart import Chart
 
@@ -18,6 +19,7 @@ FloatArray = NDArray[np.float64]
 _FINER = 4  # bins of the edge's profile per pixel, as ISO 12233 has it
 
 
+@guarded
 @dataclass(frozen=True)
 class EdgeResponse:
     """Response to an edge.
@@ -51,6 +53,7 @@ class EdgeResponse:
         return float(f0 + (r0 - 0.5) / (r0 - r1) * (f1 - f0))
 
 
+@guarded
 def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     """The spatial frequency response by a slanted edge, as ISO 12233 measures it.
 
@@ -151,6 +154,7 @@ def _profile(
     return np.diff(profile), float(profile[:side].mean()), float(profile[-side:].mean())
 
 
+@guarded
 def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
     """Where points of a chart are in a rendered picture, if the lens does not distort, px.
 
@@ -163,12 +167,16 @@ def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
         width, height = metadata["resolution"]
     except KeyError as error:
         raise InputError(f"chart: metadata: wanted {error}, got none") from None
-    flat = np.asarray(points, np.float64).reshape(-1, 2)
+    except (TypeError, ValueError):
+        wanted = "a matrix worldToNDC and a resolution"
+        raise InputError(f"chart: metadata: wanted {wanted}, got others") from None
+    flat = rows(points, "places: points", 2)
     seen = np.c_[flat, np.zeros(len(flat)), np.ones(len(flat))] @ matrix
     ndc = seen[:, :2] / seen[:, 3:]
     return np.asarray((ndc * [1, -1] + 1) / 2 * [width, height])
 
 
+@guarded
 def means(
     picture: ArrayLike, chart: Chart, metadata: Mapping[str, Any], *, inner: float = 0.6
 ) -> FloatArray:
@@ -186,6 +194,8 @@ def means(
     if "patches" not in chart.truth:
         raise InputError(f"chart: wanted one of patches, got {chart.name}")
     pixels = np.asarray(picture)
+    if pixels.ndim not in (2, 3):
+        raise UsageError(f"means: picture: wanted shape (H, W) or (H, W, C), got {pixels.shape}")
     found = []
     for patch in chart.truth["patches"]:
         half = inner * patch["side_m"] / 2
@@ -202,6 +212,7 @@ def means(
     return np.asarray(found, np.float64)
 
 
+@guarded
 def star_modulation(
     picture: ArrayLike, center: ArrayLike, radii: ArrayLike, cycles: int
 ) -> FloatArray:
@@ -222,7 +233,7 @@ def star_modulation(
     x, y = columns + 0.5 - middle_x, rows + 0.5 - middle_y
     radius, angle = np.hypot(x, y), np.arctan2(y, x)
     found = []
-    for r in np.atleast_1d(np.asarray(radii, np.float64)):
+    for r in line(radii, "star: radii"):
         ring = (np.abs(radius - r) < 0.75) & (r > 0)
         if ring.sum() < 3:
             raise InputError(f"star: radii: wanted circles in the picture, got one of {r:g} px")
@@ -236,6 +247,7 @@ def star_modulation(
     return np.asarray(found)
 
 
+@guarded
 def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """The modulation of texture against the same texture as it is, by frequency.
 

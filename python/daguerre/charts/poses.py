@@ -8,6 +8,7 @@ import numpy as np
 
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, whole
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from .boards import outline
@@ -20,6 +21,7 @@ GRAZING = 0.35  # cosine at which a board is seen too flat
 EDGE = 9  # points of a side of the board that must be seen
 
 
+@guarded
 def poses(
     chart: Chart,
     projection: Projection,

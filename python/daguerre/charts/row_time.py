@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, numbers, short, to_numbers
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 
 from .measure import plane
@@ -24,6 +25,7 @@ LEAST = 8  # lines that see the edge
 SURE = 3.0  # standard errors above which lines are told to be exposed in turn
 
 
+@guarded
 @dataclass(frozen=True)
 class RowTime:
     """When lines of pixels were exposed.
@@ -44,6 +46,7 @@ class RowTime:
     error: float
 
 
+@guarded(but=("corner",))
 def row_time(
     regions: ArrayLike,
     projection: Projection,

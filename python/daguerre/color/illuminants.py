@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-from daguerre.checks import numbers
+from daguerre.checks import numbers, short, shown
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]
@@ -70,6 +70,10 @@ def planck(kelvin: float) -> FloatArray:
 
 def photons_per_lux_s(radiance: FloatArray) -> FloatArray:
     """Photons per um2 and nm that 1 lux s of a light of Y = 1 brings, at ``NM``."""
+    radiance = np.asarray(radiance)
+    if radiance.shape != NM.shape or radiance.dtype.kind not in "iuf":
+        wanted = f"its light at {len(NM)} wavelengths"
+        raise UsageError(f"white: wanted {wanted}, got {shown(radiance)}")
     watts = radiance / EFFICACY / (observer()[:, 1] @ radiance)
     return np.asarray(watts * NM * 1e-9 / (PLANCK * LIGHT) * 1e-12)
 
@@ -98,7 +102,7 @@ def white_xy(white: Any = None, where: str = "white_balance") -> tuple[float, fl
     """
     if white is None:
         return D65_XY
-    if np.ndim(white) == 0:
+    if not isinstance(white, tuple | list) and np.ndim(white) == 0:
         return _of_kelvin(white, where)
     x, y = numbers(white, where, 2, "a temperature in K or a chromaticity (x, y)")
     if not (x > 0 and y > 0 and x + y < 1):
@@ -111,12 +115,12 @@ def white_xy(white: Any = None, where: str = "white_balance") -> tuple[float, fl
 def _of_kelvin(value: Any, where: str) -> tuple[float, float]:
     try:
         kelvin = math.nan if isinstance(value, str | bytes | bool) else float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         kelvin = math.nan
     if not LOWEST_KELVIN <= kelvin <= HIGHEST_KELVIN:
         raise UsageError(
             f"{where}: wanted {LOWEST_KELVIN:g} .. {HIGHEST_KELVIN:g} K or a chromaticity (x, y), "
-            f"got {value!r}"
+            f"got {short(value)}"
         )
     if kelvin == D65_KELVIN:
         return D65_XY

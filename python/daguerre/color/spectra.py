@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.checks import whole
 
 FloatArray = NDArray[np.float64]
 FIRST_NM, LAST_NM = 380.0, 780.0
@@ -47,6 +48,7 @@ def _tables(nm: ArrayLike) -> tuple[FloatArray, FloatArray]:
 
 def fine_wavelengths(bands: int) -> FloatArray:
     """Wavelengths of fine sums by band, nm, shape (bands, n)."""
+    whole(bands, "bands", 1, 1024)
     each = -(-FINE // bands)
     at = (np.arange(bands * each) + 0.5) / (bands * each)
     return (FIRST_NM + (LAST_NM - FIRST_NM) * at).reshape(bands, each)

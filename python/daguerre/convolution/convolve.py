@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from .fft import Real, thread_count
@@ -131,6 +132,7 @@ def spreader_of(
     return EachSpreader(k, size, threads=threads, banded=banded)
 
 
+@guarded
 def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
     """A picture with each pixel's light spread by a kernel.
 
@@ -144,6 +146,8 @@ def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
         float32, the shape of the image.
     """
     picture = np.asarray(image, np.float32)
+    if picture.ndim not in (2, 3) or 0 in picture.shape:
+        raise UsageError(f"convolve: image: wanted shape (H, W) or (H, W, C), got {picture.shape}")
     planes = picture[:, :, None] if picture.ndim == 2 else picture
     whole = Rows(0, len(planes))
     done = spreader_of(kernel, planes.shape, threads=threads, banded=False)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ def is_mono(raw: Raw) -> bool:
     return len(raw.sensor.channels) == 1
 
 
+@guarded
 def bayer_of(raw: Raw) -> Raw:
     """A Quad-Bayer picture as cameras bin it; others as they are.
 

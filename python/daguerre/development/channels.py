@@ -89,7 +89,7 @@ class Demosaic:
     def _algorithm(self, xtrans: bool) -> Any:
         import rawpy
 
-        if self.method not in DEMOSAICS:
+        if str(self.method) not in DEMOSAICS:
             raise UsageError(
                 f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {self.method!r}"
                 f"{suggest(self.method, DEMOSAICS)}"

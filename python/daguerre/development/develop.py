@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from daguerre._core import Development, develop_picture
 from daguerre._core import sharpen as sharpen_picture
+from daguerre.checks import shown
 from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.frame.picture import Picture
@@ -55,6 +57,8 @@ class Recipe:
         return cls(**DEVELOP.filled(keywords, "develop"))
 
     def __post_init__(self) -> None:
+        if not isinstance(self.look, str):
+            raise UsageError(f"develop: look: wanted a name, got {shown(self.look)}")
         if not self.view:
             look_of(self.look)
         elif self.colour_space == "rec2020":
@@ -72,6 +76,7 @@ class Recipe:
 
 
 @takes(DEVELOP, RecipeKeywords)
+@guarded(but=("source",))
 def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) -> Picture:
     """Develops a raw picture, or a frame: without noise then, like one from a perfect sensor.
 
@@ -113,6 +118,7 @@ def _channels(source: Any, demosaic: Demosaic) -> Channels:
     raise UsageError(f"develop: source: wanted a raw picture or a frame, got {source!r:.60}")
 
 
+@guarded
 def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
     """Writes a raw picture: its numbers as ``.dng``, or developed; see ``Raw.save``."""
     formats.write("raw", path, raw, **look)

@@ -27,9 +27,9 @@ def white_of(source: Channels, wanted: Any) -> XY:
     Raises:
         UsageError: None of these.
     """
-    if wanted is None or wanted == "as-shot":
+    if wanted is None or (isinstance(wanted, str) and wanted == "as-shot"):
         return source.as_shot
-    if wanted == "auto":
+    if isinstance(wanted, str) and wanted == "auto":
         return _average(source)
     return illuminants.white_xy(numbers_of(wanted), "develop: wb")
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.checks import to_numbers
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]
@@ -23,6 +24,7 @@ FloatArray = NDArray[np.float64]
 WIDEST = math.radians(89.99)
 
 
+@guarded(arrays=False)
 class Distortion(ABC):
     """The base of all models."""
 

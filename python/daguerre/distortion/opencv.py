@@ -10,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from daguerre.doors import guarded
+
 from .projected import Projected
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class OpenCV(Projected):
     """The rational model with tangential terms, thin prism and tilt: all 14 numbers of OpenCV.
@@ -40,6 +43,7 @@ class OpenCV(Projected):
     tau_y: float = 0.0
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class BrownConrady(OpenCV):
     """Radial and tangential distortion: k1, k2, k3 and p1, p2 in OpenCV's order and meaning."""
@@ -55,6 +59,7 @@ class BrownConrady(OpenCV):
         super().__init__(k1, k2, p1, p2, k3)
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class OpenCVFisheye(Projected):
     """Radius = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8), t the angle off the axis."""

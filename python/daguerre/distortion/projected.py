@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 import daguerre._core as _core
+from daguerre.errors import UsageError, core_errors
 
 from .model import WIDEST, Distortion, FloatArray
 
@@ -33,4 +34,5 @@ class Projected(Distortion):
 def _model(of: Projected) -> _core.ProjectionModel:
     """The core's model: beside the value, so that the value travels without it."""
     numbers = [float(getattr(of, field.name)) for field in fields(of)]
-    return _core.ProjectionModel(of._projection, numbers)
+    with core_errors(UsageError, type(of).__name__):
+        return _core.ProjectionModel(of._projection, numbers)

@@ -12,11 +12,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from daguerre.doors import guarded
+
 from .model import FloatArray, Radial
 from .monotone import SAMPLES, Monotone
 from .projected import Projected
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Equidistant(Projected):
     """Radius = theta: equal angles are equal lengths."""
@@ -24,6 +27,7 @@ class Equidistant(Projected):
     _projection: ClassVar = "equidistant"
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Equisolid(Projected):
     """Radius = 2 sin(theta / 2): equal solid angles are equal areas."""
@@ -31,6 +35,7 @@ class Equisolid(Projected):
     _projection: ClassVar = "equisolid"
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Stereographic(Projected):
     """Radius = 2 tan(theta / 2): small shapes stay as they are."""
@@ -38,6 +43,7 @@ class Stereographic(Projected):
     _projection: ClassVar = "stereographic"
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Orthographic(Projected):
     """Radius = sin(theta): the half sphere seen from far away."""
@@ -45,6 +51,7 @@ class Orthographic(Projected):
     _projection: ClassVar = "orthographic"
 
 
+@guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Division(Radial):
     """Ideal radius = r / (1 + k1 r^2 + k2 r^4), r that of the lens.

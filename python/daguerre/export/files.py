@@ -7,8 +7,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.atomic import write_bytes
+from daguerre.polynomial.lens_fit import LensFit
 
 from .aim import with_aim
 from .facts import facts
@@ -28,6 +31,7 @@ SUFFIXES = (*_WRITERS, ".json")
 MOST_COEFFICIENTS = 20000
 
 
+@guarded
 def check_suffix(path: str | Path, where: str = "export") -> str:
     """The suffix of a file that a lens can be written to.
 
@@ -44,6 +48,11 @@ def check_suffix(path: str | Path, where: str = "export") -> str:
     return suffix
 
 
+#: Segments of a fit, at most; data with more are refused by their size.
+MOST_SEGMENTS = 16
+
+
+@guarded
 def code(data: dict[str, Any], suffix: str) -> str:
     """The text of an exported lens.
 
@@ -56,6 +65,11 @@ def code(data: dict[str, Any], suffix: str) -> str:
     """
     if suffix == ".json":
         return json.dumps(data, indent=1) + "\n"
+    where = "export"
+    if suffix not in _WRITERS:
+        raise UsageError(f"{where}: wanted {', '.join(SUFFIXES)}, got {short(suffix)}")
+    if not isinstance(data.get("segments"), list) or len(data["segments"]) <= MOST_SEGMENTS:
+        LensFit.from_dict(data)  # refuses data that are no fit, by name
     plan = plan_of(data)
     count = sum(_coefficients(s) for s in data["segments"])
     if count > MOST_COEFFICIENTS:
@@ -66,6 +80,7 @@ def code(data: dict[str, Any], suffix: str) -> str:
     return _WRITERS[suffix](with_aim(plan), facts(data))
 
 
+@guarded
 def save(data: dict[str, Any], path: str | Path) -> None:
     """Writes a fitted lens; the suffix chooses the language.
 

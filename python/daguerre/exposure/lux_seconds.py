@@ -18,6 +18,7 @@ from typing import Any
 
 from daguerre.camera.exposure import PINHOLE_F_STOP, ideal_h0
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 
@@ -28,6 +29,7 @@ def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
     return f"a pinhole has no stop: exposed as at f/{PINHOLE_F_STOP:g}; exposure_f_stop sets it"
 
 
+@guarded
 def luminance_exposure(metadata: Mapping[str, Any]) -> float:
     """Exposure of a value of 1 on the film, lux s.
 

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import numbers
+from daguerre.checks import numbers, short
 from daguerre.color.spectra import luminance_of_rgb
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.frame.frame import Frame
 
@@ -42,6 +43,7 @@ DARKEST_ZONE = 2.0**-10
 _STRIPE = 256  # rows
 
 
+@guarded
 @dataclass(frozen=True)
 class Metered:
     """Reading of a light meter.
@@ -67,6 +69,7 @@ class Metered:
         )
 
 
+@guarded
 def check_mode(mode: str, where: str = "meter") -> str:
     """The name of a way to meter; ``center`` is one, too.
 
@@ -76,11 +79,12 @@ def check_mode(mode: str, where: str = "meter") -> str:
     known = "centre" if mode == "center" else mode
     if known not in MODES:
         raise UsageError(
-            f"{where}: wanted {', '.join(MODES)}, got {mode!r}{suggest(str(mode), MODES)}"
+            f"{where}: wanted {', '.join(MODES)}, got {short(mode)}{suggest(short(mode), MODES)}"
         )
     return known
 
 
+@guarded
 def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None = None) -> Metered:
     """Meters a frame as a camera does.
 

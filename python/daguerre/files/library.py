@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection
 from pathlib import Path
 
+from daguerre.checks import short
 from daguerre.errors import InputError, suggest
 
 
@@ -35,8 +37,9 @@ def find(
     text, path = str(name_or_path), Path(name_or_path)
     if text in names:
         return folder / f"{text}.json"
-    if path.is_file() or path.suffix.lower() in suffixes:
+    if os.path.isfile(path) or path.suffix.lower() in suffixes:  # noqa: PTH113 - no error
         return path
     raise InputError(
-        f"{what} {text!r}: no {what} of the library and no file has this name{suggest(text, names)}"
+        f"{what} {short(text)}: no {what} of the library and no file has this name"
+        f"{suggest(text, names)}"
     )

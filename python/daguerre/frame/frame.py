@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import short
 from daguerre.color.display import _into_gamut, _shoulder, _srgb
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.value import Value
@@ -28,6 +30,7 @@ TONES = ("srgb", "soft")
 _STRIPE = 64  # rows
 
 
+@guarded(init=True)
 @dataclass(eq=False)
 class Frame(Value):
     """A rendered picture, or one in the making.
@@ -171,7 +174,7 @@ class Frame(Value):
     def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
         """Rows of the picture for a screen: little memory for what is in between."""
         if tone not in TONES:
-            raise UsageError(f"frame: no tone {tone!r}{suggest(tone, TONES)}")
+            raise UsageError(f"frame: no tone {short(tone)}{suggest(tone, TONES)}")
         for row in range(0, self.height, _STRIPE):
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)

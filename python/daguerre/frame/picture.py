@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import spaces
+from daguerre.doors import guarded
 from daguerre.files import formats
 
 if TYPE_CHECKING:
     import os
 
 
+@guarded
 @dataclass(eq=False)
 class Picture:
     """A picture for the eye.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.sensors.sensor import Sensor
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from .picture import Picture
 
 
+@guarded(init=True)
 @dataclass(eq=False)
 class Raw:
     """A raw picture: digital numbers behind a colour filter mosaic.

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
-from daguerre.errors import UsageError
+from daguerre.checks import number
 from daguerre.files import formats
 from daguerre.scene.framing import frame_everything
 from daguerre.scene.scene import Scene
@@ -20,8 +19,7 @@ def load(path: str | Path, *, time: float = 0.0, **options: Any) -> Scene:
         time: Where motion is evaluated, s.
         **options: Those of the format; None and empty ones count as absent.
     """
-    if not math.isfinite(time):
-        raise UsageError(f"time: wanted a finite number of seconds, got {time}")
+    time = number(time, "time")
     given = {name: value for name, value in options.items() if value not in (None, (), [])}
     scene: Scene = formats.read("scene", path, time=time, **given)
     if not scene.cameras and (camera := frame_everything(scene)) is not None:

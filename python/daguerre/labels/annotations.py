@@ -17,6 +17,7 @@ import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.session import Session
 from daguerre.rendering.truth import GroundTruth, Moment
@@ -90,6 +91,7 @@ class Annotations:
         return np.asarray(self.labels == index + 1)
 
 
+@guarded(but=("categories",))
 def annotate(
     scene: Scene,
     camera: Camera | str | None = None,

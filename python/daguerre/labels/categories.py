@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
@@ -54,6 +55,7 @@ class Rule:
     category: Category | None
 
 
+@guarded(init=True)
 @dataclass(frozen=True)
 class Categories:
     """Rules that find the things of a scene; without rules, node names do.

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.doors import guarded
 from daguerre.files.atomic import check_writable, write_bytes
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .categories import Category
 
 
+@guarded(init=True)
 class CocoFile:
     """One file in the making.
 

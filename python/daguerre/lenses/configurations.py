@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import suggest
 from daguerre.files.json_item import Item, clean
 
@@ -12,6 +14,7 @@ from .errors import LensError
 from .reading import member, number
 
 
+@guarded
 @dataclass(frozen=True)
 class Configuration:
     """One position of the moving groups. Lengths in mm.
@@ -63,7 +66,7 @@ def chosen(root: Item, configurations: Sequence[Configuration], name: str | None
         if configuration.name == name:
             return configuration
     known = [configuration.name for configuration in configurations]
-    root.fail(f"configurations: no configuration named {name!r}{suggest(name, known)}")
+    root.fail(f"configurations: no configuration named {short(name)}{suggest(name, known)}")
 
 
 def _configuration(item: Item, count: int) -> Configuration:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.doors import guarded
+
 from .errors import LensError, reported
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .setting import LensSetting
@@ -17,6 +19,7 @@ from .zoom import Position, at_zoom, bracket, positions
 BEYOND = 0.2
 
 
+@guarded
 @dataclass(frozen=True)
 class Focused:
     """A lens whose film shows a plane of the scene sharply. Lengths in mm, z in the lens frame.

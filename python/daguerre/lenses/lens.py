@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.checks import whole
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 DESIGN_WAVELENGTH_NM = LINE_D
 
 
+@guarded
 @dataclass(frozen=True)
 class Nominal:
     """Claims of the source about the lens; None: it does not say."""
@@ -43,6 +46,7 @@ class Nominal:
     efl_x_mm: float | None = None  # in the x-z plane, of an anamorphic lens
 
 
+@guarded
 @dataclass(frozen=True)
 class Pupil:
     """An image of the stop: z in the lens frame and diameter wide open, mm."""
@@ -51,6 +55,7 @@ class Pupil:
     diameter: float
 
 
+@guarded
 @dataclass(frozen=True)
 class FirstOrder:
     """First-order properties at one wavelength.
@@ -79,6 +84,7 @@ class FirstOrder:
     stop_semi_diameter: float
 
 
+@guarded(init=True, but=("distance_m",))
 @dataclass(frozen=True, repr=False, eq=False)
 class Lens(Value):
     """A lens prescription, read and checked.
@@ -115,7 +121,8 @@ class Lens(Value):
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        _ = self.prescription  # a lens that the core refuses is none
+        with reported(self.source):
+            _ = self.prescription  # a lens that the core refuses is none
 
     @cached_property
     def prescription(self) -> _core.Prescription:
@@ -204,12 +211,14 @@ class Lens(Value):
 
     def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
         """Returns the lens with another table, and other fields changed."""
-        return dataclasses.replace(self, surfaces=tuple(surfaces), **changes)
+        with reported(self.source):
+            return dataclasses.replace(self, surfaces=tuple(surfaces), **changes)
 
     def with_gaps(self, gaps: Mapping[int, float]) -> Lens:
         """Returns the lens with other thicknesses after some surfaces, by index, mm."""
         surfaces = list(self.surfaces)
         for i, gap in gaps.items():
+            whole(i, "with_gaps: gaps: index of a surface", 0, len(surfaces) - 1)
             surfaces[i] = surfaces[i].replaced(thickness=gap)
         return self.rebuilt(surfaces)
 

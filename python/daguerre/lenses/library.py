@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.library import find
 
@@ -81,6 +82,7 @@ def names() -> list[str]:
     return [entry.name for entry in entries()]
 
 
+@guarded
 def load(name_or_path: str | Path | Lens, configuration: str | None = None) -> Lens:
     """Loads a lens of the library or from a file.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
@@ -19,6 +20,7 @@ from .unknown import unknown_members
 MAX_BYTES = 16_000_000
 
 
+@guarded
 def read(path: str | Path, configuration: str | None = None) -> Lens:
     """Reads one lens.
 

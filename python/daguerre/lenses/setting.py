@@ -8,12 +8,14 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 By = Literal["paraxial", "best"]
 MeasuredFrom = Literal["pupil", "sensor"]
 
 
+@guarded
 @dataclass(frozen=True)
 class LensSetting:
     """Setting of a lens, as a photographer turns its rings.
@@ -52,8 +54,8 @@ class LensSetting:
         return self.focus_from == "sensor"
 
 
-def _check_choice(name: str, given: str, known: tuple[str, ...]) -> None:
-    if given not in known:
+def _check_choice(name: str, given: object, known: tuple[str, ...]) -> None:
+    if not isinstance(given, str) or given not in known:
         raise UsageError(f"lens setting: {name}: wanted {' or '.join(known)}, got {short(given)}")
 
 

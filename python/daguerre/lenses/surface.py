@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import daguerre._core as _core
+from daguerre.doors import guarded
 
 from .medium import Medium
 
@@ -19,6 +20,7 @@ TWO_SECTIONS = ("biconic", "toroid")
 Triple = tuple[float, float, float]
 
 
+@guarded(init=True)
 @dataclass(frozen=True)
 class LensSurface:
     """One surface and what follows it. Lengths in mm, z along the axis toward the film.

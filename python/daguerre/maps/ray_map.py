@@ -19,6 +19,7 @@ from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors, suggest
 from daguerre.rendering.parameters import TABLE
 from daguerre.rendering.truth import GT_TIMES, instants
@@ -39,6 +40,7 @@ FRAMES = {
 _OPENCV = np.array([1.0, -1.0, -1.0])
 
 
+@guarded
 @dataclass(frozen=True)
 class RayMap:
     """The ray of each pixel; NaN where a pixel sees nothing.
@@ -80,6 +82,7 @@ class RayMap:
         write_planes(path, header, planes, self.metadata)
 
 
+@guarded
 def raymap(
     camera: Camera,
     resolution: tuple[int, int],

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
 from daguerre.distortion.rectified import RectifiedView, built
+from daguerre.doors import guarded
 from daguerre.errors import DaguerreError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 Image = NDArray[np.float32]
 
 
+@guarded
 @dataclass(frozen=True)
 class StMaps:
     """The two maps of a camera.
@@ -113,6 +115,7 @@ class StMaps:
         return st_rows(warp, self._canvas, Rows(0, self._canvas.height))
 
 
+@guarded
 def stmaps(
     camera: Camera,
     resolution: tuple[int, int],

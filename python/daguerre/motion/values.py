@@ -11,13 +11,15 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-from daguerre.checks import as_readonly, matrix, number, short, to_numbers
+from daguerre.checks import as_readonly, matrix, number, short, shown, to_numbers
+from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors, suggest
 from daguerre.files.value import Value
 
@@ -53,6 +55,7 @@ class Dynamic(Protocol):
         """Rising times inside of (begin, end), between which the value changes smoothly, s."""
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class Keys(Value):
     """A value given at some times; made by :func:`keys`.
@@ -104,6 +107,7 @@ class Keys(Value):
         return f"<Keys {len(self.times)} x {kind}, {first:g} .. {last:g} s, {self.interpolation}>"
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class Spin(Value):
     """A transform that turns evenly, by any number of turns; made by :func:`spin`.
@@ -175,6 +179,8 @@ def keys(
     Raises:
         InputError: Something else was given; the message names the key.
     """
+    if not isinstance(interpolation, str | None):
+        raise InputError(f"keys: interpolation: wanted a name, got {shown(interpolation)}")
     listed = _pairs(pairs)
     times = np.array([_time(t, f"keys[{i}]: time") for i, (t, _) in listed])
     late = np.flatnonzero(np.diff(times) <= 0)
@@ -240,22 +246,29 @@ def spin(
     return made
 
 
-def at(value: Any, time: float) -> Any:
+#: Lists in lists that are looked into; one may hold itself.
+_DEEPEST = 8
+
+
+def at(value: Any, time: float, depth: int = 0) -> Any:
     """A value as it is at a time in s; what does not move comes back as it is.
 
     Args:
         value: Anything: a dynamic value, or a dataclass, tuple or list with some inside.
         time: s.
+        depth: How far inside; nothing that moves stands deeper than ``_DEEPEST``.
     """
     if is_dynamic(value):
         return value.at(time)
+    if depth > _DEEPEST:
+        return value
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         parts = vars(value)
-        changed = {name: at(part, time) for name, part in parts.items()}
+        changed = {name: at(part, time, depth + 1) for name, part in parts.items()}
         same = all(changed[name] is part for name, part in parts.items())
         return value if same else dataclasses.replace(value, **changed)
     if isinstance(value, tuple | list):
-        items = [at(item, time) for item in value]
+        items = [at(item, time, depth + 1) for item in value]
         same = all(a is b for a, b in zip(items, value, strict=True))
         return value if same else type(value)(items)
     return value
@@ -272,24 +285,27 @@ def is_dynamic(value: Any) -> bool:
     return hasattr(kind, "at") and hasattr(kind, "breaks")
 
 
-def _dynamics(value: Any) -> Iterable[Dynamic]:
+def _dynamics(value: Any, depth: int = 0) -> Iterable[Dynamic]:
     if is_dynamic(value):
         yield value
+    elif depth > _DEEPEST:
+        return
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         for part in vars(value).values():
-            yield from _dynamics(part)
+            yield from _dynamics(part, depth + 1)
     elif isinstance(value, tuple | list):
         for item in value:
-            yield from _dynamics(item)
+            yield from _dynamics(item, depth + 1)
 
 
 def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
     try:
-        listed = list(pairs)
+        listed = list(islice(pairs, MAX_KEYS + 1))
     except TypeError:
         raise InputError(f"keys: wanted [(time in s, value), ...], got {short(pairs)}") from None
     if not 1 <= len(listed) <= MAX_KEYS:
-        raise InputError(f"keys: wanted 1 .. {MAX_KEYS} keys, got {len(listed)}")
+        got = len(pairs) if hasattr(pairs, "__len__") else f"more than {MAX_KEYS}" * bool(listed)
+        raise InputError(f"keys: wanted 1 .. {MAX_KEYS} keys, got {got or 0}")
     for i, pair in enumerate(listed):
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise InputError(f"keys[{i}]: wanted (time in s, value), got {short(pair)}")

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from daguerre import checks, units
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import short
@@ -189,7 +191,7 @@ class Parameter:
         except (UsageError, ValueError, TypeError, OverflowError):
             result = None
         if result is None:
-            near = suggest(str(value), self.choices) if self.kind == "choice" else ""
+            near = suggest(short(value), self.choices) if self.kind == "choice" else ""
             raise error(f"{where}: wanted {self.wanted}, got {short(value)}{near}")
         return result
 
@@ -207,9 +209,12 @@ class Parameter:
         match self.kind:
             case "number":
                 self._check_number(value, where)
+            case "flag" if not isinstance(value, bool | np.bool_):
+                if not isinstance(value, int) or value not in (0, 1):
+                    raise UsageError(f"{where}: wanted True or False, got {short(value)}")
             case "whole" if self.high < math.inf:
                 self._check_whole(value, where)
-            case "choice" if value not in self.choices:
+            case "choice" if not isinstance(value, str) or value not in self.choices:
                 words = (" or " if len(self.choices) == 2 else ", ").join(self.choices)
                 near = suggest(short(value), self.choices)
                 raise UsageError(f"{where}: wanted {self.wants or words}, got {short(value)}{near}")
@@ -234,7 +239,9 @@ class Parameter:
                 checks.number(value, where, above=self.above, infinite=self.infinite)
             checks.number(value, where, self.low, self.high, infinite=self.infinite)
         except UsageError as error:
-            raise UsageError(f"{error}{self.hint if value == 0 else ''}") from None
+            raise UsageError(
+                f"{error}{self.hint if isinstance(value, int | float) and value == 0 else ''}"
+            ) from None
 
     def _read(self, value: Any, where: str) -> Any:
         """None: not what is wanted."""
@@ -242,7 +249,7 @@ class Parameter:
             case "text" | "file" | "picture":
                 return value if isinstance(value, str) and value else None
             case "choice":
-                return value if value in self.choices else None
+                return value if isinstance(value, str) and value in self.choices else None
             case "flag":
                 return {"0": False, "1": True, "false": False, "true": True}.get(str(value).lower())
             case "size":

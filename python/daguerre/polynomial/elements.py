@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import daguerre._core as _core
-from daguerre.checks import doubles, number, numbers, short, whole
+from daguerre.checks import doubles, number, numbers, short, shown, whole
 from daguerre.errors import UsageError, core_errors
 
 from .forms import Form
@@ -109,6 +109,8 @@ def place(
     shift = numbers(decenter, "place: decenter", 3, "three finite numbers, mm")
     turn = numbers(tilt, "place: tilt", 3, "three finite numbers, degrees")
     nodes, rays = _about(about, [])
+    if not isinstance(back, bool):
+        raise UsageError(f"place: back: wanted True or False, got {shown(back)}")
     with core_errors(UsageError):
         return System(
             _core.polynomial_placement(list(shift), list(turn), back, checked(degree), nodes, rays)

@@ -7,7 +7,8 @@ from typing import Unpack
 
 import daguerre._core as _core
 from daguerre import lenses
-from daguerre.checks import numbers, short, whole
+from daguerre.checks import numbers, short, shown, whole
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import focused
@@ -25,6 +26,7 @@ FILM_MARGIN = 1.02
 
 
 @takes(FIT, FitKeywords)
+@guarded
 def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords]) -> LensFit:
     """Fits polynomials from film rays to scene rays.
 
@@ -46,6 +48,8 @@ def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords
     if degree % 2 == 0:
         raise UsageError(f"lens fit: degree: wanted an odd number from 1 to 13, got {degree}")
     asked = FIT.filled(keywords, "fit", "lens fit")
+    if not isinstance(asked["iris"], _core.Iris | None):
+        raise UsageError(f"lens fit: iris: wanted an Iris, got {shown(asked['iris'])}")
     f_stop, focus, iris = asked["f_stop"], asked["focus"], asked["iris"]
     width, height = _film(lens, asked["film"])
     sharp = focused(lens, LensSetting(f_stop, focus, asked["zoom"], asked["focus_by"]))
@@ -53,7 +57,7 @@ def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords
         film_z_mm=sharp.film_z_mm,
         film_radius_mm=FILM_MARGIN * math.hypot(width, height) / 2,
         film_half_mm=(FILM_MARGIN * width / 2, FILM_MARGIN * height / 2),
-        iris=iris or _core.Iris(),
+        iris=_core.Iris() if iris is None else iris,
         degree=degree,
         segments=asked["segments"],
         terms=asked["terms"] or 0,

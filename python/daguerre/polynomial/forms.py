@@ -67,8 +67,8 @@ def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
 
 def cylinder(radius: float, axis: Literal["x", "y"] = "x", k: float = 0.0) -> Form:
     """A cylinder whose axis lies along x or y, so that it bends light across that."""
-    if axis not in ("x", "y"):
-        raise UsageError(f"cylinder: axis: wanted 'x' or 'y', got {axis!r}")
+    if str(axis) not in ("x", "y"):
+        raise UsageError(f"cylinder: axis: wanted 'x' or 'y', got {short(axis)}")
     radius, k = _length(radius), number(k, "cylinder: k")
     return _form(f"cylinder({radius:g}, {axis!r})", f"cyl-{axis}", curvature=1 / radius, conic=k)
 
@@ -99,7 +99,9 @@ def _two(
 
 def _length(radius: float) -> float:
     """A radius; either infinity is that of a plane."""
-    given = radius if radius in (math.inf, -math.inf) else number(radius, "radius in mm")
+    given: Any = radius  # of any type yet
+    endless = isinstance(given, float) and math.isinf(given)
+    given = radius if endless else number(radius, "radius in mm")
     if not given or math.isinf(1 / given):
         raise UsageError(f"radius: wanted a length in mm other than 0, got {radius!r}")
     return float(given)

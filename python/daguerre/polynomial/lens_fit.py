@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
-from daguerre.errors import InputError, UsageError
+from daguerre.checks import wavelengths
+from daguerre.doors import guarded
+from daguerre.errors import InputError, UsageError, core_errors
 
 from .fit_data import error_zone, from_dict, to_dict
 from .setting import FitSetting
@@ -18,6 +20,7 @@ from .setting import FitSetting
 FloatArray = NDArray[np.float64]
 
 
+@guarded
 @dataclass(frozen=True)
 class SceneRays:
     """Scene rays of N film rays by a fit; lens frame, mm.
@@ -43,6 +46,7 @@ class SceneRays:
     mounts: FloatArray
 
 
+@guarded
 @dataclass(frozen=True)
 class ErrorZone:
     """How far a fit is from the exact lens over film radii [low, high) mm: RMS and worst ray.
@@ -77,6 +81,7 @@ class ErrorZone:
         return self.film_um[0] * scale, self.film_um[1] * scale
 
 
+@guarded(init=True)
 class LensFit:
     """A lens as polynomials from film rays to scene rays.
 
@@ -120,10 +125,10 @@ class LensFit:
             wavelength_nm: Shape (N,), or one for all.
         """
         film, slope = _rows(film_points, "film_points", 2), _rows(slopes, "slopes", 2)
-        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), film.shape[:1])
-        angles, offsets, iris, mounts, light, within, origins, directions = self.core.evaluate(
-            film, slope, np.ascontiguousarray(nm)
-        )
+        nm = _each(wavelength_nm, len(film))
+        with core_errors(UsageError):
+            found = self.core.evaluate(film, slope, np.ascontiguousarray(nm))
+        angles, offsets, iris, mounts, light, within, origins, directions = found
         return SceneRays(
             origins, directions, iris, light, within.astype(bool), angles, offsets, mounts
         )
@@ -143,8 +148,9 @@ class LensFit:
             fit's film and pupil.
         """
         points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
-        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), points.shape[:1])
-        film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
+        nm = _each(wavelength_nm, len(points))
+        with core_errors(UsageError):
+            film, slopes = self.core.to_film(points, toward, np.ascontiguousarray(nm))
         return film, slopes
 
     def refitted(
@@ -168,12 +174,14 @@ class LensFit:
             directions: Unit vectors toward the scene, shape (N, 3).
         """
         film = _rows(film_points, "film_points", 2)
-        nm = np.broadcast_to(np.asarray(wavelength_nm, np.float64), film.shape[:1])
-        angles, offsets = self.core.describe(
-            _rows(origins, "origins", 3), _rows(directions, "directions", 3)
-        )
+        nm = _each(wavelength_nm, len(film))
+        points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         slope = _rows(slopes, "slopes", 2)
-        return LensFit(self.core.refitted(film, slope, np.ascontiguousarray(nm), angles, offsets))
+        with core_errors(UsageError):
+            angles, offsets = self.core.describe(points, toward)
+            return LensFit(
+                self.core.refitted(film, slope, np.ascontiguousarray(nm), angles, offsets)
+            )
 
     def to_dict(self) -> dict[str, Any]:
         """The whole fit as JSON-able data, ``daguerre-lens-fit/0.1``."""
@@ -229,3 +237,11 @@ def _rows(given: ArrayLike, name: str, columns: int) -> FloatArray:
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise UsageError(f"lens fit: {name}: wanted shape (N, {columns}), got {rows.shape}")
     return rows
+
+
+def _each(wavelength_nm: ArrayLike, count: int) -> FloatArray:
+    """Wavelengths of so many rays, of one for all of them or one each."""
+    found = wavelengths(wavelength_nm, "lens fit: wavelength_nm")
+    if found.shape not in ((), (1,), (count,)):
+        raise UsageError(f"lens fit: wavelength_nm: wanted 1 or {count}, got {found.shape}")
+    return np.broadcast_to(found, (count,))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import daguerre._core as _core
-from daguerre.checks import doubles, number, short, whole
+from daguerre.checks import doubles, number, short, shown, whole
 from daguerre.errors import InputError, UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import Focused
@@ -50,6 +50,8 @@ def from_lens(
     asked = EXPANSION.filled(keywords, "from_lens")
     object_z, film_z, to_iris = (asked[name] for name in ("object_z", "film_z", "to_iris"))
     ghost, reverse = asked["ghost"], asked["reverse"]
+    if not isinstance(reverse, bool):
+        raise UsageError(f"from_lens: reverse: wanted True or False, got {shown(reverse)}")
     if film_z is None:
         film_z = prescribed.image_z if own_film is None else own_film
     ray = _ray(asked["about"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -138,9 +139,9 @@ class System:
             wavelength = number(wavelength, "seidel: wavelength in nm")
         if pupil is not None:
             pupil = number(pupil, "seidel: pupil in mm")
-        if abs(object_distance) != np.inf and not number(
-            object_distance, "seidel: object_distance"
-        ):
+        given: Any = object_distance  # of any type yet
+        endless = isinstance(given, float) and math.isinf(given)
+        if not endless and not number(object_distance, "seidel: object_distance"):
             raise UsageError("seidel: object_distance: wanted mm from the pupil, got 0")
         terms = self._terms(wavelength, pupil, object_distance)
         if terms is None:

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import number
+from daguerre.doors import guarded
+
 FloatArray = NDArray[np.float64]
 
 #: How far coefficients may lie from those of a symmetric system, of the largest of their kind.
 TOLERANCE = 1e-9
 
 
+@guarded
 @dataclass(frozen=True)
 class SeidelTerms:
     """The third-order part of where a ray meets the last plane, mm.
@@ -55,7 +59,8 @@ class SeidelTerms:
             self.petzval,
             2 * self.distortion,
         )
-        r = pupil_radius
+        r = number(pupil_radius, "sums: pupil_radius", -1e6, 1e6)
+        number(field_slope, "sums: field_slope", -1e6, 1e6)
         powers = [r ** (4 - k) * field_slope**k for k in (0, 1, 2, 2, 3)]
         return np.array(kinds) * powers * self.convergence
 

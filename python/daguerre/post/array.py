@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import to_numbers
 from daguerre.convolution.rows import Rows
 from daguerre.errors import UsageError
 
@@ -45,12 +46,13 @@ def step_on_array(
     planes: Mapping[str, NDArray[Any]] | None = None,
 ) -> Image:
     """A step on a whole picture; ``name`` is for messages."""
-    array = np.asarray(image)
+    array = to_numbers(image, name, "image", "numbers of shape (H, W, C)", UsageError)
     if array.ndim != 3 or array.dtype.kind not in "fiu" or 0 in array.shape:
         raise UsageError(
             f"{name}: image: wanted numbers of shape (H, W, C), got {array.shape} {array.dtype}"
         )
-    for channel, plane in (planes or {}).items():
+    planes = {key: np.asarray(plane) for key, plane in (planes or {}).items()}
+    for channel, plane in planes.items():
         if plane.shape != array.shape[:2] or plane.dtype.kind not in "fiu":
             raise UsageError(
                 f"{name}: {channel}: wanted numbers of shape {array.shape[:2]}, "

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from itertools import islice
 
 import numpy as np
 
 from daguerre.analysis.diffraction import Pupil, both_halves, far_fields, light_of
 from daguerre.color.spectra import rgb_mixes
+from daguerre.errors import UsageError
 
 from .kernels import Floats
 
@@ -48,4 +50,9 @@ def tail_only(kernel: Floats, core_px: float) -> Floats:
     r = np.hypot(np.arange(h)[:, None] - h // 2, np.arange(w) - w // 2)
     fade = np.clip(r / core_px - 1, 0, 1)[:, :, None, None].astype(np.float32)
     rest = kernel * fade
+    if not rest.any():
+        raise UsageError(
+            "star: wanted a picture wide enough for light beside the star's middle, "
+            f"{math.ceil(core_px)} px from it, got a kernel of {w} x {h} px"
+        )
     return np.asarray(rest @ np.linalg.inv(rest.sum(axis=(0, 1), dtype=np.float64)), np.float32)

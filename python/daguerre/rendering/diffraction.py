@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import whole
 from daguerre.color.spectra import band_colors, band_wavelengths
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
@@ -33,6 +34,7 @@ ONE_ZONE, MANY_ZONES = 2049, 1025  # px across kernels at most
 DARK = 2e-4  # of the brightest band's colour: others have no kernels of their own
 
 
+@guarded
 @dataclass(frozen=True)
 class Diffraction:
     """Settings of diffraction.

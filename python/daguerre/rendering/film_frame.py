@@ -37,7 +37,8 @@ def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: st
 
 def _shape(part: str, words: NDArray[np.uint32]) -> tuple[int, ...]:
     """Shape that films of one layout share: of lists the number of rows."""
-    return (words.shape[0], *words.shape[2:]) if part == OBJECTS else words.shape
+    shape = np.shape(words)
+    return (*shape[:1], *shape[2:]) if part == OBJECTS else shape
 
 
 def frame_of(

@@ -32,9 +32,9 @@ def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
     Raises:
         UsageError: Neither of these, or a number out of range.
     """
-    if value == "auto":
+    if isinstance(value, str) and value == "auto":
         return None
-    if value == "off":
+    if isinstance(value, str) and value == "off":
         return OFF
     parts: Sequence[Any] = value.split(",") if isinstance(value, str) else _pair(value)
     numbers = _path_counts(parts, 2)
@@ -53,9 +53,9 @@ def check_paths(value: object, where: str) -> float | None:
     Raises:
         UsageError: None of these, or a number out of range.
     """
-    if value == "auto":
+    if isinstance(value, str) and value == "auto":
         return None
-    if value == "off":
+    if isinstance(value, str) and value == "off":
         return 0.0
     paths = _path_counts([value], 1)
     if paths is None:
@@ -70,7 +70,7 @@ def _path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
         if any(isinstance(part, bool | bytes) for part in parts):
             return None
         numbers = [float(part) for part in parts]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return None
     fit = 1 <= len(numbers) <= most and all(math.isfinite(m) and 0 <= m <= MOST for m in numbers)
     return numbers if fit else None
@@ -91,7 +91,7 @@ def check_highlights(value: object, where: str = "flare_highlights") -> bool:
     Raises:
         UsageError: Neither on nor off.
     """
-    if value in ("on", "off"):
+    if isinstance(value, str) and value in ("on", "off"):
         return value == "on"
     if isinstance(value, bool):
         return value

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from daguerre.doors import guarded
 from daguerre.errors import MismatchError
 from daguerre.frame.frame import Frame
 
@@ -18,6 +19,7 @@ from .ranges import missing_ranges, show_ranges
 PathLike = str | os.PathLike[str]
 
 
+@guarded
 def merge(
     passes: Iterable[PathLike],
     out: PathLike | Sequence[PathLike] = (),

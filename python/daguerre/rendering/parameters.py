@@ -69,7 +69,7 @@ def _seed(value: Any, where: str) -> int:
 
 
 def _order(value: Any, where: str) -> int:
-    if value not in (2, 4):
+    if not isinstance(value, int | np.integer) or value not in (2, 4):
         raise UsageError(f"{where}: wanted 2 or 4, got {short(value)}")
     return int(value)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Unpack
 
 from daguerre.camera.camera import Camera
+from daguerre.doors import guarded
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene
@@ -28,6 +29,7 @@ Progress = Callable[[Status], bool | None]
 
 
 @takes(TABLE, RenderKeywords)
+@guarded
 def render(
     scene: Scene,
     camera: Camera | str | None = None,
@@ -100,6 +102,7 @@ def _draw(session: Session, checkpoint: Checkpoint, watch: _Watch) -> None:
 
 
 @takes(TABLE, RenderKeywords)
+@guarded
 def iter_render(
     scene: Scene,
     camera: Camera | str | None = None,

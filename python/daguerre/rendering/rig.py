@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
 from daguerre.checks import number, short
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
@@ -26,6 +27,7 @@ from .settings import RenderSettings
 
 
 @takes(TABLE, RigKeywords)
+@guarded(but=("cameras",))
 def render_rig(
     scene: Scene,
     cameras: Mapping[str, Camera | str],
@@ -66,6 +68,7 @@ def render_rig(
     return frames
 
 
+@guarded
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
     """Makes a stereo pair of parallel cameras, with the given one in the middle between them.
 
@@ -91,6 +94,7 @@ def check_straight(metadata: dict[str, Any]) -> None:
     straight_focal_px(metadata, "disparity")
 
 
+@guarded
 def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
     """Returns the disparity of a stereo pair: how far apart both pictures show the same point, px.
 

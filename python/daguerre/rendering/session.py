@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.checks import MAX_SAMPLES, whole
+from daguerre.doors import guarded
 from daguerre.errors import InputError, MismatchError, UsageError, core_errors
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
@@ -36,6 +37,7 @@ from .truth import GroundTruth, Moment
 Progress = Callable[[float], bool]
 
 
+@guarded(init=True)
 @takes(TABLE, SettingsKeywords)
 class Session:
     """A render in progress: scene, camera and a film of exact sums.

@@ -11,7 +11,8 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from daguerre.camera.overscan import Overscan
-from daguerre.checks import short
+from daguerre.checks import short, shown
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 
 from .adaptive import MAX_SPP
@@ -111,6 +112,7 @@ class Reference(_Group):
     dispersion: str = DEFAULT["dispersion"]
 
 
+@guarded(init=True)
 @dataclass(frozen=True)
 class RenderSettings:
     """How a picture is rendered.
@@ -165,7 +167,11 @@ class RenderSettings:
     @classmethod
     def read(cls, values: Mapping[str, Any], named: Named) -> RenderSettings:
         """Settings by the names of their parameters; messages call each as ``named`` does."""
+        if isinstance(named, type) and named is not str:
+            raise UsageError(f"settings: named: wanted a function, got {shown(named)}")
         for name, value in values.items():
+            if name not in TABLE:
+                raise UsageError(f"settings: {short(name)}: no such parameter")
             TABLE[name].check(value, named(name))
         check_together({**DEFAULT, **values}, named)
         return cls.of(**values)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from daguerre.checks import color, number, short
+from daguerre.checks import color, number, short, shown
 from daguerre.errors import InputError
 
 Color = tuple[float, float, float]
@@ -62,6 +62,8 @@ def check_light(light: Light) -> None:
         raise InputError(
             f"light: wanted a point, spot, directional or sphere light, got {short(light)}"
         )
+    if not isinstance(light.name, str):
+        raise InputError(f"light: name: wanted a text, got {shown(light.name)}")
     where = f"light {light.name!r}"
     for name, value in vars(light).items():
         if name in ("intensity", "illuminance", "luminance"):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from daguerre.checks import color, number, short
+import numpy as np
+
+from daguerre.checks import color, number, numbers, short, shown, whole
 from daguerre.errors import InputError
 from daguerre.files.value import changed
 
@@ -163,7 +165,10 @@ def check_material(material: Material, where: str) -> None:
         raise InputError(
             f"{where}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, got {short(kind)}"
         )
+    if not isinstance(material.name, str):
+        raise InputError(f"material: name: wanted a text, got {shown(material.name)}")
     color(material.emission, f"{where}: emission")
+    _check_flag(material.two_sided_emission, f"{where}: two_sided_emission")
     for name, like in kind.__dataclass_fields__.items():
         value = getattr(kind, name)
         if isinstance(like.default, tuple):
@@ -171,5 +176,22 @@ def check_material(material: Material, where: str) -> None:
         elif isinstance(like.default, float):
             endless = math.isinf(like.default)
             number(value, f"{where}: {name}", infinite=endless, error=InputError)
+        elif isinstance(like.default, bool):
+            _check_flag(value, f"{where}: {name}")
+        elif isinstance(like.default, str) and not isinstance(value, str):
+            raise InputError(f"{where}: {name}: wanted a text, got {shown(value)}")
+        elif isinstance(value, TextureSlot):
+            _check_slot(value, f"{where}: {name}")
         elif name.endswith("_texture") and not isinstance(value, TextureSlot | None):
             raise InputError(f"{where}: {name}: wanted a TextureSlot or None, got {short(value)}")
+
+
+def _check_flag(value: object, where: str) -> None:
+    if not isinstance(value, bool | np.bool_) and not (isinstance(value, int) and value in (0, 1)):
+        raise InputError(f"{where}: wanted True or False, got {shown(value)}")
+
+
+def _check_slot(slot: TextureSlot, where: str) -> None:
+    whole(slot.texture, f"{where}: texture", 0, 1 << 31)
+    whole(slot.uv_set, f"{where}: uv_set", 0, 1)
+    numbers(slot.transform, f"{where}: transform", 6, "six numbers")

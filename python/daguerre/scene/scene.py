@@ -18,6 +18,7 @@ from daguerre.camera.camera import Camera
 from daguerre.checks import as_readonly, matrix, short, to_numbers
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.value import Value
@@ -34,6 +35,7 @@ from .parts import Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 
 
+@guarded(arrays=False, but=("camera", "light", "material", "mesh", "shown", "steps"))
 @dataclass(eq=False)
 class Scene(Value):
     """A scene: meshes, materials, lights, cameras and environment.
@@ -154,7 +156,8 @@ class Scene(Value):
         Raises:
             InputError: Another shape, or numbers that are not finite.
         """
-        array = as_readonly(np.asarray(pixels), np.float32)
+        given = to_numbers(pixels, "plate", "pixels", "shape (H, W, 3)")
+        array = as_readonly(given, np.float32)
         if array.ndim != 3 or array.shape[2] != 3 or array.size == 0:
             raise InputError(f"plate: pixels: wanted shape (H, W, 3), got {array.shape}")
         bad = int((~np.isfinite(array)).any(axis=2).sum())
@@ -214,8 +217,11 @@ class Scene(Value):
         elif isinstance(material, Kind):
             material = Material(material)
         shown = at(material, self.time)
-        check_material(shown, f"material {getattr(shown, 'name', '') or len(self.materials)!r}")
-        if (motion := motion or _motion_of(material)) is not None:
+        check_material(
+            shown, f"material {str(getattr(shown, 'name', '')) or len(self.materials)!r}"
+        )
+        motion = _motion_of(material) if motion is None else motion
+        if motion is not None:
             self.motion.materials[len(self.materials)] = motion
         self.materials.append(shown)
         return len(self.materials) - 1
@@ -293,7 +299,7 @@ class Scene(Value):
             raise UsageError(f"{where}: transform: keys over time: wanted dg.keys(...), got a list")
         moving, presence = _dynamic(transform), None if shown is True else _dynamic(shown)
         world = matrix(transform if moving is None else moving.at(self.time), where)
-        motion = motion or moving
+        motion = moving if motion is None else motion
         visible = shown if presence is None else presence.at(self.time)
         if not isinstance(visible, bool | np.bool_ | int | float):
             raise InputError(f"{where}: shown: wanted true or false, got {short(visible)}")
@@ -354,7 +360,8 @@ class Scene(Value):
         shown = at(light, self.time)
         check_light(shown)
         world = matrix(self._now(transform), f"light {shown.name!r}")
-        motion = motion or _motion_of((light, _dynamic(transform) or world))
+        if motion is None:
+            motion = _motion_of((light, _dynamic(transform) or world))
         if motion is not None:
             self.motion.lights[len(self.lights)] = motion
         self.lights.append((shown, world))
@@ -417,7 +424,7 @@ class Scene(Value):
 
     @staticmethod
     def _index(value: Any, count: int, where: str) -> int:
-        if isinstance(value, bool | str) or not hasattr(value, "__index__"):
+        if isinstance(value, bool | str | np.ndarray) or not hasattr(value, "__index__"):
             raise InputError(f"{where}: wanted an index, got {short(value)}")
         index = operator.index(value)
         if not 0 <= index < count:

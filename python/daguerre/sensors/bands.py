@@ -33,7 +33,7 @@ MOST_CHANNELS = 4
 
 def check_bands(value: Any, where: str = "bands") -> int:
     """A number of bands; 0: none."""
-    if value in (0, None):
+    if value is None or (isinstance(value, int) and value == 0):
         return 0
     return whole(value, where, LEAST_BANDS, MOST_BANDS, f"{LEAST_BANDS} .. {MOST_BANDS}")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.checks import number
+from daguerre.checks import number, short
 from daguerre.color import illuminants
 from daguerre.errors import InputError
 
@@ -47,7 +47,9 @@ def check(sensor: SensorData) -> None:
 
 def _light(sensor: SensorData, where: str) -> None:
     if not sensor.channels or len(set(sensor.channels)) != len(sensor.channels):
-        raise InputError(f"{where}: channels: wanted names that differ, got {sensor.channels}")
+        raise InputError(
+            f"{where}: channels: wanted names that differ, got {short(sensor.channels)}"
+        )
     nm = rising(f"{where}: wavelengths", sensor.wavelengths)
     rows = list(sensor.quantum_efficiency)
     if len(rows) != len(sensor.channels):

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class Curve(Value):
     """A transmittance by wavelength, linear in between, and beyond its ends as there.
@@ -28,7 +30,7 @@ class Curve(Value):
 
     def at(self, nm: FloatArray) -> FloatArray:
         """At other wavelengths, nm."""
-        return np.interp(nm, self.wavelengths, self.values)
+        return np.interp(np.asarray(nm, np.float64), self.wavelengths, self.values)
 
 
 def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> FloatArray:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import number
+from daguerre.doors import guarded
 from daguerre.files.value import Value
 
 from .curve import Curve
@@ -15,6 +17,7 @@ from .mosaic import Mosaic
 FloatArray = NDArray[np.float64]
 
 
+@guarded
 @dataclass(frozen=True)
 class DarkCurrent:
     """Electrons that heat makes in a photosite without light.
@@ -33,9 +36,11 @@ class DarkCurrent:
         """How much faster it is at a temperature (deg C; None: as stated)."""
         if temperature is None:
             return 1.0
+        number(temperature, "sensor: temperature", -273.15, 1000)
         return float(2.0 ** ((temperature - self.temperature) / self.doubling))
 
 
+@guarded
 @dataclass(frozen=True)
 class HotPixels:
     """Photosites with much dark current.
@@ -50,6 +55,7 @@ class HotPixels:
     rate: float = 0.0
 
 
+@guarded
 @dataclass(frozen=True)
 class DualGain:
     """The second, higher conversion gain of a photosite.

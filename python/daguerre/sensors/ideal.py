@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from daguerre.color import illuminants
+from daguerre.doors import guarded
 
 from .mosaic import Mosaic
 from .sensor import SATURATION_LX_S, Sensor
@@ -13,6 +14,7 @@ NAMES = ("ideal", "ideal-mono")
 _SOURCE = "computed: CIE 1931 colour matching functions"
 
 
+@guarded
 def ideal(name: str = "ideal") -> Sensor:
     """A full-frame sensor of 24 MP whose channels are X, Y and Z of the CIE, or one that sees all.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from daguerre.doors import guarded
 from daguerre.files.library import find, stems
 
 from .ideal import NAMES, ideal
@@ -18,6 +19,7 @@ def names() -> list[str]:
     return sorted([*NAMES, *stems(FOLDER)])
 
 
+@guarded
 def load(name_or_path: str | Path | Sensor) -> Sensor:
     """A sensor of the library or of a file.
 

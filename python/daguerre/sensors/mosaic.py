@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value
 
@@ -24,6 +25,7 @@ PATTERNS = {
 }
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class Mosaic(Value):
     """A colour filter array.

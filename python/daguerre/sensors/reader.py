@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item
 
@@ -23,6 +24,7 @@ MEMBERS = (
 )
 
 
+@guarded
 def read(path: str | Path) -> Sensor:
     """Reads one sensor.
 

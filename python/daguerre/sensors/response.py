@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.checks import line
 from daguerre.color import illuminants
 
 from .data import SensorData
@@ -23,7 +24,7 @@ class Response(SensorData):
         Args:
             nm: Wavelengths, shape (L,).
         """
-        at = np.asarray(nm, np.float64)
+        at = line(nm, "efficiency: nm")
         curves = [
             np.interp(at, self.wavelengths, row, left=0, right=0) for row in self.quantum_efficiency
         ]

@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.checks import number
 from daguerre.color import illuminants
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from . import fit
@@ -25,6 +27,7 @@ FloatArray = NDArray[np.float64]
 SATURATION_LX_S, GREY_LX_S = 78.0, 10.0
 
 
+@guarded(init=True)
 @dataclass(frozen=True, eq=False)
 class Sensor(Response):
     """An image sensor, with the numbers of its maker or of a laboratory.
@@ -155,6 +158,7 @@ class Sensor(Response):
 
     def read_noise_at(self, iso: float) -> float:
         """Standard deviation of the noise that reading adds, e-."""
+        number(iso, "sensor: iso", above=0)
         rows = self.read_noise
         if self.dual_gain is not None:
             high = iso >= self.dual_gain.iso

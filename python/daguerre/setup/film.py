@@ -10,7 +10,7 @@ def frame_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, floa
     """Width and height (mm) of the part of the film that a picture of this resolution covers."""
     for name in ("sensor_size", "sensor_fit"):
         CAMERA[name].check(getattr(camera, name), f"camera: {name}")
-    width, height = camera.sensor_size
+    width, height = (float(side) for side in camera.sensor_size)
     columns, rows = resolution
     scale = {  # mm per pixel
         "horizontal": width / columns,

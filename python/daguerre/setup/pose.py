@@ -163,7 +163,7 @@ def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     try:
         matrix = np.asarray(transform, np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise UsageError(
             f"camera: transform: wanted a 4x4 matrix, got {short(transform)}"
         ) from None

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.checks import number
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 FloatArray = NDArray[np.float64]
@@ -15,6 +16,7 @@ FloatArray = NDArray[np.float64]
 GREY = 1.0
 
 
+@guarded
 @dataclass(frozen=True)
 class CharacteristicCurve:
     """A straight line between a toe and a shoulder, which is what three numbers and two bends make.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from daguerre.doors import guarded
 from daguerre.files.library import find, stems
 
 from .reader import read
@@ -17,6 +18,7 @@ def names() -> list[str]:
     return stems(FOLDER)
 
 
+@guarded
 def load(name_or_path: str | Path | Stock) -> Stock:
     """A stock of the library or of a file.
 

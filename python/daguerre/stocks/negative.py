@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from daguerre._core import grain_pattern
 from daguerre.checks import number, plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.frame.seen_by import seen_of
@@ -32,6 +33,7 @@ _DARKEST = 1e-12  # exposures are logarithms
 _STRIPE = 128  # rows
 
 
+@guarded
 @dataclass(eq=False)
 class Negative:
     """Film after its bath; reversal stock gives a slide.

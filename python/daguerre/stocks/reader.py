@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.color import illuminants
+from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item
 from daguerre.sensors.curve import rising
@@ -20,6 +21,7 @@ MEMBERS = (
 )
 
 
+@guarded
 def read(path: str | Path) -> Stock:
     """Reads one stock.
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from daguerre.checks import number
 from daguerre.color import illuminants
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.sensors.checking import tells_colors
@@ -30,6 +31,7 @@ KINDS = ("negative", "reversal")
 HOLE_UM, GRAIN_DENSITY = 48.0, 1.0
 
 
+@guarded(init=True)
 @dataclass(frozen=True)
 class Halation:
     """Light that comes through the emulsion, is sent back behind it and exposes again.
@@ -46,6 +48,7 @@ class Halation:
     index: float = 1.5
 
 
+@guarded(init=True)
 @dataclass(frozen=True, eq=False)
 class Layer(Value):
     """A layer of emulsion.
@@ -61,6 +64,7 @@ class Layer(Value):
     curve: CharacteristicCurve
 
 
+@guarded(init=True)
 @dataclass(frozen=True, eq=False)
 class Stock(Value):
     """A film stock.

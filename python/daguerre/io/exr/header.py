@@ -5,6 +5,7 @@ Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.h
 
 from __future__ import annotations
 
+import os
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
@@ -93,7 +94,8 @@ def read_headers(path: Path) -> ExrHeaders:
     Raises:
         InputError: It is no OpenEXR file, is cut off, or its headers are broken or endless.
     """
-    if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe might never end
+    # A pipe might never end. Path.exists fails for names that are too long.
+    if os.path.exists(path) and not (path.is_file() or path.is_dir()):  # noqa: PTH110
         raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
     try:
         with path.open("rb") as stream:

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.checks import short
+from daguerre.doors import guarded
 from daguerre.errors import suggest
 from daguerre.files.json_item import Item
 from daguerre.lenses.errors import LensError
@@ -39,6 +41,7 @@ _WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:-[A-Za-z0-9]+)*")
 LINE_F, LINE_D, LINE_C = 486.1327, 587.5618, 656.2725
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class GlassData:
     """One glass of a catalogue.
@@ -72,22 +75,24 @@ class GlassData:
 
     def index(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
         """Index relative to air, the shape of the wavelengths (nm)."""
-        return np.asarray(np.vectorize(self.core.index)(wavelength_nm), np.float64)
+        return np.asarray(np.vectorize(self.core.index, [float])(wavelength_nm), np.float64)
 
     def internal_transmittance(
         self, wavelength_nm: ArrayLike, thickness_mm: float = 10.0
     ) -> NDArray[np.float64]:
         """Transmittance of a plate between its faces, 0 to 1, the shape of the wavelengths."""
-        per_mm = np.vectorize(self.core.absorption_per_mm)(wavelength_nm)
+        per_mm = np.vectorize(self.core.absorption_per_mm, [float])(wavelength_nm)
         return np.asarray(np.exp(-thickness_mm * per_mm), np.float64)
 
 
+@guarded
 def names(maker: str | None = None) -> list[str]:
     """Names of all glasses, or of one maker's, sorted."""
     found = {entry.name for entry in _entries(maker)}
     return sorted(found)
 
 
+@guarded
 def find(name: str, maker: str | None = None) -> GlassData:
     """A glass by name; case, spaces and hyphens do not matter.
 
@@ -113,6 +118,7 @@ def find(name: str, maker: str | None = None) -> GlassData:
     return found
 
 
+@guarded
 def lookup(name: str, maker: str | None = None) -> GlassData | None:
     """Finds like :func:`find`, but returns None for no such glass, and spends no time on hints."""
     return _found(name, _maker(name, maker))
@@ -134,6 +140,7 @@ def _found(name: str, maker: str | None) -> GlassData | None:
     return None if other is None else _load(other, f"{name}: took {other.name} ({other.maker})")
 
 
+@guarded
 def similar(label: str, nd: float, tolerance: float = 5e-4) -> GlassData | None:
     """The catalogue's glass that a label of a lens file names, if its nd agrees.
 
@@ -170,7 +177,7 @@ def _maker(name: str, maker: str | None) -> str | None:
         if known.upper() == maker.upper():
             return known
     raise LensError(
-        f"glass {name!r}: no catalogue of the maker {maker!r}{suggest(maker, MAKERS)}",
+        f"glass {name!r}: no catalogue of the maker {short(maker)}{suggest(maker, MAKERS)}",
         "lens-glass",
     )
 
@@ -184,7 +191,8 @@ def _catalogue(maker: str) -> dict[str, Any]:
 def _entries(maker: str | None) -> Iterator[_Entry]:
     if maker is None:
         yield from (_Entry(name, "core", "") for name in ("air", "water", "vacuum"))
-    for one in MAKERS if maker is None else (maker,):
+    for one in MAKERS if maker is None else (_maker("names", maker),):
+        assert one is not None
         for name in _catalogue(one)["glasses"]:
             yield _Entry(name, one, f"{one.lower()}.json")
 

@@ -14,6 +14,7 @@ from daguerre.checks import number, short
 from daguerre.color import srgb
 from daguerre.color.spectra import xyz_of
 from daguerre.development.looks import GREY
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.frame.frame import Frame
@@ -35,6 +36,7 @@ PathLike = str | os.PathLike[str]
 Composite = Frame | Raw | Picture
 
 
+@guarded
 def composite(
     plate: PathLike | Photograph | Frame | Raw,
     objects: PathLike | Frame,

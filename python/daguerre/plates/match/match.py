@@ -10,8 +10,10 @@ from typing import Any, Unpack
 import numpy as np
 
 from daguerre.camera.camera import Camera
+from daguerre.checks import shown
 from daguerre.development.looks import look_of
-from daguerre.errors import InputError
+from daguerre.doors import guarded
+from daguerre.errors import InputError, UsageError
 from daguerre.parameters.keywords import takes
 from daguerre.plates.files import read
 from daguerre.plates.photograph import Photograph
@@ -42,6 +44,7 @@ _USUAL_LOOK = "standard"
 
 
 @takes(MATCH, MatchKeywords)
+@guarded
 def match_plate(
     photo: Path, *, flats: Sequence[Path] = (), **keywords: Unpack[MatchKeywords]
 ) -> PlateCamera:
@@ -213,6 +216,8 @@ def _falloff(
 def _look(given: str | None, photograph: Photograph, notes: list[str]) -> str:
     """The tone curve: no photograph tells its own."""
     if given is not None:
+        if not isinstance(given, str):
+            raise UsageError(f"match-plate: look: wanted a name, got {shown(given)}")
         if not given.startswith("ocio:"):
             look_of(given)
         return given

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from daguerre.camera.camera import Camera
+from daguerre.doors import guarded
 from daguerre.files.value import Value
 from daguerre.plates.photograph import Kind
 from daguerre.sensors import Sensor
@@ -23,6 +24,7 @@ FOUND = (
 )
 
 
+@guarded
 @dataclass(frozen=True, eq=False)
 class PlateCamera(Value):
     """A matched camera.

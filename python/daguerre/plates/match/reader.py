@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from daguerre import sensors
 from daguerre.camera.camera import Camera
 from daguerre.development.looks import LOOKS
+from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item, short
 from daguerre.sensors import Sensor
@@ -33,6 +34,7 @@ KINDS = ("raw", "display", "linear")
 _MOST_PIXELS = 65536
 
 
+@guarded
 def read_plate_camera(path: str | os.PathLike[str]) -> PlateCamera:
     """Reads the camera of a plate, as ``PlateCamera.save`` writes it.
 

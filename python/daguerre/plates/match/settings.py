@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from daguerre import lenses, sensors
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
+from daguerre.checks import shown
 from daguerre.errors import InputError, UsageError
 from daguerre.lenses import Lens
 from daguerre.plates.photograph import Photograph
@@ -109,10 +111,14 @@ def _lens(
 ) -> tuple[str | Lens | None, list[str]]:
     """The lens: as given, else by its name; None: an ideal one."""
     given = wanted.get("lens")
+    if not isinstance(given, str | Path | Lens | None):
+        raise UsageError(f"{where}: lens: wanted a name, a file or a Lens, got {shown(given)}")
     if given == "pinhole":
         raise UsageError("--lens pinhole: wanted a lens with an opening, as the photo has one")
+    if isinstance(given, Path):
+        given = str(given)
     if given is not None:
-        return (None, []) if given in IDEAL else (given, [])
+        return (None, []) if isinstance(given, str) and given in IDEAL else (given, [])
     if facts.get("lensModel") in IDEAL:  # a picture of ours
         return None, []
     if facts.get("lensModel") is None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.errors import OutputError
 from daguerre.files.atomic import write_bytes
 from daguerre.sensors.writer import write as write_sensor
 
@@ -25,6 +26,8 @@ UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 def write(path: str | os.PathLike[str], plate: PlateCamera) -> None:
     """Writes a camera file, and its sensor's beside it, each whole or not at all."""
     file = Path(path)
+    if not file.name:
+        raise OutputError(f"{path or '(empty)'}: wanted the name of a file")
     beside = None
     if plate.sensor is not None:
         beside = file.with_name(f"{file.stem}.sensor.json")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import number, numbers
+from daguerre.checks import number, numbers, shown
 from daguerre.errors import UsageError
 from daguerre.files.notes import Notes
 
@@ -47,7 +47,7 @@ class Asked:
         Raises:
             UsageError: The message names the parameter.
         """
-        paths, greys = _paths(photographs), _paths(given["grey"] or [])
+        paths, greys = _paths(photographs), _paths([] if given["grey"] is None else given["grey"])
         if not paths:
             raise UsageError("light_probe: photographs: wanted one at least, got none")
         ball = given["ball"]
@@ -88,7 +88,12 @@ class Asked:
 
 
 def _paths(given: Any) -> list[Path]:
-    return [Path(given)] if isinstance(given, str | Path) else [Path(one) for one in given]
+    if isinstance(given, str | Path):
+        return [Path(given)]
+    try:
+        return [Path(one) for one in given]
+    except TypeError:
+        raise UsageError(f"light_probe: wanted photographs, got {shown(given)}") from None
 
 
 def _several(given: Any, name: str) -> tuple[float, ...] | None:

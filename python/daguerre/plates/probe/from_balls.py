@@ -103,7 +103,7 @@ def _outline(view: View, circle: Circle | None) -> Outline:
 def _focal_px(asked: Asked, view: View) -> float:
     """Focal length, px: by the field of view, else by EXIF; infinite: unknown, or far away."""
     if asked.fov is not None:
-        if asked.fov == 0:
+        if asked.fov < 1e-6:
             return math.inf
         return view.shots[0].size[0] / 2 / math.tan(math.radians(asked.fov) / 2)
     known = view.shots[0].focal_px

@@ -11,6 +11,7 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.doors import guarded
 from daguerre.parameters.keywords import takes
 
 from .asked import Asked
@@ -74,6 +75,7 @@ class LightProbe:
 
 
 @takes(LIGHT_PROBE, ProbeKeywords)
+@guarded
 def light_probe(
     photographs: str | Path | Sequence[str | Path], **keywords: Unpack[ProbeKeywords]
 ) -> LightProbe:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import defocus
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post import channels
 from daguerre.post.array import on_array
@@ -174,6 +175,7 @@ DEPTH_OF_FIELD = Effect(
 )
 
 
+@guarded(arrays=False)
 def depth_of_field(image: Image, depth: NDArray[Any], **parameters: Any) -> Image:
     """Blurs a pinhole's scene-linear picture as a lens does, by the depth of its pixels.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -10,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from daguerre import distortion as models
+from daguerre.checks import numbers
 from daguerre.distortion import Distortion
-from daguerre.errors import UsageError
+from daguerre.doors import guarded
+from daguerre.errors import UsageError, suggest
 from daguerre.post.array import step_on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.optics import (
@@ -46,6 +49,7 @@ MODELS: dict[str, type[Distortion]] = {
 COEFFICIENTS = tuple(f.name for f in dataclasses.fields(models.OpenCV))
 
 
+@guarded(arrays=False)
 def distort(
     image: Image,
     model: Distortion | Sequence[Distortion],
@@ -74,7 +78,7 @@ def distort(
         The same shape; 0 where the source has nothing, or the model no answer.
     """
     given = [model] if isinstance(model, Distortion) else list(model)
-    focal = (focal_px, focal_px) if isinstance(focal_px, int | float) else focal_px
+    focal = pair_px(focal_px)
 
     def make(canvas: Canvas) -> Step:
         middle = canvas.center if centre is None else centre
@@ -85,9 +89,21 @@ def distort(
     return step_on_array("distort", image, make)
 
 
+@guarded(arrays=False)
 def undistort(image: Image, model: Distortion | Sequence[Distortion], **parameters: Any) -> Image:
     """Straightens what a lens has bent; see :func:`distort`."""
+    known = inspect.signature(distort).parameters
+    for name in parameters:
+        if name not in known or name in ("image", "model", "inverse"):
+            raise UsageError(f"undistort: no parameter {name!r}{suggest(name, known)}")
     return distort(image, model, **parameters, inverse=True)
+
+
+def pair_px(focal_px: float | tuple[float, float]) -> tuple[float, float]:
+    """Focal lengths across and down; one number is both."""
+    given: Any = (focal_px, focal_px) if np.ndim(focal_px) == 0 else focal_px
+    across, down = numbers(given, "focal_px", 2, "a focal length in px, or two")
+    return across, down
 
 
 def point_map(
@@ -102,7 +118,8 @@ def point_map(
 
     To bend a picture is to ask at each of its points which ideal point it shows.
     """
-    focal, middle = np.array(focal_px), np.array(centre)
+    focal = np.array(numbers(focal_px, "focal_px", 2, "a focal length in px, or two"))
+    middle = np.array(numbers(centre, "centre", 2, "a point (x, y), px"))
 
     def straight_from_bent(points: FloatArray) -> FloatArray:
         ideal = model.undistort((points - middle) / focal)

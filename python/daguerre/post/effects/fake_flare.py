@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import IrisShape, defocus, rounded_blur
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
@@ -169,6 +170,7 @@ FAKE_FLARE = Effect(
 )
 
 
+@guarded(arrays=False)
 def fake_flare(image: Image, **parameters: Any) -> Image:
     """Adds made-up lens flare to a scene-linear picture, from its own highlights.
 

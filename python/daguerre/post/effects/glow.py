@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daguerre.convolution.convolve import spreader_of
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post import kernels
 from daguerre.post.array import on_array
@@ -220,6 +221,7 @@ PSF = Effect(
 )
 
 
+@guarded(arrays=False)
 def bloom(image: Image, **parameters: Any) -> Image:
     """A soft glow: ``radius`` (px) holds half of the ``share`` of the light that is spread.
 
@@ -230,26 +232,31 @@ def bloom(image: Image, **parameters: Any) -> Image:
     return on_array(BLOOM, image, parameters)
 
 
+@guarded(arrays=False)
 def halo(image: Image, **parameters: Any) -> Image:
     """Halation: ``thickness`` (mm) and ``index`` of the base, ``share``, ``sensor`` (mm, mm)."""
     return on_array(HALO, image, parameters)
 
 
+@guarded(arrays=False)
 def glare(image: Image, **parameters: Any) -> Image:
     """Veiling glare: ``share``, ``shoulder`` (mm), ``slope``, ``sensor`` (mm, mm)."""
     return on_array(GLARE, image, parameters)
 
 
+@guarded(arrays=False)
 def diffract(image: Image, **parameters: Any) -> Image:
     """Diffraction at an iris, of RGB: ``f_number``, ``blades``, ``rotation`` (deg), ``sensor``."""
     return on_array(DIFFRACTION, image, parameters)
 
 
+@guarded(arrays=False)
 def star(image: Image, **parameters: Any) -> Image:
     """The star alone, with a ``share`` of the light; else as :func:`diffract`."""
     return on_array(STAR, image, parameters)
 
 
+@guarded(arrays=False)
 def spread_by(image: Image, **parameters: Any) -> Image:
     """Convolution with the picture ``file``; its sum is 1 unless ``normalise`` is False."""
     return on_array(PSF, image, parameters)

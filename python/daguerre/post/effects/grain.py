@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.optics import SENSOR, film_plane
@@ -113,6 +114,7 @@ GRAIN = Effect(
 )
 
 
+@guarded(arrays=False)
 def grain(image: Image, **parameters: Any) -> Image:
     """Gives a scene-linear picture the grain of film; the mean of light stays what it is.
 

@@ -12,6 +12,7 @@ import numpy as np
 from daguerre.distortion import Distortion, Radial
 from daguerre.distortion.model import FloatArray
 from daguerre.distortion.monotone import SAMPLES, Monotone
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
@@ -109,6 +110,7 @@ LATERAL_COLOR = Effect(
 )  # fmt: skip
 
 
+@guarded(arrays=False)
 def lateral_colour(image: Image, **parameters: Any) -> Image:
     """Gives red and blue another size than green.
 
@@ -121,6 +123,7 @@ def lateral_colour(image: Image, **parameters: Any) -> Image:
     return on_array(LATERAL_COLOR, image, parameters)
 
 
+@guarded(arrays=False)
 def remove_lateral_colour(image: Image, **parameters: Any) -> Image:
     """Takes away what :func:`lateral_colour` with the same parameters did."""
     return on_array(LATERAL_COLOR, image, {**parameters, "inverse": True})

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daguerre.convolution.convolve import Spreader
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
@@ -151,6 +152,7 @@ LENS_PSF = Effect(
 )  # fmt: skip
 
 
+@guarded(arrays=False)
 def through_lens(image: Image, **parameters: Any) -> Image:
     """The picture as a lens would have drawn it: its spreads of points, without distortion.
 

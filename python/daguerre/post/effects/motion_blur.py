@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from daguerre._core import ShutterTime
 from daguerre._core import motion_blur as spread_along
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.post import channels
 from daguerre.post.array import on_array
@@ -168,6 +169,7 @@ MOTION_BLUR = Effect(
 )
 
 
+@guarded(arrays=False)
 def motion_blur(
     image: Image, motion: NDArray[Any], depth: NDArray[Any] | None = None, **parameters: Any
 ) -> Image:

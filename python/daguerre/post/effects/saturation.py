@@ -8,6 +8,7 @@ import numpy as np
 
 from daguerre.color.spaces import LUMINANCE_709
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.lens_light import Falloff
@@ -60,6 +61,7 @@ SATURATION = Effect(
 )
 
 
+@guarded(arrays=False)
 def vignette_saturation(image: Image, **parameters: Any) -> Image:
     """Makes colours paler toward the edge; luminance stays.
 
@@ -71,6 +73,7 @@ def vignette_saturation(image: Image, **parameters: Any) -> Image:
     return on_array(SATURATION, image, parameters)
 
 
+@guarded(arrays=False)
 def unvignette_saturation(image: Image, **parameters: Any) -> Image:
     """Takes away what :func:`vignette_saturation` with the same parameters did."""
     return on_array(SATURATION, image, {**parameters, "inverse": True})

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import MAX_RESOLUTION, number, numbers, to_numbers
 from daguerre.convolution.rows import Rows
 from daguerre.distortion import Distortion
+from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.io.exr.reader import ExrReader
 from daguerre.post.array import step_on_array
@@ -24,7 +26,7 @@ from daguerre.post.stmap_rows import st_rows
 from daguerre.post.warp import CELL, Warp
 from daguerre.post.warp_step import FILTER, WarpStep, how
 
-from .distortion import point_map
+from .distortion import pair_px, point_map
 
 
 class _FileStep(WarpStep):
@@ -89,6 +91,7 @@ STMAP = Effect(
 )
 
 
+@guarded(arrays=False)
 def stmap(
     model: Distortion,
     size: tuple[int, int],
@@ -111,13 +114,17 @@ def stmap(
     Returns:
         S and t, shape (H, W, 2), NaN where the model has no answer.
     """
+    for side in numbers(size, "stmap: size", 2, "width and height, px"):
+        number(side, "stmap: size", 1, MAX_RESOLUTION)
+    size = int(size[0]), int(size[1])
     canvas = Canvas(*size)
-    focal = (focal_px, focal_px) if isinstance(focal_px, int | float) else focal_px
+    focal = pair_px(focal_px)
     middle = canvas.center if centre is None else centre
     warp = Warp.of(canvas, point_map(model, focal, middle, scale=scale, inverse=inverse))
     return st_rows(warp, canvas, Rows(0, canvas.height))
 
 
+@guarded(arrays=False)
 def apply_stmap(image: Image, st: Image, *, filter: str = "cubic", antialias: bool = True) -> Image:
     """Moves pixels by an STMap.
 
@@ -127,7 +134,8 @@ def apply_stmap(image: Image, st: Image, *, filter: str = "cubic", antialias: bo
         filter: cubic or linear.
         antialias: Whether to average where the map shrinks.
     """
-    values = np.asarray(st, np.float32)
+    given = to_numbers(st, "stmap", "st", "shape (H, W, 2)", UsageError)
+    values = np.asarray(given, np.float32)
 
     def make(canvas: Canvas) -> Step:
         if values.shape != (canvas.height, canvas.width, 2):

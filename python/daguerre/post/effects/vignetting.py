@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.convolution.rows import Rows
+from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
@@ -127,6 +128,7 @@ VIGNETTING = Effect(
 )
 
 
+@guarded(arrays=False)
 def vignette(image: Image, **parameters: Any) -> Image:
     """Darkens a scene-linear picture toward its edge, as a lens does.
 
@@ -139,6 +141,7 @@ def vignette(image: Image, **parameters: Any) -> Image:
     return on_array(VIGNETTING, image, parameters)
 
 
+@guarded(arrays=False)
 def unvignette(image: Image, **parameters: Any) -> Image:
     """Takes away what :func:`vignette` with the same parameters did."""
     return on_array(VIGNETTING, image, {**parameters, "inverse": True})
