@@ -2,6 +2,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "render/truth/ray_map.h"
 #include "render/render.h"
 
@@ -24,7 +25,7 @@ auto rays(const dg::Camera& camera, const dg::RenderSettings& settings, const Re
     const std::size_t height = y1 - y0, width = x1 - x0;
     dg::PixelRays map;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         map = ray_map(camera, settings.sensor, settings.shutter, {x1 - x0, y1 - y0, x0, y0},
                       world ? dg::RayFrame::world : dg::RayFrame::camera, settings.threads);
     }

@@ -13,6 +13,7 @@
 
 #include "bind/arrays.h"
 #include "bind/record.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "render/pilot.h"
 #include "render/render.h"
@@ -54,7 +55,7 @@ std::pair<bool, dg::RenderCounters> draw(const dg::Scene& scene, const dg::Camer
                                          const dg::RenderSettings& settings, nb::object callback) {
     Progress progress(std::move(callback));
     std::atomic<bool> complete{true};
-    nb::gil_scoped_release release;
+    dg::bind::Unlocked release;
     const dg::RenderCounters counters = dg::render(scene, camera, film, settings, [&](double fraction) {
         const bool go = progress(fraction);
         if (!go) complete = false;
@@ -142,7 +143,7 @@ void bind_render(nb::module_& m) {
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {
-              nb::gil_scoped_release release;
+              dg::bind::Unlocked release;
               const LightPlan plan = pilot(scene, camera, settings);
               return std::tuple{plan.m1, plan.m2};
           },

@@ -7,7 +7,7 @@ right and y up, seen along the view.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np

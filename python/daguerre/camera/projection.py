@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from itertools import zip_longest
 from typing import Any
 

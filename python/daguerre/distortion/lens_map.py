@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from daguerre.cached import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev

@@ -7,7 +7,7 @@ lens of the same focal length near the axis.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import ClassVar
 
 import numpy as np

@@ -6,7 +6,7 @@ Pixels have their middles at halves: (0, 0) is the upper left corner of the pict
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from daguerre.cached import cached_property
 
 import numpy as np
 from numpy.typing import NDArray

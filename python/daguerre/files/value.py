@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import types
 from dataclasses import MISSING, Field, fields
-from functools import cached_property
+from daguerre.cached import cached_property
 from itertools import zip_longest
 from typing import Any
 

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np

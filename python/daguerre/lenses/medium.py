@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any
 
 import daguerre._core as _core

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np

@@ -10,7 +10,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any, Protocol
 
 import numpy as np

@@ -8,7 +8,7 @@ derivative turns motion, to first order.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any
 
 import numpy as np

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any, Unpack
 
 import numpy as np

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any
 
 import numpy as np

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from daguerre.cached import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from daguerre.cached import cached_property
 
 import daguerre._core as _core
 from daguerre.scene.scene import Scene

@@ -5,7 +5,7 @@ Annotations must be real objects here (see ``flags.py``), so no ``annotations`` 
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cached_property
+from daguerre.cached import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from pathlib import Path
 
 from daguerre.errors import InputError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from daguerre.cached import cached_property
 from typing import Any
 
 import numpy as np

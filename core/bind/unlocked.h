@@ -1,0 +1,25 @@
+// unlocked.h -- work in the core while other threads of Python run, and what a fork makes of it.
+#pragma once
+#include <nanobind/nanobind.h>
+
+namespace dg::bind {
+
+/// Counts a thread that works. Throws dg::Error where a fork has torn the core (math/forks.h).
+class Work {
+  public:
+    Work();
+    ~Work();
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+};
+
+/// A scope of work without Python's lock; use it instead of nanobind::gil_scoped_release.
+class Unlocked {
+    nanobind::gil_scoped_release release_;   // first: a thread that waits for the lock works no more
+    Work work_;
+};
+
+/// Sends the threads of oneTBB home before a fork, so that the child may start its own. Called once.
+void watch_forks();
+
+}  // namespace dg::bind
