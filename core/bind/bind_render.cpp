@@ -29,6 +29,7 @@ class Progress {
     explicit Progress(nb::object callback) : callback_(std::move(callback)) {}
 
     bool operator()(double fraction) {
+        if (dg::bind::is_ending()) return false;
         if (callback_.is_none()) return true;
         const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
         auto last = last_.load();

@@ -35,7 +35,7 @@ void bind_post_waves(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
-    dg::bind::watch_forks();
+    dg::bind::watch_process();
     bind_errors(m);
     bind_codec(m);
     bind_motion(m);

@@ -1,4 +1,4 @@
-// unlocked.h -- work in the core while other threads of Python run, and what a fork makes of it.
+// unlocked.h -- work in the core while other threads of Python run; what a fork, and the end of Python, make of it.
 #pragma once
 #include <nanobind/nanobind.h>
 
@@ -19,7 +19,11 @@ class Unlocked {
     Work work_;
 };
 
-/// Sends the threads of oneTBB home before a fork, so that the child may start its own. Called once.
-void watch_forks();
+/// Whether Python is about to end: drawing stops.
+bool is_ending();
+
+/// Sends the threads of oneTBB home before a fork, so that the child may start its own; and waits for
+/// daemon threads before Python ends, which would end them in the middle of C++. Called once.
+void watch_process();
 
 }  // namespace dg::bind
