@@ -32,6 +32,7 @@ void before_fork() {
 
 void in_child() {
     if (forks::working.exchange(0) != 0) forks::torn = true;
+    nb::set_leak_warnings(false);   // the parent's other threads keep what they referred to
 }
 
 /// At the end of Python a thread that asked for its lock would be ended there and then, and C++ with it.

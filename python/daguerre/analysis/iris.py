@@ -7,13 +7,13 @@ right and y up, seen along the view.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from daguerre.cached import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera

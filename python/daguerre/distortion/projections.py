@@ -7,10 +7,11 @@ lens of the same focal length near the axis.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from daguerre.cached import cached_property
 from typing import ClassVar
 
 import numpy as np
+
+from daguerre.cached import cached_property
 
 from .model import FloatArray, Radial
 from .monotone import SAMPLES, Monotone

@@ -10,13 +10,13 @@ import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from daguerre.cached import cached_property
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.checks import as_readonly, matrix, number, short, to_numbers
 from daguerre.errors import InputError, core_errors, suggest
 from daguerre.files.value import Value

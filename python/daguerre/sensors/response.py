@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from daguerre.cached import cached_property
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.cached import cached_property
 from daguerre.color import illuminants
 
 from .data import SensorData

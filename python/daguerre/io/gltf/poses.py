@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from daguerre.cached import cached_property
 from typing import Any
 
 import numpy as np
 
+from daguerre.cached import cached_property
 from daguerre.files.value import Value
 from daguerre.scene.transforms import Matrix, compose
 
