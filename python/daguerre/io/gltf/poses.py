@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -130,8 +131,9 @@ class Poses(Value):
 
     def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
         most = max(min(_MAX_KNOWN, _MAX_MATRICES * 16 // max(world.size, 16)), 1)
-        while len(self._known) >= most:
-            self._known.popitem(last=False)
+        with suppress(KeyError):  # another thread may empty it meanwhile
+            while len(self._known) >= most:
+                self._known.popitem(last=False)
         self._known[key] = world
 
     def shown(self, node: int, time: float) -> bool:
