@@ -1,7 +1,7 @@
 """Draws many pictures in one process: ``python -m tests.faults.long_run renders|frames 2000``.
 
-Prints how memory grew, MB, from the first tenth of the pictures to the last one: that of the
-process, which keeps what it once had, and what is in use in it, of malloc and of Python's objects.
+Prints how the memory of the process grew from the first tenth of the pictures to the last one, and
+how much each picture keeps. A process keeps what it once had; what is in use tells more.
 """
 
 from __future__ import annotations
@@ -57,44 +57,57 @@ class Memory:
     malloc: np.ndarray
     objects: np.ndarray
 
-    def growth(self) -> tuple[float, float, float]:
-        """Mean of the last tenth less that of the first one, MB; the very first are left out."""
-        tenth = max(len(self.process) // 10, 1)
-        skip = min(20, tenth // 2)
-        return tuple(  # type: ignore[return-value]
-            float(line[-tenth:].mean() - line[skip:tenth].mean())
-            for line in (self.process, self.malloc, self.objects)
+    def growth(self) -> float:
+        """Memory of the process in the last tenth less that in the first one, MB."""
+        first, *_, last = _tenths(self.process)
+        return last - first
+
+    def steady(self) -> tuple[float, float]:
+        """Bytes that each picture keeps, of malloc and of objects: the median over the tenths.
+
+        A table that grows once, as that of Python's known words, is a step between two of them.
+        """
+        kept = len(self.process) // 10 / 1e6
+        of_malloc, of_objects = (
+            float(np.median(np.diff(_tenths(line)))) / kept for line in (self.malloc, self.objects)
         )
+        return of_malloc, of_objects
+
+
+def _tenths(line: np.ndarray) -> list[float]:
+    """Means over the tenths; the very first pictures are left out."""
+    skip = min(20, len(line) // 20)
+    return [
+        float(part[skip * (i == 0) :].mean()) for i, part in enumerate(np.array_split(line, 10))
+    ]
 
 
 class Meter:
-    """Notes the memory after each picture."""
+    """Notes the memory after each picture, and needs none for it."""
 
-    def __init__(self) -> None:
-        self.process: list[float] = []
-        self.malloc: list[float] = []
-        self.objects: list[float] = []
+    def __init__(self, count: int) -> None:
+        self.noted, self.count = np.zeros((3, count)), 0
 
     def note(self) -> None:
         """Notes it as it is now."""
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-        self.process.append(pages * PAGE / 1e6)
-        if len(self.process) % 10 == 1:  # circles of objects would hide what is kept
+        if self.count % 10 == 0:  # circles of objects would hide what is kept
             gc.collect()
         used = _mallinfo2()
-        self.malloc.append((used.uordblks + used.hblkhd) / 1e6)
-        self.objects.append(tracemalloc.get_traced_memory()[0] / 1e6)
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+        objects = tracemalloc.get_traced_memory()[0]
+        self.noted[:, self.count] = pages * PAGE, used.uordblks + used.hblkhd, objects
+        self.count += 1
 
     def memory(self) -> Memory:
         """All that was noted."""
-        return Memory(*map(np.array, (self.process, self.malloc, self.objects)))
+        return Memory(*self.noted / 1e6)
 
 
 def renders(count: int, folder: Path) -> Memory:
     """Calls ``dg.render`` that often, with a scene, a camera and a lens that change."""
     scene = dg.load(write_scene(folder / "s.glb"))
     scene.set_environment(color=(1, 0.9, 0.8))
-    meter = Meter()
+    meter = Meter(count)
     for i in range(count):
         lens = {"lens": "double-gauss-50mm-f2"} if i % 4 == 0 else {"lens_model": "thin"}
         camera = scene.camera("left").with_(f_stop=2.8, **lens)
@@ -105,7 +118,7 @@ def renders(count: int, folder: Path) -> Memory:
 
 def frames(count: int, folder: Path) -> Memory:
     """Draws a sequence of that many frames by one call of the command line."""
-    meter, finish = Meter(), Job._render
+    meter, finish = Meter(count), Job._render
 
     def drawn(self: Job, picture: Picture, began: float, *, resume: bool) -> bool:
         done = finish(self, picture, began, resume=resume)
@@ -123,20 +136,28 @@ def frames(count: int, folder: Path) -> Memory:
     return meter.memory()
 
 
-def main(kind: str, count: int) -> None:
-    """Prints the figures."""
+def main(kind: str, count: int, leak: int = 0) -> None:
+    """Prints the figures.
+
+    Args:
+        kind: Either ``renders`` or ``frames``.
+        count: Number of pictures.
+        leak: Bytes that each picture keeps, to show that it would be seen.
+    """
+    if leak:
+        note, kept = Meter.note, []
+        Meter.note = lambda self: (kept.append(bytes(leak)), note(self))[1]  # type: ignore[method-assign]
     if not tracemalloc.is_tracing():  # better by -X tracemalloc, before any module is there
         tracemalloc.start()
     with TemporaryDirectory() as folder:
         memory = {"renders": renders, "frames": frames}[kind](count, Path(folder))
-    process, malloc, objects = memory.growth()
-    line = memory.process
+    line, (malloc, objects) = memory.process, memory.steady()
     print(
         f"{kind}: {count}: process {line[:20].mean():.1f} MB at first, {line[-20:].mean():.1f} MB "
-        f"at the end, growth {process:+.2f} MB; in use of malloc {malloc:+.3f} MB, "
-        f"of objects of Python {objects:+.3f} MB"
+        f"at the end, growth {memory.growth():+.2f} MB; each keeps {malloc:+.0f} B of malloc, "
+        f"{objects:+.0f} B of objects"
     )
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]))
+    main(sys.argv[1], *map(int, sys.argv[2:]))
