@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "camera/camera.h"
 #include "camera/inverse/chief.h"
 #include "math/error.h"
@@ -32,7 +33,7 @@ auto rays(const dg::Camera& camera, const dg::bind::Rows2f& film_mm, const dg::b
         samples[i] = {{film_mm(i, 0), film_mm(i, 1)}, {u_lens(i, 0), u_lens(i, 1)}, 0, wavelength_nm(i)};
     std::vector<dg::CameraRay> out(n);
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         generate_rays(camera, samples, out);
     }
     std::vector<float> origins, directions, weights;

@@ -2,6 +2,7 @@
 #include <nanobind/stl/string_view.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "codec/meshopt.h"
 
 namespace nb = nanobind;
@@ -18,7 +19,7 @@ auto unpack_meshopt(const PackedBytes& packed, std::string_view mode, std::size_
     const Bytes bytes(packed.data(), packed.size());
     std::vector<std::uint8_t> out;
     {
-        nb::gil_scoped_release unlocked;
+        dg::bind::Unlocked unlocked;
         out = mode == "ATTRIBUTES"  ? unpack_attributes(bytes, count, stride)
               : mode == "TRIANGLES" ? unpack_triangles(bytes, count, stride)
                                     : unpack_indices(bytes, count, stride);

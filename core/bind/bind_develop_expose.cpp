@@ -1,5 +1,6 @@
 // bind_develop_expose.cpp -- from exposure to the numbers of a sensor.
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "develop/expose.h"
 
 namespace nb = nanobind;
@@ -25,7 +26,7 @@ nb::tuple expose(const Picture& light, const dg::Shot& shot) {
     const std::size_t height = light.shape(0), width = light.shape(1);
     dg::Exposed out;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         out = dg::expose({light.data(), int(width), int(height), int(light.shape(2))}, shot);
     }
     return nb::make_tuple(dg::bind::to_numpy(std::move(out.mosaic), {height, width}),
@@ -37,7 +38,7 @@ auto expected(const Picture& light, const dg::Shot& shot) {
     const std::size_t height = light.shape(0), width = light.shape(1);
     std::vector<float> out;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         out = dg::expected_electrons({light.data(), int(width), int(height), int(light.shape(2))}, shot);
     }
     return dg::bind::to_numpy(std::move(out), {height, width});

@@ -8,6 +8,7 @@
 
 #include "bind/arrays.h"
 #include "bind/record.h"
+#include "bind/unlocked.h"
 #include "develop/picture.h"
 #include "develop/sharpen.h"
 #include "math/error.h"
@@ -31,13 +32,13 @@ std::optional<dg::Curve> curve(Values values) {
 
 template <typename T>
 void develop(const Pixels<const T>& in, const Pixels<float>& out, const dg::Development& how) {
-    nb::gil_scoped_release unlocked;
+    dg::bind::Unlocked unlocked;
     dg::develop(how, std::span(in.data(), in.size()), std::span(out.data(), out.size()));
 }
 
 void sharpen(const Pixels<float>& rgb, const Numbers& luminance, float amount, float radius) {
     const float weights[3] = {luminance[0], luminance[1], luminance[2]};
-    nb::gil_scoped_release unlocked;
+    dg::bind::Unlocked unlocked;
     dg::sharpen(std::span(rgb.data(), rgb.size()), int(rgb.shape(1)), int(rgb.shape(0)), weights, amount, radius);
 }
 

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "camera/camera.h"
 #include "math/error.h"
 #include "optics/stray/ghost_spots.h"
@@ -21,7 +22,7 @@ auto spots(const dg::GhostLens& lens, double angle, Pair film_half, const std::v
            const std::vector<double>& weight, int rays, bool points) {
     std::vector<dg::GhostSpot> found;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         found = ghost_spots(lens, {angle, {film_half.first, film_half.second}, rays, nm, weight}, points);
     }
     nb::list out;

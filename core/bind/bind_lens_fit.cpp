@@ -16,6 +16,7 @@
 #include "bind/arrays.h"
 #include "bind/record.h"
 #include "bind/thread_seconds.h"
+#include "bind/unlocked.h"
 #include "camera/kept/fit_state.h"
 #include "math/error.h"
 #include "optics/first_order/paraxial.h"
@@ -206,7 +207,7 @@ dg::LensFit fit(const dg::Prescription& lens, double f_stop, dg::LensFitRequest 
     const dg::FirstOrder order = dg::first_order(lens);
     request.iris_radius =
         dg::iris_radius(lens, order, f_stop == 0 ? order.f_number : f_stop);
-    const nb::gil_scoped_release release;
+    const dg::bind::Unlocked release;
     return make_lens_fit(dg::Tracer(lens), request);
 }
 
@@ -278,7 +279,7 @@ Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slo
     }
     const auto scene = std::make_unique<dg::SceneRays>();
     const auto back = std::make_unique<dg::FilmRays>();
-    const nb::gil_scoped_release release;
+    const dg::bind::Unlocked release;
     const auto time = [&](auto each) {
         const double start = dg::bind::thread_seconds();
         for (int i = 0; i < repeats; ++i)

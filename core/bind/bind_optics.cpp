@@ -7,6 +7,7 @@
 #include "bind/arrays.h"
 #include "bind/record.h"
 #include "bind/thread_seconds.h"
+#include "bind/unlocked.h"
 #include "camera/kept/aim_state.h"
 #include "camera/exact.h"
 #include "camera/kept/fit_state.h"
@@ -76,7 +77,7 @@ std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
     const auto samples = camera_samples(film_mm, u_lens, wavelength_nm);
     std::vector<dg::CameraRay> rays(samples.size());
     std::uint64_t passed = 0;
-    nb::gil_scoped_release release;
+    dg::bind::Unlocked release;
     const double start = dg::bind::thread_seconds();
     for (int i = 0; i < repeats; ++i) {
         lens.generate(samples, rays);
@@ -121,7 +122,7 @@ void def_set_up(nb::class_<dg::ExactLens>& c) {
          [](ExactLens* self, const Prescription& lens, ExactLensSettings settings,
             const std::optional<nb::bytes>& cache) {
              if (cache) settings.cache.assign(cache->c_str(), cache->size());
-             nb::gil_scoped_release release;   // states of a lens are set up side by side
+             dg::bind::Unlocked release;   // states of a lens are set up side by side
              new (self) ExactLens(lens, settings);
          },
          "prescription"_a, "settings"_a, "cache"_a = nb::none(),

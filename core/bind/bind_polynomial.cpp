@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "optics/stray/ghost.h"
 #include "optics/expansion/elements.h"
@@ -100,7 +101,7 @@ void for_rays(const PolynomialSystem& s, const Rays& rays, const Column& nm,
             "polynomial system", "wavelengths",
             "one, or one for each of " + std::to_string(rays.shape(0)) + " rays",
             std::to_string(nm.shape(0)));
-    const nb::gil_scoped_release release;
+    const dg::bind::Unlocked release;
     std::optional<RayMap> map;
     for (std::size_t i = 0; i < rays.shape(0); ++i) {
         const std::size_t k = nm.shape(0) == 1 ? 0 : i;

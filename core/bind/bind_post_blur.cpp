@@ -3,6 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "post/defocus.h"
 #include "post/motion_blur.h"
@@ -48,7 +49,7 @@ template <typename Make>
 auto made_rows(const Colours& image, dg::SpreadRows rows, const Make& make) {
     std::vector<float> out;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         out = make();
     }
     return dg::bind::to_numpy(std::move(out),

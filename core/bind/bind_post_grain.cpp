@@ -1,5 +1,6 @@
 // bind_post_grain.cpp -- film grain.
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "post/grain.h"
 
 namespace nb = nanobind;
@@ -10,7 +11,7 @@ namespace {
 auto grain_pattern(int x0, int y0, int width, int height, double radius, std::uint64_t seed, int layer) {
     std::vector<float> out;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         out = dg::grain_pattern({x0, y0, width, height}, radius, seed, layer);
     }
     return dg::bind::to_numpy(std::move(out), {std::size_t(height), std::size_t(width)});

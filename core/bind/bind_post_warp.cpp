@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "post/remap.h"
 
@@ -54,7 +55,7 @@ auto remap(const Image& image, int first, int height,
                                  int(image.shape(2)), first};
     dg::RemapResult out;
     {
-        nb::gil_scoped_release unlocked;
+        dg::bind::Unlocked unlocked;
         const auto kind =
             filter == "linear" ? dg::RemapFilter::linear : dg::RemapFilter::cubic;
         out = dg::remap(source, given, map_of, begin, end, kind, antialias);
@@ -71,7 +72,7 @@ auto remap_nearest(const Plane& plane, int first, int height, const BoundMap& ma
                    int begin, int end) {
     std::vector<std::uint32_t> out;
     {
-        nb::gil_scoped_release unlocked;
+        dg::bind::Unlocked unlocked;
         out = dg::remap_nearest(values_of(plane), int(plane.shape(1)), height, first,
                                 map.map, begin, end);
     }
@@ -106,7 +107,7 @@ void bind_post_warp(nb::module_& m) {
             [](const BoundMap& m, const Points& points) {
                 std::vector<float> out;
                 {
-                    nb::gil_scoped_release unlocked;
+                    dg::bind::Unlocked unlocked;
                     out = m.map.displacements_at(values_of(points));
                 }
                 return dg::bind::to_numpy(std::move(out), {points.shape(0), 2});

@@ -1,5 +1,6 @@
 // bind_post_waves.cpp -- diffraction patterns on pixels.
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "post/pixel_integrals.h"
 
 namespace nb = nanobind;
@@ -18,7 +19,7 @@ auto pixel_integrals(const Samples& samples, const First& first_row, const Sampl
                      const First& first_column, const Samples& column_weights) {
     std::vector<float> out;
     {
-        nb::gil_scoped_release unlocked;
+        dg::bind::Unlocked unlocked;
         out = dg::pixel_integrals({samples.data(), samples.size()}, int(samples.shape(1)),
                                   weights_of(first_row, row_weights),
                                   weights_of(first_column, column_weights));

@@ -15,6 +15,7 @@
 
 #include "bind/arrays.h"
 #include "bind/bind_first_order.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "optics/stray/ghost.h"
 
@@ -47,7 +48,7 @@ std::size_t check_lengths(const dg::Prescription& lens, const Rows3d& origins,
 template <typename Each>
 void for_rays(const dg::Tracer& tracer, const Column& wavelength_nm, const Each& each) {
     constexpr std::size_t kGrain = 256;
-    const nb::gil_scoped_release release;
+    const dg::bind::Unlocked release;
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, wavelength_nm.shape(0), kGrain),
         [&](const auto& range) {

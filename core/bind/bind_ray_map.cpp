@@ -3,6 +3,7 @@
 
 #include "bind/arrays.h"
 #include "bind/region.h"
+#include "bind/unlocked.h"
 #include "render/truth/ray_map.h"
 #include "render/render.h"
 
@@ -23,7 +24,7 @@ auto rays(const dg::Camera& camera, const dg::RenderSettings& settings, const dg
     const std::size_t height = region.height, width = region.width;
     dg::PixelRays map;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         map = ray_map(camera, settings.sensor, settings.shutter, region,
                       world ? dg::RayFrame::world : dg::RayFrame::camera, settings.threads);
     }

@@ -13,6 +13,7 @@
 
 #include "bind/arrays.h"
 #include "bind/record.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "render/pilot.h"
 #include "render/render.h"
@@ -28,6 +29,7 @@ class Progress {
     explicit Progress(nb::object callback) : callback_(std::move(callback)) {}
 
     bool operator()(double fraction) {
+        if (dg::bind::is_ending()) return false;
         if (callback_.is_none()) return true;
         const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
         auto last = last_.load();
@@ -54,7 +56,7 @@ std::pair<bool, dg::RenderCounters> draw(const dg::Scene& scene, const dg::Camer
                                          const dg::RenderSettings& settings, nb::object callback) {
     Progress progress(std::move(callback));
     std::atomic<bool> complete{true};
-    nb::gil_scoped_release release;
+    dg::bind::Unlocked release;
     const dg::RenderCounters counters = dg::render(scene, camera, film, settings, [&](double fraction) {
         const bool go = progress(fraction);
         if (!go) complete = false;
@@ -142,7 +144,7 @@ void bind_render(nb::module_& m) {
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {
-              nb::gil_scoped_release release;
+              dg::bind::Unlocked release;
               const LightPlan plan = pilot(scene, camera, settings);
               return std::tuple{plan.m1, plan.m2};
           },

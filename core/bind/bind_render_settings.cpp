@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "render/flare/flare_guide.h"
 #include "render/flare/scatter_guide.h"
@@ -109,7 +110,7 @@ void def_light_paths(Settings& c) {
                  s.light_guide = std::make_shared<const LightGuide>(scene, camera, s.sensor,
                                                                     s.filter.radius(), s.light);
              },
-             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             "scene"_a, "camera"_a, nb::call_guard<dg::bind::Unlocked>(), nb::keep_alive<1, 2>(),
              "Finds once what light paths are drawn with; to be called again after any change.");
 }
 
@@ -163,7 +164,7 @@ void def_flare(Settings& c) {
                  s.flare.guide = guide;
                  return !guide->empty();
              },
-             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             "scene"_a, "camera"_a, nb::call_guard<dg::bind::Unlocked>(), nb::keep_alive<1, 2>(),
              nb::keep_alive<1, 3>(),
              "Finds once what ghosts are drawn by; to be called again after any change. False: no light "
              "makes a ghost.");
@@ -188,7 +189,7 @@ void def_scatter(Settings& c) {
                  s.scatter.guide = guide;
                  return !guide->empty();
              },
-             "scene"_a, "camera"_a, nb::call_guard<nb::gil_scoped_release>(), nb::keep_alive<1, 2>(),
+             "scene"_a, "camera"_a, nb::call_guard<dg::bind::Unlocked>(), nb::keep_alive<1, 2>(),
              nb::keep_alive<1, 3>(),
              "Finds once what scattered light is drawn by; to be called again after any change. False: nothing "
              "shines, or nothing scatters.");

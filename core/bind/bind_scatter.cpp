@@ -4,6 +4,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "optics/stray/film_walks.h"
 
 namespace nb = nanobind;
@@ -22,7 +23,7 @@ auto from_film(const dg::ScatterLens& lens, std::pair<double, double> point, dou
                std::uint64_t seed) {
     std::vector<double> flat;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         for (const dg::FilmWalk& w : film_walks(lens, {{point.first, point.second}, spot, nm, walks, seed}))
             flat.insert(flat.end(), {-w.direction.z, std::atan2(w.direction.y, w.direction.x), w.weight,
                                      double(w.events)});

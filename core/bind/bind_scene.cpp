@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "bind/arrays.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "scene/scene.h"
 
@@ -387,7 +388,7 @@ void def_build(nb::class_<Builder>& c) {
                                           {"power", LightChoice::power},
                                           {"even", LightChoice::even}},
                                          "scene");
-                 nb::gil_scoped_release release;
+                 dg::bind::Unlocked release;
                  return std::const_pointer_cast<Scene>(Scene::build(std::move(b.description)));
              },
              "light_choice"_a = "tree", "free_memory"_a = 0,

@@ -6,6 +6,7 @@
 
 #include "bind/arrays.h"
 #include "bind/region.h"
+#include "bind/unlocked.h"
 #include "math/error.h"
 #include "render/truth/truth_channels.h"
 #include "render/truth/truth_mean.h"
@@ -49,7 +50,7 @@ template <typename Make>
 auto points_of(const dg::FilmLayout& region, const Make& make) {
     std::vector<double> flat;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         for (const dg::Vec2d px : make()) flat.insert(flat.end(), {px.x, px.y});
     }
     return dg::bind::to_numpy(std::move(flat), {std::size_t(region.height),
@@ -100,7 +101,7 @@ auto silhouettes_of(const dg::Scene& scene, const dg::Camera& camera,
     std::vector<std::uint64_t> pixels;
     std::vector<int> boxes;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         for (const dg::Silhouette& s :
              dg::silhouettes({scene, camera}, region_of(crop), settings, given, count)) {
             pixels.insert(pixels.end(), {s.visible, s.whole});
@@ -120,7 +121,7 @@ auto outlines_of(const dg::Scene& scene, const dg::Camera& camera,
     std::vector<double> boxes;
     std::vector<std::uint8_t> open;
     {
-        nb::gil_scoped_release release;
+        dg::bind::Unlocked release;
         for (const dg::GroupOutline& o : dg::outlines({scene, camera}, settings, given, count)) {
             const std::array box{o.low.x, o.low.y, o.high.x, o.high.y};
             for (const double value : box) boxes.push_back(o.empty ? kNone : value);
@@ -149,7 +150,7 @@ void bind_truth(nb::module_& m) {
         "see",
         [](const Scene& scene, const Camera& camera, const RenderSettings& settings,
            const Crop& crop) {
-            nb::gil_scoped_release release;
+            dg::bind::Unlocked release;
             return see({scene, camera}, region_of(crop), settings);
         },
         "scene"_a, "camera"_a, "settings"_a, "crop"_a,
@@ -158,7 +159,7 @@ void bind_truth(nb::module_& m) {
         "see_mean",
         [](const Scene& scene, const Camera& camera, const RenderSettings& settings,
            const Crop& crop, int rays) {
-            nb::gil_scoped_release release;
+            dg::bind::Unlocked release;
             return see_mean({scene, camera}, region_of(crop), settings, rays);
         },
         "scene"_a, "camera"_a, "settings"_a, "crop"_a, "rays"_a,

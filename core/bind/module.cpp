@@ -1,6 +1,7 @@
 // module.cpp -- daguerre._core. Thin: arrays in, arrays out, no logic.
 #include <nanobind/nanobind.h>
 
+#include "bind/unlocked.h"
 #include "version.h"
 
 namespace nb = nanobind;
@@ -34,6 +35,7 @@ void bind_post_waves(nb::module_& m);
 
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
+    dg::bind::watch_process();
     bind_errors(m);
     bind_codec(m);
     bind_motion(m);

@@ -7,6 +7,7 @@
 
 #include "geometry/crossings.h"
 #include "geometry/ray.h"
+#include "math/forks.h"
 #include "math/transform.h"
 
 #if DG_EMBREE_MAJOR >= 4
@@ -55,15 +56,21 @@ struct Context {
     Crossings* crossings = nullptr;
 };
 
-/// Owners of Embree's handles.
+/// Owners of Embree's handles. A process that a fork has torn keeps them: to release one takes locks.
 struct ReleaseDevice {
-    void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+    void operator()(RTCDevice d) const {
+        if (!forks::torn) rtcReleaseDevice(d);
+    }
 };
 struct ReleaseScene {
-    void operator()(RTCScene s) const { rtcReleaseScene(s); }
+    void operator()(RTCScene s) const {
+        if (!forks::torn) rtcReleaseScene(s);
+    }
 };
 struct ReleaseGeometry {
-    void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); }
+    void operator()(RTCGeometry g) const {
+        if (!forks::torn) rtcReleaseGeometry(g);
+    }
 };
 using DeviceOwner = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using SceneOwner = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;

@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import forks  # noqa: F401
 from ._core import __version__
 from .camera.camera import Camera
 from .camera.lens_scatter import LensScatter

@@ -126,6 +126,19 @@ def test_what_killed_writers_left_goes_and_what_others_write_stays(tmp_path: Pat
     assert sorted(tmp_path.iterdir()) == sorted(others)
 
 
+def test_what_a_killed_check_left_goes_with_the_next_one(tmp_path: Path) -> None:
+    """A picture that is complete is not written again, but its names are tried."""
+    (tmp_path / "a.00.png").touch()
+    left = tmp_path / ".a.00.8948e161.tmp.png"
+    left.touch()
+    others = [tmp_path / name for name in (".a.01.8948e161.tmp.png", ".a.00.8948e16x.tmp.png")]
+    for other in others:
+        other.touch()
+    atomic.check_writable(tmp_path / "a.00.png")
+    assert not left.exists()
+    assert all(other.exists() for other in others)
+
+
 @pytest.mark.parametrize("ending", ["exr", "png", "jpg", "tif", "dng"])
 def test_a_quota_is_one_error_for_each_format(folder: Path, ending: str) -> None:
     shot = SHOT if ending == "dng" else []

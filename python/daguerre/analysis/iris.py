@@ -7,13 +7,13 @@ right and y up, seen along the view.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
 

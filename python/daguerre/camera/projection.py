@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import zip_longest
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.checks import number, numbers, short, to_numbers, whole
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors, suggest

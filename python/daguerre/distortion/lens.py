@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 
 from daguerre.analysis.bench import Bench
 from daguerre.analysis.chief import chief_rays
+from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.analysis.bench import Bench
 from daguerre.analysis.chief import ChiefRays, chief_rays
+from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 

@@ -7,11 +7,11 @@ lens of the same focal length near the axis.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
+from daguerre.cached import cached_property
 from daguerre.doors import guarded
 
 from .model import FloatArray, Radial

@@ -6,12 +6,12 @@ Pixels have their middles at halves: (0, 0) is the upper left corner of the pict
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan

@@ -11,13 +11,14 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
-import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from daguerre.errors import OutputError
+
+_HEX = frozenset("0123456789abcdef")
 
 
 @contextmanager
@@ -61,10 +62,13 @@ def write_bytes(target: str | os.PathLike[str], data: bytes) -> None:
 def check_writable(target: str | os.PathLike[str]) -> None:
     """Tries whether a file could be written there, by making and removing an empty one beside it.
 
+    Removes what such a try left when it was killed: the file itself may be written and stay.
+
     Raises:
         OutputError: It could not; said before hours are spent on a picture.
     """
     path = _resolved(target)
+    _drop_left(path)
     temp = _temporary(path)
     with _os_errors(path):
         os.close(_create(temp))
@@ -116,10 +120,19 @@ def _create(path: Path) -> int:
 
 def _drop_left(path: Path) -> None:
     """Removes temporary files of this target whose writers are dead."""
-    name = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{8}}\.tmp{re.escape(path.suffix)}")
+    # No regular expression: one per file of a long sequence would fill the cache of them.
+    head, tail = f".{path.stem}.", f".tmp{path.suffix}"
+    length = len(head) + 8 + len(tail)
     with suppress(OSError), os.scandir(path.parent) as entries:
         for entry in entries:
-            if name.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+            name = entry.name
+            if (
+                len(name) == length
+                and name.startswith(head)
+                and name.endswith(tail)
+                and _HEX.issuperset(name[len(head) : -len(tail)])
+                and entry.is_file(follow_symlinks=False)
+            ):
                 _drop_unlocked(Path(entry.path))
 
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import types
 from dataclasses import MISSING, Field, fields
-from functools import cached_property
 from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
+from daguerre.cached import cached_property
 from daguerre.checks import freeze_in_place, short
 
 _Seen = dict[tuple[int, int], tuple[Any, Any]]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.files.value import Value
 
 _CORE: dict[str, Callable[..., _core.Glass]] = {

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.cached import cached_property
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
 from daguerre.distortion.rectified import RectifiedView, built

@@ -10,7 +10,6 @@ import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import islice
 from typing import Any, Protocol
 
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.checks import as_readonly, matrix, number, short, shown, to_numbers
 from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors, suggest

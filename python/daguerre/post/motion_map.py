@@ -8,12 +8,12 @@ derivative turns motion, to first order.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.cached import cached_property
 from daguerre.convolution.rows import Rows
 
 from .channels import BACK, PARTS, USUAL

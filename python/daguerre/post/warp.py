@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import SourceMap
+from daguerre.cached import cached_property
 from daguerre.convolution.rows import Rows
 
 from .picture import Canvas

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
 from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
 from daguerre.checks import MAX_SAMPLES, whole
 from daguerre.doors import guarded

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.cached import cached_property
 from daguerre.checks import array, optional_array, short, to_numbers
 from daguerre.errors import InputError
 from daguerre.files.value import Value

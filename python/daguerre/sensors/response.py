@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.cached import cached_property
 from daguerre.checks import line
 from daguerre.color import illuminants
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.scene.scene import Scene
 
 from .scene import build, content_hash

@@ -15,13 +15,13 @@ import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.errors import UsageError

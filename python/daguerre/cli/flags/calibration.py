@@ -5,11 +5,11 @@ Annotations must be real objects here (see ``flags.py``), so no ``annotations`` 
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre import units as q
+from daguerre.cached import cached_property
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
+from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 

@@ -23,6 +23,8 @@ from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 from daguerre.frame import cryptomatte
 
+from .threads import threads
+
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
@@ -178,8 +180,6 @@ def _write(
 ) -> None:
     import OpenEXR
 
-    # The module's default is one thread; compression is most of the time of writing.
-    OpenEXR.set_global_thread_count(min(os.cpu_count() or 1, 8))
     storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with atomic_path(path) as temp:
         exr_parts = [
@@ -187,7 +187,7 @@ def _write(
             for name, header, planes in parts
         ]
         try:
-            with OpenEXR.File(exr_parts) as file:
+            with threads(path), OpenEXR.File(exr_parts) as file:
                 file.write(str(temp))
         except (RuntimeError, OSError) as error:
             reason = str(error).replace(str(temp), str(path))

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from functools import cached_property
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
+from daguerre.cached import cached_property
 from daguerre.files.value import Value
 from daguerre.scene.transforms import Matrix, compose
 
@@ -20,7 +21,8 @@ from .nodes import Tree, is_visible
 from .samplers import FloatArray
 
 #: Poses of nodes, at one or many times, that are kept: parents are asked for by all their children.
-_MAX_KNOWN = 4096
+#: Few, and of few matrices (8 MB): those of frames that are drawn are of no more use.
+_MAX_KNOWN, _MAX_MATRICES = 512, 65536
 #: Scales below this leave no volume, or may mirror on their way.
 _THIN = 1e-6
 _PLACE = ("translation", "rotation", "scale")
@@ -128,8 +130,10 @@ class Poses(Value):
         return compose(*parts)
 
     def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
-        while len(self._known) >= _MAX_KNOWN:
-            self._known.popitem(last=False)
+        most = max(min(_MAX_KNOWN, _MAX_MATRICES * 16 // max(world.size, 16)), 1)
+        with suppress(KeyError):  # another thread may empty it meanwhile
+            while len(self._known) >= most:
+                self._known.popitem(last=False)
         self._known[key] = world
 
     def shown(self, node: int, time: float) -> bool:

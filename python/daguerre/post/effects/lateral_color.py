@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from daguerre.cached import cached_property
 from daguerre.distortion import Distortion, Radial
 from daguerre.distortion.model import FloatArray
 from daguerre.distortion.monotone import SAMPLES, Monotone

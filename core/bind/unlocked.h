@@ -1,0 +1,29 @@
+// unlocked.h -- work in the core while other threads of Python run; what a fork, and the end of Python, make of it.
+#pragma once
+#include <nanobind/nanobind.h>
+
+namespace dg::bind {
+
+/// Counts a thread that works. Throws dg::Error where a fork has torn the core (math/forks.h).
+class Work {
+  public:
+    Work();
+    ~Work();
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+};
+
+/// A scope of work without Python's lock; use it instead of nanobind::gil_scoped_release.
+class Unlocked {
+    nanobind::gil_scoped_release release_;   // first: a thread that waits for the lock works no more
+    Work work_;
+};
+
+/// Whether Python is about to end: drawing stops.
+bool is_ending();
+
+/// Sends the threads of oneTBB home before a fork, so that the child may start its own; and waits for
+/// daemon threads before Python ends, which would end them in the middle of C++. Called once.
+void watch_process();
+
+}  // namespace dg::bind
