@@ -14,7 +14,6 @@ from daguerre.io.iris import read_grey
 from daguerre.labels.categories import Categories
 from daguerre.plates import files as plates
 from daguerre.post import recipe as effects
-from daguerre.rendering.passes import read_pass
 from daguerre.stocks import load as load_stock
 
 TINY = {"resolution": (8, 6), "spp": 1, "threads": 1}
@@ -38,7 +37,7 @@ def exr(path: Path) -> None:
 
 
 def samples(path: Path) -> None:
-    dg.merge([read_pass(path)])
+    dg.merge([path])
 
 
 def calibrated(path: Path) -> None:

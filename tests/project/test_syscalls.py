@@ -109,7 +109,7 @@ def refused(lines: list[str], declared: list[Path]) -> list[str]:
 
 
 def exit_codes(folder: Path) -> list[int]:
-    """What each command line of ``traced`` ended with."""
+    """Exit codes of the command lines of ``traced``."""
     codes: list[int] = json.loads((folder / "jobs.json.codes").read_text())
     return codes
 

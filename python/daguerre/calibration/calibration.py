@@ -83,9 +83,9 @@ class Calibration:
         if "transform" not in changes and not np.array_equal(self.rig_from_camera, np.eye(4)):
             given = mounted(given, self.rig_from_camera)
         made = given.with_(**changes)
-        return self.moved(delayed(made, self.delay_s) if timeshift else made)
+        return self._moved(delayed(made, self.delay_s) if timeshift else made)
 
-    def moved(self, camera: Camera) -> Camera:
+    def _moved(self, camera: Camera) -> Camera:
         """The camera as it moves; one that stands stays as it is."""
         return camera
 

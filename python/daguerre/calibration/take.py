@@ -45,7 +45,7 @@ class Take(Calibration):
     file: str = "calibration"
     start: float = 0.0
 
-    def moved(self, camera: Camera) -> Camera:
+    def _moved(self, camera: Camera) -> Camera:
         """The camera that moves so; frames are as far apart as those of the camera."""
         return camera.with_(**self._changes(camera.fps))
 
