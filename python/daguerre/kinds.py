@@ -21,6 +21,8 @@ from .checks import MAX_NUMBERS
 #: Answer of ``take`` to a value of another kind.
 REFUSED: Any = object()
 _MOST_PARTS = 100_000
+_ROWS = (collections.abc.Sequence, np.ndarray)
+_NO_ROWS = (str, bytes, bytearray, collections.abc.Mapping, os.PathLike)
 _WHOLE = 1 << 63
 
 
@@ -135,18 +137,18 @@ def _parts(origin: Any, args: tuple[Any, ...]) -> Kind:
     fixed = origin is tuple and bool(args) and args[-1] is not Ellipsis
     inner = [of(arg) for arg in args if arg is not Ellipsis]
     words = _words_of_parts(inner, fixed)
+    lazy = origin is collections.abc.Iterable
 
     def take(value: Any) -> Any:
-        lazy = origin is collections.abc.Iterable
-        if isinstance(value, str | bytes | bytearray | collections.abc.Mapping | os.PathLike):
-            return REFUSED
-        if lazy and not isinstance(value, collections.abc.Sequence | np.ndarray):
-            return value if isinstance(value, collections.abc.Iterable) else REFUSED
-        if isinstance(value, np.ndarray):
-            if value.ndim == 0 or value.size > _MOST_PARTS * 8:
+        if type(value) is not tuple and type(value) is not list:  # these are the usual ones
+            if isinstance(value, _NO_ROWS):
                 return REFUSED
-        elif not isinstance(value, collections.abc.Sequence):
-            return REFUSED
+            if lazy and not isinstance(value, _ROWS):
+                return value if isinstance(value, collections.abc.Iterable) else REFUSED
+            if not isinstance(value, _ROWS):
+                return REFUSED
+            if isinstance(value, np.ndarray) and not (value.ndim and value.size <= _MOST_PARTS * 8):
+                return REFUSED
         if (fixed and len(value) != len(inner)) or len(value) > _MOST_PARTS:
             return REFUSED
         if not inner:
@@ -156,8 +158,9 @@ def _parts(origin: Any, args: tuple[Any, ...]) -> Kind:
         else:
             one = inner[0]
             taken = list(value) if one is None else [one.take(part) for part in value]
-        if any(part is REFUSED for part in taken):
-            return REFUSED
+        for part in taken:
+            if part is REFUSED:
+                return REFUSED
         return tuple(taken) if origin is tuple else (value if lazy else list(taken))
 
     return Kind(words, take)
@@ -176,6 +179,8 @@ def _number(value: Any) -> Any:
     """A real number that is one: no NaN, no flag, none that a double cannot hold."""
     if type(value) is float:
         return REFUSED if value != value else value
+    if type(value) is int and -_WHOLE < value < _WHOLE:
+        return value
     if isinstance(value, np.ndarray):
         if value.ndim or value.dtype.kind not in "iuf":
             return REFUSED

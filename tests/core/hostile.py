@@ -84,7 +84,7 @@ INTS = (0, -1, 1, 7, 1 << 16, (1 << 31) - 1, -(1 << 31))
 
 
 def variants(value: Any) -> Iterator[tuple[str, Any]]:
-    """What may stand in the place of a value, of a kind that the core takes."""
+    """Values that may stand in the place of one, of a kind that the core takes."""
     if isinstance(value, bool):
         yield "not", not value
     elif isinstance(value, int):
@@ -187,7 +187,7 @@ def shot(camera: dg.Camera | None = None) -> Any:
 
 
 def built(call: Callable[..., Any]) -> Callable[..., Any]:
-    """What a call adds to a scene is built, looked at and drawn."""
+    """Builds, looks at and draws a scene with what a call adds."""
 
     def run(*arguments: Any) -> Any:
         builder = _core.SceneBuilder()

@@ -17,7 +17,7 @@ from daguerre.errors import UsageError
 from . import hostile
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Of so many cases, one is made in each run of the tests, and all that once ended a process.
+#: One case of so many is made in each run of the tests, and all that once ended a process.
 FEW = 60
 
 
