@@ -115,6 +115,13 @@ def test_results_that_are_kept_hold_up_no_other_object() -> None:
     assert vars(kept)["value"] == 1
 
 
+def test_all_work_of_the_core_is_counted() -> None:
+    """A scope that forks do not know of would be taken for one in which nothing is drawn."""
+    files = [path for path in (ROOT / "core/bind").iterdir() if path.stem != "unlocked"]
+    assert len(files) > 20
+    assert [path.name for path in files if "gil_scoped_release" in path.read_text()] == []
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_a_process(case: str, tmp_path: Path) -> None:
     """Forks, pools, Ctrl-C and ends of a program: see ``jobs``."""
