@@ -21,6 +21,8 @@ from .jobs import CASES, Job, jobs
 
 ROOT = Path(__file__).parents[2]
 ROUNDS = 3
+#: Python 3.12 and later warn of any fork beside a thread.
+QUIET = ("-W", "ignore::DeprecationWarning")
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +128,7 @@ def test_all_work_of_the_core_is_counted() -> None:
 def test_a_process(case: str, tmp_path: Path) -> None:
     """Forks, pools, Ctrl-C and ends of a program: see ``jobs``."""
     run = subprocess.run(
-        [sys.executable, "-m", "tests.faults.jobs", case, str(tmp_path)],
+        [sys.executable, *QUIET, "-m", "tests.faults.jobs", case, str(tmp_path)],
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
