@@ -12,8 +12,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 
-#: Bytes that a picture may keep, of malloc and of Python's objects. Over 300 pictures 316 and 82 were
-#: measured, while caches fill; over 2000 they are 66 and 24 at most.
+#: Bytes that a picture may keep, of malloc and of Python's objects. Over 300 pictures 316 and 82
+#: were measured, while caches fill; over 2000 they are 66 and 24 at most.
 MALLOC_B, OBJECTS_B = 700.0, 400.0
 #: Growth of the process over 300 pictures, MB, since malloc keeps what it had; 3.2 was measured.
 PROCESS_MB = 8.0
