@@ -115,6 +115,7 @@ def idle(folder: Path) -> None:
         return "".join(redrawn(given[key], wanted) for key, wanted in alone.items())
 
     alone = {key: jobs(folder)[key].draw() for key in ("plain", "moving", "lens")}
+    assert (said := forked(lambda: draws_alone(jobs(folder)["plain"]))) == "ok", said
     work("parent")
     for leave in (False, True):
         assert (said := forked(lambda: work("child"), leave=leave)) == "ok", said
@@ -161,6 +162,18 @@ def drawing(folder: Path) -> None:
     assert heard, "the callback was not called"
     assert all(map(is_refusal, heard)), heard
     assert redrawn(job, wanted) == ""
+
+
+def draws_alone(job: Job) -> str:
+    """Draws; what is wrong if no thread of oneTBB helps where there are several cores."""
+
+    def threads() -> int:
+        return len(list(Path("/proc/self/task").iterdir()))
+
+    before = threads()
+    job.draw()
+    helped = threads() > before
+    return "" if helped or len(os.sched_getaffinity(0)) == 1 else "one thread drew"
 
 
 def is_refusal(text: str) -> bool:
