@@ -282,6 +282,7 @@ def test_channels_by_other_names(tmp_path, capsys, toys):
         ('[{"effect": "vignetting", "k1": true}]', "k1: wanted a number, got True"),
         ('[{"effect": "vignetting", "k1": NaN}]', "wanted a finite number"),
         ('[{"effect": "vignetting", "model": ["a"]}]', "model: wanted one of natural"),
+        (f'[{{"effect": "vignetting", "{"x" * 5000}": 1}}]', "xx...: wanted one of"),
     ],
 )
 def test_bad_recipes(tmp_path, toys, text, message):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
+from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
 
 from .parameter import Parameter
@@ -43,7 +44,7 @@ class Table:
         if name not in self._rows:
             listed = ", ".join(self._rows) or "nothing"
             near = suggest(name, self._rows)
-            raise error(f"{where}: parameter {name!r}: wanted one of {listed}{near}")
+            raise error(f"{where}: parameter {short(name)}: wanted one of {listed}{near}")
         return self._rows[name]
 
     @property

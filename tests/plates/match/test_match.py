@@ -268,6 +268,7 @@ FAULTS = [
     (("camera",), None, "camera"),
     (("sensor",), "../other.json", "in the same folder"),
     (("sensor",), "nul\0.json", "in the same folder"),
+    (("sensor",), "", "in the same folder"),
     (("sensor",), "missing.json", "missing.json"),
     (("noise", "kind"), "display", "noise.kind"),
     (("noise", "gain_dn_per_e"), 0, "noise.gain_dn_per_e"),

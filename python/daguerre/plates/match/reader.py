@@ -122,7 +122,7 @@ def _sensor(item: Item | None, file: Path, kind: str) -> Sensor | None:
     if item is None:
         return None
     name = item.text()
-    if Path(name).name != name or "\0" in name:
+    if not name or Path(name).name != name or "\0" in name:
         item.fail(f"wanted the name of a file in the same folder, got {short(name)}")
     if kind != "raw":
         item.fail(f"wanted none: a plate of kind {kind} has no mosaic, got {short(name)}")
