@@ -10,6 +10,7 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
+#include <thread>
 
 #include "bind/arrays.h"
 #include "bind/record.h"
@@ -29,7 +30,7 @@ class Progress {
     explicit Progress(nb::object callback) : callback_(std::move(callback)) {}
 
     bool operator()(double fraction) {
-        if (dg::bind::is_ending()) return false;
+        if (dg::bind::is_ending_beside(caller_)) return false;
         if (callback_.is_none()) return true;
         const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
         auto last = last_.load();
@@ -47,6 +48,7 @@ class Progress {
 
   private:
     nb::object callback_;
+    const std::thread::id caller_ = std::this_thread::get_id();
     std::atomic<std::chrono::steady_clock::rep> last_{0};
     std::atomic<bool> stopped_{false};
 };

@@ -36,6 +36,7 @@ void bind_post_waves(nb::module_& m);
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
     dg::bind::watch_process();
+    m.def("is_ending", &dg::bind::is_ending, "Whether Python is about to end: other threads draw no more.");
     bind_errors(m);
     bind_codec(m);
     bind_motion(m);

@@ -37,7 +37,7 @@ void in_child() {
 
 /// At the end of Python a thread that asked for its lock would be ended there and then, and C++ with it.
 void park_if_ending() {
-    if (!ending || last_thread.load() == std::this_thread::get_id()) return;
+    if (!is_ending_beside(std::this_thread::get_id())) return;
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
@@ -67,6 +67,10 @@ Work::~Work() {
 
 bool is_ending() {
     return ending;
+}
+
+bool is_ending_beside(std::thread::id thread) {
+    return ending && last_thread.load() != thread;
 }
 
 void watch_process() {

@@ -2,6 +2,8 @@
 #pragma once
 #include <nanobind/nanobind.h>
 
+#include <thread>
+
 namespace dg::bind {
 
 /// Counts a thread that works. Throws dg::Error where a fork has torn the core (math/forks.h).
@@ -19,8 +21,11 @@ class Unlocked {
     Work work_;
 };
 
-/// Whether Python is about to end: drawing stops.
+/// Whether Python is about to end.
 bool is_ending();
+/// Whether Python is about to end in another thread than this one: what it draws stops. The thread in which
+/// Python ends may draw, in functions that it calls at its exit.
+bool is_ending_beside(std::thread::id thread);
 
 /// Sends the threads of oneTBB home before a fork, so that the child may start its own; and waits for
 /// daemon threads before Python ends, which would end them in the middle of C++. Called once.

@@ -175,3 +175,35 @@ def test_asyncio_cancels_by_the_progress(given: dict[str, Job], tmp_path: Path) 
     wanted = dg.render(job.scene, job.camera, **settings).rgb
     assert np.array_equal(draw().rgb, wanted)
     assert not file.exists()
+
+
+AT_EXIT = """
+import atexit, sys
+
+def last():
+    import daguerre as dg
+    scene = dg.Scene()
+    scene.set_environment(color=(1, 1, 1))
+    kept = {"checkpoint": sys.argv[1]} if sys.argv[1:] else {}
+    frame = dg.render(scene, dg.Camera(lens_model="pinhole"), resolution=(8, 6), spp=4, **kept)
+    print(frame.samples.min())
+
+atexit.register(last)  # before daguerre registers its own, so after it
+import daguerre
+"""
+
+
+@pytest.mark.parametrize("kept", [(), ("checkpoint.exr",)], ids=["plain", "checkpoint"])
+def test_a_function_called_at_the_exit_of_python_may_draw(
+    tmp_path: Path, kept: tuple[str, ...]
+) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", AT_EXIT, *kept],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert run.stdout == "4\n", run.stderr

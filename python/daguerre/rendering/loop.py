@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import daguerre._core as _core
 from daguerre.errors import DaguerreError
 
 from .checkpoint import Checkpoint
@@ -131,6 +132,9 @@ class Loop:
             nonlocal fraction
             fraction = share
             return not given_up and self.control.stops < 2
+
+        if _core.is_ending():  # another thread would draw no more
+            return self.work.draw(progress)
 
         def work() -> None:
             try:
