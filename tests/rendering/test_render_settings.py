@@ -76,7 +76,7 @@ def test_defaults_stand_in_the_table_alone() -> None:
         ({"film": 3}, "settings: film: wanted parameters by name, got 3"),
         ({"films": {}}, "settings: no parameter 'films'"),
         ({"threads": 2000}, "threads: wanted 0 .all. .. 1024, got 2000"),
-        ({"threads": None}, "threads: wanted a whole number, 0 .all. .. 1024, got None"),
+        ({"threads": None}, "threads: wanted a whole number, got None"),
         ({"light": {"diffraction": {"band": 3}}}, "settings: diffraction: no parameter 'band'"),
         ({"x" * 5000: 1}, r"settings: no parameter '.{,80}\.\.\."),
     ],
