@@ -176,7 +176,7 @@ SceneDescription any_scene(FuzzInput& in) {
 }
 
 /// Light from any point in any direction: a number that the film can take or drop.
-void look(const Scene& scene, FuzzInput& in) {
+void look_around(const Scene& scene, FuzzInput& in) {
     for (int i = 0; i < 4; ++i) {
         PathSampler sampler(i, in.below(16), i, 7);
         Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
@@ -201,7 +201,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     dg::FuzzInput in(data, size);
     try {
         const auto scene = dg::Scene::build(dg::any_scene(in));
-        dg::look(*scene, in);
+        dg::look_around(*scene, in);
     } catch (const dg::Error&) {
     }
     return 0;
