@@ -30,9 +30,9 @@ Glass any_glass(FuzzInput& in) {
         }
         default: {
             SellmeierGlass s;
-            for (int i = 0; i < 3; ++i) {
-                s.b[i] = in.factor();
-                s.c[i] = in.factor();
+            for (int i = in.below(5); i > 0; --i) {
+                s.b.push_back(in.factor());
+                if (in.below(16)) s.c.push_back(in.factor());
             }
             glass.formula = s;
         }
