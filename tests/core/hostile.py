@@ -449,12 +449,12 @@ def _of_fits() -> dict[str, Call]:
     }
     functions = fit().segments[0].direction.x
 
-    def used(made: Any) -> Any:
-        made.check()
-        return made.evaluate(film, slopes, nm), made.to_film(points, ahead, nm), made.to_bytes()
-
     def unchecked(made: Any) -> Any:
         return made.evaluate(film, slopes, nm), made.to_film(points, ahead, nm), made.to_bytes()
+
+    def used(made: Any) -> Any:
+        made.check()
+        return unchecked(made)
 
     def with_functions(powers: Any, coefficients: Any) -> Any:
         made, ours = fit(), c.FitFunctions(powers, coefficients)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import subprocess
 import sys
 import threading
 from collections.abc import Callable
@@ -18,8 +16,8 @@ import daguerre as dg
 from daguerre.cached import cached_property
 
 from .jobs import CASES, Job, jobs
+from .process import ROOT, run
 
-ROOT = Path(__file__).parents[2]
 ROUNDS = 3
 #: Python 3.12 and later warn of any fork beside a thread.
 QUIET = ("-W", "ignore::DeprecationWarning")
@@ -127,18 +125,11 @@ def test_all_work_of_the_core_is_counted() -> None:
 @pytest.mark.parametrize("case", CASES)
 def test_a_process(case: str, tmp_path: Path) -> None:
     """Forks, pools, Ctrl-C and ends of a program: see ``jobs``."""
-    run = subprocess.run(
-        [sys.executable, *QUIET, "-m", "tests.faults.jobs", case, str(tmp_path)],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert run.returncode == 0, run.stdout + run.stderr
-    assert run.stdout == "ok\n"
-    assert run.stderr == ""
+    program = [sys.executable, *QUIET, "-m", "tests.faults.jobs"]
+    done = run([*program, case, str(tmp_path)], timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout == "ok\n"
+    assert done.stderr == ""
 
 
 def test_asyncio_draws_several_at_once(given: dict[str, Job], alone: dict[str, np.ndarray]) -> None:
@@ -197,13 +188,5 @@ import daguerre
 def test_a_function_called_at_the_exit_of_python_may_draw(
     tmp_path: Path, kept: tuple[str, ...]
 ) -> None:
-    run = subprocess.run(
-        [sys.executable, "-c", AT_EXIT, *kept],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=True,
-    )
-    assert run.stdout == "4\n", run.stderr
+    done = run([sys.executable, "-c", AT_EXIT, *kept], tmp_path, timeout=60, check=True)
+    assert done.stdout == "4\n", done.stderr

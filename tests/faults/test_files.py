@@ -19,9 +19,9 @@ from daguerre.files import atomic
 from daguerre.rendering import Job, Output, Picture, RenderSettings, View, identity, loop
 from daguerre.rendering.checkpoint import Checkpoint
 
+from .process import ROOT, run
 from .scene import write_scene
 
-ROOT = Path(__file__).parents[2]
 SMALL = ["--camera", "left", "--res", "96x64", "--sky", "1,0.9,0.8", "--filter", "box"]
 SHOT = ["--sensor", "ideal", "--exposure-f-stop", "4", "--exposure-time", "1/50", "--iso", "100"]
 LIMIT = "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); "
@@ -40,15 +40,8 @@ def render(
     folder: Path, *words: str, before: str = "", wrapper: tuple[str, ...] = ()
 ) -> subprocess.CompletedProcess[str]:
     """Runs the command line in a process; ``before`` is Python that comes first."""
-    return subprocess.run(
-        [*wrapper, sys.executable, "-c", before + RUN, "render", "s.glb", *SMALL, *words],
-        cwd=folder,
-        env={**os.environ, "TMPDIR": str(folder / "rescue"), "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    program = [*wrapper, sys.executable, "-c", before + RUN, "render", "s.glb", *SMALL]
+    return run([*program, *words], folder, timeout=120, TMPDIR=str(folder / "rescue"))
 
 
 def errors(text: str) -> list[str]:

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from .process import run
 
 
 def kills(*words: str) -> str:
     """Runs them in a process that has drawn nothing, since its forks must draw; the table."""
-    run = subprocess.run(
-        [sys.executable, "-m", "tests.faults.kills", *words],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 0, run.stdout + run.stderr
-    return run.stdout
+    done = run([sys.executable, "-m", "tests.faults.kills", *words])
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 def test_a_few_kills() -> None:

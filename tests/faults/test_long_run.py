@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from .process import run
 
 #: Bytes that a picture may keep, of malloc and of Python's objects. Over 300 pictures 316 and 82
 #: were measured, while caches fill; over 2000 they are 66 and 24 at most.
@@ -21,15 +18,9 @@ PROCESS_MB = 8.0
 
 def kept(*words: str) -> tuple[float, float, float]:
     """Growth of the process, MB, and bytes that a picture keeps, of malloc and of objects."""
-    run = subprocess.run(
-        [sys.executable, "-X", "tracemalloc", "-m", "tests.faults.long_run", *words],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    process, malloc, objects = map(float, re.findall(r"[+-][\d.]+", run.stdout))
+    program = [sys.executable, "-X", "tracemalloc", "-m", "tests.faults.long_run"]
+    said = run([*program, *words], check=True).stdout
+    process, malloc, objects = map(float, re.findall(r"[+-][\d.]+", said))
     return process, malloc, objects
 
 

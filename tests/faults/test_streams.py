@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,24 +10,17 @@ from pathlib import Path
 import OpenEXR
 import pytest
 
+from .process import run
 from .scene import write_scene
 
-ROOT = Path(__file__).parents[2]
 RENDER = "render s.glb -o a.exr --camera left --res 12x8 --sky 1,1,1 --spp 4"
 
 
 def shell(folder: Path, words: str, streams: str) -> subprocess.CompletedProcess[str]:
     """Runs the command line with streams as a shell redirects them."""
     write_scene(folder / "s.glb")
-    return subprocess.run(
-        ["sh", "-c", f'exec "$0" -m daguerre.cli {words} {streams}', sys.executable],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    program = f'exec "$0" -m daguerre.cli {words} {streams}'
+    return run(["sh", "-c", program, sys.executable], folder, timeout=120)
 
 
 @pytest.mark.parametrize(

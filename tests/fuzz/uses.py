@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
 import daguerre as dg
@@ -33,7 +34,7 @@ def lens(path: Path) -> None:
 
 
 def exr(path: Path) -> None:
-    _both(lambda: formats.read("environment", path), lambda: formats.read("frame", path))
+    _all(lambda: formats.read("environment", path), lambda: formats.read("frame", path))
 
 
 def samples(path: Path) -> None:
@@ -70,19 +71,19 @@ def picture(path: Path) -> None:
     """Reads a photograph as light, as plate and as iris."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        _both(
+        _all(
             lambda: formats.read("environment", path),
             lambda: plates.read(path),
             lambda: read_grey(path),
         )
 
 
-def _both(*ways: object) -> None:
-    """Runs all; raises the last refusal."""
+def _all(*ways: Callable[[], object]) -> None:
+    """Runs them; raises the last refusal."""
     refused: dg.DaguerreError | None = None
     for way in ways:
         try:
-            way()  # type: ignore[operator]
+            way()
         except dg.DaguerreError as error:
             refused = error
     if refused is not None:
