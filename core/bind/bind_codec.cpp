@@ -3,6 +3,7 @@
 
 #include "bind/arrays.h"
 #include "bind/unlocked.h"
+#include "codec/exr_predictor.h"
 #include "codec/meshopt.h"
 
 namespace nb = nanobind;
@@ -13,6 +14,7 @@ namespace {
 
 using PackedBytes =
     nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using WritableBytes = nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 auto unpack_meshopt(const PackedBytes& packed, std::string_view mode, std::size_t count,
                     std::size_t stride) {
@@ -28,6 +30,11 @@ auto unpack_meshopt(const PackedBytes& packed, std::string_view mode, std::size_
     return to_numpy(std::move(out), {size});
 }
 
+void undo_exr_predictor(const PackedBytes& packed, const WritableBytes& pixels) {
+    const Unlocked unlocked;
+    dg::undo_exr_predictor({packed.data(), packed.size()}, {pixels.data(), pixels.size()});
+}
+
 }  // namespace
 }  // namespace dg::bind
 
@@ -36,4 +43,6 @@ void bind_codec(nb::module_& m) {
           "stride"_a,
           "Bytes of a meshopt stream of mode ATTRIBUTES, TRIANGLES or INDICES, shape "
           "(count * stride,).");
+    m.def("undo_exr_predictor", &dg::bind::undo_exr_predictor, "packed"_a, "pixels"_a,
+          "Inflated bytes of an OpenEXR block as its pixels, into an array of as many bytes.");
 }

@@ -41,7 +41,7 @@ def plain_copy(layout: Layout, folder: TemporaryDirectory[str]) -> Path:
     assert library.origin is not None
     words = (
         sys.executable, "-I", "-S", transcode.__file__, str(layout.path.absolute()), str(target),
-        str(Path(library.origin).parent.parent), str(layout.size),
+        str(Path(library.origin).parent), str(layout.size),
     )  # fmt: skip
     try:
         done = subprocess.run(
