@@ -6,6 +6,7 @@ mismatch, 5 output or disk, 70 internal, 75 interrupted and resumable.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import sys
@@ -109,11 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _fail("interrupted", INTERRUPTED)
     except MemoryError:
-        return _fail(
-            f"memory: wanted more than there is ({shown(left_bytes() or 0)} are left); "
-            "try smaller pictures or files",
-            InputError.exit_code,
-        )
+        return _out_of_memory()
     except UnicodeEncodeError as error:  # readers of pictures take names as text alone
         return _fail(f"{error.object}: wanted a name in UTF-8", InputError.exit_code)
     except Exception as error:
@@ -123,7 +120,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             console.nobody_reads(sys.stdout)
             reason = error.strerror or str(error)
             return _fail(f"standard output: cannot write: {reason}", OutputError.exit_code)
+        if isinstance(error, OSError) and error.errno == errno.ENOMEM:
+            return _out_of_memory()
         return _internal(error)
+
+
+def _out_of_memory() -> int:
+    return _fail(
+        f"memory: wanted more than there is ({shown(left_bytes() or 0)} are left); "
+        "try smaller pictures or files",
+        InputError.exit_code,
+    )
 
 
 @cache

@@ -90,6 +90,7 @@ class Output:
 
     def check(self, metadata: dict[str, Any], tell: Reporter) -> None:
         """Refuses a camera that cannot give what is asked for, before anything is drawn."""
+        self._load_writers()
         self.photograph.check(metadata, self.paths, tell)
         if metadata.get("background") == PLATE:
             self._check_plate()
@@ -101,6 +102,13 @@ class Output:
             from daguerre.exposure.lux_seconds import luminance_exposure
 
             luminance_exposure(metadata)  # or an error that names what is missing
+
+    def _load_writers(self) -> None:
+        """Imports the libraries that will write: after hours of drawing, memory may be short."""
+        import OpenEXR  # noqa: F401
+
+        if any(path.suffix != ".exr" for path in self.files):
+            import OpenImageIO  # noqa: F401
 
     def _check_plate(self) -> None:
         """Refuses what a plate in the picture would go through twice, or get lost in.
