@@ -207,7 +207,7 @@ class Camera(Value):
         return super().__getstate__() | ({"sensor_size": None} if unchosen else {})
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        unchosen = state["sensor_size"] is None
+        unchosen = state.get("sensor_size") is None
         super().__setstate__(state | ({"sensor_size": FULL_FRAME} if unchosen else {}))
 
     def __repr__(self) -> str:

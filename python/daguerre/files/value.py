@@ -1,7 +1,8 @@
 """Values that travel: they pickle, copy and compare by what they hold.
 
 Results that a value caches (``cached_property``, such as its form in the core) stay at home: they
-are made again where they are needed.
+are made again where they are needed. A pickle belongs to the version that made it: another one
+refuses it by name, as its parts may have other names or meanings there.
 """
 
 from __future__ import annotations
@@ -13,11 +14,15 @@ from typing import Any
 
 import numpy as np
 
+from daguerre._core import __version__
 from daguerre.cached import cached_property
 from daguerre.checks import freeze_in_place, short
+from daguerre.errors import InputError
 
 _Seen = dict[tuple[int, int], tuple[Any, Any]]
 _PLAIN = str | int | bool | None
+#: Name under which a pickle keeps the version that made it; no attribute is called so.
+MADE_BY = "made by daguerre"
 
 
 class Value:
@@ -25,14 +30,20 @@ class Value:
 
     def __getstate__(self) -> dict[str, Any]:
         kind = type(self)
-        return {
+        parts = {
             name: part
             for name, part in vars(self).items()
             if not isinstance(getattr(kind, name, None), cached_property)
         }
+        return parts | {MADE_BY: __version__}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
+        if state.get(MADE_BY) != __version__:
+            raise InputError(
+                f"pickle of a {type(self).__name__}: wanted one of daguerre {__version__}, "
+                f"got one of {state.get(MADE_BY, 'an older version')}"
+            )
+        vars(self).update((name, part) for name, part in state.items() if name != MADE_BY)
 
     def __eq__(self, other: object) -> bool:
         return same(self, other) if isinstance(other, Value) else NotImplemented

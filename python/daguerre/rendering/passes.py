@@ -4,7 +4,8 @@ A pass is an EXR of several parts. The first is the picture as in any frame. The
 has the film's fixed-point sums as they lie in memory, so that no copy is made: 28 words of 32 bits
 per pixel, in a picture of four channels that is seven times as wide. Its header has what must agree
 before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
-which samples were drawn (``daguerre:ranges``). A third part, ``aovs``, has those of the auxiliary
+which samples were drawn (``daguerre:ranges``), and what form of passes this is
+(``daguerre:pass``; another form is refused). A third part, ``aovs``, has those of the auxiliary
 channels in the same way, and parts ``splats`` and ``flare`` what light paths
 (``daguerre.rendering.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were
 drawn; a part ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among
@@ -22,6 +23,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -30,6 +32,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre._core import __version__
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
 from daguerre.io.exr.layout import Layout, read_layouts
@@ -49,7 +52,10 @@ if TYPE_CHECKING:
 
 State = dict[str, NDArray[np.uint32]]
 Facts = Mapping[str, Any]
+#: Form of pass files. It rises whenever words of the same size would mean something else.
+FORM = 1
 SUMS = "sums"
+HASH = re.compile("[0-9a-f]{64}")
 BAND = 256  # rows of words that are read at once
 ROUND = "round"
 STATE_PARTS = (
@@ -104,7 +110,8 @@ def pass_of(session: Session) -> Pass:
 
 def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
     """Writes a pass file, atomically; ``frame`` is the picture of the same samples."""
-    header = {
+    header: dict[str, Any] = {
+        "daguerre:pass": FORM,
         "daguerre:key": json.dumps(drawn.key, sort_keys=True),
         "daguerre:ranges": json.dumps(drawn.ranges),
         "daguerre:metadata": json.dumps(drawn.metadata, sort_keys=True, default=jsonable),
@@ -149,6 +156,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
         if part.name not in STATE_PARTS:
             continue
         header = part.header.facts
+        _check_form(path, header)
         words = _words(part, header.get("daguerre:words"))
         facts = facts or _header(path, header)
         if part.name != OBJECTS:
@@ -256,6 +264,16 @@ def _round(path: Path, header: Facts, words: NDArray[np.uint32]) -> Round:
     return Round(begin, count, int(facts["drawn"]), float(facts["noise"]), float(facts["expected"]))
 
 
+def _check_form(path: Path, header: Facts) -> None:
+    """Refuses passes of another form; those without a number are of the first."""
+    form = header.get("daguerre:pass", 1)
+    if form != FORM:
+        raise InputError(
+            f"{path}: form of the pass: wanted {FORM}, got {short(form)}; "
+            f"it is of another version, this is daguerre {__version__}"
+        )
+
+
 def _check_crop(path: Path, facts: Pass, words: NDArray[np.uint32]) -> None:
     """The crop is what is there."""
     x0, y0, x1, y1 = facts.metadata.get("crop") or (0, 0, *words.shape[1::-1])
@@ -288,7 +306,7 @@ def _header(path: Path, header: Facts) -> Pass:
 
 
 def _short(value: str | None) -> str:
-    """The start of a hash; short values as they are."""
+    """The start of a hash; other values as they are, the name of a build among them."""
     if value is None:
         return "nothing"
-    return value if len(value) <= 40 else value[:12]
+    return value[:12] if HASH.fullmatch(value) else short(value, 120).strip("'")

@@ -14,6 +14,7 @@ from daguerre.camera.overscan import Overscan
 from daguerre.checks import short, shown
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
+from daguerre.files.value import Value
 
 from .adaptive import MAX_SPP
 from .diffraction import Diffraction, with_bands
@@ -114,7 +115,7 @@ class Reference(_Group):
 
 @guarded(init=True)
 @dataclass(frozen=True)
-class RenderSettings:
+class RenderSettings(Value):
     """How a picture is rendered.
 
     Attributes:

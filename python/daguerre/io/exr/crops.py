@@ -30,7 +30,7 @@ ADAPTIVE = ("daguerre:samples", "daguerre:samples_min", "daguerre:samples_max")
 OWN = (
     *COUNTS, "dataWindow", "compression", "lineOrder", "chunkCount", "type", "version",
     "daguerre:bad_sample_places", "daguerre:key", "daguerre:ranges", "daguerre:metadata",
-    "daguerre:words",
+    "daguerre:words", "daguerre:pass",
 )  # fmt: skip
 
 
