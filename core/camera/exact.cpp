@@ -431,7 +431,7 @@ ExactLens::Ball ExactLens::front_ball() const {
         }
     const Vec3d middle = front.place.out_of(Vec3d{0, 0, 0.5 * (low + high)});
     const Vec3d at = state_->turn.vector(middle - Vec3d{0, 0, state_->order.entrance_pupil_z});
-    return {kMetre * (at + Vec3d{0, 0, advance_}), kMetre * 1.001 * std::hypot(r, 0.5 * (high - low))};
+    return {kMetre * (at + Vec3d{0, 0, advance_}), kMetre * 1.001 * hypot(r, 0.5 * (high - low))};
 }
 
 std::optional<Vec3d> ExactLens::start(Vec3d point, Vec3d direction) const {

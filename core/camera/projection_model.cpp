@@ -343,7 +343,7 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     }
     case Kind::double_sphere: {
         const double xi = k_[0], alpha = k_[1];
-        const double z = xi * norm + d.z, d2 = std::hypot(std::hypot(d.x, d.y), z);
+        const double z = xi * norm + d.z, d2 = hypot(hypot(d.x, d.y), z);
         // The second sphere ends where a unified model does. (Equation 43 says it of the first one's angle, but
         // ends some degrees before.) Beyond a second angle two directions share a point of it, as in omni.
         if (!(z > -widest(alpha) * d2 && (xi <= 1 || d.z * xi > -norm))) return std::nullopt;
@@ -359,7 +359,7 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     }
     default: break;
     }
-    const double across = std::hypot(d.x, d.y), angle = std::atan2(across, d.z);
+    const double across = hypot(d.x, d.y), angle = std::atan2(across, d.z);
     if (!(angle <= largest_angle_) || (kind_ == Kind::rectilinear && !(d.z > 0))) return std::nullopt;
     if (across == 0) return Vec2d{0, 0};
     const double scale = radius_of(angle) / across;

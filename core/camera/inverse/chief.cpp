@@ -192,7 +192,7 @@ ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
 /// The film radius whose ray meets the point: bisection until the bracket is short, since
 /// a ray of radius 0 passes inside of every point ahead and that of a large one outside.
 std::optional<double> ChiefRays::solve(double outward, double z, double w) const {
-    const double size = std::hypot(outward, z);
+    const double size = hypot(outward, z);
     const auto past = [&](double mm) {  // < 0: the ray passes outside of the point
         const Meridional m = at_radius(mm);
         return outward * std::cos(m.angle) + z * std::sin(m.angle) - w * m.offset;
@@ -223,7 +223,7 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
 std::optional<Vec2d> ChiefRays::film_point(Vec3d p, double w) const {
     if (straight_) return std::visit([&](const auto& lens) { return film_point_of(lens, p, w); }, *straight_);
     if (grid_) return grid_->film_point(p, w);
-    const double outward = std::hypot(p.x, p.y);
+    const double outward = hypot(p.x, p.y);
     if (outward == 0) return p.z < 0 ? std::optional(Vec2d{}) : std::nullopt;
     const auto radius = solve(outward, p.z, w);
     if (!radius) return std::nullopt;

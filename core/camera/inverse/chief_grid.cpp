@@ -16,7 +16,7 @@ constexpr double kBeyond = 3;   // sizes of the film past its middle at which po
 constexpr double kMargin = 1.02;
 
 Vec2d angle_of(Vec3d d) {
-    const double across = std::hypot(d.x, d.y);
+    const double across = hypot(d.x, d.y);
     const double scale = across > 0 ? std::atan2(across, -d.z) / across : 1;
     return {d.x * scale, d.y * scale};
 }

@@ -57,7 +57,7 @@ double field_angle(const Lens& lens, double x_mm) {
 }
 
 double largest_radius(const Sensor& s) {
-    return std::hypot(0.5 * s.width_mm + std::abs(s.center_mm.x),
+    return hypot(0.5 * s.width_mm + std::abs(s.center_mm.x),
                       0.5 * s.height_mm + std::abs(s.center_mm.y));
 }
 

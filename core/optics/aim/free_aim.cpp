@@ -101,7 +101,7 @@ bool FreeAimMaker::used(int cell) const {
     const std::array<int, 4> at = corners(cell);
     const Vec2d a = film_.at(node(at[0])), b = film_.at(node(at[3]));
     const double x = std::clamp(0.0, a.x, b.x), y = std::clamp(0.0, a.y, b.y);
-    return std::hypot(x, y) <= request_.film_radius;
+    return hypot(x, y) <= request_.film_radius;
 }
 
 /// Rays over the film and somewhat more than the iris, traced to the stop.

@@ -71,7 +71,7 @@ SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, co
         }
         trace_to_scene(open, *film, *out, kLensBatch);
         for (int i = 0; i < kLensBatch; ++i) {
-            const bool inside = std::hypot(out->iris_x[i], out->iris_y[i]) <= radius;
+            const bool inside = hypot(out->iris_x[i], out->iris_y[i]) <= radius;
             if (out->pass[i] > 0 && inside)
                 box.add({film->mx[i], film->mx[i], film->my[i], film->my[i]});
         }

@@ -58,7 +58,7 @@ void set_bounds(SurfaceForm& f) {
             const Sag<double> s = sag(f, r * std::cos(angle), r * std::sin(angle));
             if (!s.defined) return;
             height = std::max(height, std::abs(s.z));
-            slope = std::max(slope, std::hypot(s.slope_x, s.slope_y));
+            slope = std::max(slope, hypot(s.slope_x, s.slope_y));
         }
     }
     f.slope = 1.05 * slope;

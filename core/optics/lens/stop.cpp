@@ -149,7 +149,7 @@ Iris Iris::image(int width, int height, std::vector<float> values) {
     m.values = std::move(values);
     // Sampled pixels: the open ones and a border of 1.5 % of the half diagonal, for the
     // enlarged iris.
-    const int border = 1 + int(0.015 * 0.5 * std::hypot(width, height));
+    const int border = 1 + int(0.015 * 0.5 * hypot(width, height));
     std::vector<char> rows(m.values.size());
     m.in_support.assign(m.values.size(), 0);
     for (int y = 0; y < height; ++y)

@@ -70,7 +70,7 @@ class Bench {
     Bench(const GhostLens& lens, const GhostLight& light) : lens_(lens), light_(light) {
         half_ = front_radius(lens.tracer().prescription());
         const double sag_half = lens.tracer().form(0).height;   // infinite: not known
-        if (std::isfinite(sag_half)) half_ = std::hypot(half_, sag_half);
+        if (std::isfinite(sag_half)) half_ = hypot(half_, sag_half);
         side_ = std::max(1, int(std::lround(std::sqrt(double(light.rays)))));
     }
 

@@ -181,7 +181,7 @@ void ScatterLens::Walk::try_wall(Meeting& nearest) const {
     if (w.length < kClear) {
         const double t = -o.z / d.z;
         const Vec3d p = o + t * d;
-        const double r = std::hypot(p.x, p.y), low = std::min(w.radius, w.end_radius);
+        const double r = hypot(p.x, p.y), low = std::min(w.radius, w.end_radius);
         if (r >= low && r <= std::max(w.radius, w.end_radius))
             take(t, {0, 0, w.end_radius < w.radius ? -1.0 : 1.0});
         return;
@@ -221,7 +221,7 @@ void ScatterLens::Walk::travel(const Meeting& at) {
 bool ScatterLens::Walk::cross(const Meeting& at) {
     const int i = at.surface;
     const Surface& surface = tracer_.prescription().surfaces[i];
-    if (std::hypot(at.hit.point.x, at.hit.point.y) < surface.inner_semi_diameter) return end(LightEnd::metal);
+    if (hypot(at.hit.point.x, at.hit.point.y) < surface.inner_semi_diameter) return end(LightEnd::metal);
     if (i == tracer_.stop() && !pass_iris(at)) {
         LensHit<double> blade = at.hit;
         blade.normal = -double(at.sign) * blade.normal;

@@ -155,7 +155,7 @@ std::optional<double> first_crossing(const SurfaceForm& form, const Vec3d& origi
     if (!std::isfinite(form.height)) return outside(s, guess);
     const auto span = inside(s, form.clear, form.height);
     if (span && s.at(span->low).past < 0 && s.at(span->high).past >= 0) {
-        const double across = std::hypot(direction.x, direction.y);
+        const double across = hypot(direction.x, direction.y);
         if (form.slope * across < sign * direction.z)  // it is never left again
             return bracketed(s, *span, guess);
     }

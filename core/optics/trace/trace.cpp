@@ -40,7 +40,7 @@ constexpr double kOverlap = 0.01;  // mm by which the rims of real prescriptions
 
 /// The normal leans with the slope of the grooves.
 void lean(const RippleSlope& ripple, const Vec3d& direction, int sign, LensHit<double>& hit) {
-    const double r = std::hypot(hit.point.x, hit.point.y);
+    const double r = hypot(hit.point.x, hit.point.y);
     if (!(r > 0)) return;
     const double slope = ripple.at(r) / r;
     hit.normal = normalize(hit.normal - Vec3d{slope * hit.point.x, slope * hit.point.y, 0});

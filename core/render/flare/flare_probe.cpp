@@ -41,7 +41,7 @@ float beside_frame(const Sensor& sensor, const Reprojection& landing) {
     const Vec2f px = sensor.px_from_mm(landing.film_mm);
     const float x = std::max({0.f, -px.x, px.x - float(sensor.width)}),
                 y = std::max({0.f, -px.y, px.y - float(sensor.height)});
-    return std::hypot(x, y);
+    return hypot(x, y);
 }
 
 void collect(const FlareAim& aim, const Batch& batch, FlareFound& found) {

@@ -63,7 +63,7 @@ struct Weights {
 }  // namespace
 
 float CoarseLight::widest(const Sensor& sensor) {
-    const double width = kOfFrame * std::hypot(sensor.width, sensor.height);
+    const double width = kOfFrame * hypot(sensor.width, sensor.height);
     return float(width * width);
 }
 

@@ -77,7 +77,7 @@ bool GhostMapMaker::dark(const MapLanding* seen, int level, const CellBlur& blur
     }
     const MapLanding* const rim = seen + kSeen;
     const float middle = rays_.stopped(seen[kRimNode]);
-    const float margin = std::hypot(rays_.stopped(rim[0]) - middle, rays_.stopped(rim[1]) - middle);   // over the source
+    const float margin = hypot(rays_.stopped(rim[0]) - middle, rays_.stopped(rim[1]) - middle);   // over the source
     if (least > margin && surely_stopped(seen, margin)) return true;
     if (level >= (all_sound ? kSmall : kSmallLost) && least - margin > kClear) return true;
     return all_sound && beside(x, y, 0.5f * std::max(x.size(), y.size()) + blur.light);

@@ -182,7 +182,7 @@ void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked*
     if (!map_.cells()[piece.cell].exact) {
         const double apart = spread(piece.cell) * std::exp2(-double(piece.level));
         piece.gray = apart <= kGray;
-        wrong = std::hypot(wrong_[piece.cell], piece.gray ? 0.5 * kMoved * apart : 0);
+        wrong = hypot(wrong_[piece.cell], piece.gray ? 0.5 * kMoved * apart : 0);
     }
     pieces_.push_back(piece), looks_.push_back(count);
     doubt_.push_back({sure ? kSurelyUnseen : kUnseen, sure ? kLeastWrong : wrong});
@@ -218,7 +218,7 @@ float SheetPieces::spread(std::uint32_t cell) {
         for (const float nm : kSeen) batch.set(count++, at, {0, 0}, nm, 1);
     map_.landings(map_.cells()[cell], batch, count);
     for (int i = 0; i < count; i += 2)
-        spread_[cell] = std::max(spread_[cell], std::hypot(batch.x[i] - batch.x[i + 1], batch.y[i] - batch.y[i + 1]));
+        spread_[cell] = std::max(spread_[cell], hypot(batch.x[i] - batch.x[i + 1], batch.y[i] - batch.y[i + 1]));
     return spread_[cell];
 }
 
