@@ -58,7 +58,7 @@ struct Grid {
 
     int bin(const LightBounds& b, int axis) const {
         const float x = (twice_center(b)[axis] - low[axis]) / (high[axis] - low[axis]) * kBins;
-        return std::clamp(static_cast<int>(x), 0, kBins - 1);
+        return x > 0 ? static_cast<int>(std::min(x, float(kBins - 1))) : 0;   // NaN, where places overflow: 0
     }
 };
 

@@ -168,6 +168,16 @@ TEST_CASE("importance: the formula in angles; a cut adds up its nodes") {
     CHECK(compared > 200);
 }
 
+TEST_CASE("lights so far apart that floats overflow make a tree, without undefined behaviour") {
+    auto lights = random_lights(40);   // found by fuzz_scene, under UBSan
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Vec3f p = random_vector(5, int(i)) * 6e38f;
+        lights[i].min = lights[i].max = p;
+    }
+    const LightTree tree(lights);
+    for (int i = 0; i < 40; ++i) CHECK_FALSE(tree.probability({0, 0, 0}, i) < 0);
+}
+
 TEST_CASE("signs on a wall: dark behind their planes, none forgotten before them") {
     // Facing one way, in two rows; the sphere around a group reaches far behind the wall.
     std::vector<LightBounds> signs(200);
