@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files import json_text, xml_text, yaml_text
+from daguerre.files import extras, json_text, xml_text
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
@@ -38,13 +38,22 @@ def load(source: Source) -> Item:
             f"{path}: wanted one calibration, got lines of several, as of a take of OpenTrackIO"
         )
     data = read_bytes(path)
-    parse = json_text.parse if path.suffix.lower() == ".json" else yaml_text.parse
     if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
-        parse = xml_text.parse
-    root = parse(data, str(path))
+        root = xml_text.parse(data, str(path))
+    elif path.suffix.lower() == ".json":
+        root = json_text.parse(data, str(path))
+    else:
+        root = _yaml(data, path)
     if not isinstance(root.value, dict):
         root.fail(f"wanted names and values, got {short(root.value)}")
     return root
+
+
+def _yaml(data: bytes, path: Path) -> Item:
+    extras.need("yaml", f"{path}: YAML")
+    from daguerre.files import yaml_text
+
+    return yaml_text.parse(data, str(path))
 
 
 def read_bytes(path: Path) -> bytes:

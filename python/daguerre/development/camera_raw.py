@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from daguerre.color import illuminants
 from daguerre.errors import InputError
+from daguerre.files import extras
 
 from .channels import USUAL, XY, Channels, Demosaic
 from .dng import LEAST_XTRANS
@@ -61,6 +62,7 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
     Raises:
         InputError: It is no such file; also where LibRaw finds that out within the block.
     """
+    extras.need("rawpy", f"{path}: a raw file")
     import rawpy
 
     if not Path(path).is_file():
@@ -179,7 +181,12 @@ def _matrix(value: Any) -> FloatArray | None:
 
 
 def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """TIFF tags of the first directory and that of the exposure; none if the file is no TIFF."""
+    """TIFF tags of the first directory and that of the exposure; none if the file is no TIFF.
+
+    Raises:
+        UsageError: The package that reads them is not installed.
+    """
+    extras.need("tifffile", f"{path}: a raw file")
     import tifffile
 
     log = logging.getLogger("tifffile")  # what is wrong with a file, LibRaw says, and once

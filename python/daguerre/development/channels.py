@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from daguerre.checks import plain_light
 from daguerre.color import illuminants
 from daguerre.errors import UsageError, suggest
+from daguerre.files import extras
 from daguerre.sensors.sensor import GREY_LX_S
 
 from .binning import bayer_of, is_mono
@@ -197,6 +198,7 @@ def _grey(raw: Raw) -> NDArray[np.uint16]:
 
 def _demosaiced(raw: Raw, demosaic: Demosaic) -> tuple[NDArray[np.uint16], FloatArray]:
     """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
+    extras.need("rawpy", "develop: demosaic")
     import rawpy
 
     from .dng import put_dng

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import UsageError, suggest
+from daguerre.files import extras
 
 #: OpenColorIO's own configuration, of its newest release.
 CONFIG = "ocio://studio-config-latest"
@@ -42,10 +43,7 @@ def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArr
 
 
 def _module() -> Any:
-    try:
-        import PyOpenColorIO
-    except ImportError:
-        raise UsageError(
-            "develop: look: OCIO views need OpenColorIO: pip install 'daguerre[color]'"
-        ) from None
+    extras.need("PyOpenColorIO", "develop: look: an OCIO view")
+    import PyOpenColorIO
+
     return PyOpenColorIO

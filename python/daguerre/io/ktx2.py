@@ -62,12 +62,13 @@ def decode(data: bytes, where: str) -> NDArray[np.uint8]:
     Raises:
         InputError: The payload is broken, or the package is not installed.
     """
-    package = extras.missing("KHR_texture_basisu")
+    package = extras.missing_for("KHR_texture_basisu")
     if package:
         raise InputError(
-            f"{where}: wanted the package {package} for KTX2, got none; install it: {extras.HINT}"
+            f"{where}: wanted the package {package} for KTX2, got none; install it: "
+            f"{extras.hint(package)}"
         )
-    basisu = import_module(extras.PACKAGES["KHR_texture_basisu"])
+    basisu = import_module(extras.EXTENSIONS["KHR_texture_basisu"])
     try:
         texture = basisu.open(data)
         rgba: NDArray[np.uint8] = texture.transcode("rgba8").data

@@ -10,6 +10,8 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files import extras
+
 from . import exif
 from .exif import Tags
 
@@ -52,11 +54,15 @@ def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags
         target: Where; a path is replaced, a stream is written from its start.
         images: The first is the one that plain readers show.
         exposure: Tags of the EXIF directory.
+
+    Raises:
+        UsageError: The package that writes TIFF is not installed.
     """
     if isinstance(target, Path):
         with target.open("w+b") as stream:
             write_tiff(stream, images, exposure)
         return
+    extras.need("tifffile", "a TIFF or DNG file")
     import tifffile
 
     with tifffile.TiffWriter(target, byteorder="<") as writer:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from daguerre.errors import UsageError
+from daguerre.files import extras
 
 from .lens_section import Drawing, Line, Polygon, section, to_svg
 
@@ -25,10 +25,10 @@ def check_available(suffix: str, *, needed: bool) -> None:
         suffix: Suffix of the file.
         needed: Whether an SVG needs the package, too, as that of a data sheet does.
     """
-    if (needed or suffix != ".svg") and find_spec("matplotlib") is None:
+    if (needed or suffix != ".svg") and extras.missing("matplotlib"):
         other = "--drawing FILE.svg" if needed else ".svg"
         raise UsageError(
-            f'a plot as {suffix} needs matplotlib: pip install "daguerre[plot]"; '
+            f"a plot as {suffix} needs matplotlib: {extras.hint('matplotlib')}; "
             f"{other} needs nothing"
         )
 

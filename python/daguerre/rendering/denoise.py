@@ -10,14 +10,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.metadata import version
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color.spectra import xyz_of
-from daguerre.errors import InputError, UsageError
+from daguerre.errors import InputError
+from daguerre.files import extras
 
 from .adaptive import DARK
 from .denoise_catchers import clean_catchers
@@ -38,11 +38,7 @@ def check_available() -> None:
     Raises:
         UsageError: It is not installed.
     """
-    if find_spec(MODULE) is None:
-        raise UsageError(
-            f"denoise: wanted the package {PACKAGE}, which is not installed; "
-            'install it with: pip install "daguerre[denoise]"'
-        )
+    extras.need(MODULE, "denoise")
 
 
 def denoise(frame: Frame) -> Frame:

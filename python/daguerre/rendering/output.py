@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import OutputError, UsageError
+from daguerre.files import extras
 from daguerre.frame.aovs import Source, names_of
 
 from .parameters import PLATE
@@ -104,8 +106,17 @@ class Output:
             luminance_exposure(metadata)  # or an error that names what is missing
 
     def _load_writers(self) -> None:
-        """Imports the libraries that will write: after hours of drawing, memory may be short."""
+        """Imports the libraries that will write: after hours of drawing, memory may be short.
+
+        Raises:
+            UsageError: One of an extra is not installed.
+        """
         import OpenEXR  # noqa: F401
+
+        for path in self.files:
+            for package in self.photograph.packages(path):
+                extras.need(package, str(path))
+                import_module(package)
 
         if any(path.suffix != ".exr" for path in self.files):
             import OpenImageIO  # noqa: F401

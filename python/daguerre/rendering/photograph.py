@@ -69,6 +69,14 @@ class Photograph:
         """Whether what is written there depends on exposure."""
         return _is_raw(path) or (self.develops and path.suffix.lower() in PICTURES)
 
+    def packages(self, path: Path) -> list[str]:
+        """Packages of extras without which an output cannot be written."""
+        kind = path.suffix.lower()
+        writes_tags = kind in (".tif", ".tiff") or _is_raw(path)
+        mosaic = self.sensor is not None and len(self.sensor.channels) > 1
+        demosaics = mosaic and self.exposes(path) and not _is_raw(path)
+        return ["tifffile"] * writes_tags + ["rawpy"] * demosaics
+
     def files(self, path: Path) -> list[tuple[Path, float]]:
         """The pictures that an output stands for, and how they are exposed, EV."""
         if not self.bracket or not self.exposes(path):

@@ -44,11 +44,13 @@ def supply(
     extension = primitive.extension(NAME)
     if extension is None:
         return False
-    package = extras.missing(NAME)
+    package = extras.missing_for(NAME)
     if package:
         if not accessors.has_bytes(attributes["POSITION"]):
-            extension.fail(f"wanted the package {package}, got none; install it: {extras.HINT}")
-        notes.add(f"{NAME} needs {package} ({extras.HINT}): uncompressed data stand in")
+            extension.fail(
+                f"wanted the package {package}, got none; install it: {extras.hint(package)}"
+            )
+        notes.add(f"{NAME} needs {package} ({extras.hint(package)}): uncompressed data stand in")
         return False
     if mode < 4 or mode > 5:
         primitive.need("mode").fail(f"wanted 4 or 5 with {NAME}, got {mode}")

@@ -52,10 +52,10 @@ def check_extensions(root: Item, notes: Notes) -> None:
                 f"unknown extension: wanted one of {', '.join(sorted(KNOWN))}, "
                 f"got {short(item.text())}"
             )
-        if package := extras.missing(item.text()):
+        if package := extras.missing_for(item.text()):
             item.fail(
                 f"wanted the package {package} for {item.text()}, got none; "
-                f"install it: {extras.HINT}"
+                f"install it: {extras.hint(package)}"
             )
     listed = [item.text() for item in root.list_of("extensionsUsed")]
     counts = _count_uses(root.value)

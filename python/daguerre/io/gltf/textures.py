@@ -109,11 +109,11 @@ class Textures(Value):
             extension = texture.extension(name)
             if extension is None:
                 continue
-            package = extras.missing(name)
+            package = extras.missing_for(name)
             if not package:
                 return self._checked(extension.need("source"))
             self._notes.add(
-                f"{name} needs {package} ({extras.HINT}): a texture "
+                f"{name} needs {package} ({extras.hint(package)}): a texture "
                 + ("is left out" if plain is None else "is shown by the plain image beside it")
             )
         return None if plain is None else self._checked(plain)
