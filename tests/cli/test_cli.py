@@ -16,10 +16,12 @@ from typing import Any
 import numpy as np
 import OpenEXR
 import pytest
+import typer
 
 import daguerre
 from daguerre import _core
-from daguerre.cli import console, main
+from daguerre.cli import console, main, program
+from daguerre.cli.help import EXAMPLES, FIRST
 from daguerre.rendering.schedule import pass_size
 from tests.support import fake_denoiser, fake_session
 
@@ -232,23 +234,37 @@ def test_bad_samples_are_named(
 
 
 def test_help_names_every_flag_and_unit(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["render", "--help"]) == 0
+    assert main(["render", "--help-all"]) == 0
     text = capsys.readouterr().out
-    for flag in (
-        "--lens",
-        "--f-stop",
-        "--focus-breathing",
-        "--aperture-diameter",
-        "--focus-at",
-        "--samples",
-        "--resume",
-        "--json-progress",
-        "--env-rotation",
-        "--blades",
-    ):
-        assert flag in text
+    flags = [option for one in _render().params for option in one.opts if option[:2] == "--"]
+    assert len(flags) > 100
+    for flag in flags:
+        assert text.count(f"{flag} ") + text.count(f"{flag},") + text.count(f"{flag}\n"), flag
     assert "mm" in text
     assert "degrees" in text.lower()
+    for title in ("Common options", "Lens", "Focus", "Shutter", "Ground truth", "Files", "Other"):
+        assert text.count(f"\n{title}:\n") == 1, title
+
+
+def test_help_is_short(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["render", "--help"]) == 0
+    text = capsys.readouterr().out
+    for word in FIRST["render"]:
+        assert f"{word} " in text, word
+    assert len(FIRST["render"]) == 12
+    assert "--blades" not in text
+    assert "`daguerre render --help-all` lists all" in text
+    assert len(text.splitlines()) < 60
+
+
+def test_the_example_of_a_help_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    words = EXAMPLES["render"].replace("scene.glb", "s.glb").split()
+    assert main([*words[1:], "--dry-run"]) == 0
+
+
+def _render() -> Any:
+    command = typer.main.get_command(program("render"))
+    return getattr(command, "commands", {}).get("render", command)
 
 
 def test_no_command_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -552,7 +568,7 @@ def test_the_package_runs_as_the_command() -> None:
 def test_denoising_without_the_extra_says_how_to_get_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("daguerre.rendering.denoise.find_spec", lambda name: None)
+    monkeypatch.setattr("daguerre.files.extras.find_spec", lambda name: None)
     assert main(["render", "s.glb", "-o", "a.exr", "--denoise", *SMALL]) == 2
     assert 'pip install "daguerre[denoise]"' in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -13,7 +13,7 @@ from daguerre import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-BUILT_IN = {"--help", "--version"}
+BUILT_IN = {"--help", "--help-all", "--version"}
 
 
 def flags_of_the_program() -> set[str]:

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.plots import lens_file as plot
+from daguerre.files import extras
 from daguerre.rendering.session import Session
 from tests.support import scenes
 from tests.support.make_gltf import Builder
@@ -136,7 +136,7 @@ def test_a_prescription_whose_image_is_far_smaller_than_the_sensor() -> None:
 def test_a_plot_without_matplotlib(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(plot, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     for flag, name in (("--plot", "lens.svg"), ("--plot", "lens.png"), ("--drawing", "lens.png")):
         target = tmp_path / name
         assert main(["lens", "tessar-50mm-f2.8", flag, str(target)]) == 2

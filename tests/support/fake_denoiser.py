@@ -83,6 +83,6 @@ def install(
 
     library = Library(filter)
     set_item(sys.modules, "mitsuba_oidn", library)
-    set_attribute("daguerre.rendering.denoise.find_spec", lambda name: True)
+    set_attribute("daguerre.files.extras.find_spec", lambda name: True)
     set_attribute("daguerre.rendering.denoise.version", lambda name: "0.1.2")
     return library

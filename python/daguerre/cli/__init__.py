@@ -22,6 +22,7 @@ from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
+from .help import ALL, HelpCommand
 
 INTERNAL = 70
 INTERRUPTED = 75
@@ -56,11 +57,11 @@ def program(*names: str) -> typer.Typer:
         no_args_is_help=False,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
-        context_settings={"help_option_names": ["-h", "--help"]},
+        context_settings={"help_option_names": ["-h", "--help", ALL]},
     )
     app.callback(invoke_without_command=True)(_top)
     for name in names or COMMANDS:
-        app.command(name=name)(_function(name))
+        app.command(name=name, cls=HelpCommand)(_function(name))
     return app
 
 

@@ -25,7 +25,7 @@ from .truth import GT_LENSES, GT_RAYS, GT_TIMES, MAX_RAYS
 #: Samples per pixel, where neither they nor a noise are asked for.
 DEFAULT_SPP = 64
 MAX_SEED = (1 << 64) - 1
-OUTPUT, SAMPLING = "Output", "Sampling"
+PICTURE, TRUTH, SAMPLING, FILES = "Picture", "Ground truth", "Sampling", "Files"
 ENVIRONMENT, TRANSPARENT, PLATE = BACKGROUNDS = ("environment", "transparent", "plate")
 
 
@@ -126,13 +126,13 @@ FILM_ROWS = (
     ),
     Setting(
         "crop", "Draw only these pixels", "px", kind="value", normal=check_crop, parse=_crop_text,
-        flags=("--crop",), metavar="X0,X1,Y0,Y1", panel=OUTPUT,
+        flags=("--crop",), metavar="X0,X1,Y0,Y1", panel=PICTURE,
         in_python="Pixel region (x0, y0, x1, y1) to draw, end exclusive; default: all.",
     ),
     Setting(
         "overscan", "Pixels beside the picture, in the data window of the .exr: for all sides, for "
         "left, top, right and bottom, or as many as undistorting needs", "px", kind="value",
-        flags=("--overscan",), metavar="PX|10%|L,T,R,B|undistort", panel=OUTPUT,
+        flags=("--overscan",), metavar="PX|10%|L,T,R,B|undistort", panel=PICTURE,
         in_python="Pixels to draw beside the picture (``docs/plates.md``): a number for all sides, "
         "``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``: as many as a later "
         "undistortion needs. The picture keeps its bits.", explained=("plates.md#overscan",),
@@ -149,18 +149,18 @@ FILM_ROWS = (
     Setting(
         "cryptomatte", "Mattes by the names of objects, materials or assets: shares of each pixel "
         "that they cover", default=(), kind="value", normal=check_layers,
-        flags=("--cryptomatte",), metavar="object,material,asset", panel=OUTPUT,
+        flags=("--cryptomatte",), metavar="object,material,asset", panel=TRUTH,
         default_words="none", explained=("plates.md#cryptomatte",),
     ),
     Setting(
         "cryptomatte_ranks", "Names that {cryptomatte} keeps of each pixel", default=6,
         kind="whole", low=1, high=MAX_RANKS, flags=("--cryptomatte-ranks",), metavar="N",
-        panel=OUTPUT, tells_default=True,
+        panel=TRUTH, tells_default=True,
     ),
     Setting(
         "bands", f"Number of wavelength bands to keep, {LEAST_BANDS} to {MOST_BANDS}, from which "
         "any sensor's channels can be made later", default=0, kind="whole", normal=check_bands,
-        flags=("--bands",), metavar="N", panel=OUTPUT, tells_default=True,
+        flags=("--bands",), metavar="N", panel=TRUTH, tells_default=True,
         in_python="Number of wavelength bands that the frame keeps (``frame.bands``), from which "
         "any sensor's channels can be made later; default: 0, none.",
     ),
@@ -220,13 +220,13 @@ PLATE_ROWS = (
         "background", "Background behind the scene: the environment as the lens sees it, nothing, "
         "or the photograph of the set. The environment gives light in any case",
         default="environment", kind="choice", choices=BACKGROUNDS,
-        flags=("--background",), metavar="environment|transparent|plate", panel=OUTPUT,
+        flags=("--background",), metavar="environment|transparent|plate", panel=PICTURE,
         tells_default=True, explained=("plates.md#alpha",),
     ),
     Setting(
         "see_through", "Smooth glass keeps a hole for what lies straight behind it, instead of "
         "covering it with what it refracts", default=False, kind="flag",
-        normal=_switch("True or False"), flags=("--see-through",), panel=OUTPUT,
+        normal=_switch("True or False"), flags=("--see-through",), panel=PICTURE,
         explained=("plates.md#alpha",),
     ),
 )
@@ -234,7 +234,7 @@ TRUTH_ROWS = (
     Setting(
         "gt_time", "Exact depth, P, N and ids at that moment of the exposure, instead of means",
         kind="choice", choices=tuple(GT_TIMES),
-        flags=("--gt-time",), metavar="open|mid|close", panel=OUTPUT,
+        flags=("--gt-time",), metavar="open|mid|close", panel=TRUTH,
         default_words="mid with motion", explained=("ground-truth.md",),
         more="`--aov motion,motion_back` is where things go and come from, px",
         in_python="open, mid or close: depth, distance, P, N, object_id and material_id are exact "
@@ -244,7 +244,7 @@ TRUTH_ROWS = (
     Setting(
         "gt_lens", "Ground truth by the chief ray of each pixel, or as means over the rays that "
         "expose it", default="chief", kind="choice", choices=GT_LENSES,
-        flags=("--gt-lens",), metavar="chief|mean", panel=OUTPUT, tells_default=True,
+        flags=("--gt-lens",), metavar="chief|mean", panel=TRUTH, tells_default=True,
         explained=("ground-truth.md#means",),
         more="`--aov coverage` is the share of its light that meets a surface",
         in_python="Rays for ground truth: chief (default), the one of the pixel's centre; mean: "
@@ -253,7 +253,7 @@ TRUTH_ROWS = (
     ),
     Setting(
         "gt_rays", "Rays per pixel for {gt_lens} mean", kind="whole", low=1, high=MAX_RAYS,
-        flags=("--gt-rays",), metavar="N", panel=OUTPUT, usual=GT_RAYS, tells_default=True,
+        flags=("--gt-rays",), metavar="N", panel=TRUTH, usual=GT_RAYS, tells_default=True,
         more="They are the same ones each time",
     ),
     Setting(

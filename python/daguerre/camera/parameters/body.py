@@ -10,15 +10,16 @@ from daguerre.parameters.parameter import Parameter
 
 from . import needs, typed
 
-_Row = partial(Parameter, panel="Camera")
+_Row = partial(Parameter, panel="Film and sensor")
+_LensRow = partial(Parameter, panel="Lens")
 #: mm; of a camera for which no other is said
 FULL_FRAME = (36.0, 24.0)
 
 _Part = partial(
-    _Row, explained=("scatter.md#the-parts",), needs=(needs.SCATTER,), tells_default=True
+    _LensRow, explained=("scatter.md#the-parts",), needs=(needs.SCATTER,), tells_default=True
 )
 GHOSTS = (
-    _Row(
+    _LensRow(
         "cover_glass",
         "Cover glass before the sensor, and the gap behind it, mm; it makes ghosts",
         "mm",
@@ -31,7 +32,7 @@ GHOSTS = (
         explained=("flare.md#the-body",),
         needs=(needs.GHOSTS,),
     ),
-    _Row(
+    _LensRow(
         "sensor_reflectance",
         "Share of light that the sensor sends back into the lens, 0 to 1",
         default=0.0,
@@ -73,7 +74,7 @@ PARTS = (
 )
 
 SENSOR = (
-    _Row(
+    _LensRow(
         "scatter",
         "Scatter of an exact lens",
         kind="value",
@@ -152,7 +153,7 @@ STANDING = (
         needs=(needs.LENS_ITSELF,),
         movable=True,
     ),
-    _Row(
+    _LensRow(
         "decenter",
         "Shift (mm) and tilt (degrees) of these surfaces of the lens; repeatable",
         "mm, deg",

@@ -11,7 +11,8 @@ from . import needs
 
 #: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
 _PINHOLE = 8.0
-_Row = partial(Parameter, panel="Camera")
+EXPOSURE_PANEL = "Exposure"
+_Row = partial(Parameter, panel=EXPOSURE_PANEL)
 
 EXPOSURE = (
     _Row(

@@ -8,8 +8,9 @@ from daguerre.parameters.parameter import Parameter
 
 from . import needs, typed
 
-_Row = partial(Parameter, panel="Camera")
-_Mask = partial(_Row, kind="picture", metavar="FILE", needs=(needs.ELEMENTS,))
+_Row = partial(Parameter, panel="Aperture")
+_LensRow = partial(Parameter, panel="Lens")
+_Mask = partial(_LensRow, kind="picture", metavar="FILE", needs=(needs.ELEMENTS,))
 
 IRIS = (
     _Row(
@@ -68,7 +69,7 @@ IRIS = (
         more="It is as wide as the iris opens",
         in_python="Grey picture (H, W) of dust and scratches at the iris, as wide as it opens.",
     ),
-    _Row(
+    _LensRow(
         "ripple",
         "Grooves in the aspheric surfaces: RMS height, nm, and period, um",
         "nm, um",

@@ -10,13 +10,14 @@ from daguerre.parameters.parameter import Parameter
 from . import needs
 
 _QUOTED = " or ".join(f'``"{name}"``' for name in IDEAL)
-LensRow = partial(Parameter, panel="Camera")
+LensRow = partial(Parameter, panel="Lens")
 
 #: Camera of a scene; no parameter of the camera itself.
-CHOICE = LensRow(
+CHOICE = Parameter(
     "camera",
     "Camera of the scene, by name",
     kind="text",
+    panel="Camera",
     flags=("-c", "--camera"),
     metavar="NAME",
     more="`render` takes several, between commas",

@@ -9,7 +9,8 @@ from daguerre.parameters.parameter import Parameter
 
 from . import needs, typed
 
-_Row = partial(Parameter, panel="Camera")
+_Row = partial(Parameter, panel="Aperture")
+_FocusRow = partial(Parameter, panel="Focus")
 _F_STOP = 5.6
 _NO_PINHOLE = "; a pinhole is its own kind: lens='pinhole'"
 
@@ -63,7 +64,7 @@ STOP = (
 )
 
 FOCUS = (
-    _Row(
+    _FocusRow(
         "focus_distance",
         "Focus distance, m, or inf",
         "m",
@@ -78,7 +79,7 @@ FOCUS = (
         rivals="focus",
         movable=True,
     ),
-    _Row(
+    _FocusRow(
         "focus_at",
         "Focus on the surface that this pixel shows",
         "px",
@@ -90,7 +91,7 @@ FOCUS = (
         in_python="Pixel (x, y) to focus on: the surface that it shows becomes sharp.",
         rivals="focus",
     ),
-    _Row(
+    _FocusRow(
         "focus_on",
         "Focus on the nearest surface point of this node",
         kind="text",
@@ -99,7 +100,7 @@ FOCUS = (
         in_python="Name of a node to focus on: its nearest surface point becomes sharp.",
         rivals="focus",
     ),
-    _Row(
+    _FocusRow(
         "focus_from",
         "Where the focus distance starts",
         default="pupil",
@@ -108,7 +109,7 @@ FOCUS = (
         flags=("--focus-from",),
         tells_default=True,
     ),
-    _Row(
+    _FocusRow(
         "focus_by",
         "Focus of rays near the axis, or smallest spot on the axis",
         default="paraxial",
@@ -118,7 +119,7 @@ FOCUS = (
         tells_default=True,
         needs=(needs.OF_LENSES,),
     ),
-    _Row(
+    _FocusRow(
         "focus_breathing",
         "Thin lens: narrow the field in close focus",
         default=False,

@@ -16,7 +16,7 @@ from daguerre.cli import console
 
 from .groups import Text, option
 
-_CAMERA = "Camera"
+_CAMERA = "Calibration"
 
 
 @dataclass(frozen=True)

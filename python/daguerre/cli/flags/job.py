@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from daguerre.rendering.parameters import DEFAULT, OUTPUT, SAMPLING
+from daguerre.camera.parameters.exposure import EXPOSURE_PANEL
+from daguerre.rendering.parameters import DEFAULT, FILES, PICTURE, SAMPLING, TRUTH
 
 from .groups import Text, option
 
@@ -26,7 +27,7 @@ class JobFlags:
             metavar="FILE",
             help="File to write: .exr, .png, .jpg, .tif or .dng; repeatable. Without it only maps "
             "are written.",
-            panel=OUTPUT,
+            panel=FILES,
         ),
     ] = None
     res: Annotated[
@@ -35,7 +36,7 @@ class JobFlags:
             "--res",
             metavar="WxH|50%",
             help=f"Size of the picture, px [{_WIDTH}x{_HEIGHT}].",
-            panel=OUTPUT,
+            panel=PICTURE,
         ),
     ] = None
     aov: Annotated[
@@ -46,19 +47,19 @@ class JobFlags:
             help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
             "distance,material_id,motion,motion_back,coverage of ground truth; disparity of "
             "--stereo; exposure,saturated of a photograph.",
-            panel=OUTPUT,
+            panel=TRUTH,
         ),
     ] = None
-    aovs: Annotated[
-        bool, option("--aovs", help="Keep the channels of --aov all.", panel=OUTPUT)
-    ] = False
+    aovs: Annotated[bool, option("--aovs", help="Keep the channels of --aov all.", panel=TRUTH)] = (
+        False
+    )
     coco: Annotated[
         Path | None,
         option(
             "--coco",
             metavar="FILE.json",
             help="Write boxes, masks and categories of all things to one COCO file.",
-            panel=OUTPUT,
+            panel=TRUTH,
         ),
     ] = None
     categories: Annotated[
@@ -67,7 +68,7 @@ class JobFlags:
             "--categories",
             metavar="FILE.json",
             help="Categories of nodes for --coco, by patterns of their names [by names].",
-            panel=OUTPUT,
+            panel=TRUTH,
         ),
     ] = None
     tone: Annotated[
@@ -76,7 +77,7 @@ class JobFlags:
             "--tone",
             metavar="srgb|soft",
             help="Tone curve of a picture that is not developed: 1 is white [srgb].",
-            panel=OUTPUT,
+            panel=PICTURE,
         ),
     ] = "srgb"
     exposure: Annotated[
@@ -85,7 +86,7 @@ class JobFlags:
             "--exposure",
             metavar="auto[:centre|spot|matrix]",
             help="Meter the ISO as a camera does [centre].",
-            panel=OUTPUT,
+            panel=EXPOSURE_PANEL,
         ),
     ] = None
     bracket: Annotated[
@@ -94,7 +95,7 @@ class JobFlags:
             "--bracket",
             metavar="EV,EV,...",
             help="Write a picture at each of these exposures, EV, such as -2,0,2.",
-            panel=OUTPUT,
+            panel=EXPOSURE_PANEL,
         ),
     ] = None
     like_plate: Annotated[
@@ -104,7 +105,7 @@ class JobFlags:
             metavar="CAMERA.json",
             help="Camera of a photo by `match-plate`: its lens, exposure, sensor and size; "
             "pictures get its blur, noise and development.",
-            panel=OUTPUT,
+            panel=PICTURE,
         ),
     ] = None
     look: Annotated[
@@ -113,11 +114,11 @@ class JobFlags:
             "--look",
             metavar="NAME",
             help="Tone curve of a photo: neutral, standard, film, filmic, ocio:VIEW [neutral].",
-            panel=OUTPUT,
+            panel=PICTURE,
         ),
     ] = None
     denoise: Annotated[
-        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.", panel=OUTPUT)
+        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.", panel=PICTURE)
     ] = False
     noisy: Annotated[
         list[Path] | None,
@@ -125,7 +126,7 @@ class JobFlags:
             "--noisy",
             metavar="FILE",
             help="File for the picture before --denoise; repeatable.",
-            panel=OUTPUT,
+            panel=FILES,
         ),
     ] = None
     frames: Annotated[
@@ -135,7 +136,7 @@ class JobFlags:
             metavar="A-BxS",
             help="Frames of a sequence: frame f is drawn at --time + f / fps, into -o "
             "NAME.####.exr; --resume skips complete ones.",
-            panel=OUTPUT,
+            panel=FILES,
         ),
     ] = None
     stereo: Annotated[
@@ -153,11 +154,11 @@ class JobFlags:
             "--samples",
             metavar="A:B",
             help="Draw samples A to B only, a pass for `merge`.",
-            panel=SAMPLING,
+            panel=FILES,
         ),
     ] = None
     resume: Annotated[
-        bool, option("--resume", help="Resume from OUT.checkpoint.exr.", panel=SAMPLING)
+        bool, option("--resume", help="Resume from OUT.checkpoint.exr.", panel=FILES)
     ] = False
     memory: Annotated[
         Text,
@@ -171,9 +172,7 @@ class JobFlags:
     ] = None
     checkpoint: Annotated[
         str,
-        option(
-            "--checkpoint", metavar="S", help="Time between checkpoints, s [60].", panel=SAMPLING
-        ),
+        option("--checkpoint", metavar="S", help="Time between checkpoints, s [60].", panel=FILES),
     ] = "60"
     preview: Annotated[
         bool,

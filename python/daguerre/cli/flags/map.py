@@ -12,7 +12,7 @@ from daguerre.cli import console
 
 from .groups import option
 
-_MAPS = "Maps of the camera"
+_MAPS = "Ground truth"
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from daguerre.scene.catcher import EFFECTS
 
 from .groups import Text, option
 
-_LIGHT = "Scene and light"
+_LIGHT = "Light and scene"
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,74 @@
+"""Help pages: flags in groups. A long page begins with what everyone needs; ``--help-all`` has all.
+
+Texts, groups and their order are those of the flags; nothing here knows a command but by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import typer.core
+
+from . import console
+
+ALL = "--help-all"
+#: Flags that a page shows first; the others wait for --help-all.
+FIRST = {
+    "render": (
+        "--output", "--res", "--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor",
+        "--env", "--noise", "--denoise", "--frames",
+    ),
+}  # fmt: skip
+EXAMPLES = {
+    "render": "daguerre render scene.glb --lens double-gauss-50mm-f2 --f-stop 2 --focus 1.5 "
+    "--noise 0.05 -o out.exr -o out.png",
+}
+#: Flags without a group.
+OTHER = "Other"
+
+Rows = list[tuple[str, str]]
+
+
+class HelpCommand(typer.core.TyperCommand):
+    """A command whose help has its flags in groups."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Writes the arguments and the flags."""
+        name = self.name or ""
+        first = FIRST.get(name, ())
+        whole = ALL in console.argv or not first
+        if name in EXAMPLES:
+            with formatter.section("Example"):
+                formatter.write_text(EXAMPLES[name])
+        _write(formatter, "Arguments", _rows(ctx, self._of_kind("argument", ctx)))
+        flags = self._of_kind("option", ctx)
+        common = [flag for word in first for flag in flags if word in flag.opts]
+        _write(formatter, "Common options", _rows(ctx, common))
+        if not whole:
+            _write(formatter, "Help", _rows(ctx, flags[-1:]))
+            formatter.write_paragraph()
+            formatter.write_text(f"`{ctx.command_path} {ALL}` lists all {len(flags)} flags.")
+            return
+        groups: dict[str, list[Any]] = {}
+        for flag in flags:
+            if flag not in common:
+                groups.setdefault(getattr(flag, "rich_help_panel", None) or OTHER, []).append(flag)
+        other = groups.pop(OTHER, [])
+        for title, members in groups.items():
+            _write(formatter, title, _rows(ctx, members))
+        _write(formatter, OTHER if groups else "Options", _rows(ctx, other))
+
+    def _of_kind(self, kind: str, ctx: Any) -> list[Any]:
+        return [one for one in self.get_params(ctx) if one.param_type_name == kind]
+
+
+def _rows(ctx: Any, parameters: Iterable[Any]) -> Rows:
+    """Names and texts of parameters that a help shows."""
+    return [row for one in parameters if (row := one.get_help_record(ctx)) is not None]
+
+
+def _write(formatter: Any, title: str, rows: Rows) -> None:
+    if rows:
+        with formatter.section(title):
+            formatter.write_dl(rows)
