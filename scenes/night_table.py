@@ -20,9 +20,8 @@ from night import orrery, room, things
 from night.stage import Stage
 
 
-def main() -> None:
-    """Writes the scene to the path on the command line."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/night_table.glb")
+def write(path: Path) -> None:
+    """Writes the scene."""
     stage = Stage()
     room.add_camera(stage)
     room.add_table(stage)
@@ -36,6 +35,12 @@ def main() -> None:
     room.add_moonlight(stage)
     stage.glb.add_turns("orrery", turns, 24.0)
     stage.glb.write(path)
+
+
+def main() -> None:
+    """Writes the scene to the path on the command line."""
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/night_table.glb")
+    write(path)
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
 
 

@@ -44,6 +44,7 @@ COMMANDS = {
     "match-plate": ".match_plate",
     "light-probe": ".light_probe",
     "composite": ".composite",
+    "demo": ".demo",
     "version": ".version",
 }
 

@@ -1,0 +1,63 @@
+"""``daguerre demo``: a first picture, with nothing to find or to download."""
+
+from __future__ import annotations
+
+import runpy
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import daguerre
+from daguerre.errors import OutputError
+from daguerre.files import extras
+
+from . import console
+from .flags.groups import option
+
+
+def demo(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Folder for the scene and its picture [out].")
+    ] = Path("out"),
+    res: Annotated[
+        str, option("--res", metavar="WxH", help="Size of the picture, px [720x480].")
+    ] = "720x480",
+    spp: Annotated[
+        int, option("--spp", metavar="N", help="Samples per pixel, at least 1 [64].")
+    ] = 64,
+) -> int:
+    """Renders a table-top at night through a double Gauss at f/2: a scene to play with.
+
+    Writes night_table.glb, demo.png and demo.exr, and prints the command that renders them.
+    """
+    from . import main
+
+    scene = folder / "night_table.glb"
+    write_scene(scene)
+    words = ["render", str(scene), "--lens", "double-gauss-50mm-f2", "--f-stop", "2"]
+    words += ["--res", res, "--spp", str(spp), "--tone", "soft", "-o", str(folder / "demo.png")]
+    if extras.missing("mitsuba_oidn"):
+        words += ["-o", str(folder / "demo.exr")]
+        console.show(f"not denoised; that takes an extra: {extras.hint('mitsuba_oidn')}")
+    else:
+        words += ["--denoise", "--noisy", str(folder / "demo.exr")]
+    console.show(shlex.join(["daguerre", *words]))
+    return main(words)
+
+
+def write_scene(path: Path) -> None:
+    """Writes the demo scene as .glb.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
+    package = Path(daguerre.__file__).parent
+    installed, checkout = package / "scenes", package.parents[1] / "scenes"
+    made = runpy.run_path(str((installed if installed.exists() else checkout) / "night_table.py"))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        made["write"](path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from error
