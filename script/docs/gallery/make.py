@@ -22,6 +22,7 @@ import numpy as np
 import OpenImageIO as oiio
 import photograph_page
 import photographs
+import thumbnails
 import word_page
 from numpy.typing import NDArray
 from pictures import GLASS, LIGHT, MOTION, NIGHT, PICTURES, Picture
@@ -168,9 +169,16 @@ def section(pictures: list[Picture]) -> list[str]:
     for picture in pictures:
         if (PAGES / f"{picture.name}.jpg").exists():
             typed = "\n".join(command for command, _ in picture.commands("out"))
-            shown = f"![{picture.title}]({picture.name}.jpg)"
-            parts.append(f"{shown}\n\n{picture.title}\n\n```\n{typed}\n```\n")
+            shown = f'<a id="{picture.name}"></a>\n\n![{picture.title}]({picture.name}.jpg)'
+            text = f"{picture.title}{scene_link(picture.scene)}"
+            parts.append(f"{shown}\n\n{text}\n\n```\n{typed}\n```\n")
     return parts
+
+
+def scene_link(scene: str) -> str:
+    """The program that makes a scene, where the repository has it."""
+    place = Path(scene.replace("out/", "scenes/")).with_suffix(".py")
+    return f" Scene: [{place}](../../{place})." if (ROOT / place).exists() else ""
 
 
 def main() -> None:
@@ -216,6 +224,7 @@ def main() -> None:
     (PAGES / "plates.md").write_text(
         photograph_page.page(into_plate.INTRODUCTION, into_plate.sheets())
     )
+    (PAGES.parent / "gallery.md").write_text(thumbnails.page(PAGES))
 
 
 if __name__ == "__main__":
