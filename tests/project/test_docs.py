@@ -45,6 +45,8 @@ def test_command_line_page_names_every_command():
         *("README.md", "scenes/README.md", "script/demo"),
         *("docs/motion.md", "docs/ground-truth.md", "docs/coming-from.md"),
         *("docs/gallery/README.md", "docs/gallery/calibrated.md"),
+        *("docs/first-picture.md", "docs/for-photographers.md", "docs/for-look-development.md"),
+        *("docs/for-vision.md", "docs/for-optics.md", "docs/units.md"),
     ],
 )
 def test_commands_in_texts_use_flags_that_exist(name):
