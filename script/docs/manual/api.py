@@ -141,7 +141,8 @@ def class_blocks(path: str, cls: type) -> list[str]:
 def field_row(path: str, one: dataclasses.Field[Any], doc: Docstring) -> str:
     """A field of a dataclass in one line."""
     said = doc.taken(one.name)
-    kind = f" `{FACE['field_text'](one)}`" if FACE["field_text"](one) else ""
+    default = " ".join(FACE["field_text"](one).split())
+    kind = f" `{default}`" if default else ""
     return f"- {anchor(f'{path}.{one.name}')}**`{one.name}`**{kind}" + (f": {said}" if said else "")
 
 

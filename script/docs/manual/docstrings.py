@@ -92,9 +92,15 @@ def line_safe(text: str) -> str:
     text = _ROLE.sub(r"`\1`", text)
     parts, end = [], 0
     for match in _CODE.finditer(text):
-        parts += [escaped(text[end : match.start()]), f"`{' '.join(match[2].split())}`"]
+        parts += [escaped(text[end : match.start()]), code_or_page(" ".join(match[2].split()))]
         end = match.end()
     return "".join([*parts, escaped(text[end:])])
+
+
+def code_or_page(text: str) -> str:
+    """Code; a page of docs becomes a link to it, from the folder beside it."""
+    page = re.fullmatch(r"docs/([\w/-]+\.md)", text)
+    return f"[{page[1]}](../{page[1]})" if page else f"`{text}`"
 
 
 def escaped(text: str) -> str:
