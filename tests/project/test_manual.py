@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 TOOLS = ROOT / "script" / "docs" / "manual"
 GUIDES = sorted([*DOCS.glob("for-*.md"), DOCS / "first-picture.md"])
-LINK = re.compile(r"\]\(([^)\s#]*)(#[^)\s]*)?\)")
+LINK = re.compile(r"\]\(([^)\s#]*)(#[^)\s]*)?(?: \"[^\"]*\")?\)")
 
 
 @pytest.fixture
@@ -177,6 +177,16 @@ def test_commands_of_guides_parse(page: Path) -> None:
             assert (ROOT / name).is_file()
         else:
             top.commands[name].make_context(name, rest)
+
+
+def test_thumbnails_are_those_of_the_gallery(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Written by ``script/docs/gallery/make.py --page``; every picture of a page has one."""
+    monkeypatch.syspath_prepend(str(ROOT / "script" / "docs" / "gallery"))
+    import thumbnails
+
+    text = (DOCS / "gallery.md").read_text()
+    assert text == thumbnails.page(DOCS / "gallery")
+    assert len(re.findall(r"<img ", text)) > 50
 
 
 @pytest.mark.slow

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-COLUMNS = 3
+#: of a thumbnail, px
+WIDTH = 230
 #: Pages of the gallery, in the order of their thumbnails.
 SHEETS = (
     ("Pictures", "README.md"),
@@ -26,32 +27,22 @@ def page(folder: Path) -> str:
     """The page, of the pages that are in the folder of the gallery."""
     parts = [HEAD]
     for title, name in SHEETS:
-        cells = thumbnails(name, (folder / name).read_text("utf-8"))
-        parts += [f"## {title}\n", *rows(cells), ""]
+        parts += [f"## {title}\n", *thumbnails(name, (folder / name).read_text("utf-8")), ""]
     return "\n".join(parts)
 
 
 def thumbnails(name: str, text: str) -> list[str]:
-    """A cell for each picture of a page, which leads to its place there."""
-    cells = []
+    """Each picture of a page, leading to its place there; in one paragraph, which wraps."""
+    found = []
     place = ""
     for anchor, heading, alt, file in _PLACE.findall(text):
         if not file:
             place = anchor or slug(heading)
             continue
-        shown = (
-            f'<img src="gallery/{file}" width="260" loading="lazy" alt="{alt.replace("|", ",")}">'
-        )
-        words = Path(file).stem.replace("_", " ")
-        cells.append(f"[{shown}](gallery/{name}#{place})<br>{words}")
-    return cells
-
-
-def rows(cells: list[str]) -> list[str]:
-    """The cells as a table."""
-    cells = [*cells, *[""] * (-len(cells) % COLUMNS)]
-    lines = [f"| {' | '.join(cells[k : k + COLUMNS])} |" for k in range(0, len(cells), COLUMNS)]
-    return [f"|{' |' * COLUMNS}", f"|{'---|' * COLUMNS}", *lines]
+        words = alt.replace('"', "&quot;")
+        shown = f'<img src="gallery/{file}" width="{WIDTH}" loading="lazy" alt="{words}">'
+        found.append(f'[{shown}](gallery/{name}#{place} "{words}")')
+    return found
 
 
 def slug(heading: str) -> str:

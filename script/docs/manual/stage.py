@@ -19,7 +19,10 @@ import api
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / "docs"
 WORKER = "manual/iframe-worker.js"
-LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))|((?:href|src)=\")([^\"#]+)(#[^\"]*)?(\")")
+LINK = re.compile(
+    r"(\]\()([^)\s#]+)(#[^)\s]*)?((?: \"[^\"]*\")?\))"
+    r"|((?:href|src)=\")([^\"#]+)(#[^\"]*)?(\")"
+)
 FENCE = re.compile(r"^(```+|~~~+).*?^\1", re.MULTILINE | re.DOTALL)
 LANGUAGES = {".py": "python", ".json": "json", ".yaml": "yaml", ".diff": "diff", ".cpp": "cpp"}
 LANGUAGES |= {".h": "cpp", ".toml": "toml", ".md": "markdown"}
