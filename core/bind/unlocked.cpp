@@ -45,7 +45,7 @@ void at_exit() {
     last_thread = std::this_thread::get_id();
     ending = true;
     // Daemon threads keep what they refer to, which is no fault.
-    if (nb::cast<int>(nb::module_::import_("threading").attr("active_count")()) > 1) nb::set_leak_warnings(false);
+    if (nb::len(nb::module_::import_("sys").attr("_current_frames")()) > 1) nb::set_leak_warnings(false);
     const nb::gil_scoped_release release;
     while (forks::working != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }

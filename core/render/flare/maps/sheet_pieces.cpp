@@ -182,7 +182,7 @@ void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked*
     if (!map_.cells()[piece.cell].exact) {
         const double apart = spread(piece.cell) * std::exp2(-double(piece.level));
         piece.gray = apart <= kGray;
-        wrong = hypot(wrong_[piece.cell], piece.gray ? 0.5 * kMoved * apart : 0);
+        wrong = hypot(double(wrong_[piece.cell]), piece.gray ? 0.5 * kMoved * apart : 0);
     }
     pieces_.push_back(piece), looks_.push_back(count);
     doubt_.push_back({sure ? kSurelyUnseen : kUnseen, sure ? kLeastWrong : wrong});
