@@ -55,7 +55,7 @@ def write_scene(path: Path) -> None:
     """
     package = Path(daguerre.__file__).parent
     installed, checkout = package / "scenes", package.parents[1] / "scenes"
-    made = runpy.run_path(str((installed if installed.exists() else checkout) / "night_table.py"))
+    made = runpy.run_path(str((checkout if checkout.exists() else installed) / "night_table.py"))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         made["write"](path)
