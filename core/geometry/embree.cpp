@@ -230,6 +230,8 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
 }
 
 bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
+    // Found by fuzz_scene: lamps so far away that no ray to them can be traced. No light comes along those.
+    if (!is_traceable(ray) || std::isnan(ray.t_min) || std::isnan(ray.t_max)) return true;
     Context context;
     init_context(context.embree);
     context.ray = &ray;
