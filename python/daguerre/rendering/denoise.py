@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 Image = NDArray[np.float32]
 
-PACKAGE, MODULE = "mitsuba-oidn", "mitsuba_oidn"
+MODULE = "mitsuba_oidn"
+PACKAGE = extras.EXTRAS[MODULE][0]
 #: Squares of pixels over whose means light is compared that denoising may have moved, px.
 BLOCK = 8
 

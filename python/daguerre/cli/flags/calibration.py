@@ -16,7 +16,7 @@ from daguerre.cli import console
 
 from .groups import Text, option
 
-_CAMERA = "Calibration"
+_CALIBRATION = "Calibration"
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class CalibrationFlags:
             help="Calibration instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO or COLMAP; "
             "cameras of a file by name, or all; NAME with # takes the picture of each frame; "
             "repeatable.",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = None
     pixel_pitch: Annotated[
@@ -40,7 +40,7 @@ class CalibrationFlags:
             "--pixel-pitch",
             metavar="UM",
             help="Pixel pitch of the calibrated sensor, um; blur depends on it [by --sensor].",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = None
 
@@ -50,7 +50,7 @@ class CalibrationFlags:
             "--calibration-size",
             metavar="WxH",
             help="Size of the calibrated picture, px, where the file does not say it.",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = None
     calibration_unit: Annotated[
@@ -59,7 +59,7 @@ class CalibrationFlags:
             "--calibration-unit",
             metavar="M",
             help="Length unit of OpenCV's stereo pairs and COLMAP's models, such as 25mm [1 m].",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = None
     calibration_model: Annotated[
@@ -68,7 +68,7 @@ class CalibrationFlags:
             "--calibration-model",
             metavar="opencv|fisheye",
             help="Model of OpenCV's calibration files that do not say it [opencv].",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = None
     rectified: Annotated[
@@ -76,7 +76,7 @@ class CalibrationFlags:
         option(
             "--rectified",
             help="Read pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = False
     timeshift: Annotated[
@@ -84,7 +84,7 @@ class CalibrationFlags:
         option(
             "--timeshift",
             help="Delay shutters of a Kalibr chain by timeshift_cam_imu, less that of cam0.",
-            panel=_CAMERA,
+            panel=_CALIBRATION,
         ),
     ] = False
 

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from daguerre.cli import console
+from daguerre.rendering.parameters import TRUTH
 
 from .groups import option
-
-_MAPS = "Ground truth"
 
 
 @dataclass(frozen=True)
@@ -25,7 +24,7 @@ class MapFlags:
             "--export-raymap",
             metavar="FILE.exr",
             help="Ray of each pixel: origin, direction and time.",
-            panel=_MAPS,
+            panel=TRUTH,
         ),
     ] = None
     raymap_frame: Annotated[
@@ -35,7 +34,7 @@ class MapFlags:
             metavar="camera|world",
             help="Frame of --export-raymap: the camera's (x right, y down, z ahead) or the "
             "world's [camera].",
-            panel=_MAPS,
+            panel=TRUTH,
         ),
     ] = "camera"
     export_stmap_undistort: Annotated[
@@ -44,7 +43,7 @@ class MapFlags:
             "--export-stmap-undistort",
             metavar="FILE.exr",
             help="STMap that straightens this camera's pictures.",
-            panel=_MAPS,
+            panel=TRUTH,
         ),
     ] = None
     export_stmap_redistort: Annotated[
@@ -53,7 +52,7 @@ class MapFlags:
             "--export-stmap-redistort",
             metavar="FILE.exr",
             help="STMap that bends straight pictures as this camera does.",
-            panel=_MAPS,
+            panel=TRUTH,
         ),
     ] = None
 
