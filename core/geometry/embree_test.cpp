@@ -5,6 +5,7 @@
 #include "math/hash.h"
 #include <sys/mman.h>
 
+#include <limits>
 #include <random>
 
 #include "geometry/intersector.h"
@@ -127,6 +128,28 @@ TEST_CASE("t_min and t_max are honoured") {
     check(1.999f, 2.001f, true);
     check(0, 1.999f, false);
     check(2.001f, 10, false);
+}
+
+TEST_CASE("a shadow ray that cannot be traced is blocked, in an empty scene too") {
+    // Found by fuzz_scene: a lamp beyond 10^18 m ended the process.
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    const std::vector<Mesh> meshes{triangle_mesh({-1, -1, 0}, {1, -1, 0}, {0, 1, 0})};
+    const auto full = Intersector::build(meshes, {{0, {}, false}}, {}, {});
+    const auto empty = Intersector::build({}, {}, {}, {});
+    std::vector<Ray> rays(6, make_ray({5, 5, 2}, {0, 0, -1}));  // beside the triangle
+    for (const auto& tracer : {full.get(), empty.get()}) CHECK_FALSE(tracer->occluded(rays[0]));
+    rays[0].direction.x = nan;
+    rays[1].direction.z = -infinity;
+    rays[2].origin.y = 1e30f;
+    rays[3].origin.x = nan;
+    rays[4].t_min = nan;
+    rays[5].t_max = nan;
+    for (const auto& tracer : {full.get(), empty.get()})
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            CAPTURE(i);
+            CHECK(tracer->occluded(rays[i]));
+        }
 }
 
 TEST_CASE("spheres: entry, exit from inside, miss") {
