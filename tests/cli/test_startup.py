@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from daguerre import cli
+
 LOADED = (
     "import sys; from daguerre.cli import main; main(sys.argv[1:]); "
     "print(*{name.split('.')[1] for name in sys.modules if name.startswith('daguerre.')})"
@@ -17,6 +19,7 @@ LOADED = (
     ("command", "rooms"),
     [
         (["--version"], {"rendering", "setup", "lenses", "sensors", "development"}),
+        (["--help"], {"rendering", "setup", "lenses", "sensors", "development", "plates", "post"}),
         (["lenses"], {"rendering", "setup", "development", "analysis"}),
         (["render", "nowhere.glb", "-o", "x.exr"], {"analysis", "plots", "development", "post"}),
     ],
@@ -28,3 +31,20 @@ def test_a_command_loads_no_room_that_it_does_not_enter(
         [sys.executable, "-c", LOADED, *command], capture_output=True, text=True, check=True
     )
     assert not rooms & set(done.stdout.splitlines()[-1].split())
+
+
+def test_the_help_shows_each_command_with_its_whole_line(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert cli.main(["--help"]) == 0
+    shown = capsys.readouterr().out
+    for name, command in cli.COMMANDS.items():
+        assert command.line.endswith(".")
+        assert any(
+            line.split(maxsplit=1) == [name, command.line] for line in shown.splitlines() if line
+        ), name
+
+
+def test_flags_before_a_command_do_not_hide_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--", "version"]) == 0
+    assert "numpy" in capsys.readouterr().out

@@ -96,7 +96,7 @@ def _files(folder: Path) -> dict[str, str]:
 
 def _arm(command: str, arm: functools.partial[None]) -> None:
     """Lets the command begin by setting the failure."""
-    module = import_module(cli.COMMANDS[command], cli.__name__)
+    module = import_module(cli.COMMANDS[command].module, cli.__name__)
     inner = getattr(module, command)
 
     @functools.wraps(inner)

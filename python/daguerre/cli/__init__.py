@@ -14,7 +14,7 @@ import traceback
 from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 import typer
 
@@ -27,30 +27,54 @@ from .help import ALL, HelpCommand
 INTERNAL = 70
 INTERRUPTED = 75
 
-#: Commands in the order of the help, with their modules, which are loaded when they are asked for.
+
+class Command(NamedTuple):
+    """A command: the module that holds it, and what `daguerre --help` says of it."""
+
+    module: str
+    line: str
+
+
+#: In the order of the help. Modules are loaded when their command is called.
 COMMANDS = {
-    "render": ".render.command",
-    "merge": ".merge",
-    "post": ".post",
-    "develop": ".develop",
-    "info": ".info",
-    "lenses": ".lenses",
-    "lens": ".lens.command",
-    "sensors": ".sensors",
-    "sensor": ".sensor",
-    "stocks": ".stocks",
-    "chart": ".chart",
-    "calibrate": ".calibrate",
-    "match-plate": ".match_plate",
-    "light-probe": ".light_probe",
-    "composite": ".composite",
-    "demo": ".demo",
-    "version": ".version",
+    "render": Command(".render.command", "Render a scene to pictures or a sequence."),
+    "merge": Command(".merge", "Add passes of one picture into one file."),
+    "post": Command(".post", "Add effects of a lens to any picture, or remove them."),
+    "develop": Command(".develop", "Develop photographs from a frame or a raw file."),
+    "info": Command(".info", "Describe a scene and its cameras."),
+    "lenses": Command(".lenses", "List the lenses of the library."),
+    "lens": Command(".lens.command", "Show, measure, convert or fit a lens."),
+    "sensors": Command(".sensors", "List the sensors of the library."),
+    "sensor": Command(".sensor", "Show a sensor."),
+    "stocks": Command(".stocks", "List the film stocks of the library."),
+    "chart": Command(".chart", "Write a test chart as a scene."),
+    "calibrate": Command(".calibrate", "Fit a projection to a lens."),
+    "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
+    "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
+    "composite": Command(".composite", "Put rendered objects into a photograph."),
+    "demo": Command(".demo", "Render a first picture, without any file of your own."),
+    "version": Command(".version", "Print the version and the libraries in use."),
 }
 
 
 def program(*names: str) -> typer.Typer:
     """The program with some of its commands; default: all."""
+    app = _empty()
+    for name in names or COMMANDS:
+        command = app.command(name=name, cls=HelpCommand, short_help=COMMANDS[name].line)
+        command(_function(name))
+    return app
+
+
+def _outline() -> typer.Typer:
+    """The program for its help and for wrong commands: names and lines, with nothing loaded."""
+    app = _empty()
+    for name, command in COMMANDS.items():
+        app.command(name=name, short_help=command.line)(lambda: None)
+    return app
+
+
+def _empty() -> typer.Typer:
     app = typer.Typer(
         name="daguerre",
         help="Renders what a real camera would have recorded.",
@@ -61,14 +85,12 @@ def program(*names: str) -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help", ALL]},
     )
     app.callback(invoke_without_command=True)(_top)
-    for name in names or COMMANDS:
-        app.command(name=name, cls=HelpCommand)(_function(name))
     return app
 
 
 def _function(name: str) -> Any:
     """The function of a command, whose name has underscores."""
-    return getattr(import_module(COMMANDS[name], __name__), name.replace("-", "_"))
+    return getattr(import_module(COMMANDS[name].module, __name__), name.replace("-", "_"))
 
 
 def __getattr__(name: str) -> Any:
@@ -99,8 +121,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     console.quiet, console.writer = False, None
     console.open_streams()
     try:
-        first = console.argv[0] if console.argv else ""
-        code = _command(first)(args=console.argv, prog_name="daguerre", standalone_mode=False)
+        name = next((word for word in console.argv if not word.startswith("-")), "")
+        code = _command(name)(args=console.argv, prog_name="daguerre", standalone_mode=False)
         sys.stdout.flush()
         return int(code or 0)
     except DaguerreError as error:
@@ -136,13 +158,12 @@ def _out_of_memory() -> int:
 
 
 @cache
-def _command(first: str) -> Any:
-    """Makes the program, with one command alone if the first argument names it.
+def _command(name: str) -> Any:
+    """Makes the program, with one command alone if there is one of that name.
 
     Signatures are read once, however often `main` runs in a process.
     """
-    names = {"--version": ("version",)}.get(first, (first,) if first in COMMANDS else ())
-    return typer.main.get_command(program(*names))
+    return typer.main.get_command(program(name) if name in COMMANDS else _outline())
 
 
 def _usage(error: Any) -> str:
