@@ -7,12 +7,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import forks  # noqa: F401
-from ._core import __version__
+from . import compiled, forks  # noqa: F401
 from .camera.camera import Camera
 from .camera.lens_scatter import LensScatter
 from .camera.projection import Projection
 from .camera.rolling_shutter import RollingShutter
+from .compiled import __version__
 from .doors import guarded
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
 from .motion.values import Keys, Spin, keys, spin
