@@ -18,7 +18,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-FILES = ("core/version.h", "CHANGELOG.md", "CITATION.cff", "script/release", ".gitignore")
+FILES = (
+    *("core/version.h", "CHANGELOG.md", "CITATION.cff", "packaging/conda-recipe.yaml"),
+    *("script/release", ".gitignore"),
+)
 VERSION = re.findall(r'DG_VERSION "(.*)"', (ROOT / "core" / "version.h").read_text())[0]
 NEXT = "7.8.9rc1"
 BUILD = """
@@ -91,7 +94,7 @@ def test_check_says_what_would_be_done_and_changes_nothing(repository: Path) -> 
     assert state(repository) == before
 
 
-def test_a_release_sets_three_files_builds_and_commits(repository: Path) -> None:
+def test_a_release_sets_four_files_builds_and_commits(repository: Path) -> None:
     code, said, errors = release(repository, NEXT)
     assert (code, errors) == (0, "")
     today = datetime.datetime.now(datetime.UTC).date().isoformat()
