@@ -10,18 +10,18 @@ PICTURES = Path(__file__).resolve().parents[3] / "docs" / "lenses"
 
 INTRODUCTION = """# Lens catalogue
 
-Choose one of the {count} lenses that ship with Daguerre: each has its drawing and a photograph of the
-same scene. Use a lens by its name:
+Choose one of the {count} lenses that ship with Daguerre: each has its drawing and a photograph of
+the same scene. Use a lens by its name:
 
 ```
 daguerre lens double-gauss-50mm-f2
 daguerre render scene.glb --lens double-gauss-50mm-f2 -o out.exr
 ```
 
-Each entry names the patent or book of its prescription. Numbers are computed from the lens's table
-at 587.56 nm, focused at infinity; the source's own values are in brackets. The back focus and
-f-number of a zoom are those of its shortest focal length. [lens-library.md](lens-library.md) has all
-lenses in one table.
+Each entry names the patent or book of its prescription. Numbers are computed from the lens's
+table at 587.56 nm, focused at infinity; the source's own values are in brackets. The back focus
+and f-number of a zoom are those of its shortest focal length. [lens-library.md](lens-library.md)
+has all lenses in one table.
 
 `script/docs/make-lens-catalogue` builds this page with its drawings and photographs, and the data
 sheets of all lenses.
@@ -29,13 +29,14 @@ sheets of all lenses.
 
 PHOTOGRAPHS = """## The photographs
 
-All photographs show the arcade of [scenes/lens_scenes.py](../scenes/lens_scenes.py) through the lens
-wide open, a zoom in the middle of its range, on the film that the lens was made for. The camera
-stands so that the plane of the head, the chart and the white frame is half a metre high in the
-picture. The subject therefore keeps its size, and the differences come from the lens: the discs of
-the lanterns (their size, their edge, their cut toward the corners), the straightness of frame and
-columns, the darkening of the corners, the fine lines of the chart. Very short lenses come no closer
-than 0.3 m, large films no closer than ten focal lengths. Anamorphic pictures are stretched back.
+All photographs show the arcade of [scenes/lens_scenes.py](../scenes/lens_scenes.py) through the
+lens wide open, a zoom in the middle of its range, on the film that the lens was made for. The
+camera stands so that the plane of the head, the chart and the white frame is half a metre high in
+the picture. The subject therefore keeps its size, and the differences come from the lens: the
+discs of the lanterns (their size, their edge, their cut toward the corners), the straightness of
+frame and columns, the darkening of the corners, the fine lines of the chart. Very short lenses
+come no closer than 0.3 m, large films no closer than ten focal lengths. Anamorphic pictures are
+stretched back.
 """
 
 
