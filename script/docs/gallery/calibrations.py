@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from photographs import OUT, Photograph, Sheet
 
-INTRODUCTION = """# Cameras that are known by a calibration
+INTRODUCTION = """# Calibrated cameras
 
-One desk ([scenes/calibrated.py](../../scenes/calibrated.py)) through files as OpenCV, ROS and
-Kalibr write them: [projections](../projections.md), [calibration files](../calibration-files.md).
-Every ray is drawn through the model; nothing is warped afterwards. Begin with
+See one desk ([scenes/calibrated.py](../../scenes/calibrated.py)) through calibration files of
+OpenCV, ROS and Kalibr: [projections](../projections.md),
+[calibration files](../calibration-files.md). Every ray is traced through the camera model; nothing
+is warped afterwards. To make the scene:
 
 ```
 python scenes/calibrated.py
 mkdir -p out/gallery
 ```
 
-The light is that of a bright day, so `--exposure auto` meters it. `--denoise` is the extra of that
-name, `depth_map.py` and `coco_boxes.py` need the extra `plot`.
+The scene has the light of a bright day, so `--exposure auto` meters it. `--denoise` needs the extra
+`denoise`; `depth_map.py` and `coco_boxes.py` need the extra `plot`.
 """
 SCENE = "daguerre render out/calibrated/desk.glb"
 FILES = "scenes/calibrated"
@@ -32,8 +33,8 @@ def _phone() -> Sheet:
     caption = "phone: OpenCV, Brown-Conrady, 3.8 mm f/1.8"
     text = (
         "[phone.yaml](../../scenes/calibrated/phone.yaml), 4032 x 3024 photosites of 1.4 um, "
-        "drawn at a quarter. The rail and the edge of the desk bow by the barrel distortion that "
-        "the phone would take away later."
+        "rendered at a quarter. The rail and the edge of the desk bow with the barrel distortion "
+        "that a phone's software would correct later."
     )
     shot = Photograph(caption, (command,), "phone.png")
     return Sheet("calibrated_phone", "A phone.", text, 1, (shot,))
@@ -54,8 +55,8 @@ def _truth() -> Sheet:
     )
     text = (
         "Boxes and masks ([ground truth](../ground-truth.md#boxes-and-masks)) follow the lens and "
-        "the moment of each row. Right: the picture straightened by the camera's own map "
-        "([matching a plate](../plates.md)), as a phone or Nuke would do it; the rail is straight."
+        "the time of each row. Right: the picture straightened by the camera's own map "
+        "([STMaps](../plates.md#stmaps)), as a phone or Nuke would do it; the rail is straight."
     )
     shots = (
         Photograph("what is where: a COCO file", (boxes,), "known_boxes.png"),
@@ -75,8 +76,8 @@ def _shutters() -> Sheet:
         command = f"{SCENE} {common}{flag} --spp 48 --denoise --exposure auto -o {OUT}/{file}"
         shots.append(Photograph(title, (command,), file))
     text = (
-        "The fan turns 45 times a second. While the phone reads its rows from the top, the blades "
-        "turn on: each row sees them at its own time, at the place where the distorted picture "
+        "The fan turns 45 times a second, and keeps turning while the phone reads its rows from "
+        "the top: each row shows it at its own time, at the place where the distorted picture "
         "has that row."
     )
     return Sheet("calibrated_shutters", "Its rolling shutter.", text, 2, tuple(shots))
@@ -89,8 +90,8 @@ def _fisheye() -> Sheet:
     )
     text = (
         "[fisheye.yaml](../../scenes/calibrated/fisheye.yaml), Kannala-Brandt: it sees the "
-        "window and the bookcase at its sides, and a little of what is behind it. Where the "
-        "polynomial turns back the picture ends."
+        "window and the bookcase at its sides, and a little of what is behind it. The picture "
+        "ends where the polynomial stops increasing."
     )
     shot = Photograph("fisheye: ROS, equidistant, 190 degrees", (command,), "fisheye.png")
     return Sheet("calibrated_fisheye", "A fisheye of 190 degrees.", text, 1, (shot,))
@@ -112,8 +113,8 @@ def _stereo() -> Sheet:
         shots.append(Photograph(f"depth, {side}", (command,), file))
     text = (
         "[stereo.yaml](../../scenes/calibrated/stereo.yaml): two cameras 0.12 m apart in one "
-        "call, for which the scene is built once. Depth is exact, along the axis of each camera, "
-        "of what its pixels see at the middle of their exposure."
+        "call, which builds the scene once. Depth is exact, along the axis of each camera, for "
+        "what its pixels see in the middle of their exposure."
     )
     return Sheet("calibrated_stereo", "A stereo rig and its depth.", text, 2, tuple(shots), (pair,))
 

@@ -9,10 +9,9 @@ from photographs import OUT, Photograph, Sheet
 
 INTRODUCTION = """# Into the plate
 
-Four pawns, of glass, of steel and painted, in a photograph of a desk on which there are none; and
-the photograph that there would be if they had stood there
-([scenes/plates.py](../../scenes/plates.py)). [Plates](../plates.md) says what each step does. Begin
-with
+See four pawns, of glass, of steel and painted, composited into a photograph of an empty desk, and
+compared with a photograph that has them on it ([scenes/plates.py](../../scenes/plates.py)).
+[Plates](../plates.md) explains each step. To make the scenes:
 
 ```
 python scenes/plates.py
@@ -20,9 +19,9 @@ mkdir -p out
 ```
 
 The plate is a simulated shot: dusk in the window, ISO 6400, through a lens of the library, written
-as a raw file. From then on nothing knows how it was made: the camera is found from the file.
-`--denoise` is the extra of that name; a pixel of these pictures is a photosite, as in a crop of the
-body's at 100 %.
+as a raw file. The later steps use only that file: `match-plate` finds the camera from it.
+`--denoise` needs the extra `denoise`. One pixel of these pictures is one photosite, as in a 100 %
+crop.
 """
 #: Figures of differences, by picture and region, and the sheets whose making measures them.
 FIGURES = PAGES / "plates.json"
@@ -48,8 +47,8 @@ def _plate() -> Sheet:
         f"daguerre match-plate {OUT}/plate.dng -o {OUT}/camera.json",
     )
     text = (
-        "The photograph, and its camera: lens, stop, time and ISO by EXIF, gain and noise of the "
-        "sensor by what is flat in it."
+        "The photograph, and its camera: lens, stop, time and ISO from EXIF, gain and noise of the "
+        "sensor from flat areas of the picture."
     )
     panel = Photograph("what was filmed", shot, "plate.png")
     return Sheet("plates_plate", "The plate", text, 1, (panel,))
@@ -63,9 +62,9 @@ def _objects() -> Sheet:
         f"{LAYERS} objects {OUT}/object.exr {OUT}/objects.png",
     )
     text = (
-        "Objects with true alpha: depth of field ends softly, the mug hides a part of the pawn "
-        "behind it. Glass and steel show the photograph, which `--plate` throws onto the set. "
-        "Glass covers what it refracts, so nothing of the squares is seen through it."
+        "Objects with true alpha: depth of field has soft edges, and the mug hides part of the "
+        "pawn behind it. Glass and steel show the photograph, which `--plate` projects onto the "
+        "set. Glass covers what it refracts, so none of the checkerboard shows through it."
     )
     panel = Photograph("objects alone, over squares", commands, "objects.png")
     return Sheet("plates_objects", "The objects, with alpha", text, 1, (panel,))
@@ -74,11 +73,11 @@ def _objects() -> Sheet:
 def _catchers() -> Sheet:
     command = f"{LAYERS} catcher {OUT}/object.exr {OUT}/catcher.png {LAYER_TIMES}"
     text = (
-        "The layer `catcher` of the same file around middle grey: light that the objects take from "
-        "the set is dark, light that they add is bright, here in shares of white and "
-        f"{LAYER_TIMES} times what they are. Soft shadows of window and lamp run both ways, red "
-        "bleeds onto the page, glass gathers light beside its foot, the mug and the brass of the "
-        "old camera mirror the pawns."
+        "The layer `catcher` of the same file around middle grey. Light that the objects block is "
+        "dark and light that they add is bright, here as shares of white, amplified "
+        f"{LAYER_TIMES} times. Soft shadows from window and lamp run both ways, red bleeds onto "
+        "the page, glass gathers light beside its foot, and the mug and the brass of the old "
+        "camera mirror the pawns."
     )
     panel = Photograph(
         f"what catchers caught, x {LAYER_TIMES}, around middle grey", (command,), "catcher.png"
@@ -92,8 +91,8 @@ def _composite() -> Sheet:
         f"-o {OUT}/shot.dng -o {OUT}/shot.png"
     )
     text = (
-        "All of it in the plate's electrons, before its mosaic is undone; the raw file is "
-        "developed afterwards as any other."
+        "All of it in the plate's electrons, before demosaicing; the raw file is then developed "
+        "like any other."
     )
     panel = Photograph("composite", (command,), "shot.png")
     return Sheet("plates_shot", "The composite", text, 1, (panel,))
@@ -104,15 +103,15 @@ def _truth() -> Sheet:
         f"daguerre render out/plates/shot.glb {CAMERA} --seed 2 --spp 40 --denoise "
         f"-o {OUT}/truth.dng -o {OUT}/truth.png"
     )
-    text = "A shot of the desk with the pawns on it, at another moment: its noise is its own."
+    text = "A separate shot of the desk with the pawns on it: its noise is different."
     panel = Photograph("the whole scene, photographed", (command,), "truth.png")
     return Sheet("plates_truth", "The truth", text, 1, (panel,))
 
 
 def _difference() -> Sheet:
     text = (
-        "Composite less truth as they are developed, around middle grey. Both have noise, so the "
-        "difference has noise, everywhere; what is wrong is seen as a shape."
+        "The composite minus the true photograph, both developed, around middle grey. Both have "
+        "noise, so noise is everywhere in the difference; an error would show as a shape."
     )
     text = "\n\n".join([text, _OF_FIGURES, _OF_PLATE, *_table("difference")])
     panel = Photograph(_LESS, (_compared("shot", "object", "difference"),), "difference.png")
@@ -129,7 +128,7 @@ def _modelled() -> Sheet:
         _compared("modelled", "alone", "modelled"),
     )
     text = (
-        "Without `--plate` the objects see the set as it is modelled, here as well as can be. Now "
+        "Without `--plate` the objects see the modelled set, which here matches the real one. Now "
         "they have the light of the truth. What is left in glass and steel are fine reflections, "
         "of which both renders have few samples."
     )
@@ -172,16 +171,16 @@ def _table(name: str) -> list[str]:
 
 _LESS = "composite less truth: pixels x 2, and means of 8 x 8 pixels x 8"
 _OF_FIGURES = """\
-In numbers, of the electrons of photosites that are not clipped: *light* is that of the composite
-over that of the truth; *mean* and *rms* are of the difference, in units of the noise that both
-shots have. Noise alone has an rms of 1, also as means of 8 x 8 photosites, where an error that a
-single photosite hides stands out. *The rest* compares two renders of the set where pawns change
-nothing: what it has above 1 is noise of rendering that denoising has left."""
+The figures are for the electrons of photosites that are not clipped. *light* is that of the
+composite over that of the truth; *mean* and *rms* are of the difference, in units of the noise of
+both shots. Noise alone has an rms of 1, and also for means of 8 x 8 photosites, where an error
+stands out that is invisible in a single photosite. *the rest* compares two renders of the set
+where pawns change nothing: above 1 it is the noise of rendering that denoising has left."""
 _OF_PLATE = """\
-The set has the light of the truth to 0.2 %: shadows, reflections, colour that bleeds. Objects that
-get their light from the photograph are a little dark: it clips the lamp, and of what is glossy, as
-the table is, it has the light toward the camera alone. (With a set without gloss and a plate
-without clipping the red pawn has 1.000 of its light.) The next picture is without it."""
+The set matches the light of the truth to 0.2 %: shadows, reflections, colour bleeding. Objects lit
+by the photograph are a little dark, because it clips the lamp, and because it records only the
+light that glossy things such as the table send toward the camera. (With a set without gloss and a
+plate without clipping the red pawn has 1.000 of its light.) The next picture is without it."""
 
 #: The row in the gallery and at the head of the walk: pictures of the sheets, smaller.
 OVERVIEW = (("plate.png", "objects.png"), ("catcher.png", "shot.png"))

@@ -41,61 +41,63 @@ SCENES = (
     ["plates.py"],
 )
 
-INTRODUCTION = "# Gallery\n\nEvery picture was rendered by this program, by the command under it.\n"
+INTRODUCTION = (
+    "# Gallery\n\nDaguerre rendered every picture by the command under it. Copy and change one.\n"
+)
 
 ABOUT_MOTION = """## Motion
 
-What moves while the shutter is open is blurred; [motion.md](../motion.md) tells how. A sheet of
+What moves while the shutter is open is blurred; [motion.md](../motion.md) explains how. A sheet of
 several pictures has a command for each.
 """
 
 ABOUT_GLASS = """## Glass
 
-Real lenses, by their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
-through each of the library.
+Real lenses, from their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
+through each lens of the library.
 """
 
 ABOUT_LIGHT = """## Light that finds its way to the sensor
 
-Light is followed from the lamps too; [light-paths.md](../light-paths.md) tells how. Nothing is
-denoised here.
+Light is traced from the lamps too; [light-paths.md](../light-paths.md) explains how. These pictures
+are not denoised.
 """
 
 ABOUT_WORDS = """## Imperfections
 
 Spherical aberration, coma, colour, astigmatism, distortion, vignetting, flares, bloom, halos and
-stars, each traced, by polynomials, and in 2D: [a page of its own](imperfections.md).
+stars, each traced, by polynomials, and in 2D: [on their own page](imperfections.md).
 """
 
 ABOUT_PHOTOGRAPHS = """## Photographs
 
 What sensors and films make of the light: the exposure triangle, ISO 100 beside ISO 25600, raw files
-developed by Daguerre and by LibRaw, film: [a page of its own](exposure.md).
+developed by Daguerre and by LibRaw, film: [on their own page](exposure.md).
 """
 
 ABOUT_CALIBRATED = """## Calibrated cameras
 
 ![A desk through a phone, a fisheye, and a stereo camera with its depth.](calibrated.jpg)
 
-One desk through files as OpenCV, ROS and Kalibr write them: a phone, a fisheye of 190 degrees, the
-left one of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
+One desk through calibration files of OpenCV, ROS and Kalibr: a phone, a 190-degree fisheye, the
+left camera of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
 """
 
 ABOUT_PLATES = """## Into the plate
 
 ![A desk; pawns alone; the light that they take and add; the desk with the pawns.](plates.jpg)
 
-A plate, objects with alpha, what the set catches of them, and the composite; and how far it is from
-the photograph that there would have been. [Larger, with the commands](plates.md).
+A plate, objects with alpha, the catchers' layer, and the composite; with its difference from a
+photograph of the whole scene. [Larger, with the commands](plates.md).
 """
 
 ABOUT_NOISE = """## Noise in the same time
 
-![A part of the table at night, before and now, as drawn and denoised.](night_before.jpg)
+![A part of the table at night, before and now, as rendered and denoised.](night_before.jpg)
 
-The table of the first picture, 52 CPU seconds each, the denoiser's own 4 to 9 not counted: above
-by commit `1909491`, below by this one. Paths take both ways at glass, and each point weighs four
-lamps before it asks for a shadow. The command, with 29 and 24 samples per pixel, and with
+The table of the first picture in 52 CPU seconds each, without the denoiser's own 4 to 9: above by
+commit `1909491`, below by this one. Paths now go both ways at glass, and each point weighs four
+lamps before it sends a shadow ray. The command, with 29 and 24 samples per pixel, and with
 `--denoise` at the right:
 
 ```
@@ -104,19 +106,19 @@ daguerre render out/night_table.glb --lens double-gauss-50mm-f2 --f-stop 2 --res
 ```
 """
 
-ABOUT_BLENDER = """## A lens that left
+ABOUT_BLENDER = """## A lens in Blender
 
 ![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
 
-Blender's default scene through a double Gauss at f/2 that Daguerre exported; the commands, and the
-same by Blender's own camera: [export.md](../export.md).
+Blender's default scene through a double Gauss at f/2 that Daguerre exported. The commands, and the
+same scene through Blender's own camera, are in [export.md](../export.md).
 """
 
 CREDITS = """
-The night table is made by [scenes/night_table.py](../../scenes/night_table.py), what lies in
-`out/extensions` by [scenes/extensions.py](../../scenes/extensions.py), in `out/motion` by
-[scenes/motion.py](../../scenes/motion.py), and in `out/lens_scenes` by
-[scenes/lens_scenes.py](../../scenes/lens_scenes.py). The chess set is
+[scenes/night_table.py](../../scenes/night_table.py) makes the night table,
+[scenes/extensions.py](../../scenes/extensions.py) the scenes in `out/extensions`,
+[scenes/motion.py](../../scenes/motion.py) those in `out/motion`, and
+[scenes/lens_scenes.py](../../scenes/lens_scenes.py) those in `out/lens_scenes`. The chess set is
 "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
 The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
 holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 INTRODUCTION = """# From exposure to photograph
 
-What bodies and films make of the light that a frame holds: [exposure](../exposure.md),
-[sensors](../sensors.md), [developing](../developing.md), [film](../film-stocks.md). Begin with
+See what camera bodies and films make of the light in a frame: [exposure](../exposure.md),
+[sensors](../sensors.md), [developing](../developing.md), [film](../film-stocks.md). To make the
+scenes:
 
 ```
 python scenes/night_table.py out/night_table.glb
@@ -15,8 +16,8 @@ python scenes/exposure.py
 mkdir -p out/gallery
 ```
 
-`--denoise` (extra of that name) takes away the noise of rendering, so that what is left is the
-sensor's. A pixel of these pictures is a photosite: they are as a crop of the body's at 100 %.
+`--denoise` (extra `denoise`) removes the noise of rendering, so that only the sensor's is left. One
+pixel of these pictures is one photosite, as in a 100 % crop.
 """
 OUT = "out/gallery"
 GAUSS = "--lens double-gauss-50mm-f2"
@@ -88,8 +89,8 @@ def _night() -> Sheet:
             ),
         ]
     text = (
-        "The same light, 256 times as sensitive and 250 times as short: the noise of few photons "
-        "and of reading them. Left by Daguerre, right by LibRaw from the same DNG."
+        "The same light at 256 times the ISO and 1/250 of the time: noise of few photons, and read "
+        "noise. Left developed by Daguerre, right by LibRaw from the same DNG."
     )
     return Sheet(
         "night_iso",
@@ -121,8 +122,8 @@ def _triangle() -> Sheet:
             caption = f"f/{chosen['f-stop']}, {chosen['shutter']} s, ISO {chosen['iso']}"
             photographs.append(Photograph(caption, (f"{scene} {flags} -o {OUT}/{file}",), file))
     text = (
-        "Each row changes one side by two stops either way. All three change the brightness alike; "
-        "the stop also changes how much is sharp, the time what motion blurs, and ISO the noise."
+        "Each row changes one side by two stops either way. All three change the brightness in the "
+        "same way; the stop also changes depth of field, the time motion blur, and ISO noise."
     )
     return Sheet("exposure_triangle", "The exposure triangle.", text, 3, tuple(photographs))
 
@@ -144,8 +145,8 @@ def _film() -> Sheet:
         )
         photographs.append(Photograph(title, (command,), file))
     text = (
-        "The light of the night table's second on four films ([film](../film-stocks.md)), prints "
-        "and a slide. Without a backing light comes back through the base: red haloes."
+        "The one-second exposure of the night table on four films ([film](../film-stocks.md)): "
+        "prints and a slide. Without a backing, light comes back from the base as red haloes."
     )
     return Sheet("film", "Four films.", text, 2, tuple(photographs))
 

@@ -54,38 +54,38 @@ PICTURES = [
     ),
     Picture(
         "focus_far",
-        "A thin lens at f/2, focal plane far away: the lights of the town, 5.6 m.",
+        "A thin lens at f/2, focused far away: the lights of the town, 5.6 m.",
         NIGHT,
         "--lens thin --f-stop 2 --focus 5.6 --spp 64 --denoise",
     ),
     Picture(
         "focus_medium",
-        "The same, focal plane at medium distance: the garland, 2.4 m.",
+        "The same, focused at medium distance: the garland, 2.4 m.",
         NIGHT,
         "--lens thin --f-stop 2 --focus 2.4 --spp 64 --denoise",
     ),
     Picture(
         "focus_close",
-        "The same, focal plane close by: dice and bearings, 0.64 m.",
+        "The same, focused close by: dice and bearings, 0.64 m.",
         NIGHT,
         "--lens thin --f-stop 2 --focus 0.64 --spp 64 --denoise",
     ),
     Picture(
         "aperture_small",
-        "The double Gauss at f/16: a small aperture, great depth.",
+        "The double Gauss at f/16: a small aperture, deep focus.",
         NIGHT,
         f"{GAUSS} --f-stop 16 --spp 64 --denoise",
     ),
     Picture(
         "aperture_large",
-        "The double Gauss at f/2: a large aperture, a shallow plane.",
+        "The double Gauss at f/2: a large aperture, shallow depth of field.",
         NIGHT,
         f"{GAUSS} --f-stop 2 --focus 0.64 --spp 64 --denoise",
     ),
     Picture(
         "bokeh",
-        "Bokeh close up: lamps far behind the focus draw the pupil of the glass. In the middle it "
-        "is round; toward the edge of the field the rims of the lens cut it to a cat's eye.",
+        "Bokeh close up: lamps far behind the focus take the shape of the pupil. In the centre it "
+        "is round; toward the edge of the field the rims of the lens clip it to a cat's eye.",
         NIGHT,
         f"{GAUSS} --f-stop 2 --focus 0.5 --res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
     ),
@@ -110,7 +110,7 @@ SMALL = "--res 600x400 --spp 48 --denoise"
 PICTURES += [
     Picture(
         "octopus",
-        "Skins, morph targets and colours 3.4 s into their round, through the double Gauss.",
+        "Skins, morph targets and colours 3.4 s into their cycle, through the double Gauss.",
         f"{EXTENSIONS}/octopus.glb",
         f"{GAUSS} --time 3.4 {SMALL}",
     ),
@@ -128,7 +128,7 @@ PICTURES += [
     ),
     Picture(
         "glass",
-        "Cut stones and a prism that disperse, coloured glass, a lantern of paper around a bulb.",
+        "Cut stones and a prism with dispersion, coloured glass, a paper lantern around a bulb.",
         f"{EXTENSIONS}/glass.glb",
         SMALL,
     ),
@@ -141,7 +141,7 @@ WIDE, FULL = f"--res 600x300 {DENOISED}", f"--res 600x400 {DENOISED}"
 MOTION = [
     Picture(
         "billiards",
-        'Moving objects, after "1984" of Cook, Porter and Carpenter: the 1 rests, the 9 strikes '
+        'Moving objects, after "1984" by Cook, Porter and Carpenter: the 1 rests, the 9 strikes '
         "the white while the shutter is open, the 8 moves only in the middle of the exposure, the "
         "4 only at its end.",
         f"{SCENES}/billiards.glb",
@@ -149,9 +149,9 @@ MOTION = [
     ),
     Picture(
         "panning",
-        "A car at 70 km/h and 1/60 s: a camera that stands, and a fast panning shot that follows "
-        "the car. The body is sharp then; the wheels still turn, and what is far smears as much as "
-        "what is near.",
+        "A car at 70 km/h and 1/60 s, with a still camera and with a fast pan that follows the "
+        "car. In the pan the body is sharp and the wheels still turn; far things are blurred as "
+        "much as near ones.",
         f"{SCENES}/racer.glb",
         (
             f"--camera still --time 0.5 --shutter 1/60 {WIDE}",
@@ -161,7 +161,7 @@ MOTION = [
     Picture(
         "moving_camera",
         "Moving cameras: a zoom burst from 45.5 to 52.5 mm, and driving down the street at 8 m/s, "
-        "which smears what is near and leaves what is far.",
+        "which blurs near things and leaves far ones sharp.",
         f"{SCENES}/street.glb",
         (
             f"--camera zoom --time 0.5 --shutter 1/6 {WIDE}",
@@ -170,16 +170,16 @@ MOTION = [
     ),
     Picture(
         "cradle",
-        "Reflections and shadows of what moves: the ball that comes down is blurred in itself, on "
-        "the board, in its neighbours and in its shadow.",
+        "Reflections and shadows of moving things: the falling ball is blurred directly, in its "
+        "reflections in the board and its neighbours, and in its shadow.",
         f"{SCENES}/cradle.glb",
         f"--time 0.15 --shutter 1/30 {FULL}",
     ),
     Picture(
         "strobing",
-        "Strobing. Five frames of a wheel that turns 129 degrees from frame to frame: with the "
-        "shutter at 0 it creeps backwards, sharp; at 180 degrees the spokes are blurred, and the "
-        "eye is not fooled.",
+        "Strobing. Five frames of a wheel that turns 129 degrees from frame to frame: with an "
+        "instantaneous shutter it seems to creep backwards, sharp; at 180 degrees the spokes are "
+        "blurred, and the eye is not fooled.",
         f"{SCENES}/racer.glb",
         (
             "--camera wheel --time 0.3 --frames 1-5 --shutter 0 --res 120x120 --spp 64 --denoise",
@@ -190,10 +190,10 @@ MOTION = [
     ),
     Picture(
         "propellers",
-        "Two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), interpolated linear, "
-        "by twist, decomposed, and said as a spin (columns). Linear points go straight, so the "
-        "blades shrink: at 170 degrees to the axis, and out again. Keys that are whole turns apart "
-        "are one pose; that is what a spin is for.",
+        "Two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), interpolated linearly, "
+        "by twist, decomposed, and given as a spin (columns). With linear interpolation points "
+        "move along straight lines, so the blades shrink: at 170 degrees almost to the axis, and "
+        "out again. Keys that are whole turns apart are the same pose, so they need a spin.",
         "script/docs/gallery/propellers.py",
         "--spp 64",
     ),
@@ -215,17 +215,18 @@ MOTION = [
     ),
     Picture(
         "focal_plane",
-        "The slit of a focal-plane shutter, 1/500 s wide and 1/12 s on its way from the bottom of "
-        "the picture to the top, in a camera that pans with half the speed of the car: wheels lean "
-        "forward and trees back, as in Lartigue's photograph of 1912.",
+        "The slit of a focal-plane shutter exposes each line for 1/500 s and travels from the "
+        "bottom of the picture to the top in 1/12 s, in a camera that pans at half the speed of "
+        "the car: wheels lean forward and trees back, as in Lartigue's photograph of 1912.",
         f"{SCENES}/racer.glb",
         "--camera slow --time 0.53 --shutter 1/500 --shutter-type focal_plane "
         f"--rolling bottom,1/12 {FULL}",
     ),
     Picture(
         "leaf",
-        "Bokeh through a shutter that is open at once, and through a leaf shutter that is never at "
-        "rest: the rim of the lens is open for a shorter time than its middle, so discs are soft.",
+        "Bokeh through a shutter that opens at once, and through a leaf shutter that is always "
+        "moving: the rim of the lens is open for a shorter time than its centre, so discs are "
+        "soft.",
         NIGHT,
         tuple(
             f"--lens thin --f-stop 2 --focus 0.5 --shutter 1/500 {kind} "
@@ -236,20 +237,20 @@ MOTION = [
     ),
     Picture(
         "lamp",
-        "One second of a bulb that swings and goes out five times a second: a lamp that moves and "
-        "dims lights what is around it from all of its places, and writes its way in dashes.",
+        "One second of a bulb that swings and goes out five times a second: it lights its "
+        "surroundings from all of its positions, and draws its path in dashes.",
         f"{SCENES}/lamp.glb",
         f"--time 0.5 --shutter 1s {FULL}",
     ),
     Picture(
         "octopus_moving",
-        "Skins and morph targets: the octopus, half a second.",
+        "Skins and morph targets: half a second of the octopus.",
         f"{EXTENSIONS}/octopus.glb",
         f"--time 1.2 --shutter 1/2 --f-stop 8 {FULL}",
     ),
     Picture(
         "chess_moving",
-        "The chess set's knight jumps and its camera moves, from the file alone.",
+        "The chess set's knight jumps and its camera moves, as animated in the file.",
         "DATA/scenes/open_chess_set_512.glb",
         "--time 0.15 --shutter 1/12 --f-stop 8 --env DATA/hdri/st_peters_square_night_1k.hdr "
         f"{FULL}",
@@ -270,7 +271,7 @@ VIEW = "--lens rodenstock-grandagon-n-90mm-f4.5 --sensor 127x102 --f-stop 11 --f
 GLASS = [
     Picture(
         "four_lenses",
-        "One scene, one place, four lenses, as in Kolb, Mitchell and Hanrahan 1995: telephoto "
+        "One scene, one viewpoint, four lenses, as in Kolb, Mitchell and Hanrahan 1995: telephoto "
         "180 mm, double Gauss 50 mm, wide angle 35 mm, fisheye 16 mm.",
         ARCADE,
         tuple(
@@ -286,16 +287,16 @@ GLASS = [
     ),
     Picture(
         "cat_eyes",
-        "Small lamps far behind the focus draw the pupil of a fast lens over the whole frame: "
-        "round in the middle, and cut by the rims of the first and the last glass toward the "
+        "Small lamps far behind the focus take the shape of a fast lens's pupil across the frame: "
+        "round in the centre, and clipped by the rims of the first and the last element toward the "
         "corners. The fringes are its lateral and axial colour.",
         LAMPS,
         f"--lens canon-50mm-f0.95 --f-stop 0.95 --res 750x500 {DISCS}",
     ),
     Picture(
         "polynomial",
-        "The same bokeh from exact lenses, left, and from polynomials of degree 9 that were fitted "
-        "to them, right: a lens at f/0.95, and six blades at f/2.8.",
+        "The same bokeh from exact lenses, left, and from polynomials of degree 9 fitted to them, "
+        "right: a lens at f/0.95, and six blades at f/2.8.",
         LAMPS,
         tuple(
             f"{lens} --lens-model {model} {FROM_LAMPS}"
@@ -309,9 +310,8 @@ GLASS = [
     ),
     Picture(
         "bubbles",
-        "Soap bubbles and cream: a Biotar of 1927 draws discs of light with a bright edge, a "
-        "lens for soft portraits without one. That is spherical aberration, over- and "
-        "undercorrected.",
+        "Soap bubbles and cream: a Biotar of 1927 gives discs of light with a bright edge, a lens "
+        "for soft portraits without one. That is spherical aberration, over- and undercorrected.",
         LAMPS,
         (
             f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
@@ -323,15 +323,16 @@ GLASS = [
     ),
     Picture(
         "tilt",
-        "A lens for product photography at f/2.8, straight and tilted by 7.1 degrees: film, lens "
-        "and the top of the table then meet in one line (Scheimpflug), and all of it is sharp.",
+        "A lens for product photography at f/2.8, straight and tilted by 7.1 degrees: the "
+        "planes of film, lens and table-top then meet in one line (Scheimpflug), and all of the "
+        "table is sharp.",
         "out/lens_scenes/long_table.glb",
         tuple(f"{TABLE}{tilt} {PANEL}" for tilt in ("", " --tilt=-7.1,0")),
         columns=2,
     ),
     Picture(
         "shift",
-        "A view camera: turned up, the columns lean; level, with the film shifted, they stand.",
+        "A view camera: tilted up, columns lean; level, with the film shifted, they are upright.",
         ARCADE,
         (
             f'--camera "tilted up" {VIEW} --res 375x300 --spp 32 --denoise',
@@ -351,7 +352,7 @@ GLASS = [
     Picture(
         "zoom",
         "A zoom of 41 surfaces at 72, 100, 140 and 195 mm; and at 140 mm focused at infinity and "
-        "at 1.8 m: the field changes with the focus, it breathes.",
+        "at 1.8 m: it breathes, so the field changes with focus.",
         ARCADE,
         tuple(f"{ZOOM} --zoom {mm} {THIRD}" for mm in (72, 100, 140, 195))
         + tuple(f"{ZOOM} --zoom 140 --focus {m} {THIRD}" for m in ("inf", "1.8")),
@@ -359,8 +360,8 @@ GLASS = [
     ),
     Picture(
         "soft",
-        "A lens for soft focus, wide open and stopped down by two: a sharp picture under a veil, "
-        "and the picture alone.",
+        "A soft-focus lens, wide open and stopped down by two stops: a sharp picture under a veil, "
+        "and the sharp picture alone.",
         ARCADE,
         tuple(
             f"--camera portrait --lens mamiya-sekor-sf-150mm-f4 --sensor 69.5x46.3 "
@@ -377,7 +378,7 @@ LIGHT = [
     Picture(
         "night_lamps",
         "A hundred lamps of 2 mm behind a photographer's table, in equal CPU time: paths from the "
-        "lens only, above, and light paths beside them, below.",
+        "lens only, above, and with light paths in addition, below.",
         "out/lens_scenes/photographer.glb",
         (
             f"{PHOTOGRAPHER} --spp 48 --light-paths off",
@@ -386,9 +387,8 @@ LIGHT = [
     ),
     Picture(
         "caustics",
-        "What a ball of glass, a glass of wine and a ring of brass throw on the table, in equal "
-        "CPU time: paths from the lens only, left, and light paths with bounces beside them, "
-        "right.",
+        "Caustics of a glass ball, a glass of wine and a brass ring on the table, in equal CPU "
+        "time: paths from the lens only, left, and with bounced light paths in addition, right.",
         "out/lens_scenes/caustics.glb",
         (
             f"{CAUSTICS} --spp 120 --light-paths off",

@@ -17,7 +17,7 @@ SHEETS = (
 )
 HEAD = """# Thumbnails
 
-A thumbnail opens its picture. Under the picture stand the command that made it, to copy and
+Click a thumbnail to open its picture. Under each picture is the command that made it, to copy and
 change, and the program that makes its scene.
 """
 _PLACE = re.compile(r'<a id="([^"]+)"></a>|^## (.+)$|^!\[([^\]]*)\]\(([\w.]+\.jpg)\)', re.MULTILINE)

@@ -20,17 +20,18 @@ FIGURES = PAGES / "agreement.json"
 
 INTRODUCTION = """# Imperfections, three ways
 
-One sheet of pictures per word of the list that lectures on cameras have: spherical aberration,
-coma, chromatic aberration, astigmatism, radial distortion, vignetting, lens flares, bloom, halos
-and stars; and one of field curvature. From left to right:
+See each imperfection of lenses traced, by polynomials, and as a 2D effect. There is one sheet for
+each topic that lectures on cameras list: spherical aberration, coma, chromatic aberration,
+astigmatism, radial distortion, vignetting, lens flares, bloom, halos and stars; and one for field
+curvature. From left to right:
 
 - **traced**: exact rays through every surface of a lens;
-- **polynomial**: polynomials that were fitted to those rays ([polynomial.md](../polynomial.md));
-- **2D**: a pinhole's picture, to which effects of the darkroom were added afterwards
+- **polynomial**: polynomials fitted to those rays ([polynomial.md](../polynomial.md));
+- **2D**: a pinhole's picture with effects of the darkroom added
   ([darkroom.md](../darkroom.md), [diffraction.md](../diffraction.md)).
 
-Nothing is denoised. The scenes shine by themselves (`--max-depth 1`), so that what differs is the
-lens; all panels of a sheet are exposed alike. Begin with
+Nothing is denoised. The scenes are emissive (`--max-depth 1`), so that only the lens differs; all
+panels of a sheet have the same exposure. To make the scenes:
 
 ```
 python scenes/imperfections.py
@@ -38,17 +39,17 @@ python scenes/lens_scenes.py --only lamps
 ```
 
 The commands write OpenEXR pictures; `python script/docs/gallery/make.py --only NAME` runs them,
-composes the sheet (`--tone soft`) and measures, against the traced picture of the row:
+composes the sheet (`--tone soft`) and compares with the traced picture of the row:
 
 | figure | |
 |---|---|
-| light | of the whole picture over the traced one's |
-| moved | how far details lie from where they are traced, px: the largest of 6 x 4 blocks |
+| light | total light of the picture over that of the traced one |
+| moved | displacement of details from the traced picture, px: the largest of 6 x 4 blocks |
 | relMSE | mean of (difference)^2 / (traced^2 + 0.01), with the noise of both |
-| noise | the relMSE that the traced picture's own noise makes |
+| noise | the relMSE caused by the traced picture's own noise |
 
-Polynomials draw with the same random numbers as the lens, so most of their noise is the same.
-Where shapes differ, as of discs and ghosts, displacement says little.
+Polynomials use the same random numbers as the lens, so most of their noise is the same. Where
+shapes differ, such as discs and ghosts, the displacement means little.
 """
 
 

@@ -39,11 +39,11 @@ SPHERICAL = Word(
     "spherical",
     "Spherical aberration",
     """\
-Rays through the rim of the lens meet nearer than those through its middle. A lamp behind the
-focus becomes a bubble with a bright edge, one before it a soft ball of cream with a bright
-heart, and what is in focus, the sign, has a veil. This is a Nokton of 1953 wide open. The fake
-of depth of field knows one flat disc for all distances; the veil around the sign is that of the
-lens, by `lens-psf`, which also softens the rims of discs where it should not.""",
+Rays through the rim of the lens focus nearer than those through its centre. A lamp behind the
+focus becomes a bubble with a bright edge, a lamp before it a soft disc with a bright core, and
+the sign in focus has a veil. This is a Nokton of 1953 wide open. The 2D depth of field uses one
+flat disc for all distances; `lens-psf` adds the lens's veil around the sign, but also softens
+the rims of discs where it should not.""",
     (
         Ways(
             "spherical",
@@ -67,12 +67,11 @@ COMA = Word(
     "coma",
     "Coma",
     """\
-Off the axis each zone of the pupil draws a circle of its own, one beside the other: a star
-grows the tail of a comet, toward the middle of the frame or away from it. Here is the upper
-left of a fair at night through a Pancolar of its first kind at f/2. All lights are far away, so
-2D can have the spread of points of the lens in every place: it is nearly the same picture, with
-less noise, since what is drawn through a pinhole has no lens to sample. Lamps that stood at
-other distances would be wrong.""",
+Off the axis each zone of the pupil images a point as a circle of its own, one beside the other: a
+star grows the tail of a comet, toward the centre of the frame or away from it. Here is the upper
+left of a fair at night through the first Pancolar at f/2. All lights are far away, so 2D can use
+the lens's point spread at every place: it gives nearly the same picture, with less noise, because
+a pinhole has no lens to sample. It would be wrong for lamps at other distances.""",
     (
         Ways(
             "coma",
@@ -91,12 +90,12 @@ AXIAL = Word(
     "axial_colour",
     "Chromatic aberration along the axis",
     """\
-Blue, green and red have their focus at different distances. Thin dark twigs before white show
-it best: in focus they are black; out of focus they take a colour, one before and another
-behind, and no two edges alike. In 2D there is a depth of field for each of red, green and blue
-with the focus that the lens has for 650, 545 and 443 nm (script/docs/gallery/axial_colour.py). Real
-channels are broad, so its hues are too loud; twigs thinner than a pixel break, and the warm
-green of the single-layer coatings is missing.""",
+Blue, green and red focus at different distances. Thin dark twigs against white show it best: in
+focus they are black; out of focus they take one colour before the focus and another behind it,
+and no two edges are alike. The 2D version applies one depth of field each for red, green and
+blue, with the focus that the lens has at 650, 545 and 443 nm
+(script/docs/gallery/axial_colour.py). Real channels are broad, so its hues are too strong; twigs
+thinner than a pixel break, and the warm green of the single-layer coatings is missing.""",
     (
         (
             *Ways(
@@ -135,10 +134,10 @@ LATERAL = Word(
     "lateral_colour",
     "Lateral chromatic aberration",
     """\
-Here the colours are all in focus, but blue is drawn larger than red (or smaller): edges that
-run around the middle get a blue and a yellow side, more so toward the corner. This is the upper
-left of the frame through a Biotar of 1927 at f/8. How far red and blue lie from green is in the
-table. It is the one aberration that is easily taken away: `lateral-colour:...,inverse=1`.""",
+Here all colours are in focus, but blue is larger than red (or smaller): edges that run around the
+centre get a blue and a yellow side, more so toward the corner. This is the upper left of the
+frame through a Biotar of 1927 at f/8. The table gives the distance of red and blue from green. It
+is the one aberration that is easy to correct: `lateral-colour:...,inverse=1`.""",
     (
         Ways(
             "lateral",
@@ -159,15 +158,16 @@ CURVATURE = Word(
     "field_curvature",
     "Field curvature",
     """\
-A lens draws a flat chart on a bowl, and film is flat. Few lenses have that alone: a Canon 50 mm
-f/0.95 that is stopped down to f/2 comes near. Its sagittal and tangential foci are within 0.04 mm
-of each other, and 13 mm off the axis both lie 0.31 mm before those on it. The middle of the frame
-is near the left edge of these pictures, the edge 15 mm away at their right. Focused at the chart,
-2.2 m, the middle is sharp, and stars far from it have grey hearts; at 2.65 m it is the other way
-round. No focus has both. 2D does this well, as all of the chart is at one distance; it has not the
-tint of the glass, which is a little green, hence the 5 % of light.
+A lens images a flat chart on a curved surface, and film is flat. Few lenses have this aberration
+alone; a Canon 50 mm f/0.95 stopped down to f/2 comes near. Its sagittal and tangential foci are
+within 0.04 mm of each other, and 13 mm off the axis both lie 0.31 mm before those on the axis.
+The centre of the frame is near the left edge of these pictures, and their right edge is 15 mm
+from it. Focused at the chart, 2.2 m, the centre is sharp, and stars far from it have grey hearts;
+at 2.65 m it is the other way round. No focus makes both sharp. 2D does this well, because the
+whole chart is at one distance. It lacks the slightly green tint of the glass, hence the 5 % of
+light.
 
-| rms radius of a point's image, um | on the axis | 4 mm | 8 mm | 11 mm | 13 mm | 15 mm |
+| RMS radius of a point's image, um | on the axis | 4 mm | 8 mm | 11 mm | 13 mm | 15 mm |
 |---|---|---|---|---|---|---|
 | focused at 2.2 m | 4 | 9 | 25 | 36 | 38 | 30 |
 | 2.3 m | 11 | 8 | 17 | 27 | 28 | 21 |
@@ -201,10 +201,11 @@ ASTIGMATISM = Word(
     "astigmatism",
     "Astigmatism of a lens that is round, off its axis",
     """\
-A fan of rays in the plane through the axis meets at another distance than one across it. On a
-flat wheel 2.2 m away that faces a Petzval lens at f/2.2 the middle is sharp at 2.2 m; at 2.09 m
-the rings are sharp up to the rim and the spokes fade, at 2.6 m it is the other way round.
-Petzval lenses owe their swirl to it. 2D does this well, as all of the wheel is at one distance.""",
+A fan of rays in the plane through the axis focuses at another distance than a fan across it. A
+flat wheel 2.2 m away faces a Petzval lens at f/2.2. Focused at 2.2 m its centre is sharp; at
+2.09 m the rings are sharp up to the rim and the spokes are soft, at 2.6 m it is the other way
+round. This gives Petzval lenses their swirl. 2D does this well, because the whole wheel is at one
+distance.""",
     tuple(
         Ways(
             f"astigmatism_{what}",
@@ -227,13 +228,13 @@ CYLINDER = Word(
     "cylinder",
     "Astigmatism of an element that is not radially symmetric",
     """\
-The same wheel through a portrait lens behind the weakest glass that opticians sell to eyes with
-astigmatism, a cylinder of a quarter dioptre ([its
-file](../../scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json)). Now the axis is no
-better than the rim, and not rings and spokes differ but level and upright: at 1.73 m level
-lines are sharp, at 3.03 m upright ones, wherever they are. Polynomials of such a lens have the
-terms of two mirror planes instead of those of rotation. 2D lacks that a cylinder before the
-pupil also stretches the picture, by 1 % across, 2 px at the rim.""",
+The same wheel through a portrait lens behind the weakest cylinder that opticians sell, of a
+quarter dioptre ([its
+file](../../scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json)). Now the axis is no better
+than the rim, and the difference is not between rings and spokes but between level and upright
+lines: at 1.73 m level lines are sharp, at 3.03 m upright ones, all over the picture. Polynomials
+for such a lens have the terms of two mirror planes instead of those of rotation. A cylinder
+before the pupil also stretches the picture by 1 % across, 2 px at the rim; 2D lacks that.""",
     tuple(
         Ways(
             f"cylinder_{what}",
@@ -257,12 +258,12 @@ DISTORTION = Word(
     "distortion",
     "Radial distortion",
     """\
-Chief rays land nearer to the middle than a pinhole's (barrel), or farther away (pincushion), so
-that straight cornices bend. One zoom does both: at 14.5 mm barrel, at 29 mm pincushion. A
-fisheye does so on purpose, to see what no flat picture holds. 2D bends a pinhole's picture by
-the chief rays of the same lens; of the fisheye it lacks the corners, 90 degrees off the axis
-where a pinhole sees nothing, and the middle is soft, because a flat picture spends its pixels
-on the edge.""",
+Chief rays land nearer to the centre than a pinhole's (barrel), or farther away (pincushion), so
+that straight cornices bend. One zoom does both: at 14.5 mm barrel, at 29 mm pincushion. A fisheye
+does so on purpose, to cover a field that no flat picture can hold. 2D bends a pinhole's picture
+by the chief rays of the same lens. For the fisheye it lacks the corners, 90 degrees off the axis,
+where a pinhole sees nothing; and the centre is soft, because a flat picture spends its pixels on
+the edge.""",
     tuple(
         Ways(
             f"distortion_{what}",
@@ -292,11 +293,11 @@ VIGNETTING = Word(
     "vignetting",
     "Vignetting",
     """\
-First row: a wall through a Hologon, darker by cos^4 of the angle, which no stop cures (it was
-sold with a filter that is dark in its middle). Second row: the rims of a lens at f/0.95 cut the
-pupil off the axis, which takes light, and makes cats' eyes of lamps out of focus; 2D takes the
-light but keeps the discs round. Third row: paler colours. A lens does not do that by itself,
-but printing, film and taste do; it is there as an effect.""",
+First row: a wall through a Hologon, darker by cos^4 of the angle, which no stop cures (the lens
+was sold with a filter that is dark in its centre). Second row: the rims of a lens at f/0.95 clip
+the pupil off the axis. That takes light, and makes cat's eyes of lamps out of focus; 2D takes the
+light but keeps the discs round. Third row: paler colours. A lens alone does not do that, but
+printing and film do; Daguerre has it as an effect.""",
     (
         Ways(
             "vignetting_natural",
@@ -387,19 +388,21 @@ FLARES = Word(
     "flares",
     "Lens flares",
     """\
-A sun in the frame, 11 degrees off the axis, through a Biotar of 1927: its glass is not coated,
-each surface sends 4 % back, and 45 pairs of surfaces make as many ghosts, strung along the line
-through the sun and the middle of the picture. Some are patches of the round iris, some have
-caustics, and their edges have colours. The second row is the ghosts alone; in the third the
-camera has turned away until the sun stands at the very edge, just outside of a pinhole's frame,
-and ghosts are still in it. Polynomials draw them by the construction kit of Hullin, Hanika and
-Heidrich (script/docs/gallery/polynomial_ghosts.py): a Taylor series for each pair and colour, about
-the middle of its light. They know front and iris, but no other mounts, take the light of each ghost
-from `daguerre lens NAME --flare`, and leave out ghosts that have no series there, of which the
-crescent at the right edge of the third row is one; the thin streaks are series beyond their
-reach. The fake knows neither lens nor sun: its ghosts are
-made up, and are gone with the sun. Light that barrel, blades and glass scatter is another part
-of flare: [scatter.md](../scatter.md).""",
+A sun in the frame, 11 degrees off the axis, through a Biotar of 1927. Its glass is uncoated, each
+surface reflects 4 %, and 45 pairs of surfaces make as many ghosts, strung along the line through
+the sun and the centre of the picture. Some are patches of the round iris, some have caustics, and
+their edges have colours. The second row is the ghosts alone. In the third the camera is turned
+away until the sun is at the very edge, just outside a pinhole's frame, and ghosts are still in
+the picture.
+
+The polynomial ghosts follow the construction kit of Hullin, Hanika and Heidrich
+(script/docs/gallery/polynomial_ghosts.py): a Taylor series for each pair and colour, about the
+centre of its light. They include front and iris but no other mounts, take the light of each ghost
+from `daguerre lens NAME --flare`, and leave out ghosts that have no series there, such as the
+crescent at the right edge of the third row; the thin streaks are series beyond their range of
+validity. The 2D effect uses neither lens nor sun: its ghosts are made up, and vanish with the
+sun. Light that barrel, blades and glass scatter is another part of flare:
+[scatter.md](../scatter.md).""",
     (
         _flare_row("flare", "", "-11,4.2", ""),
         (
@@ -417,10 +420,10 @@ STARS = Word(
     "stars",
     "Stars",
     """\
-At f/16 light bends at the six straight blades, and each lamp becomes a star with six spikes.
-Where there is a lens they are drawn by waves through its pupil, on top of its rays; polynomials
-pass through the same step. The fake is the same convolution on a pinhole's picture. Eight times
-brighter than the others, or spikes would not be seen.""",
+At f/16 light diffracts at the six straight blades, and each lamp becomes a star with six spikes.
+With a lens, Daguerre computes them by waves through its pupil, on top of its rays; polynomials use
+the same step. The 2D effect is the same convolution on a pinhole's picture. This sheet is exposed
+eight times brighter than the others, so that the spikes show.""",
     (
         Ways(
             "stars",
@@ -443,9 +446,9 @@ BLOOM = Word(
     "bloom",
     "Bloom",
     """\
-A lens for soft portraits spreads much of the light into a wide disc on purpose: lights bloom,
-and the sky between them glows. The 2D bloom is a round glow that falls as 1 / r^3, as strong
-and wide as one likes; it is no disc, and the same in all places.""",
+A lens for soft portraits spreads much of the light into a wide disc on purpose: lights bloom, and
+the sky between them glows. The 2D bloom is a round glow that falls as 1 / r^3, of any strength and
+width; it is not a disc, and it is the same everywhere.""",
     (
         Ways(
             "bloom",
@@ -467,9 +470,9 @@ HALOS = Word(
     "halos",
     "Halos",
     """\
-Film has halos: light goes through the emulsion, is reflected at the back of the base, and comes
+Film has halos: light passes through the emulsion, is reflected at the back of the base, and comes
 back as a ring, red because the layer next to the base is the red one. That happens behind the
-lens, so it is an effect of the darkroom only.""",
+lens, so only the darkroom has it, as an effect.""",
     (
         (
             Panel(
