@@ -13,7 +13,7 @@ is warped afterwards. To make the scene:
 
 ```
 python scenes/calibrated.py
-mkdir -p out/gallery
+mkdir -p out
 ```
 
 The scene has the light of a bright day, so `--exposure auto` meters it. `--denoise` needs the extra
@@ -37,7 +37,7 @@ def _phone() -> Sheet:
         "that a phone's software would correct later."
     )
     shot = Photograph(caption, (command,), "phone.png")
-    return Sheet("calibrated_phone", "A phone.", text, 1, (shot,))
+    return Sheet("calibrated_phone", "A phone", text, 1, (shot,))
 
 
 def _truth() -> Sheet:
@@ -62,7 +62,7 @@ def _truth() -> Sheet:
         Photograph("what is where: a COCO file", (boxes,), "known_boxes.png"),
         Photograph("straightened by an STMap", straight, "known_straight.png"),
     )
-    return Sheet("calibrated_truth", "What is known of its picture.", text, 2, shots, first)
+    return Sheet("calibrated_truth", "Labels, and the picture undistorted", text, 2, shots, first)
 
 
 def _shutters() -> Sheet:
@@ -80,7 +80,7 @@ def _shutters() -> Sheet:
         "the top: each row shows it at its own time, at the place where the distorted picture "
         "has that row."
     )
-    return Sheet("calibrated_shutters", "Its rolling shutter.", text, 2, tuple(shots))
+    return Sheet("calibrated_shutters", "The phone's rolling shutter", text, 2, tuple(shots))
 
 
 def _fisheye() -> Sheet:
@@ -94,7 +94,7 @@ def _fisheye() -> Sheet:
         "ends where the polynomial stops increasing."
     )
     shot = Photograph("fisheye: ROS, equidistant, 190 degrees", (command,), "fisheye.png")
-    return Sheet("calibrated_fisheye", "A fisheye of 190 degrees.", text, 1, (shot,))
+    return Sheet("calibrated_fisheye", "A fisheye of 190 degrees", text, 1, (shot,))
 
 
 def _stereo() -> Sheet:
@@ -116,7 +116,7 @@ def _stereo() -> Sheet:
         "call, which builds the scene once. Depth is exact, along the axis of each camera, for "
         "what its pixels see in the middle of their exposure."
     )
-    return Sheet("calibrated_stereo", "A stereo rig and its depth.", text, 2, tuple(shots), (pair,))
+    return Sheet("calibrated_stereo", "A stereo rig and its depth", text, 2, tuple(shots), (pair,))
 
 
 SHEETS = (_phone(), _truth(), _shutters(), _fisheye(), _stereo())

@@ -57,7 +57,7 @@ Real lenses, from their prescriptions; [lens-catalogue.md](../lens-catalogue.md)
 through each lens of the library.
 """
 
-ABOUT_LIGHT = """## Light that finds its way to the sensor
+ABOUT_LIGHT = """## Light paths
 
 Light is traced from the lamps too; [light-paths.md](../light-paths.md) explains how. These pictures
 are not denoised.
@@ -91,7 +91,7 @@ A plate, objects with alpha, the catchers' layer, and the composite; with its di
 photograph of the whole scene. [Larger, with the commands](plates.md).
 """
 
-ABOUT_NOISE = """## Noise in the same time
+ABOUT_NOISE = """## Noise in equal time
 
 ![A part of the table at night, before and now, as rendered and denoised.](night_before.jpg)
 

@@ -13,7 +13,7 @@ scenes:
 ```
 python scenes/night_table.py out/night_table.glb
 python scenes/exposure.py
-mkdir -p out/gallery
+mkdir -p out
 ```
 
 `--denoise` (extra `denoise`) removes the noise of rendering, so that only the sensor's is left. One
@@ -94,7 +94,7 @@ def _night() -> Sheet:
     )
     return Sheet(
         "night_iso",
-        "The night table, ISO 100 for a second and ISO 25600 for a 250th.",
+        "The night table, ISO 100 for a second and ISO 25600 for a 250th",
         text,
         2,
         tuple(photographs),
@@ -125,7 +125,7 @@ def _triangle() -> Sheet:
         "Each row changes one side by two stops either way. All three change the brightness in the "
         "same way; the stop also changes depth of field, the time motion blur, and ISO noise."
     )
-    return Sheet("exposure_triangle", "The exposure triangle.", text, 3, tuple(photographs))
+    return Sheet("exposure_triangle", "The exposure triangle", text, 3, tuple(photographs))
 
 
 def _film() -> Sheet:
@@ -148,7 +148,7 @@ def _film() -> Sheet:
         "The one-second exposure of the night table on four films ([film](../film-stocks.md)): "
         "prints and a slide. Without a backing, light comes back from the base as red haloes."
     )
-    return Sheet("film", "Four films.", text, 2, tuple(photographs))
+    return Sheet("film", "Four films", text, 2, tuple(photographs))
 
 
 SHEETS = (_night(), _triangle(), _film())
