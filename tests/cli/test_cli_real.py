@@ -106,7 +106,7 @@ def test_autofocus_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'Target' is 1.25 m" in capsys.readouterr().err
     with OpenEXR.File("a.exr", header_only=True) as file:
         assert file.header()["focus"] == pytest.approx(1.25)
-    assert main([*run, "--focus-on", "Taget"]) == 3
+    assert main([*run, "--focus-on", "Taget"]) == 3  # codespell:ignore taget
     assert "did you mean 'Target'" in capsys.readouterr().err
 
 

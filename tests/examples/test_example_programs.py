@@ -120,7 +120,7 @@ def test_scene_from_arrays(tmp_path: Path) -> None:
     assert frame.alpha[inside].min() == 1
     off = np.abs(y - 0.04 * np.cos(25 * r) * np.exp(-2 * r))[inside]
     assert np.median(off) < 1e-3
-    assert np.quantile(off, 0.95) < 5e-3  # a pixel's mean is off where a crest hides a trough
+    assert np.quantile(off, 0.95) < 5e-3  # a pixel's mean is off where a crest hides a dip
     assert np.hypot(x, z)[30, 45] < 0.12
     reached = np.sqrt(sum((p - e) ** 2 for p, e in zip((x, y, z), program.EYE, strict=True)))
     assert reached[30, 45] == pytest.approx(np.linalg.norm(program.EYE - program.TARGET), abs=0.12)

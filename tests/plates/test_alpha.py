@@ -100,5 +100,5 @@ def test_every_exr_has_it(tmp_path: Path) -> None:
 
 def test_a_background_that_is_none() -> None:
     with pytest.raises(dg.UsageError, match="background: wanted environment, transparent, plate"):
-        dg.RenderSettings.of(background="transparant")
+        dg.RenderSettings.of(background="transparant")  # codespell:ignore transparant
     assert look_at((0, 0, 1), (0, 0, 0)).shape == (4, 4)

@@ -43,7 +43,7 @@ BAD: list[tuple[str, Callable[[dg.Scene], Any], str]] = [
     ("mesh", lambda s: s.add_instance(-1), "mesh: wanted 0 .. 0, got -1"),
     ("keys", lambda s: s.add_instance(0, None, [(0, np.eye(4)), (1, np.eye(4))]), "keys over time"),
     ("colour", lambda s: s.add_material(dg.Diffuse(0.5)), "reflectance: wanted three numbers"),
-    ("field", lambda s: s.add_material(emision=(1, 1, 1)), "did you mean 'emission'"),
+    ("field", lambda s: s.add_material(emissio=(1, 1, 1)), "did you mean 'emission'"),
     ("light", lambda s: s.add_light("sun"), "wanted a point, spot"),
     ("intensity", lambda s: s.add_light(dg.PointLight(5)), "intensity: wanted three numbers"),
     ("dark", lambda s: s.add_light(dg.PointLight((-1, 0, 0))), "intensity: wanted three finite"),

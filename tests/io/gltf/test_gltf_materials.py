@@ -245,7 +245,7 @@ def test_texture_transform_overrides_the_set(tmp_path):
 def test_images_from_everywhere(tmp_path, where):
     b = with_material({"normalTexture": {"index": 0}}, png(RED))
     if where == "file":
-        (tmp_path / "tex ture.png").write_bytes(png(RED))
+        (tmp_path / "tex ture.png").write_bytes(png(RED))  # codespell:ignore ture
         b.json["images"][0] = {"uri": "tex%20ture.png"}
     if where == "data":
         packed = base64.b64encode(png(RED)).decode()
