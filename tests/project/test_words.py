@@ -19,6 +19,8 @@ BAD = {
     r"whatever there is": "say which input or scene",
     r"for want of": "'for lack of', 'without'",
     r"wants some that": "'needs ... to be on'",
+    r"(?:refuse[ds]?|say|says|said|ends?) in words": "'gives an error'",
+    r"else than": "'other than'",
     r"Of (?:the|an?|each|it|them|what|every)(?! \d)": "'For each ...' or the subject first",
     r"(?P<word>[a-z]{2,}) (?P=word)": "a doubled word",
 }
