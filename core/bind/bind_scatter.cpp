@@ -25,7 +25,7 @@ auto from_film(const dg::ScatterLens& lens, std::pair<double, double> point, dou
     {
         dg::bind::Unlocked release;
         for (const dg::FilmWalk& w : film_walks(lens, {{point.first, point.second}, spot, nm, walks, seed}))
-            flat.insert(flat.end(), {-w.direction.z, std::atan2(w.direction.y, w.direction.x), w.weight,
+            flat.insert(flat.end(), {-w.direction.z, atan2(w.direction.y, w.direction.x), w.weight,
                                      double(w.events)});
     }
     const std::size_t n = flat.size() / 4;

@@ -156,7 +156,7 @@ void ProjectionModel::find_fold() {
     case Kind::fov: largest_angle_ = kPiD / 2, largest_radius_ = kPiD / 2 / k_[0]; return;
     case Kind::eucm: {
         const double w = widest(k_[0]);
-        largest_angle_ = std::atan2(std::sqrt(1 - w * w), -w * std::sqrt(k_[1]));
+        largest_angle_ = atan2(std::sqrt(1 - w * w), -w * std::sqrt(k_[1]));
         return;
     }
     case Kind::double_sphere: {
@@ -164,7 +164,7 @@ void ProjectionModel::find_fold() {
         const double xi = k_[0], w = widest(k_[1]), inside = 1 - xi * xi * (1 - w * w);
         double z = inside >= 0 ? w * (w * xi - std::sqrt(inside)) - xi : -1;
         if (xi > 1) z = std::max(z, -1 / xi);
-        largest_angle_ = std::acos(std::clamp(z, -1.0, 1.0));
+        largest_angle_ = acos(std::clamp(z, -1.0, 1.0));
         return;
     }
     case Kind::kannala_brandt: {
@@ -193,16 +193,16 @@ void ProjectionModel::find_fold() {
         if (last < kInfinity && !(radial_factor(last) > 0))   // a pole before the first step, say
             throw input_error("projection", "parameters", "a radius that grows from the middle on", "one that falls");
         ideal_end_ = last;
-        largest_angle_ = kind_ == Kind::opencv ? std::atan(last) : kPiD;
+        largest_angle_ = kind_ == Kind::opencv ? atan(last) : kPiD;
         largest_radius_ = last < kInfinity ? last * radial_factor(last) : kInfinity;
         if (kind_ == Kind::omni) {
             const double xi = k_[0], inside = 1 + (1 - xi * xi) * last * last;   // of the sphere's points there
-            largest_angle_ = std::acos(xi <= 1 ? -xi : -1 / xi);
+            largest_angle_ = acos(xi <= 1 ? -xi : -1 / xi);
             if (last < kInfinity && inside >= 0)
-                largest_angle_ = std::acos((xi + std::sqrt(inside)) / (1 + last * last) - xi);
+                largest_angle_ = acos((xi + std::sqrt(inside)) / (1 + last * last) - xi);
         }
         if (kind_ != Kind::opencv_inverse) return;
-        largest_angle_ = std::atan(largest_radius_);
+        largest_angle_ = atan(largest_radius_);
         largest_radius_ = last;
         return;
     }
@@ -235,7 +235,7 @@ double ProjectionModel::radius_of(double angle) const {
     case Kind::equisolid: return 2 * std::sin(0.5 * angle);
     case Kind::stereographic: return 2 * std::tan(0.5 * angle);
     case Kind::orthographic: return std::sin(angle);
-    case Kind::fov: return std::atan(2 * std::tan(angle) * std::tan(0.5 * k_[0])) / k_[0];
+    case Kind::fov: return atan(2 * std::tan(angle) * std::tan(0.5 * k_[0])) / k_[0];
     default: {
         const double t2 = angle * angle;
         return angle * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * k_[3]))));
@@ -245,14 +245,14 @@ double ProjectionModel::radius_of(double angle) const {
 
 std::optional<double> ProjectionModel::angle_of(double r) const {
     switch (kind_) {
-    case Kind::rectilinear: return std::atan(r);
+    case Kind::rectilinear: return atan(r);
     case Kind::equidistant: return r <= kPiD ? std::optional(r) : std::nullopt;
-    case Kind::equisolid: return r <= 2 ? std::optional(2 * std::asin(0.5 * r)) : std::nullopt;
-    case Kind::stereographic: return 2 * std::atan(0.5 * r);
-    case Kind::orthographic: return r <= 1 ? std::optional(std::asin(r)) : std::nullopt;
+    case Kind::equisolid: return r <= 2 ? std::optional(2 * asin(0.5 * r)) : std::nullopt;
+    case Kind::stereographic: return 2 * atan(0.5 * r);
+    case Kind::orthographic: return r <= 1 ? std::optional(asin(r)) : std::nullopt;
     case Kind::fov:
         if (!(r * k_[0] < kPiD / 2)) return std::nullopt;
-        return std::atan(std::tan(r * k_[0]) / (2 * std::tan(0.5 * k_[0])));
+        return atan(std::tan(r * k_[0]) / (2 * std::tan(0.5 * k_[0])));
     default: break;
     }
     if (r > largest_radius_) return std::nullopt;
@@ -330,7 +330,7 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     if (!(norm > 0)) return std::nullopt;
     switch (kind_) {
     case Kind::equirectangular:
-        return Vec2d{std::atan2(d.x, d.z), std::asin(std::clamp(d.y / norm, -1.0, 1.0))};
+        return Vec2d{atan2(d.x, d.z), asin(std::clamp(d.y / norm, -1.0, 1.0))};
     case Kind::cube: return on_cube(d);
     case Kind::opencv: return d.z > 0 ? distorted(seen(d)) : std::nullopt;
     case Kind::opencv_inverse: return d.z > 0 ? undistorted(seen(d)) : std::nullopt;
@@ -359,7 +359,7 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     }
     default: break;
     }
-    const double across = hypot(d.x, d.y), angle = std::atan2(across, d.z);
+    const double across = hypot(d.x, d.y), angle = atan2(across, d.z);
     if (!(angle <= largest_angle_) || (kind_ == Kind::rectilinear && !(d.z > 0))) return std::nullopt;
     if (across == 0) return Vec2d{0, 0};
     const double scale = radius_of(angle) / across;

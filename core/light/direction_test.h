@@ -22,7 +22,7 @@ struct DirectionGrid {
     int cell(Vec3f w) const {
         const Vec3f l = frame.to_local(w);
         const double row = (cos_max - l.z) / (cos_max - cos_min) * rows;
-        const double column = (std::atan2(l.y, l.x) / (2 * kPiD) + 0.5) * columns;
+        const double column = (atan2(l.y, l.x) / (2 * kPiD) + 0.5) * columns;
         if (row < -1e-3 || row > rows + 1e-3) return -1;
         return std::clamp(int(row), 0, rows - 1) * columns +
                std::clamp(int(column), 0, columns - 1);

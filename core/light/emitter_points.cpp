@@ -44,7 +44,7 @@ float angle_of(const LightBounds& b, std::span<const ViewCone> views) {
     float angle = 0;
     for (const ViewCone& view : views) {
         const float distance = length((b.min + b.max) * 0.5f - view.from.eye);
-        angle = std::max(angle, radius < distance ? 2 * std::asin(radius / distance) : kPi);
+        angle = std::max(angle, radius < distance ? 2 * asin(radius / distance) : kPi);
     }
     return angle;
 }

@@ -73,11 +73,11 @@ float fraction(float cells) {
 
 /// In texels: column coordinate in [0, w), 0 at the left edge of the picture.
 float column_of(Vec3f d, int width) {
-    const float u = 0.5f + std::atan2(d.x, -d.z) / (2 * kPi);
+    const float u = 0.5f + atan2(d.x, -d.z) / (2 * kPi);
     return std::clamp(u, 0.f, 1.f) * width;
 }
 float theta_of(Vec3f d) {
-    return std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y);
+    return atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y);
 }
 
 /// Column of cells, which start half a texel to the right of the picture's edge.

@@ -18,7 +18,7 @@ Vec3f on_the_way(Vec3f a, Vec3f b, float share) {
 /// Along the great circle; the angle by atan2, as in slerp() of quaternion.h. Opposite directions
 /// have none: they go by any.
 Vec3f turn_toward(Vec3f a, Vec3f b, float share) {
-    const float angle = 2 * std::atan2(length(b - a), length(a + b));
+    const float angle = 2 * atan2(length(b - a), length(a + b));
     if (angle < 1e-4f) return normalize(on_the_way(a, b, share));
     Vec3f side = b - a * dot(a, b);
     if (length(side) < 1e-6f) side = Frame::from_normal(a).x;
@@ -112,7 +112,7 @@ LightBounds bounds_over(std::span<const TriangleLight> steps, Rgb luminance) {
             const TriangleLight& before = steps[i - 1];
             longest = std::max({longest, length(t.a - before.a), length(t.b - before.b),
                                 length(t.c - before.c)});
-            widest = std::max(widest, 2 * std::atan2(length(b.axis - last), length(b.axis + last)));
+            widest = std::max(widest, 2 * atan2(length(b.axis - last), length(b.axis + last)));
         }
         last = b.axis;
     }

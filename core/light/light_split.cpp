@@ -31,7 +31,7 @@ void merge_cones(const LightBounds& a, const LightBounds& b, LightBounds& out) {
     out.axis = wide.axis;
     out.spread = wide.spread;
     if (wide.spread >= kPi) return;
-    const float between = std::acos(std::clamp(dot(wide.axis, narrow.axis), -1.f, 1.f));
+    const float between = acos(std::clamp(dot(wide.axis, narrow.axis), -1.f, 1.f));
     if (std::min(between + narrow.spread, kPi) <= wide.spread) return;
     out.spread = (wide.spread + between + narrow.spread) / 2;
     const Vec3f side = narrow.axis - wide.axis * dot(narrow.axis, wide.axis);

@@ -23,7 +23,7 @@ struct ViewCone {
     bool sees(Vec3f center, float radius) const {
         const Vec3f to = center - from.eye;
         const float d = length(to), reach = radius + from.radius;
-        return d <= reach || sees_direction(to * (1 / d), std::asin(reach / d));
+        return d <= reach || sees_direction(to * (1 / d), asin(reach / d));
     }
     /// Whether one goes within `spread` (rad) of a direction.
     bool sees_direction(Vec3f direction, float spread = 0) const {

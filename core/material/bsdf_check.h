@@ -175,8 +175,8 @@ double chi_square_p(const B& bsdf, const Setting& s, std::uint64_t seed) {
             ++deltas;
         } else {
             const Vec3f l = s.frame.to_local(d->wi);
-            const double phi = std::atan2(l.y, l.x) / (2 * kPiD);
-            const double theta = std::acos(std::clamp(l.z, -1.f, 1.f));
+            const double phi = atan2(l.y, l.x) / (2 * kPiD);
+            const double theta = acos(std::clamp(l.z, -1.f, 1.f));
             const int i = std::min(kRows - 1, static_cast<int>(theta / kPiD * kRows));
             const int j = std::min(
                 kColumns - 1, static_cast<int>((phi < 0 ? phi + 1 : phi) * kColumns));

@@ -55,7 +55,7 @@ Quaternion<T> slerp(Quaternion<T> a, Quaternion<T> b, T t) {
     if (dot(a, b) < 0) b = -b;
     const Quaternion<T> difference = b + -a, sum = a + b;
     const T angle =
-        2 * std::atan2(std::sqrt(dot(difference, difference)), std::sqrt(dot(sum, sum)));
+        2 * atan2(std::sqrt(dot(difference, difference)), std::sqrt(dot(sum, sum)));
     if (angle < T(1e-4)) return normalize(a * (1 - t) + b * t);
     const T s = std::sin(angle);
     return normalize(a * (std::sin((1 - t) * angle) / s) + b * (std::sin(t * angle) / s));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/portable.h"
+
 namespace dg {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
@@ -25,9 +27,6 @@ template <typename T>
 T length_squared(Vec2<T> a) { return dot(a, a); }
 template <typename T>
 T length(Vec2<T> a) { return std::sqrt(dot(a, a)); }
-/// The C library's has other bits in each of its releases, and asks for its newest one (GLIBC 2.35).
-template <typename T>
-T hypot(T x, T y) { return std::sqrt(x * x + y * y); }
 
 template <typename T>
 struct Vec3 {

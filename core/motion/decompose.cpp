@@ -70,7 +70,7 @@ double spectral_norm(const Affine3d& m) {
     const double p = std::sqrt((dot(d, d) + 2 * (xy * xy + yz * yz + zx * zx)) / 6);
     if (!(p > 1e-12 * mean)) return std::sqrt(std::max(mean, 0.0));
     const Affine3d b{{d.x / p, xy / p, zx / p}, {xy / p, d.y / p, yz / p}, {zx / p, yz / p, d.z / p}, {}};
-    const double angle = std::acos(std::clamp(b.determinant() / 2, -1.0, 1.0)) / 3;
+    const double angle = acos(std::clamp(b.determinant() / 2, -1.0, 1.0)) / 3;
     return std::sqrt(mean + 2 * p * std::cos(angle));
 }
 

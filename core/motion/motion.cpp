@@ -102,7 +102,7 @@ void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
     if (delta.w < 0) delta = -delta;
     const Vec3d v{delta.x, delta.y, delta.z};
     const double sine = length(v);
-    from.angle = 2 * std::atan2(sine, delta.w);
+    from.angle = 2 * atan2(sine, delta.w);
     if (sine > 0) from.axis = v / sine;
     const Affine3d rotation = to_matrix(from.rotation);
     from.turn = from.stretches ? turn_about(rotation, from.axis, {}, {})

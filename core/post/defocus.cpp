@@ -21,7 +21,7 @@ class DefocusKernel {
 
     bool takes_part(std::size_t i) const { return std::isfinite(radius_[i]); }
     float reach(std::size_t i) const { return kernels_.reach(radius_[i]); }
-    int layer(std::size_t i) const { return int(std::lround(kLayersPerE * std::asinh(radius_[i]))); }
+    int layer(std::size_t i) const { return int(std::lround(kLayersPerE * asinh(radius_[i]))); }
 
     void spread(std::size_t i, int x, int y, const SpreadLight& light, SpreadLayer& to) const {
         const IrisKernel& k = kernels_.at(radius_[i]);

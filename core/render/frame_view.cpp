@@ -47,7 +47,7 @@ ViewCone view_at(const Camera& camera, const Sensor& sensor, float margin, float
         farthest = std::max(farthest, length(cross(o, d)));
     }
     view.axis = to_float(normalize(pose.vector(axis)));
-    view.half_angle = float(std::acos(std::clamp(lowest, -1.0, 1.0))) * kWider + kLeastAngle;
+    view.half_angle = float(acos(std::clamp(lowest, -1.0, 1.0))) * kWider + kLeastAngle;
     view.from.radius = float(farthest) * kWider;
     return view;
 }
@@ -67,7 +67,7 @@ std::vector<ViewCone> frame_views(const Camera& camera, const Sensor& sensor, fl
     // Views between two moments are no farther from one of them than they are from each other.
     float turn = 0, step = 0, radius = 0;
     for (std::size_t i = 1; i < views.size(); ++i) {
-        turn = std::max(turn, std::acos(std::clamp(dot(views[i - 1].axis, views[i].axis), -1.f, 1.f)));
+        turn = std::max(turn, acos(std::clamp(dot(views[i - 1].axis, views[i].axis), -1.f, 1.f)));
         step = std::max(step, length(views[i].from.eye - views[i - 1].from.eye));
     }
     for (const ViewCone& view : views) radius = std::max(radius, view.from.radius);

@@ -34,7 +34,7 @@ def check() -> None:
     if absent := missing_instructions():
         raise _refused(
             f"this processor lacks {', '.join(absent)}; use an x86-64 processor of 2009 or later, "
-            "or build Daguerre from source with -DDG_ARCH="
+            "or build Daguerre from source with -C cmake.define.DG_ARCH="
         )
 
 

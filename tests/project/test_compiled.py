@@ -38,7 +38,7 @@ def test_an_old_processor_is_named_before_the_core_is_loaded(tmp_path: Path) -> 
     assert done.returncode == 70
     assert done.stderr == (
         "daguerre: error: this processor lacks popcnt, sse4_2; use an x86-64 processor of 2009 or "
-        "later, or build Daguerre from source with -DDG_ARCH=\n"
+        "later, or build Daguerre from source with -C cmake.define.DG_ARCH=\n"
     )
 
 

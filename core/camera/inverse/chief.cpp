@@ -45,7 +45,7 @@ std::optional<ChiefRays::Meridional> mean_ray(const std::vector<CameraRay>& rays
     if (!(length(axis) > 0)) return std::nullopt;
     const RayMeans mean = means_across(normalize(axis), rays);
     const Vec3d o = mean.crossing, d = normalize(Vec3d{mean.slope.x, 0, mean.slope.z});
-    const double angle = std::atan2(d.x, -d.z);
+    const double angle = atan2(d.x, -d.z);
     return ChiefRays::Meridional{angle, o.x * std::cos(angle) + o.z * std::sin(angle),
                                  mean.start};
 }

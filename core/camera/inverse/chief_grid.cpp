@@ -17,7 +17,7 @@ constexpr double kMargin = 1.02;
 
 Vec2d angle_of(Vec3d d) {
     const double across = hypot(d.x, d.y);
-    const double scale = across > 0 ? std::atan2(across, -d.z) / across : 1;
+    const double scale = across > 0 ? atan2(across, -d.z) / across : 1;
     return {d.x * scale, d.y * scale};
 }
 

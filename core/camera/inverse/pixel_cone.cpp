@@ -53,7 +53,7 @@ double mean_angle_per_mm(const Lens& lens, double radius_mm, double step_mm) {
 template <HasChief Lens>
 double field_angle(const Lens& lens, double x_mm) {
     const Vec3d d = direction(lens.chief_direction({x_mm, 0}));
-    return std::atan2(d.x, -d.z);
+    return atan2(d.x, -d.z);
 }
 
 double largest_radius(const Sensor& s) {

@@ -11,7 +11,7 @@ PupilShape::Sight PupilShape::sight(Vec3d from_pupil, double w) const {
     s.distance = w == 0 ? 1 : far;
     s.e = from_pupil * (1 / far);
     s.layer = w == 0 ? 0 : std::sqrt(nearest_ / far) * layers_;
-    const double across = hypot(s.e.x, s.e.y), angle = std::atan2(across, -s.e.z);
+    const double across = hypot(s.e.x, s.e.y), angle = atan2(across, -s.e.z);
     const Vec2d out = across > 0 ? Vec2d{s.e.x, s.e.y} * (1 / across) : Vec2d{1, 0};
     const Vec3d meridional{-s.e.z * out.x, -s.e.z * out.y, across},
         sagittal{-out.y, out.x, 0};

@@ -81,7 +81,7 @@ void block_vectors(const FitBlock& block, const FitVariables& at, bool axial, Ve
 
 FitDirection describe_ray(const LensRay& scene, double pupil_z) {
     const Vec3d d = scene.direction;
-    const double sine = hypot(d.x, d.y), theta = std::atan2(sine, -d.z);
+    const double sine = hypot(d.x, d.y), theta = atan2(sine, -d.z);
     const AngleRatios ratio(theta);
     const Vec2d v = Vec2d{d.x, d.y} * (1 / ratio.sine);
     const Vec3d from = scene.origin - Vec3d{0, 0, pupil_z};

@@ -40,9 +40,9 @@ std::vector<CoatingLayer> v_coat(double glass) {
     if (glass >= l2) return quarter_wave();
     const double top = (glass - 1) / (l2 * glass - h2);
     const double phase_low =
-        kPiD - std::atan(std::sqrt(top * (h2 - glass) * l2 / (glass - l2)));
+        kPiD - atan(std::sqrt(top * (h2 - glass) * l2 / (glass - l2)));
     const double phase_high =
-        std::atan(std::sqrt(top * (glass - l2) * h2 / (h2 - glass)));
+        atan(std::sqrt(top * (glass - l2) * h2 / (h2 - glass)));
     const double per_phase = kFilmWavelength / (2 * kPiD);
     return {mgf2(phase_low * per_phase / low), ta2o5(phase_high * per_phase / high)};
 }

@@ -20,7 +20,7 @@ Vec2d unit(double angle) {
 /// on +x.
 Vec2d edge_point(const Iris::Blades& b, double half_chord, double t) {
     if (b.bend == 0) return {b.apothem, half_chord * (2 * t - 1)};
-    const double half = std::asin(std::min(1.0, half_chord / b.arc_radius));
+    const double half = asin(std::min(1.0, half_chord / b.arc_radius));
     const double angle = half * (2 * t - 1);
     return {b.center + b.bend * b.arc_radius * std::cos(angle),
             b.arc_radius * std::sin(angle)};
@@ -105,7 +105,7 @@ Iris Iris::polygon(int blades, double rotation_deg, double curvature) {
     double area = blades * std::sin(half) * std::cos(half), arc = 0;
     if (b.bend) {
         arc = 1 / std::abs(curvature);
-        const double angle = 2 * std::asin(std::min(1.0, std::sin(half) / arc));
+        const double angle = 2 * asin(std::min(1.0, std::sin(half) / arc));
         area += b.bend * blades * 0.5 * arc * arc * (angle - std::sin(angle));
     }
     const double corner = std::sqrt(kPiD / area), half_chord = corner * std::sin(half);
