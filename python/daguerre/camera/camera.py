@@ -52,82 +52,84 @@ class Camera(Value):
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
         lens: Library name, file, ``Lens``, ``"thin"`` or ``"pinhole"``; default: thin.
-        lens_model: How the lens is computed: exact, polynomial, thick, thin or pinhole; default:
-            exact if ``lens`` names one.
+        lens_model: Optical model of the lens: exact, polynomial, thick, thin or pinhole; default:
+            exact if ``lens`` has a prescription.
         projection: A calibration, or the formula of a fisheye or a panorama, instead of a lens. It
-            takes ``f_stop`` (None: all is sharp) and focus; the width of ``sensor_size`` counts.
-            Keys must share model and size.
+            combines with ``f_stop`` (None: everything is sharp), focus and the width of
+            ``sensor_size``. Keys of one motion must share model and size.
         degree: Degree of a polynomial lens, odd, 1 to 13; default: 7.
-        fit_tolerance: RMS error, px, above which the exact lens replaces a polynomial one; default:
-            0.5.
-        focal_length: Focal length of an ideal lens, mm; default: 50. A prescription has its own and
-            takes no other.
-        zoom: Focal length at which a zoom lens stands, mm. Without it the lens stands as its file
-            says; ``daguerre lenses`` shows its range.
-        decenter: Elements of a prescription off their axis, as in lenses that were dropped: for
-            each the indices of its first and last surface, shift along x and y in mm, and tilt
-            about x and y in degrees.
-        sensor: ``Sensor``, library name, or file. The frame then also holds its channels, and the
-            sensor's size is used unless ``sensor_size`` is given.
+        fit_tolerance: RMS error of a polynomial lens, px, above which the exact lens replaces it;
+            default: 0.5.
+        focal_length: Focal length of an ideal lens, mm; default: 50. A lens with a prescription has
+            its own and refuses another.
+        zoom: Focal length to set a zoom lens to, mm; default: as its lens file says. ``daguerre
+            lenses`` shows the range.
+        decenter: Elements of a prescription off their axis, as in a lens that was dropped. For
+            each: index of its first and last surface, shift along x and y in mm, and tilt about x
+            and y in degrees.
+        sensor: ``Sensor``, library name, or file. The frame then also holds the sensor's channels.
+            Its size is used unless ``sensor_size`` is given.
         sensor_size: Width and height of the sensor, mm; default: 36 x 24.
         sensor_fit: Side of the sensor that the picture spans: horizontal, vertical, auto or fill;
             default: horizontal.
-        f_stop: Focal length / entrance pupil diameter. Without it the file's, else 5.6, or the
-            lens's widest if that is slower.
-        aperture_diameter: Entrance pupil diameter, mm, instead of ``f_stop``. Thin lens only.
-        t_stop: F-number corrected for light lost in the glass, instead of ``f_stop``. F-stop /
-            sqrt(transmittance): the f-number of a lens without losses that is as bright on the
-            axis.
-        focus_distance: Focus distance, m, or inf; default: the file's, else autofocus. It starts
-            where ``focus_from`` says; autofocus is on the center of the picture.
+        f_stop: F-number: focal length / entrance pupil diameter; default: 5.6, or the lens's widest
+            if that is slower.
+        aperture_diameter: Entrance pupil diameter of a thin lens, mm, instead of ``f_stop``.
+        t_stop: F-number corrected for light lost in the glass, instead of ``f_stop``. It is f-stop
+            / sqrt(transmittance): the f-number of a lossless lens that is as bright on the axis.
+        focus_distance: Focus distance, m, or inf; default: autofocus on the center of the picture.
+            ``focus_from`` sets where it is measured from.
         focus_at: Pixel (x, y) to focus on: the surface that it shows becomes sharp.
         focus_on: Name of a node to focus on: its nearest surface point becomes sharp.
-        focus_from: Where the focus distance starts: pupil or sensor; default: pupil.
-        focus_by: Focus of rays near the axis, or smallest spot on the axis: paraxial or best;
-            default: paraxial.
-        focus_breathing: Thin lens: narrow the field in close focus. The focal length stays, as in a
-            real lens that moves as a whole; without it the field stays.
-        blades: Number of iris blades; 0 is round.
-        blade_rotation: Rotation of the iris blades, degrees.
-        blade_curvature: Curvature of the iris blades, -1 to 1; 1 is round. 0 is straight.
+        focus_from: Point that the focus distance is measured from: pupil or sensor; default: pupil.
+        focus_by: Focus criterion (rays near the axis, or smallest spot on the axis): paraxial or
+            best; default: paraxial.
+        focus_breathing: Thin lens: narrow the field of view in close focus. The focal length stays
+            fixed, as in a real lens that focuses by moving as a whole; without it the field of view
+            stays fixed.
+        blades: Number of iris blades; 0 is round; default: 0.
+        blade_rotation: Rotation of the iris blades, degrees; default: 0.
+        blade_curvature: Curvature of the iris blades, -1 to 1; 0 is straight, 1 round; default: 0.
         aperture_image: Grey picture (H, W) of the iris opening, instead of blades.
-        front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens, as wide
-            as it is clear: 1 lets all light through.
-        iris_mask: Grey picture (H, W) of dust and scratches at the iris, as wide as it opens.
-        ripple: Grooves left by grinding in the aspheric surfaces of an exact lens, which show as
-            onion rings: RMS height (nm), period (um), and optionally a seed.
-        cover_glass: Glass of the body before its sensor: thickness and gap to the sensor, mm, and
+        front_mask: Grey picture (H, W) of dust and scratches on the front of an exact lens. It
+            spans the clear diameter of the front; 1 lets all light through.
+        iris_mask: Grey picture (H, W) of dust and scratches at the iris of an exact lens. It spans
+            the iris at its widest.
+        ripple: Grinding grooves in the aspheric surfaces of an exact lens, which show as onion
+            rings: RMS height (nm), period (um), and optionally a seed.
+        cover_glass: Cover glass in front of the sensor: thickness and gap to the sensor, mm, and
             optionally its index [1.5168]. It adds ghosts (``flare``) and nothing else.
-        sensor_reflectance: Share of light that the sensor sends back into the lens, 0 to 1;
-            default: 0.
-        scatter: How barrel, blades and surfaces of an exact lens scatter, where scatter is drawn
-            (``docs/scatter.md``); default: a well-made lens.
+        sensor_reflectance: Share of light that the sensor reflects back into the lens, 0 to 1; it
+            adds ghosts to ``flare``; default: 0.
+        scatter: Scatter by barrel, blades and surfaces of an exact lens, drawn if rendering has
+            ``scatter`` on (``docs/scatter.md``); default: a well-made lens.
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
-        shift: Shift of the film, right and up, mm.
-        tilt: Turn of the lens about x (up) and y (left), degrees. The lens turns about its entrance
-            pupil. The film stays across the camera's axis and keeps what is straight ahead in its
-            middle; the focus distance runs along the lens's axis.
-        shutter_time: Time for which a point of the film is exposed, s; 0 freezes. Default:
-            ``shutter_angle``.
-        shutter_angle: Exposure time in degrees of a frame. It is 360 ``fps`` ``shutter_time``.
-            Without either the file's, else 180 degrees.
-        fps: Frames per second, such as 24000/1001; default: 24. Angles, offsets and sequences count
-            by it.
+        shift: Shift of the film, right and up, mm; default: 0,0.
+        tilt: Tilt of the lens about x (up) and y (left), degrees; default: 0,0. The lens turns
+            about its entrance pupil. The film stays perpendicular to the camera's axis, with what
+            is straight ahead in its middle. The focus distance is measured along the lens's axis.
+        shutter_time: Time for which each point of the film is exposed, s; 0 freezes motion.
+            Default: from ``shutter_angle``.
+        shutter_angle: Exposure time as a shutter angle, degrees; 360 is a whole frame; default:
+            180. It equals 360 x ``fps`` x ``shutter_time``.
+        fps: Frames per second, such as 24000/1001; default: 24. Shutter angles, shutter offsets and
+            sequences use it.
         shutter_offset: Time at which the shutter opens, in frames from the scene's time; default:
             the exposure is centred on that time.
-        shutter_type: Kind of shutter: box, leaf, focal_plane, rotary or electronic; default: box;
+        shutter_type: Shutter type: box, leaf, focal_plane, rotary or electronic; default: box;
             electronic with ``rolling_shutter``.
-        shutter_curve: Opening over the time: box, ("trapezoid", efficiency) or points (fraction of
-            the time, opening); for a leaf the radius of the iris.
-        rolling_shutter: Lines of pixels exposed in turn; default: that of the type.
-        iso: Sensitivity of developed pictures; default: 100. Neither it nor any other parameter of
-            exposure changes the linear picture.
+        shutter_curve: Opening of the shutter over time: box, ("trapezoid", efficiency) or points
+            (fraction of the time, opening); for a leaf shutter, the radius of the iris.
+        rolling_shutter: Rolling shutter, which exposes lines of pixels in turn; default: that of
+            the shutter type.
+        iso: ISO speed of developed pictures; default: 100. No parameter of exposure changes the
+            linear picture.
         exposure_compensation: Exposure compensation of developed pictures, EV; default: 0.
         exposure_time: Exposure time that sets brightness, s; motion blur keeps ``shutter_time``;
             default: ``shutter_time``.
-        exposure_f_stop: F-stop that sets brightness; blur keeps ``f_stop``; default: ``f_stop``; of
-            a pinhole 8.
-        responsivity: Factor on the exposure; default: 1.
+        exposure_f_stop: F-stop that sets brightness; depth of field keeps ``f_stop``; default:
+            ``f_stop``; for a pinhole 8.
+        responsivity: Factor that scales the exposure; default: 1.
         white_balance: White for development: colour temperature, K, or chromaticity (x, y).
         motion: Parameters that change over time, by name.
     """

@@ -57,12 +57,15 @@ def calibrate(
         option(
             "--residuals",
             metavar="FILE.png|svg|pdf",
-            help="Plot the residuals of the fit over the picture. Extra `plot`.",
+            help="Plot the residuals of the fit over the picture (needs extra `plot`).",
         ),
     ] = None,
     json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
 ) -> int:
-    """Fits a projection (OpenCV's models, fisheyes) to a lens, by its chief rays."""
+    """Fits a projection model of camera calibration to a lens.
+
+    The models are those of OpenCV and fisheyes; the fit uses the chief rays of the lens.
+    """
     from daguerre.analysis.calibrate import calibrate as fit
     from daguerre.analysis.calibrate import calibrate_all
     from daguerre.files.atomic import check_writable

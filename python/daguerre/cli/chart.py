@@ -26,7 +26,7 @@ def chart(
             "-o",
             "--output",
             metavar="FILE.glb",
-            help="Scene to write; its truth goes beside it, as .json.",
+            help="Scene to write; the chart's true values go beside it, as .json.",
         ),
     ] = None,
     parameter: Annotated[
@@ -34,13 +34,14 @@ def chart(
         option("--set", metavar="KEY=VALUE", help="Chart parameter; repeatable; see --list."),
     ] = None,
     luminance: Annotated[
-        float, option("--luminance", metavar="X", help="Luminance of white, cd/m2 [100].")
+        float,
+        option("--luminance", metavar="X", help="Luminance of the chart's white, cd/m2 [100]."),
     ] = 100.0,
     paint: Annotated[
         bool,
         option(
             "--paint",
-            help="Write matt paint for light of your own, instead of a chart that shines.",
+            help="Make the chart of matt paint, to be lit by your own lights, instead of emissive.",
         ),
     ] = False,
     focal_length: Annotated[
@@ -53,7 +54,10 @@ def chart(
         bool, option("--list", help="List every chart with its parameters.")
     ] = False,
 ) -> int:
-    """Writes a test chart as a scene, with a camera that it fills, and its truth."""
+    """Writes a test chart as a scene, with its true values.
+
+    The chart fills the frame of the scene's camera.
+    """
     from daguerre import charts
 
     if list_charts:

@@ -26,28 +26,35 @@ def composite(
         Path,
         typer.Argument(
             metavar="PLATE",
-            help="Photograph: .dng, .exr, .jpg, .png, .tif; with --frames plate.####.dng, or one "
-            "for all frames.",
+            help="Photograph: .dng, .exr, .jpg, .png or .tif; with --frames a sequence such as "
+            "plate.####.dng, or one photograph for all frames.",
         ),
     ],
     objects: Annotated[
         Path,
         typer.Argument(
             metavar="OBJECT.exr",
-            help="Render with alpha and catchers; with --frames object.####.exr.",
+            help="Render with alpha and catchers; with --frames a sequence such as "
+            "object.####.exr.",
         ),
     ],
     output: Annotated[
         list[Path],
         option(
-            "-o", "--output", metavar="OUT.exr|dng|jpg|png|tif", help="File to write; repeatable."
+            "-o",
+            "--output",
+            metavar="OUT.exr|dng|jpg|png|tif",
+            help="Picture to write; repeatable.",
         ),
     ],
     *,
     placing: PlacingFlags,
     sequence: SequenceFlags,
 ) -> int:
-    """Puts rendered objects into a photograph: in light, or in the electrons of a raw file."""
+    """Puts rendered objects into a photograph.
+
+    It adds linear light, or electrons if the photograph is a raw file.
+    """
     from daguerre.files.atomic import check_writable
     from daguerre.plates.composite.remarks import of_camera
     from daguerre.plates.composite.shots import shots_of

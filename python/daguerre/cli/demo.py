@@ -19,7 +19,7 @@ from .flags.groups import option
 
 def demo(
     folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="Folder for the scene and its picture [out].")
+        Path, typer.Argument(metavar="FOLDER", help="Folder for the scene and its pictures.")
     ] = Path("out"),
     res: Annotated[
         str, option("--res", metavar="WxH", help="Size of the picture, px [720x480].")
@@ -28,9 +28,10 @@ def demo(
         int, option("--spp", metavar="N", help="Samples per pixel, at least 1 [64].")
     ] = 64,
 ) -> int:
-    """Renders a table-top at night through a double Gauss at f/2: a scene to play with.
+    """Renders a demo scene: a table-top at night.
 
-    Writes night_table.glb, demo.png and demo.exr, and prints the command that renders them.
+    The lens is a double Gauss at f/2. Writes night_table.glb, demo.png and demo.exr, and prints the
+    command that renders them.
     """
     from . import main
 

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 _SENSOR = Table(
     Parameter(
         "sensor", "Sensor that takes the picture, with its noise", kind="text",
-        flags=("--sensor",), metavar="NAME|FILE", default_words="a perfect one",
+        flags=("--sensor",), metavar="NAME|FILE", default_words="a perfect sensor",
     ),
     Parameter(
-        "stock", "Film stock that takes the picture, then printed; see `daguerre stocks`",
+        "stock", "Film stock to expose and print, instead of a sensor; see `daguerre stocks`",
         kind="text", flags=("--stock",), metavar="NAME|FILE",
     ),
     Parameter(
@@ -48,8 +48,8 @@ _FILE = Table(
         wants="1 to 100", flags=("--quality",), metavar="N", tells_default=True,
     ),
     Parameter(
-        "bits", "Bits per channel: PNG [8], TIFF [16]", kind="whole",
-        flags=("--bits",), metavar="8|16",
+        "bits", "Bits per channel of a .png or .tif", kind="whole",
+        flags=("--bits",), metavar="8|16", default_words=".png: 8, .tif: 16",
     ),
 )
 # fmt: on
@@ -73,12 +73,12 @@ class FileFlags(TableFlags):
 @with_flags(taker=SensorFlags, recipe=RecipeFlags, file=FileFlags)
 def develop(
     source: Annotated[
-        Path, typer.Argument(metavar="IN.exr|IN.dng", help="Frame, or a camera's raw file.")
+        Path, typer.Argument(metavar="IN.exr|IN.dng", help="Frame, or raw file of a camera.")
     ],
     output: Annotated[
         list[Path],
         option(
-            "-o", "--output", metavar="OUT.jpg|png|tif|exr|dng", help="File to write; repeatable."
+            "-o", "--output", metavar="OUT.jpg|png|tif|exr|dng", help="Photo to write; repeatable."
         ),
     ],
     taker: SensorFlags,
@@ -86,7 +86,7 @@ def develop(
     file: FileFlags,
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
-    """Makes photographs of a frame or of a raw file."""
+    """Develops a frame or a raw file into photographs."""
     console.quiet = quiet
     wanted, used, saved = recipe.given(), taker.given(), file.given()
     _FILE["quality"].check(saved.get("quality"), "--quality")

@@ -28,22 +28,26 @@ if TYPE_CHECKING:
     scene_flags=SceneFlags,
 )
 def info(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene, a .glb or .gltf file.")
-    ],
+    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
     scene_flags: SceneFlags,
     res: Annotated[
         str | None,
-        option("--res", metavar="WxH", help="Size of the picture, px: its shape counts [960x540]."),
+        option(
+            "--res",
+            metavar="WxH",
+            help="Picture size, px, for field of view and pixel pitch [that of the calibration, "
+            "else 960x540].",
+        ),
     ] = None,
     json: Annotated[bool, option("--json", help="Print one JSON object.")] = False,
 ) -> int:
-    """Describes a scene, and each camera with field of view and depth of field.
+    """Describes a scene and its cameras.
 
-    Camera flags change the cameras that are shown, so that a lens or a stop can be tried.
+    For each camera it prints field of view, depth of field and exposure. Flags change the cameras
+    that it describes: use them to try a lens or a stop.
     """
     from daguerre.camera.camera import Camera
     from daguerre.setup import camera_facts as facts_of

@@ -9,7 +9,10 @@ from .flags.groups import option
 
 
 def lenses(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
-    """Lists the lenses of the library: name, year, focal length, f-stop, format, source."""
+    """Lists the lenses of the library.
+
+    Columns: name, year, focal length, f-stop, format, source.
+    """
     from dataclasses import asdict
     from json import dumps
 

@@ -30,7 +30,7 @@ def light_probe(
         typer.Argument(metavar="PHOTO...", help="Photographs: JPEG, PNG, TIFF, EXR, HDR or raw."),
     ],
     output: Annotated[
-        Path, option("-o", "--output", metavar="ENV.exr|hdr", help="Environment to write.")
+        Path, option("-o", "--output", metavar="ENV.exr|hdr", help="Environment map to write.")
     ],
     probe: ProbeFlags,
     sun_out: Annotated[
@@ -38,13 +38,17 @@ def light_probe(
         option(
             "--sun-out",
             metavar="SUN.glb",
-            help="Directional light to write the sun to; the environment is without it then.",
+            help="Write the sun to this file as a directional light, and leave it out of the "
+            "environment map.",
         ),
     ] = None,
-    json: Annotated[bool, option("--json", help="Print what was found as a JSON object.")] = False,
+    json: Annotated[bool, option("--json", help="Print the results as one JSON object.")] = False,
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
-    """Makes an environment of photographs of a mirror ball, a grey ball, or a panorama."""
+    """Makes an environment map from photographs.
+
+    The photographs show a mirror ball or a grey ball, or are a panorama.
+    """
     from daguerre.plates.probe import light_probe as make
 
     console.quiet = quiet

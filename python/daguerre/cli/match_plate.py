@@ -34,23 +34,29 @@ def match_plate(
     flags: MatchFlags,
     output: Annotated[
         Path | None,
-        option("-o", "--output", metavar="FILE.json", help="Camera file [PHOTO.camera.json]."),
+        option(
+            "-o",
+            "--output",
+            metavar="FILE.json",
+            help="Camera file to write [PHOTO.camera.json].",
+        ),
     ] = None,
     flat: Annotated[
         list[Path] | None,
         option(
             "--flat",
             metavar="FILE",
-            help="Photo of an even surface, at the same settings: for vignetting and noise; "
-            "repeatable.",
+            help="Photo of an evenly lit surface at the same settings, to measure vignetting and "
+            "noise; repeatable.",
         ),
     ] = None,
     json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
-    """Finds the camera of a photo: lens, exposure, noise, sharpness, vignetting.
+    """Measures the camera that took a photo.
 
-    `render --like-plate` draws objects with the file that it writes.
+    It finds lens, exposure, noise, sharpness and vignetting, and writes them to a camera file for
+    `render --like-plate`.
     """
     from daguerre.files.atomic import check_writable
     from daguerre.plates.match.match import match_plate as match

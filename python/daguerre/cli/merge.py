@@ -17,27 +17,34 @@ from .flags.groups import option
 def merge(
     passes: Annotated[
         list[Path],
-        typer.Argument(metavar="PASS.exr...", help="Passes by `render --samples`, or crops."),
+        typer.Argument(
+            metavar="PASS.exr...", help="Passes of `render --samples`, or crops of `render --crop`."
+        ),
     ],
     output: Annotated[
         list[Path],
-        option("-o", "--output", metavar="FILE", help="File to write: .exr or .png; repeatable."),
+        option(
+            "-o", "--output", metavar="FILE", help="Picture to write: .exr or .png; repeatable."
+        ),
     ],
     strict: Annotated[
         bool, option("--strict", help="Fail if a range of samples is missing.")
     ] = False,
     keep_sums: Annotated[
-        bool, option("--keep-sums", help="Write a pass, to be merged further.")
+        bool, option("--keep-sums", help="Write a pass that can be merged again.")
     ] = False,
     denoise: Annotated[
-        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.")
+        bool, option("--denoise", help="Denoise the picture (needs extra `denoise`).")
     ] = False,
     tone: Annotated[
-        str, option("--tone", metavar="srgb|soft", help="Tone curve of a PNG [srgb].")
+        str, option("--tone", metavar="srgb|soft", help="Tone curve of a .png [srgb].")
     ] = "srgb",
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> int:
-    """Adds passes to one picture, with the bits of a render in one go; or joins its crops."""
+    """Merges passes of a picture, or joins its crops.
+
+    The result is bit-identical to a render in one go.
+    """
     from daguerre.files import atomic
     from daguerre.frame.frame import TONES, check_format
     from daguerre.io.exr.crops import are_crops

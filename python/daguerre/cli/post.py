@@ -23,11 +23,12 @@ if TYPE_CHECKING:
 
 def post(
     picture: Annotated[
-        Path | None, typer.Argument(metavar="IN.exr", help="Scene-linear picture of any renderer.")
+        Path | None,
+        typer.Argument(metavar="IN.exr", help="Scene-linear picture, from any renderer."),
     ] = None,
     output: Annotated[
         Path | None,
-        option("-o", "--output", metavar="OUT.exr", help="File to write, whole or not at all."),
+        option("-o", "--output", metavar="OUT.exr", help="Picture to write."),
     ] = None,
     effect: Annotated[
         list[str] | None,
@@ -39,14 +40,14 @@ def post(
     ] = None,
     recipe: Annotated[
         Path | None,
-        option("--recipe", metavar="FILE.json", help="Recipe: effects as a list of JSON objects."),
+        option("--recipe", metavar="FILE.json", help="Recipe file: a JSON list of effects."),
     ] = None,
     channel: Annotated[
         list[str] | None,
         option(
             "--channel",
             metavar="ROLE=NAME",
-            help="Channel for depth, motion.u or motion.v; repeatable.",
+            help="Channel to use as depth, motion.u or motion.v; repeatable.",
         ),
     ] = None,
     list_effects: Annotated[
@@ -57,7 +58,10 @@ def post(
         bool, option("--json-progress", help="Print progress as JSON lines on stdout.")
     ] = False,
 ) -> int:
-    """Puts effects of a lens on a picture, or takes them away, in bands of little memory."""
+    """Applies lens effects to a picture, or removes them.
+
+    It works in strips of rows, so it needs little memory.
+    """
     from daguerre.post.effects.catalogue import EFFECTS
 
     console.quiet = quiet

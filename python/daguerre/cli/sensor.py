@@ -24,11 +24,15 @@ def sensor(
             "--plot",
             "-o",
             metavar="FILE.svg|png|pdf",
-            help="Plot efficiency, dynamic range and signal to noise on one page. Extra `plot`.",
+            help="Write a one-page plot of quantum efficiency, dynamic range and signal to noise "
+            "(needs extra `plot`).",
         ),
     ] = None,
 ) -> int:
-    """Shows a sensor: size, quantum efficiency, full well, and its figures at each ISO."""
+    """Shows the data of a sensor.
+
+    It prints size, quantum efficiency, full well, and figures at each ISO.
+    """
     from daguerre.sensors import load
     from daguerre.sensors.facts import facts
 

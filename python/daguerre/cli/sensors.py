@@ -9,7 +9,10 @@ from .flags.groups import option
 
 
 def sensors(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
-    """Lists the sensors of the library: name, size, resolution, pitch, pattern, base ISO, bits."""
+    """Lists the sensors of the library.
+
+    Columns: name, size, resolution, pixel pitch, pattern, base ISO, bits, camera.
+    """
     from json import dumps
 
     from daguerre.sensors import load, names

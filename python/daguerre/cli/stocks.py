@@ -9,7 +9,10 @@ from .flags.groups import option
 
 
 def stocks(json: Annotated[bool, option("--json", help="Print a JSON list.")] = False) -> int:
-    """Lists the film stocks of the library: name, kind, ISO, balance, RMS granularity."""
+    """Lists the film stocks of the library.
+
+    Columns: name, kind, colour, ISO, colour temperature of the balance, RMS granularity.
+    """
     from json import dumps
 
     from daguerre.stocks import load, names

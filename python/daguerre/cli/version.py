@@ -9,7 +9,7 @@ from .flags.groups import option
 
 
 def version(json: Annotated[bool, option("--json", help="Print one JSON object.")] = False) -> int:
-    """Prints the version, and the libraries that it uses."""
+    """Prints the versions of daguerre and its libraries."""
     import platform
     from importlib import metadata
     from json import dumps

@@ -95,16 +95,16 @@ SAMPLING_ROWS = (
     Setting(
         "spp", "Samples per pixel", kind="whole", low=1, high=MAX_SAMPLES, wants="1 .. 2^31",
         flags=("--spp",), metavar="N", panel=SAMPLING, usual=DEFAULT_SPP, tells_default=True,
-        more="With {noise} the most that a pixel may get",
+        more="With {noise} it is the maximum for a pixel",
     ),
     Setting(
-        "noise", "Relative error to reach, such as 0.02, with at most {spp} samples per pixel, "
-        f"by default {MAX_SPP}",
+        "noise", "Target relative error, such as 0.02; each pixel gets the samples that it needs, "
+        f"at most {{spp}}, by default {MAX_SPP}",
         normal=lambda value, where: number(value, where, high=1.0, above=0.0),
         flags=("--noise",), metavar="X", panel=SAMPLING,
-        more="0.05 is grainy, 0.01 clean: the root mean square over pixels and channels of "
-        "standard error / sqrt(value^2 + 0.01). Pixels then get as many samples as each needs. "
-        "Of a denoised picture it is the error that is left",
+        more="0.05 is grainy, 0.01 clean. The error is the root mean square, over pixels and "
+        "channels, of standard error / sqrt(value^2 + 0.01); for a denoised picture, the error "
+        "that is left",
     ),
     Setting(
         "seed", "Seed of the random numbers", default=0, kind="whole", low=0, high=MAX_SEED,
@@ -125,35 +125,38 @@ FILM_ROWS = (
         kind="value", normal=check_resolution,
     ),
     Setting(
-        "crop", "Draw only these pixels", "px", kind="value", normal=check_crop, parse=_crop_text,
+        "crop", "Draw only the pixels from X0 to X1 and from Y0 to Y1, ends exclusive", "px",
+        kind="value", normal=check_crop, parse=_crop_text,
         flags=("--crop",), metavar="X0,X1,Y0,Y1", panel=PICTURE,
         in_python="Pixel region (x0, y0, x1, y1) to draw, end exclusive; default: all.",
     ),
     Setting(
-        "overscan", "Pixels beside the picture, in the data window of the .exr: for all sides, for "
-        "left, top, right and bottom, or as many as undistorting needs", "px", kind="value",
+        "overscan", "Extra pixels around the picture, in the data window of the .exr: for all "
+        "sides, for left, top, right and bottom, or as many as undistortion needs", "px",
+        kind="value",
         flags=("--overscan",), metavar="PX|10%|L,T,R,B|undistort", panel=PICTURE,
-        in_python="Pixels to draw beside the picture (``docs/plates.md``): a number for all sides, "
-        "``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``: as many as a later "
-        "undistortion needs. The picture keeps its bits.", explained=("plates.md#overscan",),
+        in_python="Extra pixels to draw around the picture (``docs/plates.md``): a number for all "
+        "sides, ``\"10%\"``, (left, top, right, bottom), or ``\"undistort\"``: as many as a later "
+        "undistortion needs. The picture itself stays bit-identical.",
+        explained=("plates.md#overscan",),
     ),
     Setting(
         "aovs", "Whether to keep depth, normal, position, albedo and object id", default=False,
         kind="flag", normal=_switch("True or False (all of them or none)"),
     ),
     Setting(
-        "halves", "Whether to keep the picture of every other sample beside that of all, by which "
-        "a denoised picture knows its error", default=False, kind="flag",
+        "halves", "Whether to keep a picture of every other sample beside that of all samples; the "
+        "denoiser estimates its error from the two", default=False, kind="flag",
         normal=_switch("True or False"),
     ),
     Setting(
-        "cryptomatte", "Mattes by the names of objects, materials or assets: shares of each pixel "
-        "that they cover", default=(), kind="value", normal=check_layers,
+        "cryptomatte", "Cryptomatte layers to keep: mattes by the names of objects, materials or "
+        "assets", default=(), kind="value", normal=check_layers,
         flags=("--cryptomatte",), metavar="object,material,asset", panel=TRUTH,
         default_words="none", explained=("plates.md#cryptomatte",),
     ),
     Setting(
-        "cryptomatte_ranks", "Names that {cryptomatte} keeps of each pixel", default=6,
+        "cryptomatte_ranks", "Number of names that {cryptomatte} keeps for each pixel", default=6,
         kind="whole", low=1, high=MAX_RANKS, flags=("--cryptomatte-ranks",), metavar="N",
         panel=TRUTH, tells_default=True,
     ),
@@ -167,20 +170,21 @@ FILM_ROWS = (
 )
 LIGHT_ROWS = (
     Setting(
-        "max_depth", "Largest number of surfaces along a path", default=16, kind="whole", low=1,
-        high=4096, flags=("--max-depth",), metavar="N", panel=SAMPLING, tells_default=True,
+        "max_depth", "Maximum number of surfaces along a light path", default=16, kind="whole",
+        low=1, high=4096, flags=("--max-depth",), metavar="N", panel=SAMPLING, tells_default=True,
     ),
     Setting(
-        "light_paths", "Light followed from the emitters to the film, per sample index: straight "
-        "to the lens, and with bounces", default="auto", kind="value", normal=_light_paths,
+        "light_paths", "Number of paths traced from the lights to the film, per sample index: M1 "
+        "straight to the lens, M2 with bounces", default="auto", kind="value", normal=_light_paths,
         flags=("--light-paths",), metavar="auto|off|M1[,M2]", panel=SAMPLING, tells_default=True,
         explained=("light-paths.md",),
-        in_python="Light followed from the emitters to the film, beside the paths from the lens "
-        "(``docs/light-paths.md``): auto (default), off, or paths per sample index, straight to "
-        "the lens and with bounces, as (M1, M2).",
+        in_python="Paths traced from the lights to the film, beside the paths from the lens "
+        "(``docs/light-paths.md``): auto (default), off, or their numbers (M1, M2) per sample "
+        "index, straight to the lens and with bounces.",
     ),
     Setting(
-        "flare", "Draw ghosts of an exact lens; N paths per sample index", default="off",
+        "flare", "Draw lens flare: ghosts of an exact lens, by N paths per sample index",
+        default="off",
         kind="value", normal=_paths,
         flags=("--flare",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
         explained=("flare.md",),
@@ -188,93 +192,97 @@ LIGHT_ROWS = (
         "sample index.",
     ),
     Setting(
-        "flare_order", "Number of reflections of ghosts; 4 draws those of 2 and of 4", default=2,
+        "flare_order", "Number of reflections in a ghost; 4 draws those of 2 and of 4", default=2,
         kind="whole", normal=_order,
         flags=("--flare-order",), metavar="2|4", panel=SAMPLING, tells_default=True,
     ),
     Setting(
-        "flare_highlights", "Draw ghosts of light that mirrors, glass and walls send to the lens, "
-        "too", default=True, kind="value", normal=check_highlights,
+        "flare_highlights", "Draw ghosts also of light that reaches the lens by mirrors, glass and "
+        "walls", default=True, kind="value", normal=check_highlights,
         flags=("--flare-highlights",), metavar="on|off", panel=SAMPLING, default_words="on",
-        in_python="Whether light that mirrors, glass and walls send to the lens has ghosts, too: "
-        "True or on (default), False or off.",
+        in_python="Whether to draw ghosts also of light that reaches the lens by mirrors, glass "
+        "and walls: True or on (default), False or off.",
     ),
     Setting(
-        "scatter", "Draw light that barrel, iris and surfaces of an exact lens scatter; N paths "
+        "scatter", "Draw light scattered by barrel, iris and surfaces of an exact lens, by N paths "
         "per sample index", default="off", kind="value", normal=_paths,
         flags=("--scatter",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
         explained=("scatter.md",),
-        in_python="Light that barrel, blades and surfaces of an exact lens scatter "
+        in_python="Light scattered by barrel, blades and surfaces of an exact lens "
         "(``docs/scatter.md``): off (default), auto, or paths per sample index.",
     ),
     Setting(
-        "diffraction", "Treat light as a wave at the iris: stars, discs, softness at narrow stops",
+        "diffraction", "Draw diffraction at the iris: stars, discs, softness at narrow stops",
         default=False, kind="flag", normal=lambda value, where: check_diffraction(value) or False,
         flags=("--diffraction",), panel=SAMPLING, explained=("diffraction.md",),
-        in_python="Whether light is a wave at the iris (``docs/diffraction.md``): True, or a "
+        in_python="Whether to draw diffraction at the iris (``docs/diffraction.md``): True, or a "
         "``Diffraction`` with the number of bands and zones; default: False.",
     ),
 )
 PLATE_ROWS = (
     Setting(
-        "background", "Background behind the scene: the environment as the lens sees it, nothing, "
-        "or the photograph of the set. The environment gives light in any case",
+        "background", "Background of the picture: the environment as the lens sees it, nothing, or "
+        "the photograph of the set; the environment lights the scene in any case",
         default="environment", kind="choice", choices=BACKGROUNDS,
+        in_python="Background of the picture: environment (default; as the lens sees it), "
+        "transparent, or plate, the photograph of the set. The environment lights the scene in "
+        "any case.",
         flags=("--background",), metavar="environment|transparent|plate", panel=PICTURE,
         tells_default=True, explained=("plates.md#alpha",),
     ),
     Setting(
-        "see_through", "Smooth glass keeps a hole for what lies straight behind it, instead of "
-        "covering it with what it refracts", default=False, kind="flag",
+        "see_through", "Let smooth glass keep a hole in alpha for the background straight behind "
+        "it, instead of covering it with what the glass refracts", default=False, kind="flag",
         normal=_switch("True or False"), flags=("--see-through",), panel=PICTURE,
         explained=("plates.md#alpha",),
     ),
 )
 TRUTH_ROWS = (
     Setting(
-        "gt_time", "Exact depth, P, N and ids at that moment of the exposure, instead of means",
+        "gt_time", "Moment of the exposure at which depth, P, N and ids are exact, instead of "
+        "means over it",
         kind="choice", choices=tuple(GT_TIMES),
         flags=("--gt-time",), metavar="open|mid|close", panel=TRUTH,
         default_words="mid with motion", explained=("ground-truth.md",),
-        more="`--aov motion,motion_back` is where things go and come from, px",
+        more="`--aov motion,motion_back` tells where things go and come from, px",
         in_python="open, mid or close: depth, distance, P, N, object_id and material_id are exact "
         "values at that moment of each pixel's exposure (``docs/ground-truth.md``), instead of "
         "means over the samples; default: mid with motion or ``gt_lens=\"mean\"``, else none.",
     ),
     Setting(
-        "gt_lens", "Ground truth by the chief ray of each pixel, or as means over the rays that "
-        "expose it", default="chief", kind="choice", choices=GT_LENSES,
+        "gt_lens", "Rays for ground truth: the chief ray of each pixel, or means over the rays "
+        "that expose it", default="chief", kind="choice", choices=GT_LENSES,
         flags=("--gt-lens",), metavar="chief|mean", panel=TRUTH, tells_default=True,
         explained=("ground-truth.md#means",),
-        more="`--aov coverage` is the share of its light that meets a surface",
-        in_python="Rays for ground truth: chief (default), the one of the pixel's centre; mean: "
-        "means over those that expose the pixel then, with their share that meets a surface as "
-        "``coverage.Y``.",
+        more="`--aov coverage` is the share of a pixel's light that meets a surface",
+        in_python="Rays for ground truth: chief (default), the chief ray of the pixel's centre; "
+        "mean: means over the rays that expose the pixel at that moment, with the share of them "
+        "that meets a surface as ``coverage.Y``.",
     ),
     Setting(
         "gt_rays", "Rays per pixel for {gt_lens} mean", kind="whole", low=1, high=MAX_RAYS,
         flags=("--gt-rays",), metavar="N", panel=TRUTH, usual=GT_RAYS, tells_default=True,
-        more="They are the same ones each time",
+        more="Each render uses the same rays",
     ),
     Setting(
         "motion",
         "Whether to add ``motion`` and ``motion_back``, where things go and come from, px", "px",
         default=False, kind="flag", normal=_switch("True or False"),
-        more="At mid unless {gt_time} is given",
+        more="They refer to mid-exposure unless {gt_time} is given",
     ),
 )
 REFERENCE_ROWS = (
     Setting(
-        "strategy", "Ways to sample light at a surface, to check one against the other",
+        "strategy", "Sampling of light at a surface, to check one way against the other",
         default="mis", kind="choice", choices=("mis", "light", "bsdf"), tells_default=True,
     ),
     Setting(
-        "technique", "Technique for light that both could find, to check one against the other",
+        "technique", "Technique for light that both can find, to check one against the other",
         default="both", kind="choice", choices=TECHNIQUES, tells_default=True,
     ),
     Setting(
-        "dispersion", "Treatment of a path's other wavelengths by an exact lens (end_secondary is "
-        "the plain reference, and noisier)", default="reproject", kind="choice",
+        "dispersion", "Treatment of a path's secondary wavelengths by an exact lens (end_secondary "
+        "is the plain reference, and noisier)", default="reproject", kind="choice",
         choices=("reproject", "end_secondary"), tells_default=True,
     ),
 )
@@ -291,7 +299,8 @@ DIFFRACTION_ROWS = (
         tells_default=True,
     ),
     Setting(
-        "diffraction_zones", "Points along each side of the frame with diffraction of their own",
+        "diffraction_zones", "Number of points along each side of the frame that have their own "
+        "diffraction",
         default=Diffraction.zones, kind="whole", low=1, high=MOST_ZONES,
         flags=("--diffraction-zones",), metavar="N", panel=SAMPLING,
         tells_default=True,

@@ -12,16 +12,16 @@ from daguerre.parameters.table import Table
 
 from . import CAMERA
 
-ZOOM = replace(CAMERA["zoom"], meaning="Focal length of a zoom, mm", panel=None)
+ZOOM = replace(CAMERA["zoom"], meaning="Focal length to set a zoom lens to, mm", panel=None)
 FOCUS = replace(
     CAMERA["focus_distance"],
-    meaning="Focus distance, m from the pupil",
+    meaning="Focus distance from the entrance pupil, m, or inf",
     default_words="inf",
     panel=None,
 )
 F_STOP = replace(
     CAMERA["f_stop"],
-    meaning="F-stop as engraved",
+    meaning="F-stop, as engraved on the lens",
     default_words="wide open",
     flags=("--f-stop",),
     panel=None,
@@ -37,38 +37,39 @@ def focus_by(meaning: str, first: str) -> Parameter:
 
 # fmt: off
 MODEL = Parameter(
-    "model", "Projection model: opencv, fisheye, double_sphere, ...; all compares them",
+    "model", "Projection model to fit: opencv, fisheye, double_sphere, ...; all compares them",
     default="opencv", kind="text", flags=("--model",), metavar="NAME", tells_default=True,
 )
 TERMS = Parameter(
     "terms", "Number of parameters to fit", kind="whole",
-    flags=("--terms",), metavar="N", default_words="5 of opencv, else all; for Kalibr 4",
-    in_python="How many parameters of the model are fitted, from the first; None: 5 of "
-    "``opencv``, all of others.",
+    flags=("--terms",), metavar="N", default_words="opencv: 5, or 4 for Kalibr; others: all",
+    in_python="Number of parameters of the model to fit, from the first; None: 5 for "
+    "``opencv``, all for other models.",
 )
 #: How a lens that is calibrated sees a picture. ``LensSetting`` checks how it is set.
 SEEN = Table(
     replace(
         FOCUS, default=math.inf, kind="value", parse=units.distance_m,
-        in_python="m from the entrance pupil; may be infinite.",
+        in_python="Focus distance from the entrance pupil, m; may be infinite.",
     ),
     replace(
         F_STOP, kind="value",
-        in_python="Wide open if None; it matters to where the film stands.",
+        in_python="F-stop; None: wide open. It affects where the film stands.",
     ),
     replace(
         ZOOM, name="focal_length", kind="value", parse=units.length_mm,
-        in_python="Focal length of a zoom, mm.",
+        in_python="Focal length to set a zoom lens to, mm.",
     ),
     replace(
-        focus_by("Focus where rays near the axis meet, or where the spot is smallest", "paraxial"),
-        kind="value", metavar="paraxial|best", in_python="paraxial or best; see ``Camera``.",
+        focus_by("Focus criterion: rays near the axis, or smallest spot on the axis", "paraxial"),
+        kind="value", metavar="paraxial|best",
+        in_python="Focus criterion, paraxial or best; see ``Camera``.",
     ),
     replace(
         CAMERA["sensor_size"], meaning="Size of the sensor, mm", kind="value",
         flags=("--sensor",), metavar="WxH|" + "|".join(units.SENSORS), panel=None,
         parse=units.sensor_mm, tells_default=False, default_words="36x24",
-        in_python="mm; the picture's width is the sensor's, its pixels are square.",
+        in_python="Size of the sensor, mm. The picture spans its width; pixels are square.",
     ),
     Parameter(
         "resolution", "Size of the picture, px", "px", REQUIRED, "value",
@@ -83,7 +84,7 @@ SEEN = Table(
         "wavelength_nm", "Wavelength, nm", default=DESIGN_WAVELENGTH_NM,
         low=300, high=2500,  # beyond, formulas of glasses are no glasses
         flags=("--wavelength",), metavar="NM", default_words=str(units.TYPED_D_LINE_NM),
-        in_python="nm.",
+        in_python="Wavelength, nm.",
     ),
 )
 CALIBRATE = Table(SEEN, TERMS)

@@ -21,24 +21,26 @@ _Part = partial(
 GHOSTS = (
     _LensRow(
         "cover_glass",
-        "Cover glass before the sensor, and the gap behind it, mm; it makes ghosts",
+        "Cover glass in front of the sensor: thickness and gap to the sensor, mm, and index "
+        "(1.5168 if left out); it adds ghosts to {flare}",
         "mm",
         kind="value",
         flags=("--cover-glass",),
         metavar="MM,GAP[,INDEX]",
         parse=typed.cover_glass,
-        in_python="Glass of the body before its sensor: thickness and gap to the sensor, mm, and "
+        in_python="Cover glass in front of the sensor: thickness and gap to the sensor, mm, and "
         "optionally its index [1.5168]. It adds ghosts (``flare``) and nothing else.",
         explained=("flare.md#the-body",),
         needs=(needs.GHOSTS,),
     ),
     _LensRow(
         "sensor_reflectance",
-        "Share of light that the sensor sends back into the lens, 0 to 1",
+        "Share of light that the sensor reflects back into the lens, 0 to 1; it adds ghosts to "
+        "{flare}",
         default=0.0,
         low=0,
         high=1,
-        wants="0 .. 1 (no surface can send back more light than arrives)",
+        wants="0 .. 1 (no surface reflects more light than arrives)",
         flags=("--sensor-reflectance",),
         metavar="R",
         tells_default=True,
@@ -51,7 +53,7 @@ GHOSTS = (
 PARTS = (
     _Part(
         "scatter.barrel",
-        "Share of light that barrel and glass edges scatter, for --scatter",
+        "Share of light that the barrel and the edges of the glass scatter, for --scatter",
         default=LensScatter.barrel,
         flags=("--scatter-barrel",),
         metavar="SHARE",
@@ -78,22 +80,22 @@ SENSOR = (
         "scatter",
         "Scatter of an exact lens",
         kind="value",
-        in_python="How barrel, blades and surfaces of an exact lens scatter, where scatter is "
-        "drawn (``docs/scatter.md``); default: a well-made lens.",
+        in_python="Scatter by barrel, blades and surfaces of an exact lens, drawn if rendering has "
+        "``scatter`` on (``docs/scatter.md``); default: a well-made lens.",
         needs=(needs.SCATTER,),
     ),
     _Row(
         "sensor",
-        "Sensor of the library (`daguerre sensors`) or a file, whose channels the picture then "
-        "has too; or a size, mm",
+        "Sensor: a library name (see `daguerre sensors`) or a file, which adds its channels to the "
+        "picture; or a size, mm",
         "mm",
         kind="value",
         flags=("--sensor",),
         metavar="NAME|FILE|WxH|" + "|".join(units.SENSORS),
         parse=typed.sensor,
         default_words=f"{FULL_FRAME[0]:g}x{FULL_FRAME[1]:g}",
-        in_python="``Sensor``, library name, or file. The frame then also holds its channels, and "
-        "the sensor's size is used unless ``sensor_size`` is given.",
+        in_python="``Sensor``, library name, or file. The frame then also holds the sensor's "
+        "channels. Its size is used unless ``sensor_size`` is given.",
         explained=("exposure.md", "sensors.md"),
     ),
     _Row(
@@ -133,12 +135,13 @@ STANDING = (
         flags=("--shift",),
         metavar="X,Y",
         parse=typed.pair("0,8.5"),
+        default_words="0,0",
         needs=(needs.OF_LENSES,),
         movable=True,
     ),
     _Row(
         "tilt",
-        "Turn of the lens about x (up) and y (left), degrees",
+        "Tilt of the lens about x (up) and y (left), degrees",
         "deg",
         (0.0, 0.0),
         "numbers",
@@ -148,14 +151,16 @@ STANDING = (
         flags=("--tilt",),
         metavar="X,Y",
         parse=typed.pair("0,6"),
-        more="The lens turns about its entrance pupil. The film stays across the camera's axis and "
-        "keeps what is straight ahead in its middle; the focus distance runs along the lens's axis",
+        default_words="0,0",
+        more="The lens turns about its entrance pupil. The film stays perpendicular to the "
+        "camera's axis, with what is straight ahead in its middle. The focus distance is measured "
+        "along the lens's axis",
         needs=(needs.LENS_ITSELF,),
         movable=True,
     ),
     _LensRow(
         "decenter",
-        "Shift (mm) and tilt (degrees) of these surfaces of the lens; repeatable",
+        "Shift X,Y (mm) and tilt AX,AY (degrees) of the lens surfaces FIRST to LAST; repeatable",
         "mm, deg",
         (),
         "value",
@@ -164,9 +169,9 @@ STANDING = (
         parse=units.decenter,
         repeated=True,
         more="Surface 0 is the front",
-        in_python="Elements of a prescription off their axis, as in lenses that were dropped: for "
-        "each the indices of its first and last surface, shift along x and y in mm, and tilt "
-        "about x and y in degrees.",
+        in_python="Elements of a prescription off their axis, as in a lens that was dropped. For "
+        "each: index of its first and last surface, shift along x and y in mm, and tilt about x "
+        "and y in degrees.",
         needs=(needs.OF_LENSES, needs.PRESCRIPTION, needs.ELEMENTS),
     ),
 )

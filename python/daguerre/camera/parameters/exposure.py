@@ -17,13 +17,13 @@ _Row = partial(Parameter, panel=EXPOSURE_PANEL)
 EXPOSURE = (
     _Row(
         "iso",
-        "Sensitivity of developed pictures",
+        "ISO speed of developed pictures",
         default=100.0,
         above=0,
         flags=("--iso",),
         metavar="N",
         tells_default=True,
-        more="Neither it nor any other parameter of exposure changes the linear picture",
+        more="No parameter of exposure changes the linear picture",
     ),
     _Row(
         "exposure_compensation",
@@ -48,18 +48,18 @@ EXPOSURE = (
     ),
     _Row(
         "exposure_f_stop",
-        "F-stop that sets brightness; blur keeps {f_stop}",
+        "F-stop that sets brightness; depth of field keeps {f_stop}",
         above=0,
         flags=("--exposure-f-stop",),
         metavar="N",
         parse=units.f_number,
         usual=_PINHOLE,
-        default_words=f"{{f_stop}}; of a pinhole {_PINHOLE:g}",
+        default_words=f"{{f_stop}}; for a pinhole {_PINHOLE:g}",
         explained=("exposure.md",),
     ),
     _Row(
         "responsivity",
-        "Factor on the exposure",
+        "Factor that scales the exposure",
         default=1.0,
         above=0,
         flags=("--responsivity",),
@@ -68,7 +68,7 @@ EXPOSURE = (
     ),
     _Row(
         "white_balance",
-        "White balance for development: kelvins such as 5600, or a chromaticity",
+        "White balance for development: kelvins such as 5600, or a chromaticity x,y",
         "K or x,y",
         kind="value",
         flags=("--wb",),

@@ -17,7 +17,7 @@ _NO_PINHOLE = "; a pinhole is its own kind: lens='pinhole'"
 STOP = (
     _Row(
         "f_stop",
-        "Focal length / entrance pupil diameter",
+        "F-number: focal length / entrance pupil diameter",
         low=1e-2,
         high=1e9,
         above=0,
@@ -26,7 +26,9 @@ STOP = (
         metavar="N",
         parse=units.f_number,
         usual=_F_STOP,
-        more=f"Without it the file's, else {_F_STOP:g}, or the lens's widest if that is slower",
+        default_words=f"the scene's, else {_F_STOP:g} or the lens's widest if that is slower",
+        in_python="F-number: focal length / entrance pupil diameter; default: "
+        f"{_F_STOP:g}, or the lens's widest if that is slower.",
         needs=(needs.OPENING,),
         rivals="stop",
         movable=True,
@@ -41,14 +43,14 @@ STOP = (
         flags=("--t-stop",),
         metavar="N",
         parse=units.t_number,
-        more="F-stop / sqrt(transmittance): the f-number of a lens without losses that is as "
+        more="It is f-stop / sqrt(transmittance): the f-number of a lossless lens that is as "
         "bright on the axis",
         needs=(needs.LENS_ITSELF, needs.OPENING, needs.T_STOP),
         rivals="stop",
     ),
     _Row(
         "aperture_diameter",
-        "Entrance pupil diameter, mm, instead of {f_stop}",
+        "Entrance pupil diameter of a thin lens, mm, instead of {f_stop}",
         "mm",
         low=1e-9,
         high=1e6,
@@ -56,7 +58,6 @@ STOP = (
         hint=_NO_PINHOLE,
         flags=("--aperture-diameter",),
         metavar="MM",
-        more="Thin lens only",
         needs=(needs.LENS_ITSELF, needs.OPENING, needs.APERTURE, needs.IDEAL),
         rivals="stop",
         movable=True,
@@ -74,14 +75,17 @@ FOCUS = (
         infinite=True,
         flags=("--focus",),
         metavar="M",
-        default_words="the file's, else autofocus",
-        more="It starts where {focus_from} says; autofocus is on the center of the picture",
+        default_words="the scene's, else autofocus",
+        more="{focus_from} sets where it is measured from. Autofocus uses the center of the "
+        "picture",
+        in_python="Focus distance, m, or inf; default: autofocus on the center of the picture. "
+        "``focus_from`` sets where it is measured from.",
         rivals="focus",
         movable=True,
     ),
     _FocusRow(
         "focus_at",
-        "Focus on the surface that this pixel shows",
+        "Focus on the surface that the pixel X,Y shows",
         "px",
         kind="numbers",
         wants="a pixel (x, y)",
@@ -93,7 +97,7 @@ FOCUS = (
     ),
     _FocusRow(
         "focus_on",
-        "Focus on the nearest surface point of this node",
+        "Focus on the nearest surface point of the node NODE",
         kind="text",
         flags=("--focus-on",),
         metavar="NODE",
@@ -102,7 +106,7 @@ FOCUS = (
     ),
     _FocusRow(
         "focus_from",
-        "Where the focus distance starts",
+        "Point that the focus distance is measured from",
         default="pupil",
         kind="choice",
         choices=("pupil", "sensor"),
@@ -111,7 +115,7 @@ FOCUS = (
     ),
     _FocusRow(
         "focus_by",
-        "Focus of rays near the axis, or smallest spot on the axis",
+        "Focus criterion (rays near the axis, or smallest spot on the axis)",
         default="paraxial",
         kind="choice",
         choices=("paraxial", "best"),
@@ -121,12 +125,12 @@ FOCUS = (
     ),
     _FocusRow(
         "focus_breathing",
-        "Thin lens: narrow the field in close focus",
+        "Thin lens: narrow the field of view in close focus",
         default=False,
         kind="flag",
         flags=("--focus-breathing/--no-focus-breathing",),
-        more="The focal length stays, as in a real lens that moves as a whole; without it the "
-        "field stays",
+        more="The focal length stays fixed, as in a real lens that focuses by moving as a whole; "
+        "without it the field of view stays fixed",
         needs=(needs.OF_LENSES,),
     ),
 )

@@ -14,28 +14,30 @@ _Row = partial(Parameter, panel="Shutter")
 SHUTTER_ROWS = (
     _Row(
         "shutter_time",
-        "Exposure time, s: 1/48, 20ms, 4s; 0 freezes",
+        "Exposure time, s, such as 1/48, 20ms or 4s; 0 freezes motion",
         "s",
         low=0,
         high=1e6,
         flags=("--shutter",),
         metavar="S",
-        more="Without it the file's, else that of {shutter_angle}",
-        in_python="Time for which a point of the film is exposed, s; 0 freezes. Default: "
-        "``shutter_angle``.",
+        default_words="the scene's, else from {shutter_angle}",
+        in_python="Time for which each point of the film is exposed, s; 0 freezes motion. "
+        "Default: from ``shutter_angle``.",
         explained=("motion.md#the-shutter",),
         rivals="shutter",
     ),
     _Row(
         "shutter_angle",
-        "Exposure time in degrees of a frame",
+        "Exposure time as a shutter angle, degrees; 360 is a whole frame",
         "deg",
         low=0,
         high=360e6,
         flags=("--shutter-angle",),
         metavar="DEG",
-        more="It is 360 {fps} {shutter_time}. Without either the file's, else "
-        f"{_ANGLE:g} degrees",
+        default_words=f"the scene's, else {_ANGLE:g}",
+        more="It equals 360 x {fps} x {shutter_time}",
+        in_python="Exposure time as a shutter angle, degrees; 360 is a whole frame; default: "
+        f"{_ANGLE:g}. It equals 360 x ``fps`` x ``shutter_time``.",
         usual=_ANGLE,
         rivals="shutter",
     ),
@@ -50,11 +52,11 @@ SHUTTER_ROWS = (
         metavar="N",
         parse=typed.number("a number such as 24 or 24000/1001"),
         tells_default=True,
-        more="Angles, offsets and sequences count by it",
+        more="Shutter angles, shutter offsets and sequences use it",
     ),
     _Row(
         "shutter_offset",
-        "Time of opening, in frames from --time",
+        "Time at which the shutter opens, in frames from --time",
         "frames",
         low=-1e9,
         high=1e9,
@@ -67,7 +69,7 @@ SHUTTER_ROWS = (
     ),
     _Row(
         "shutter_type",
-        "Kind of shutter",
+        "Shutter type",
         kind="choice",
         choices=("box", "leaf", "focal_plane", "rotary", "electronic"),
         flags=("--shutter-type",),
@@ -76,23 +78,25 @@ SHUTTER_ROWS = (
     ),
     _Row(
         "shutter_curve",
-        "Opening over time: box, efficiency E, or a table of time and opening",
+        "Opening of the shutter over time: a box, a trapezoid of efficiency E, or a file with a "
+        "table of time and opening",
         kind="value",
         flags=("--shutter-curve",),
         metavar="box|trapezoid:E|FILE",
         parse=typed.shutter_curve,
-        in_python='Opening over the time: box, ("trapezoid", efficiency) or points (fraction of '
-        "the time, opening); for a leaf the radius of the iris.",
+        in_python='Opening of the shutter over time: box, ("trapezoid", efficiency) or points '
+        "(fraction of the time, opening); for a leaf shutter, the radius of the iris.",
     ),
     _Row(
         "rolling_shutter",
-        "Lines exposed in turn from top, bottom, left or right: top,16.6ms for all of them, "
-        "top,15us/line for each",
+        "Rolling shutter: the side that it starts from (top, bottom, left or right), and its "
+        "read-out time (top,16.6ms) or time per line (top,15us/line)",
         "s",
         kind="value",
         flags=("--rolling",),
         metavar="SIDE,S",
         parse=typed.rolling_shutter,
-        in_python="Lines of pixels exposed in turn; default: that of the type.",
+        in_python="Rolling shutter, which exposes lines of pixels in turn; default: that of the "
+        "shutter type.",
     ),
 )

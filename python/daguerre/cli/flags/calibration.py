@@ -28,9 +28,10 @@ class CalibrationFlags:
         option(
             "--calibration",
             metavar="FILE[:NAME,...|all]",
-            help="Calibration instead of a lens: OpenCV, ROS, Kalibr, OpenTrackIO or COLMAP; "
-            "cameras of a file by name, or all; NAME with # takes the picture of each frame; "
-            "repeatable.",
+            help="Camera calibration to use instead of a lens: a file of OpenCV, ROS, Kalibr, "
+            "OpenTrackIO or COLMAP, or transforms.json. :NAME picks cameras of the file, :all "
+            "takes all; # in NAME stands for the frame number; repeatable [the file's first "
+            "camera].",
             panel=_CALIBRATION,
         ),
     ] = None
@@ -39,7 +40,8 @@ class CalibrationFlags:
         option(
             "--pixel-pitch",
             metavar="UM",
-            help="Pixel pitch of the calibrated sensor, um; blur depends on it [by --sensor].",
+            help="Pixel pitch of the calibrated sensor, um; blur depends on it [the file's, else "
+            "from --sensor].",
             panel=_CALIBRATION,
         ),
     ] = None
@@ -49,7 +51,7 @@ class CalibrationFlags:
         option(
             "--calibration-size",
             metavar="WxH",
-            help="Size of the calibrated picture, px, where the file does not say it.",
+            help="Picture size of the calibration, px, if the file does not state it.",
             panel=_CALIBRATION,
         ),
     ] = None
@@ -58,7 +60,8 @@ class CalibrationFlags:
         option(
             "--calibration-unit",
             metavar="M",
-            help="Length unit of OpenCV's stereo pairs and COLMAP's models, such as 25mm [1 m].",
+            help="Length unit of an OpenCV stereo pair, a COLMAP model or transforms.json, such as "
+            "25mm [1 m].",
             panel=_CALIBRATION,
         ),
     ] = None
@@ -67,7 +70,7 @@ class CalibrationFlags:
         option(
             "--calibration-model",
             metavar="opencv|fisheye",
-            help="Model of OpenCV's calibration files that do not say it [opencv].",
+            help="Projection model of an OpenCV file that does not state it [opencv].",
             panel=_CALIBRATION,
         ),
     ] = None
@@ -75,7 +78,7 @@ class CalibrationFlags:
         bool,
         option(
             "--rectified",
-            help="Read pictures after rectification, by P of ROS or of OpenCV's stereo pairs.",
+            help="Use the camera after rectification: P of a ROS file or an OpenCV stereo pair.",
             panel=_CALIBRATION,
         ),
     ] = False
@@ -83,7 +86,7 @@ class CalibrationFlags:
         bool,
         option(
             "--timeshift",
-            help="Delay shutters of a Kalibr chain by timeshift_cam_imu, less that of cam0.",
+            help="Delay each shutter of a Kalibr chain by timeshift_cam_imu minus that of cam0.",
             panel=_CALIBRATION,
         ),
     ] = False

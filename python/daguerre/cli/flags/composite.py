@@ -21,7 +21,8 @@ class PlacingFlags:
         option(
             "--like-plate",
             metavar="CAMERA.json",
-            help="Matched camera of the plate: objects get its blur and noise. Raw plates need it.",
+            help="Camera file of the plate, by `match-plate`: gives objects its blur and noise; "
+            "raw plates need it.",
         ),
     ] = None
     form: Annotated[
@@ -29,8 +30,8 @@ class PlacingFlags:
         option(
             "--form",
             metavar="auto|ratio|difference",
-            help="How catchers change the plate: light is taken as a share and added as light "
-            "[auto], or one of the two.",
+            help="Way in which catchers change the plate: ratio (a share of the plate's light), "
+            "difference (light added), or auto: shadows by ratio, light by difference [auto].",
         ),
     ] = "auto"
     scale: Annotated[
@@ -38,8 +39,8 @@ class PlacingFlags:
         option(
             "--plate-scale",
             metavar="X",
-            help="Light of the render that a plate's 1 stands for; by the exposure of both for "
-            "developed plates, else 1.",
+            help="Value in the render that equals 1 in the plate [developed plates: from the "
+            "exposures of both; others: 1].",
         ),
     ] = None
     seed: Annotated[
@@ -47,7 +48,7 @@ class PlacingFlags:
         option(
             "--seed",
             metavar="N",
-            help="Seed of the noise of what is added; frame f of a sequence has N + f [0].",
+            help="Seed of the noise added to objects; frame f of a sequence uses N + f [0].",
         ),
     ] = 0
 
@@ -70,12 +71,13 @@ class SequenceFlags:
         option(
             "--frames",
             metavar="A-BxS",
-            help="Frames of a sequence, in the place of # in names, into -o NAME.####.exr.",
+            help="Frames to composite, such as 1-48; # in file names stands for the frame "
+            "number, as in -o NAME.####.exr.",
         ),
     ] = None
-    resume: Annotated[
-        bool, option("--resume", help="Skip frames whose files are there already.")
-    ] = False
+    resume: Annotated[bool, option("--resume", help="Skip frames whose files exist already.")] = (
+        False
+    )
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False
     json_progress: Annotated[
         bool, option("--json-progress", help="Print progress as JSON lines on stdout.")

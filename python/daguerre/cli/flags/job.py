@@ -25,8 +25,8 @@ class JobFlags:
             "-o",
             "--output",
             metavar="FILE",
-            help="File to write: .exr, .png, .jpg, .tif or .dng; repeatable. Without it only maps "
-            "are written.",
+            help="Picture to write: .exr, .png, .jpg, .tif or .dng; repeatable. Needed unless only "
+            "maps (--export-...) are written.",
             panel=FILES,
         ),
     ] = None
@@ -35,7 +35,8 @@ class JobFlags:
         option(
             "--res",
             metavar="WxH|50%",
-            help=f"Size of the picture, px [{_WIDTH}x{_HEIGHT}].",
+            help="Picture size, px, or percentage of the default [that of the calibration or "
+            f"--like-plate, else {_WIDTH}x{_HEIGHT}].",
             panel=PICTURE,
         ),
     ] = None
@@ -44,21 +45,19 @@ class JobFlags:
         option(
             "--aov",
             metavar="LIST",
-            help="Channels beside the picture: depth,P,N,albedo,object_id or all; "
-            "distance,material_id,motion,motion_back,coverage of ground truth; disparity of "
-            "--stereo; exposure,saturated of a photograph.",
+            help="Channels to write beside the picture: depth,P,N,albedo,object_id or all (these "
+            "five); ground truth: distance,material_id,motion,motion_back,coverage; with --stereo: "
+            "disparity; of a photograph: exposure,saturated.",
             panel=TRUTH,
         ),
     ] = None
-    aovs: Annotated[bool, option("--aovs", help="Keep the channels of --aov all.", panel=TRUTH)] = (
-        False
-    )
+    aovs: Annotated[bool, option("--aovs", help="Short for --aov all.", panel=TRUTH)] = False
     coco: Annotated[
         Path | None,
         option(
             "--coco",
             metavar="FILE.json",
-            help="Write boxes, masks and categories of all things to one COCO file.",
+            help="Write boxes, masks and categories of all objects to this COCO file.",
             panel=TRUTH,
         ),
     ] = None
@@ -67,7 +66,7 @@ class JobFlags:
         option(
             "--categories",
             metavar="FILE.json",
-            help="Categories of nodes for --coco, by patterns of their names [by names].",
+            help="Categories for --coco, by patterns of node names [the names themselves].",
             panel=TRUTH,
         ),
     ] = None
@@ -76,7 +75,7 @@ class JobFlags:
         option(
             "--tone",
             metavar="srgb|soft",
-            help="Tone curve of a picture that is not developed: 1 is white [srgb].",
+            help="Tone curve of pictures that are not developed; 1 is white [srgb].",
             panel=PICTURE,
         ),
     ] = "srgb"
@@ -85,7 +84,7 @@ class JobFlags:
         option(
             "--exposure",
             metavar="auto[:centre|spot|matrix]",
-            help="Meter the ISO as a camera does [centre].",
+            help="Choose the ISO by metering, as a camera does; metering mode [centre].",
             panel=EXPOSURE_PANEL,
         ),
     ] = None
@@ -94,7 +93,7 @@ class JobFlags:
         option(
             "--bracket",
             metavar="EV,EV,...",
-            help="Write a picture at each of these exposures, EV, such as -2,0,2.",
+            help="Write a bracket: a picture at each exposure compensation, EV, such as -2,0,2.",
             panel=EXPOSURE_PANEL,
         ),
     ] = None
@@ -103,8 +102,8 @@ class JobFlags:
         option(
             "--like-plate",
             metavar="CAMERA.json",
-            help="Camera of a photo by `match-plate`: its lens, exposure, sensor and size; "
-            "pictures get its blur, noise and development.",
+            help="Camera file of `match-plate`: sets lens, exposure, sensor and size, and gives "
+            "pictures the blur, noise and development of the photo.",
             panel=PICTURE,
         ),
     ] = None
@@ -113,19 +112,21 @@ class JobFlags:
         option(
             "--look",
             metavar="NAME",
-            help="Tone curve of a photo: neutral, standard, film, filmic, ocio:VIEW [neutral].",
+            help="Tone curve of developed pictures: neutral, standard, film, filmic or ocio:VIEW "
+            "[neutral].",
             panel=PICTURE,
         ),
     ] = None
     denoise: Annotated[
-        bool, option("--denoise", help="Denoise the picture. Extra `denoise`.", panel=PICTURE)
+        bool,
+        option("--denoise", help="Denoise the picture (needs extra `denoise`).", panel=PICTURE),
     ] = False
     noisy: Annotated[
         list[Path] | None,
         option(
             "--noisy",
             metavar="FILE",
-            help="File for the picture before --denoise; repeatable.",
+            help="File for the picture as it is before --denoise; repeatable.",
             panel=FILES,
         ),
     ] = None
@@ -134,8 +135,8 @@ class JobFlags:
         option(
             "--frames",
             metavar="A-BxS",
-            help="Frames of a sequence: frame f is drawn at --time + f / fps, into -o "
-            "NAME.####.exr; --resume skips complete ones.",
+            help="Frames to draw, such as 1-48 or 1-48x2, into -o NAME.####.exr. Frame f shows "
+            "the time --time + f / --fps. --resume skips complete frames.",
             panel=FILES,
         ),
     ] = None
@@ -144,7 +145,8 @@ class JobFlags:
         option(
             "--stereo",
             metavar="M",
-            help="Distance of the cameras of a stereo pair, m; the camera stands in its middle.",
+            help="Draw a stereo pair with this distance between its cameras, m; the scene's camera "
+            "is the middle of the two.",
             panel="Camera",
         ),
     ] = None
@@ -153,20 +155,21 @@ class JobFlags:
         option(
             "--samples",
             metavar="A:B",
-            help="Draw samples A to B only, a pass for `merge`.",
+            help="Draw only the samples from A up to, not including, B: a pass for `merge`.",
             panel=FILES,
         ),
     ] = None
     resume: Annotated[
-        bool, option("--resume", help="Resume from OUT.checkpoint.exr.", panel=FILES)
+        bool,
+        option("--resume", help="Resume a render from its OUT.checkpoint.exr.", panel=FILES),
     ] = False
     memory: Annotated[
         Text,
         option(
             "--memory",
             metavar="8GB|50%",
-            help="Memory that the render may take, or share of what the machine or its control "
-            "group gives; what needs more is refused before it begins [80%].",
+            help="Memory limit of the render, or share of the memory of the machine or its control "
+            "group; a render that needs more does not start [80%].",
             panel=SAMPLING,
         ),
     ] = None
@@ -178,8 +181,8 @@ class JobFlags:
         bool,
         option(
             "--preview",
-            help="Show the picture as it grows: in terminals that can (Kitty, iTerm2, Sixel), "
-            "else in OUT.preview.png.",
+            help="Show the picture while it is drawn: in the terminal if it can (Kitty, iTerm2, "
+            "Sixel), else in OUT.preview.png.",
         ),
     ] = False
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False
@@ -187,7 +190,9 @@ class JobFlags:
         bool, option("--json-progress", help="Print progress as JSON lines on stdout.")
     ] = False
     stats: Annotated[bool, option("--stats", help="Print counts and times at the end.")] = False
-    dry_run: Annotated[bool, option("--dry-run", help="Check everything, draw nothing.")] = False
+    dry_run: Annotated[
+        bool, option("--dry-run", help="Check everything and describe the render; draw nothing.")
+    ] = False
 
     @property
     def paths(self) -> tuple[Path, ...]:

@@ -23,7 +23,7 @@ class MapFlags:
         option(
             "--export-raymap",
             metavar="FILE.exr",
-            help="Ray of each pixel: origin, direction and time.",
+            help="Write the ray of each pixel: origin, direction and time.",
             panel=TRUTH,
         ),
     ] = None
@@ -32,7 +32,7 @@ class MapFlags:
         option(
             "--raymap-frame",
             metavar="camera|world",
-            help="Frame of --export-raymap: the camera's (x right, y down, z ahead) or the "
+            help="Coordinates of --export-raymap: the camera's (x right, y down, z ahead) or the "
             "world's [camera].",
             panel=TRUTH,
         ),
@@ -42,7 +42,7 @@ class MapFlags:
         option(
             "--export-stmap-undistort",
             metavar="FILE.exr",
-            help="STMap that straightens this camera's pictures.",
+            help="Write an STMap that undistorts this camera's pictures.",
             panel=TRUTH,
         ),
     ] = None
@@ -51,7 +51,7 @@ class MapFlags:
         option(
             "--export-stmap-redistort",
             metavar="FILE.exr",
-            help="STMap that bends straight pictures as this camera does.",
+            help="Write an STMap that distorts straight pictures as this camera does.",
             panel=TRUTH,
         ),
     ] = None

@@ -27,14 +27,15 @@ class SceneFlags:
     ] = None
     variant: Annotated[
         Text,
-        option(
-            "--variant", metavar="NAME", help="Variant of the materials, by name.", panel=_LIGHT
-        ),
+        option("--variant", metavar="NAME", help="Material variant to use, by name.", panel=_LIGHT),
     ] = None
     env: Annotated[
         Path | None,
         option(
-            "--env", metavar="FILE", help="Panorama (.hdr, .exr) around the scene.", panel=_LIGHT
+            "--env",
+            metavar="FILE",
+            help="Environment map (.hdr, .exr) around the scene.",
+            panel=_LIGHT,
         ),
     ] = None
     env_scale: Annotated[
@@ -51,7 +52,7 @@ class SceneFlags:
         option(
             "--env-lux",
             metavar="LUX",
-            help="Illuminance by --env or --sky on the ground, lux, instead of --env-scale.",
+            help="Illuminance of the ground by --env or --sky, lux, instead of --env-scale.",
             panel=_LIGHT,
         ),
     ] = None
@@ -60,21 +61,24 @@ class SceneFlags:
         option(
             "--env-rotation",
             metavar="DEG",
-            help="Turn of --env about the vertical, degrees.",
+            help="Rotation of --env about the vertical, degrees [0].",
             panel=_LIGHT,
         ),
     ] = None
     sky: Annotated[
         Text,
-        option("--sky", metavar="R,G,B", help="Even sky of this luminance, cd/m2.", panel=_LIGHT),
+        option(
+            "--sky", metavar="R,G,B", help="Uniform sky of this luminance, cd/m2.", panel=_LIGHT
+        ),
     ] = None
     catcher: Annotated[
         list[str] | None,
         option(
             "--catcher",
             metavar="NODE[:EFFECTS]",
-            help="Node that stands for what the plate shows: it catches shadow,reflection,gi of "
-            "objects as a layer [all], or hides them alone (holdout). May be repeated.",
+            help="Node that stands in for something in the plate: it catches "
+            "shadow,reflection,gi of objects as a layer [all three], or only hides what is behind "
+            "it (holdout); repeatable.",
             panel=_LIGHT,
         ),
     ] = None
@@ -83,8 +87,8 @@ class SceneFlags:
         option(
             "--plate",
             metavar="PHOTO",
-            help="Photograph of the set: mirrors, glass and bounced light see it on the catchers; "
-            "with # that of each frame.",
+            help="Photograph of the set, projected onto the catchers for mirrors, glass and "
+            "bounced light; # in its name stands for the frame number.",
             panel=_LIGHT,
         ),
     ] = None
@@ -93,7 +97,7 @@ class SceneFlags:
         option(
             "--plate-camera",
             metavar="FILE",
-            help="Calibration of the camera that took --plate, from where the scene's camera "
+            help="Calibration of the camera that took --plate, placed where the scene's camera "
             "stands [the camera that renders].",
             panel=_LIGHT,
         ),
@@ -103,7 +107,7 @@ class SceneFlags:
         option(
             "--plate-scale",
             metavar="X",
-            help="Luminance of a value of 1 in --plate, cd/m2 [by its EXIF or "
+            help="Luminance of a value of 1 in --plate, cd/m2 [from its EXIF or "
             "--like-plate; linear files: 1].",
             panel=_LIGHT,
         ),
@@ -113,7 +117,7 @@ class SceneFlags:
         option(
             "--allow-dir",
             metavar="DIR",
-            help="Folder outside the scene's own that the scene may read.",
+            help="Folder, besides its own, from which the scene may read files; repeatable.",
             panel=_LIGHT,
         ),
     ] = None

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _SETTING = Table(
     *(ZOOM, FOCUS, F_STOP),
-    focus_by("Focus at the smallest spot on the axis, or of rays close to it", "best"),
+    focus_by("Focus criterion: smallest spot on the axis, or rays near the axis", "best"),
 )
 
 
@@ -54,7 +54,7 @@ def lens(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
     *,
     json: Annotated[
-        bool, option("--json", help="Print all numbers as one JSON object, mm.")
+        bool, option("--json", help="Print all numbers as one JSON object, lengths in mm.")
     ] = False,
     files: FileFlags,
     psf: PsfFlags,
@@ -63,7 +63,8 @@ def lens(
         bool,
         option(
             "--veiling-glare",
-            help="Print the veiling glare of a black patch in a white world: ghosts and scatter.",
+            help="Print the veiling glare index: light that ghosts and scatter put onto a black "
+            "patch in a white world.",
             panel=BENCH,
         ),
     ] = False,
@@ -77,7 +78,10 @@ def lens(
         ),
     ] = TYPED_D_LINE_NM,
 ) -> int:
-    """Shows a lens: its table and first-order data (mm); data sheet, section and PSF on request."""
+    """Shows the surfaces and first-order data of a lens, in mm.
+
+    Flags write a data sheet, a section, a PSF, a list of ghosts or the lens as polynomials.
+    """
     from daguerre import lenses as library
     from daguerre.analysis import set_up
 

@@ -36,30 +36,28 @@ _FIT = (
         default_words="the lens's format",
     ),
     replace(
-        CAMERA["blades"], meaning="Blades of the exported lens's iris; 0 is round",
-        tells_default=True,
+        CAMERA["blades"], meaning="Number of iris blades of the exported lens; 0 is round",
     ),
     replace(
         CAMERA["blade_rotation"], meaning="Rotation of the exported lens's iris blades, degrees",
-        tells_default=True,
     ),
     replace(
-        CAMERA["blade_curvature"], meaning="Curvature of its iris blades, -1 to 1; 1 is round",
-        tells_default=True,
+        CAMERA["blade_curvature"],
+        meaning="Curvature of the exported lens's iris blades, -1 to 1; 0 is straight, 1 round",
     ),
 )
 _FILES = Table(
     Parameter(
-        "plot", "Data sheet of one page; with --psf its pictures. Extra `plot`", kind="file",
-        flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
+        "plot", "Write a one-page data sheet; with --psf or --flare their plots (needs extra "
+        "`plot`)", kind="file", flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
-        "drawing", "Section with rays of three fields; .png, .pdf: extra `plot`", kind="file",
-        flags=("--drawing",), metavar="FILE.svg|png|pdf",
+        "drawing", "Write a section with rays of three field points (.png and .pdf need extra "
+        "`plot`)", kind="file", flags=("--drawing",), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
-        "export", "The lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy, data",
-        kind="file", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
+        "export", "Write the lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy or "
+        "JSON data", kind="file", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
     ),
     _FIT,
 )

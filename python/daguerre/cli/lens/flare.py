@@ -42,16 +42,17 @@ def _surfaces(flag: str, text: str) -> tuple[int, int]:
 # fmt: off
 _FLARE = Table(
     Parameter(
-        "angle", "Ghosts of light from this angle (deg), brightest first; --drawing draws one, "
-        "--plot all on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
+        "angle", "List the ghosts of light from this angle (deg), brightest first; --drawing draws "
+        "one, --plot all of them on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
     ),
     Parameter(
-        "ghost", "Surfaces of the ghost that --drawing shows", default_words="the brightest",
+        "ghost", "Reflecting surfaces of the ghost to draw", default_words="the brightest",
         flags=("--ghost",), metavar="I,J", parse=_surfaces,
     ),
     replace(
         CAMERA["cover_glass"],
-        meaning="Cover glass before the sensor, for --flare: thickness, gap (mm), index",
+        meaning="Cover glass in front of the sensor, for --flare: thickness and gap to the sensor, "
+        "mm, and index (1.5168 if left out)",
     ),
     replace(
         CAMERA["sensor_reflectance"],

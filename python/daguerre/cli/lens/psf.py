@@ -36,11 +36,12 @@ def _point(flag: str, text: str) -> tuple[float, bool, float]:
 # fmt: off
 _PSF = Table(
     Parameter(
-        "psf", "Point spread function: image height (mm) or angle (deg), distance (m) or inf",
+        "psf", "Point spread function at this image height (mm) or angle (deg) and distance (m, or "
+        "inf)",
         flags=("--psf",), metavar="FIELD,DISTANCE", parse=_point,
     ),
     Parameter(
-        "through_focus", "Show the PSF on nine films around the focus", kind="flag",
+        "through_focus", "Show the PSF at nine film positions around the focus", kind="flag",
         flags=("--through-focus",),
     ),
 )

@@ -37,9 +37,7 @@ from .views import Cameras
     job_flags=JobFlags,
 )
 def render(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene, a .glb or .gltf file.")
-    ],
+    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
@@ -48,9 +46,10 @@ def render(
     settings_flags: SettingsFlags,
     job_flags: JobFlags,
 ) -> int:
-    """Renders a scene to a picture, or a sequence of them, by one camera or by several.
+    """Renders a scene to a picture or a sequence of pictures.
 
-    Ctrl-C stops: samples that were drawn are kept, and the command that resumes is printed.
+    One camera takes them, or several. Ctrl-C stops the render, keeps the samples drawn so far, and
+    prints the command that resumes it.
     """
     console.quiet = job_flags.quiet
     memory.set_limit(
