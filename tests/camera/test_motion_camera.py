@@ -53,5 +53,5 @@ def test_a_change_replaces_the_motion():
 
 @pytest.mark.parametrize("name", ["lens", "iso", "focus_on", "shutter_time", "aperture_image"])
 def test_what_stays(name):
-    with pytest.raises(UsageError, match=f"camera: {name}: wanted a value that stays"):
+    with pytest.raises(UsageError, match=f"camera: {name}: wanted a constant value"):
         dg.Camera(**{name: dg.keys([(0, 1), (1, 2)])})

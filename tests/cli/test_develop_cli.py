@@ -133,7 +133,7 @@ def test_mono_files(tmp_path):
 @pytest.mark.parametrize(
     ("words", "code", "named"),
     [
-        (["-o", "x.dng"], 2, "no raw stage: wanted --sensor NAME"),
+        (["-o", "x.dng"], 2, "no raw data: wanted --sensor NAME"),
         (["-o", "x.gif"], 2, "wanted a name ending in"),
         (["-o", "in.exr"], 2, "wanted another file than the one that is developed"),
         (["-o", "x.jpg", "--sensor", "ideel"], 3, "ideal"),

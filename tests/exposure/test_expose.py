@@ -274,13 +274,13 @@ def test_the_renders_own_noise_is_told() -> None:
     frame.variance[:16] = 0.03**2
     frame.variance[16:] = 0.02**2
     notes = frame.expose("ideal").notes
-    assert any("larger than that of the photons in 25% of the pixels" in note for note in notes)
+    assert any("larger than photon noise in 25% of the pixels" in note for note in notes)
 
 
 def test_another_pitch_is_told() -> None:
     assert not flat(0.1, sensorPhotositePitch=6.03).expose("ideal").notes
     notes = flat(0.1, sensorPhotositePitch=(37.5, 37.5)).expose("ideal").notes
-    assert "37.5 um of the film" in notes[0]
+    assert "37.5 um wide on the film" in notes[0]
 
 
 @pytest.mark.parametrize("field", ["luminance_exposure", "expTime", "h0"])
@@ -367,7 +367,7 @@ def test_channels_bands_and_xyz_of_a_render_agree() -> None:
     frame.metadata["sensor_hash"] = ""
     by_bands = frame.expose()
     assert by_bands.metadata["sensor_from"] == "bands"
-    assert any("made of its bands" in note for note in by_bands.notes)
+    assert any("made from its bands" in note for note in by_bands.notes)
     frame.bands = None
     by_xyz = frame.expose()
     assert by_xyz.metadata["sensor_from"] == "xyz"

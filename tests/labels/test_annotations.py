@@ -366,7 +366,7 @@ def test_a_parent_is_one_thing_with_what_hangs_below_it(tmp_path: Path) -> None:
         ('{"a": {"name": "x", "id": 1}, "b": {"name": "y", "id": 1}}', "an id for each category"),
         ('{"a": {"name": "x", "id": 1}, "b": {"name": "x", "id": 2}}', "one id for 'x'"),
         ('{"a": "x", "a": "y"}', "twice"),
-        ('{"Chiar": "x"}', "'Chiar': wanted a pattern of some node's name"),
+        ('{"Chiar": "x"}', "'Chiar': wanted a pattern that matches the name of a node"),
     ],
 )
 def test_bad_files_of_categories(text: str, message: str, tmp_path: Path) -> None:

@@ -159,7 +159,7 @@ def test_only_movable_parameters_take_keys() -> None:
     over_time = dg.keys([(0.0, 1.0), (1.0, 2.0)])
     assert dg.Camera(f_stop=over_time).motion.keys() == {"f_stop"}
     assert "iso" not in MOVABLE
-    with pytest.raises(UsageError, match="camera: iso: wanted a value that stays"):
+    with pytest.raises(UsageError, match="camera: iso: wanted a constant value"):
         dg.Camera(iso=over_time)
 
 

@@ -120,7 +120,7 @@ def test_what_is_missing_is_named_before_anything_is_made(
 @pytest.mark.parametrize(
     ("objects", "out", "flags", "message"),
     [
-        ("object.####.exr", "out.png", ("--frames", "1-3"), "3 frames wanted a name with #"),
+        ("object.####.exr", "out.png", ("--frames", "1-3"), "wanted a name with # for 3 frames"),
         ("object.####.exr", "out.png", (), "# stands for the number of a frame; wanted --frames"),
         ("object.0001.exr", "out.#.png", ("--frames", "1-3"), "wanted a plate or objects with #"),
         ("object.0001.exr", "out.png", ("--resume",), "--resume: needs --frames"),

@@ -155,7 +155,7 @@ def test_memory_that_ends_within_a_pass_is_one_error(
     assert main(command) == 3
     told = capsys.readouterr().err
     assert told.count("\n") == 1
-    assert "a.checkpoint.exr keeps the samples before; --resume" in told
+    assert "a.checkpoint.exr keeps the samples before; continue with --resume" in told
     monkeypatch.setattr(Session, "_add", draw)
     assert main([*command, "--resume"]) == 0
     resumed = dg.load_frame("a.exr")

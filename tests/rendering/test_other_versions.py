@@ -96,10 +96,10 @@ def test_a_pass_of_another_form_is_refused(
     monkeypatch.undo()
     with pytest.raises(InputError) as refused:
         passes.read_pass(path)
-    wanted = f"{path}: form of the pass: wanted 1, got 2; it is of another version"
+    wanted = f"{path}: format of the pass: wanted 1, got 2; another version wrote it"
     assert str(refused.value) == f"{wanted}, this is daguerre {NOW}"
     assert main(["merge", str(path), "-o", str(tmp_path / "out.exr")]) == 3
-    assert "form of the pass: wanted 1, got 2" in " ".join(capsys.readouterr().err.split())
+    assert "format of the pass: wanted 1, got 2" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_pass_without_a_form_is_of_the_first(tmp_path: Path) -> None:

@@ -137,8 +137,8 @@ def test_files_say_how_and_merge_keeps_it(tmp_path: Path, monkeypatch: pytest.Mo
             "--gt-lens: wanted chief or mean, got 'meen' (did you mean",
         ),
         (["--gt-lens", "mean"], "--gt-lens: wanted channels to write"),
-        (["--aov", "coverage"], "--aov coverage: of the chief ray there is none"),
-        (["--gt-rays", "9", "--aov", "N"], "--gt-rays: the chief ray is one"),
+        (["--aov", "coverage"], "--aov coverage: wanted --gt-lens mean"),
+        (["--gt-rays", "9", "--aov", "N"], "--gt-rays: wanted --gt-lens mean too"),
         (["--gt-lens", "mean", "--gt-rays", "0", "--aov", "N"], "--gt-rays: wanted 1 .. 65536"),
     ],
 )

@@ -295,7 +295,7 @@ def test_damaged_pupils_of_a_pass_are_refused(change: dict[str, Any]) -> None:
     one = session(lamps(), camera(), Diffraction(4), light_paths="off")
     one.draw(0, 1)
     facts = json.loads(json.dumps(one.metadata["pupils"])) | change
-    with pytest.raises(InputError, match="damaged facts of pupils"):
+    with pytest.raises(InputError, match="damaged pupil data"):
         waves.developed(one._film, facts)
 
 

@@ -94,7 +94,7 @@ def test_a_mesh_that_jumps_is_told():
     scene.add_instance(scene.add_mesh(SQUARE, FACES, steps=steps, name="frog"))
     notes: list[str] = []
     build(scene, (0, 1), notes)
-    assert notes == ["mesh 'frog' moves too unevenly for 129 steps: 129 show it, as far as they go"]
+    assert notes == ["mesh 'frog' moves too unevenly for 129 steps: 129 steps approximate it"]
     build(scene, (0.5, 1), notes)
     assert len(notes) == 1
 

@@ -1,7 +1,7 @@
 """A camera in a photographer's terms.
 
-Units are the ones read on the object: mm for lens and sensor, m for distances, s for time, degrees
-for angles.
+Units are those engraved on real equipment: mm for lens and sensor, m for distances, s for time,
+degrees for angles.
 """
 
 from __future__ import annotations
@@ -45,9 +45,8 @@ Decenter = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
 class Camera(Value):
     """A camera in a photographer's terms; ``with_`` makes changed copies.
 
-    Parameters in ``MOVABLE`` may be given as values over time (:func:`daguerre.keys`). They are
-    kept in ``motion``, and the parameter itself has the value of one moment; ``evaluated_at``
-    chooses it.
+    Parameters in ``MOVABLE`` may be values over time (:func:`daguerre.keys`). ``motion`` keeps
+    these, and the parameter itself holds the value at one moment, which ``evaluated_at`` chooses.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
@@ -198,13 +197,13 @@ class Camera(Value):
             raise UsageError(f"camera: motion: wanted a dict, got {shown(self.motion)}")
         for name in {**self.motion, **found}:
             if name not in MOVABLE:
-                raise UsageError(f"camera: {name}: wanted a value that stays, got one over time")
+                raise UsageError(f"camera: {name}: wanted a constant value, got one over time")
         for name, value in found.items():
             object.__setattr__(self, name, value.at(0.0))
         object.__setattr__(self, "motion", {**self.motion, **found})
 
     def __getstate__(self) -> dict[str, Any]:
-        # ``sensor_size`` tells by its identity that nobody chose it.
+        # The identity of the default ``sensor_size`` shows that nobody chose one.
         unchosen = self.sensor_size is FULL_FRAME
         return super().__getstate__() | ({"sensor_size": None} if unchosen else {})
 
@@ -213,7 +212,7 @@ class Camera(Value):
         super().__setstate__(state | ({"sensor_size": FULL_FRAME} if unchosen else {}))
 
     def __repr__(self) -> str:
-        """Names what is not as a camera has it without being told."""
+        """Lists the parameters that differ from their defaults."""
         told = [text for text in changed(self) if not text.startswith("motion=")]
         moving = [f"moving: {', '.join(self.motion)}"] if self.motion else []
         return f"<Camera {', '.join(told + moving) or 'at the origin'}>"
@@ -237,14 +236,14 @@ class Camera(Value):
             calibration: YAML, XML or JSON by ``cv::FileStorage``, or a dict of the same names.
             name: left or right of a stereo pair; None: left.
             model: opencv or fisheye; default: the file's, else opencv.
-            size: Size of the calibrated picture, px, if the file does not say it.
+            size: Picture size of the calibration, px, if the file does not state it.
             rectified: Whether to read a pair after rectification, by P1 and P2.
             unit_m: Length of the file's unit, for a pair, m.
-            camera: Gives all that a calibration does not say, and where the left one stands.
-            pixel_pitch: Pixel pitch of the calibrated sensor, um; the size of blur depends on it.
+            camera: Camera that gives all other parameters, and the pose of the left camera.
+            pixel_pitch: Pixel pitch of the calibrated sensor, um; blur depends on it.
 
         Raises:
-            InputError: The calibration cannot be used; the message names the place.
+            InputError: The calibration cannot be used; the message names the place in the file.
         """
         from daguerre.calibration.cameras import from_opencv
 
@@ -265,10 +264,10 @@ class Camera(Value):
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """Reads a camera from ROS ``camera_info``: the raw picture, in its place of a stereo rig.
+        """Reads a camera from ROS ``camera_info``, with its place in a stereo rig.
 
-        Args: those of :meth:`from_opencv`; ``camera`` stands at the rig's first rectified one.
-            ``rectified`` draws that picture, by P.
+        Args: those of :meth:`from_opencv`. ``camera`` stands at the first rectified camera of the
+            rig. ``rectified`` takes the rectified picture (P) instead of the raw one.
         """
         from daguerre.calibration.cameras import from_ros
 
@@ -284,10 +283,10 @@ class Camera(Value):
         camera: Camera | None = None,
         pixel_pitch: float | None = None,
     ) -> Camera:
-        """Reads a camera of Kalibr's chain, ``cam0`` or of another name.
+        """Reads a camera of a Kalibr camera chain, by default ``cam0``.
 
-        Args: those of :meth:`from_opencv`; ``camera`` stands where the chain's first does.
-            ``timeshift`` opens the shutter as much later as its ``timeshift_cam_imu`` is larger.
+        Args: those of :meth:`from_opencv`. ``camera`` stands at the first camera of the chain.
+            ``timeshift`` delays the shutter by ``timeshift_cam_imu`` minus that of the first.
         """
         from daguerre.calibration.cameras import from_kalibr
 
@@ -305,8 +304,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads the camera of a picture of a COLMAP text model, with its pose in COLMAP's world.
 
-        Args: those of :meth:`from_opencv`; ``name`` is that of the picture. With # for a number,
-        ``IMG_####.jpg``, the camera moves: picture n is at n / fps, s.
+        Args: those of :meth:`from_opencv`; ``name`` is that of the picture. With # in the place of
+        a number (``IMG_####.jpg``) the camera moves: picture n is at n / fps, s.
         """
         from daguerre.calibration.cameras import from_colmap
 
@@ -323,19 +322,19 @@ class Camera(Value):
     ) -> Camera:
         """Reads a tracked camera: lens, f-stop, focus and pose of OpenTrackIO samples.
 
-        Args: those of :meth:`from_opencv`; several samples make keys, the first at 0 s: a list of
-        them, or a file of lines or of a list.
+        Args: those of :meth:`from_opencv`. Several samples (a list, or a file with a list or one
+        sample a line) make keys over time, the first at 0 s.
         """
         from daguerre.calibration.cameras import from_opentrackio
 
         return from_opentrackio(calibration, size, camera, pixel_pitch)
 
     def frozen_at(self, time: float) -> Camera:
-        """Returns the camera frozen at a time, s; nothing in it moves."""
+        """Returns the camera frozen at a time, s: a copy without motion."""
         return replace(self.evaluated_at(time), motion={}) if self.motion else self
 
     def evaluated_at(self, time: float) -> Camera:
-        """Returns the camera evaluated at another time, s; its motion stays."""
+        """Returns the camera with its parameters evaluated at a time, s; it keeps its motion."""
         if not self.motion:
             return self
         return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
@@ -351,12 +350,13 @@ class Camera(Value):
     def with_(self, **changes: Any) -> Camera:
         """Returns a copy with some parameters changed.
 
-        Values that the change makes obsolete go: the focal length of an ideal lens when a
-        prescription takes its place, the f-stop for an aperture diameter, one way to focus for
-        another.
+        Values that the change makes obsolete are dropped: the focal length of an ideal lens if a
+        prescription replaces it, the f-stop if an aperture diameter does, one way to focus if
+        another does.
 
         Raises:
-            UsageError: An unknown name (the nearest is suggested), or values that exclude others.
+            UsageError: Unknown name (the message suggests the nearest), or values that exclude
+                each other.
         """
         for name in changes:
             if name not in self.__dataclass_fields__:

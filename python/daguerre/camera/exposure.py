@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
-#: Facts of a camera about exposure; h0 follows from the others, of a pinhole from its stop.
+#: Metadata keys about exposure; h0 follows from the others, for a pinhole from its f-stop.
 _EXPOSURE_FACTS = (
     *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
     *("white_balance", "h0"),
@@ -28,19 +28,19 @@ def ideal_h0(f_number: float) -> float:
     """Illuminance on the axis by a world of 1 cd/m2, lux, behind an ideal lens.
 
     Args:
-        f_number: Working f-number: distance of the film / diameter of the exit pupil. Below 0.5
-            there is no such lens: light comes from no more than the half sphere.
+        f_number: Working f-number: film distance / diameter of the exit pupil. Values below 0.5
+            are impossible: light would come from more than the half sphere.
     """
     return math.pi * min(1.0, 0.5 / f_number) ** 2
 
 
 def lens_h0(camera: Camera, film_mm: float, diameter_mm: float | None) -> float:
-    """``h0`` of an ideal lens as it is at mid-shutter, lux per cd/m2.
+    """``h0`` of an ideal lens at mid-shutter, lux per cd/m2.
 
     Args:
-        camera: Camera, for a pinhole's ``exposure_f_stop``.
+        camera: Camera, whose ``exposure_f_stop`` counts for a pinhole.
         film_mm: Film distance.
-        diameter_mm: Diameter of its opening; None: a pinhole.
+        diameter_mm: Diameter of the aperture; None: a pinhole.
     """
     if diameter_mm is not None:
         return ideal_h0(film_mm / diameter_mm)
@@ -55,18 +55,23 @@ def exposure_facts(camera: Camera) -> dict[str, Any]:
 
 
 def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """Facts of a camera that make the light of a frame: the rest changes none of its bits."""
+    """Drops the metadata about exposure, which does not change the light of a frame."""
     return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
 
 
 def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> list[str]:
-    """Where light and blur are not those of the same shutter and stop."""
+    """Notes for exposures whose brightness and blur come from different shutters or stops."""
     notes = []
     time, stop, own = camera.exposure_time, camera.exposure_f_stop, f_stop
     if time is not None and not math.isclose(time, shutter_s):
-        notes.append(f"light is that of {time:g} s (exposure_time), blur that of the shutter")
+        notes.append(
+            f"exposure_time sets the brightness to that of {time:g} s; the shutter sets the blur"
+        )
     if stop is not None and own is not None and not math.isclose(stop, own):
-        notes.append(f"light is that of f/{stop:g} (exposure_f_stop), blur that of f/{own:.3g}")
+        notes.append(
+            f"exposure_f_stop sets the brightness to that of f/{stop:g}; the blur is that of "
+            f"f/{own:.3g}"
+        )
     return notes
 
 
@@ -79,7 +84,7 @@ def exposure_metadata(
         camera: Camera as given.
         f_stop: Resolved f-stop; None: a pinhole.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
-        shutter_s: How long a point of the film is exposed, s.
+        shutter_s: Time for which each point of the film is exposed, s.
     """
     time = shutter_s if camera.exposure_time is None else camera.exposure_time
     own, asked = f_stop, camera.exposure_f_stop
@@ -99,7 +104,7 @@ def exposure_metadata(
 
 
 def check_exposure(camera: Camera) -> None:
-    """Refuses exposure parameters that no camera has.
+    """Checks the exposure parameters of a camera.
 
     Raises:
         UsageError: The message names the parameter.

@@ -14,15 +14,15 @@ import daguerre._core as _core
 
 @dataclass(frozen=True)
 class IdealLens:
-    """Numbers that an ideal lens is made of, as they are settled.
+    """Resolved parameters of an ideal lens.
 
     Attributes:
         pose: World from camera.
-        film_distance_mm: From the lens to the film, along the camera's axis.
+        film_distance_mm: Distance from the lens to the film, along the camera's axis.
         aperture_radius_mm: Radius of the iris.
-        focus_distance_m: From the lens to what is sharp, along its axis; may be inf.
+        focus_distance_m: Distance from the lens to the plane of focus, along its axis; may be inf.
         iris: Shape of the iris.
-        natural_vignetting: Whether light falls by cos^4 of the field angle.
+        natural_vignetting: Whether light falls off by cos^4 of the field angle.
         tilt_deg: Tilt of the lens, right and up.
     """
 
@@ -40,8 +40,8 @@ class IdealKind:
     """A kind of ideal lens.
 
     Attributes:
-        has_iris: Whether it has an f-stop and a focus; without, all is sharp.
-        make: Makes the core's camera.
+        has_iris: Whether it has an f-stop and a focus; without, everything is sharp.
+        make: Function that makes the core's camera.
     """
 
     has_iris: bool

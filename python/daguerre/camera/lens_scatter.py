@@ -1,4 +1,4 @@
-"""Light that the lens's own parts scatter: what they are like, and how much of it is followed.
+"""Scatter properties of the parts of a lens.
 
 See ``docs/scatter.md``.
 """
@@ -17,17 +17,17 @@ from daguerre.errors import UsageError, core_errors
 @guarded
 @dataclass(frozen=True)
 class LensScatter:
-    """How the parts of a lens scatter light; the defaults are a well-made lens.
+    """Scatter properties of the parts of a lens; the defaults are a well-made lens.
 
     Attributes:
-        barrel: Share of light that the barrel and the blackened edges of the glass send to all
-            sides, 0 to 1.
-        barrel_gloss: Share that they send into a lobe about the mirror image, straight on; it grows
-            toward grazing light.
-        blades: Like ``barrel``, for the iris's blades.
-        blades_gloss: Like ``barrel_gloss``, for the iris's blades.
-        gloss_lobe: Shape of that lobe: where it begins to fall (sine of the angle) and the power
-            by which it does.
+        barrel: Share of light that the barrel and the blackened edges of the glass scatter
+            diffusely, 0 to 1.
+        barrel_gloss: Share that they scatter into a lobe about the mirror direction, at normal
+            incidence; it grows toward grazing incidence.
+        blades: Like ``barrel``, for the iris blades.
+        blades_gloss: Like ``barrel_gloss``, for the iris blades.
+        gloss_lobe: Shape of that lobe: sine of the angle at which it begins to fall, and the power
+            by which it falls.
         surface_rms_nm: RMS roughness of every polished surface, nm.
         surface_lobe: Shape of the lobe of polished surfaces, like ``gloss_lobe``.
     """
@@ -42,10 +42,10 @@ class LensScatter:
 
 
 def core_parts(given: Any) -> _core.LensScatter:
-    """Checks values and makes the core's record; None: the defaults.
+    """Checks the values and makes the core's record; None: the defaults.
 
     Raises:
-        UsageError: Values that cannot be.
+        UsageError: A value is out of its range.
     """
     parts = LensScatter() if given is None else given
     where = "camera: scatter"

@@ -1,7 +1,7 @@
-"""Overscan: pixels beside the picture, for what later bends it, blurs it or moves it.
+"""Overscan: extra pixels around the picture, for later distortion, blur or camera shake.
 
-A picture with overscan keeps its size and its place, its display window; the file holds more, its
-data window. See docs/plates.md.
+The picture itself (display window) keeps its size and place; the file holds more (data window). See
+docs/plates.md.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WANTED = "pixels such as 64px, a share such as 10%, left,top,right,bottom (px), 
 
 @dataclass(frozen=True)
 class Overscan:
-    """Pixels beside the picture, on each of its sides."""
+    """Number of extra pixels on each side of the picture."""
 
     left: int = 0
     top: int = 0
@@ -36,7 +36,7 @@ class Overscan:
         return any(astuple(self))
 
     def region(self, resolution: tuple[int, int]) -> tuple[int, int, int, int]:
-        """All pixels, (x0, y0, x1, y1) of the picture, end exclusive: the data window."""
+        """Data window in pixels of the picture, (x0, y0, x1, y1), end exclusive."""
         width, height = resolution
         return -self.left, -self.top, width + self.right, height + self.bottom
 
@@ -63,10 +63,10 @@ def check_overscan(
         where: For messages.
 
     Returns:
-        Overscan; None: ``"undistort"``, which the camera decides.
+        Overscan; None for ``"undistort"``, whose size depends on the camera.
 
     Raises:
-        UsageError: It is none of these; or the data window is too large.
+        UsageError: Another value, or a data window that is too large.
     """
     if isinstance(value, str):
         if value.strip() == UNDISTORT:

@@ -1,7 +1,7 @@
-"""Cameras that are known by a calibration, or by the formula of their picture, and not by glass.
+"""Projection models: cameras given by a calibration or a formula instead of a lens.
 
-Numbers are those of calibration files: focal lengths and principal point in pixels, **pixel centres
-at integers** as OpenCV has them (the middle of the upper left pixel is (0, 0)), y down.
+Parameters follow calibration files: focal lengths and principal point in pixels, y down, and
+**pixel centres at integers** as in OpenCV (the centre of the upper left pixel is (0, 0)).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
 
-#: Names of the parameters of each model, in order; those that are not given are 0.
+#: Names of the parameters of each model, in order; those not given are 0.
 MODELS: dict[str, tuple[str, ...]] = {
     "rectilinear": (),
     "equidistant": (),
@@ -44,22 +44,22 @@ MODELS: dict[str, tuple[str, ...]] = {
     "fov": ("w",),
     "opencv_inverse": ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
 }
-#: Models that have no picture of their own with all parameters 0.
+#: Number of parameters that must be given, for models that do not project with all of them 0.
 NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
 
 
 @guarded
 @dataclass(frozen=True)
 class Projection(Value):
-    """Projection of directions to pixels: a camera model with its numbers.
+    """Projection of directions to pixels: a camera model with its parameters.
 
     Attributes:
         model: One of ``MODELS``.
-        size: Width and height of the picture that the numbers are about, px. A picture may be
-            rendered in any size of the same shape.
-        focal: Focal lengths, px, along x and y; for ``equirectangular`` pixels per radian, for
-            ``cube`` per side of a face.
-        principal: Principal point, where the axis meets the picture, px; None: its middle.
+        size: Width and height of the picture that the parameters refer to, px. Rendering may use
+            any size of the same aspect ratio.
+        focal: Focal lengths along x and y, px; for ``equirectangular`` pixels per radian, for
+            ``cube`` pixels per side of a face.
+        principal: Principal point, where the axis meets the picture, px; None: the middle.
         parameters: Parameters of the model; see ``MODELS``.
     """
 
@@ -104,16 +104,17 @@ class Projection(Value):
     def of_field(
         cls, model: str, size: tuple[int, int], field: float, parameters: Sequence[float] = ()
     ) -> Projection:
-        """Makes a projection with a field of view across the width, its axis in the middle.
+        """Makes a projection from its horizontal field of view, with the axis in the middle.
 
         Args:
             model: One of ``MODELS``.
             size: Width and height of the picture, px.
-            field: Field of view across the width, degrees; ``cube`` fills it with all six faces.
+            field: Horizontal field of view, degrees; ignored for ``cube``, whose six faces span the
+                width.
             parameters: Parameters of the model.
 
         Raises:
-            UsageError: The model does not see so far.
+            UsageError: The field is larger than the model allows.
         """
         width, height = numbers(size, "projection: size", 2, "two whole numbers of pixels")
         if model == "cube":
@@ -132,12 +133,12 @@ class Projection(Value):
 
     @cached_property
     def core(self) -> _core.ProjectionModel:
-        """The core's model, in units of the focal length."""
+        """Model of the core, in units of the focal length."""
         return _core.ProjectionModel(self.model, [float(k) for k in self.parameters])
 
     @property
     def center(self) -> tuple[float, float]:
-        """The principal point, px."""
+        """Principal point, px."""
         width, height = self.size
         return self.principal or ((width - 1) / 2, (height - 1) / 2)
 
@@ -148,13 +149,14 @@ class Projection(Value):
 
     @property
     def is_wide(self) -> bool:
-        """Whether it may see what lies beside the camera or behind it."""
+        """Whether the field may reach 180 degrees or more."""
         return bool(self.core.is_wide)
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """Field of view across, down and along the diagonal, degrees; NaN where nothing is seen.
+        """Horizontal, vertical and diagonal field of view, degrees; NaN where nothing is seen.
 
-        Each is the sum of the angles of two edges from the axis; for a panorama all around.
+        Each is the sum of the angles between the axis and two opposite edges or corners; for a
+        panorama, the full turn.
         """
         (width, height), (x, y) = self.size, self.center
         left, right, top, bottom = -0.5, width - 0.5, -0.5, height - 0.5
@@ -168,11 +170,11 @@ class Projection(Value):
 
     @property
     def form(self) -> tuple[str, tuple[int, int]]:
-        """Model and size, which all keys of a projection over time share."""
+        """Model and size, which all keys over time must share."""
         return self.model, self.size
 
     def blended(self, other: Projection, share: float) -> Projection:
-        """Blends with another projection of the same form, number by number."""
+        """Interpolates each parameter toward another projection of the same form."""
 
         def mix(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
             both = zip_longest(a, b, fillvalue=0.0)  # parameters that are not given are 0
@@ -185,7 +187,7 @@ class Projection(Value):
         )
 
     def project(self, points: ArrayLike) -> FloatArray:
-        """Projects points to pixels; the camera's frame is OpenCV's: x right, y down, z ahead.
+        """Projects points in the camera's frame (x right, y down, z ahead) to pixels.
 
         Args:
             points: Shape (N, 3), of any unit.
@@ -197,7 +199,7 @@ class Projection(Value):
         return np.asarray(self.core.project(given) * self.focal + self.center)
 
     def unproject(self, pixels: ArrayLike) -> FloatArray:
-        """Returns unit directions (x right, y down, z ahead) that pixels see; NaN: none.
+        """Returns the unit directions of pixels (x right, y down, z ahead); NaN: none.
 
         Args:
             pixels: Shape (N, 2), pixel centres at integers.
@@ -211,7 +213,7 @@ class Projection(Value):
     def film(self, width_mm: float) -> dict[str, Any]:
         """Focal lengths and principal point on a film of this width, mm, upright.
 
-        Pixels of the numbers have their centres at integers, those of a picture at halves.
+        Pixel centres are at integers in a projection, and at halves in a picture.
         """
         pitch = width_mm / self.size[0]
         x, y = self.center
@@ -235,10 +237,10 @@ class Projection(Value):
 
 
 def check_resolution(projection: Projection, resolution: tuple[int, int]) -> None:
-    """A picture must have the shape of the one that was calibrated.
+    """Checks that a picture has the aspect ratio of the calibration.
 
     Raises:
-        UsageError: It has another.
+        UsageError: It has another one.
     """
     (width, height), (columns, rows) = projection.size, resolution
     if abs(rows - columns * height / width) > 0.5:

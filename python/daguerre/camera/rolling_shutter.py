@@ -13,12 +13,12 @@ ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 @guarded
 @dataclass(frozen=True)
 class RollingShutter:
-    """Lines of pixels that are exposed one after the other.
+    """Rolling shutter: lines of pixels are exposed one after the other.
 
     Attributes:
-        scan_order: Side of the upright picture that comes first: top, bottom, left or right.
-        line_time: From one line to the next, s; or
-        readout_time: for all of them, s: lines x line_time.
+        scan_order: Side of the upright picture that is exposed first: top, bottom, left or right.
+        line_time: Time from one line to the next, s; give this or ``readout_time``.
+        readout_time: Time for all lines, s: number of lines x ``line_time``.
     """
 
     scan_order: str = "top"

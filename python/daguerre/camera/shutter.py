@@ -1,8 +1,8 @@
-"""The shutter in a photographer's terms: when which line of pixels is exposed.
+"""Shutters: when each line of pixels is exposed.
 
-Times are seconds. ``shutter_time`` is how long a point of the film sees light, from the first to
-the last of it; a shutter that scans needs longer for the whole frame. What each type does, and
-where the default times come from, is told in docs/motion.md.
+Times are in seconds. ``shutter_time`` is the exposure of one point of the film, from first to last
+light; a shutter that scans takes longer for the whole frame. docs/motion.md explains the types and
+the sources of the default times.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 SCAN_ORDERS = ("top", "bottom", "left", "right")
-#: Travel of the curtains: the flash synchronisation time of a fast camera is little more.
+#: Travel time of focal-plane curtains, slightly less than a fast camera's flash sync time.
 CURTAIN_S = 1 / 300
-#: Reading a full-frame sensor of a video camera.
+#: Read-out time of a full-frame sensor of a video camera.
 READOUT_S = 1 / 60
-#: Share of a rotating disc's turn that the gate takes, degrees.
+#: Angle that the gate spans on the rotating disc, degrees.
 GATE_ANGLE = 60.0
-#: A leaf shutter is on its way for as long as it rests wide open (radius).
+#: Efficiency of a leaf shutter: it moves for as long as it rests wide open (radius).
 LEAF_EFFICIENCY = 0.75
 
 
 def shutter_time(camera: Camera) -> float:
-    """How long a point of the film is exposed, s."""
+    """Exposure time of a point of the film, s."""
     if camera.shutter_time is not None:
         return float(camera.shutter_time)
     angle = CAMERA["shutter_angle"].usual if camera.shutter_angle is None else camera.shutter_angle
@@ -42,7 +42,7 @@ def shutter_time(camera: Camera) -> float:
 
 
 def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
-    """The shutter for a frame of this size.
+    """Makes the core's shutter for a frame of this size.
 
     Raises:
         UsageError: A parameter is wrong, or does not go with another.
@@ -56,13 +56,13 @@ def core_shutter(camera: Camera, resolution: tuple[int, int]) -> _core.Shutter:
 
 
 def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[float, float]:
-    """From the first light on the first line to the last on the last one, s of scene time.
+    """Interval from first light on the first line to last light on the last, s of scene time.
 
-    It stands around ``time``, unless ``shutter_offset`` says when it opens.
+    It is centred on ``time`` unless ``shutter_offset`` is given.
 
     Raises:
-        UsageError: Bad shutter, see ``core_shutter``; or the time is no number, or so large that
-            doubles cannot tell the opening from the closing.
+        UsageError: The shutter is wrong, see ``core_shutter``; or the time is no number, or too
+            large for double precision to hold the exposure.
     """
     duration = core_shutter(camera, resolution).duration_s
     begin = number(time, "scene: time") - duration / 2
@@ -71,13 +71,14 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
     end = begin + duration
     if abs(end - begin - duration) > 0.01 * duration:
         raise UsageError(
-            f"scene: time: wanted one at which {duration:g} s can be told apart, got {time:g} s"
+            f"scene: time: wanted a time to which {duration:g} s can be added without loss, got "
+            f"{time:g} s"
         )
     return begin, end
 
 
 def facts(camera: Camera, resolution: tuple[int, int]) -> dict[str, Any]:
-    """The shutter as resolved: for metadata and hashes, JSON-able."""
+    """Resolved shutter as JSON values, for metadata and hashes."""
     order, line_time = scan(camera, resolution)
     begin, end = interval(camera, 0.0, resolution)
     return {
@@ -92,7 +93,7 @@ def facts(camera: Camera, resolution: tuple[int, int]) -> dict[str, Any]:
 
 
 def metadata(camera: Camera) -> dict[str, Any]:
-    """By the names of the EXR attributes; the angle where the exposure fits into a frame."""
+    """Metadata by names of EXR attributes; the shutter angle only if the exposure fits a frame."""
     time = shutter_time(camera)
     angle = 360 * time * camera.fps
     fits = angle <= 360
@@ -104,20 +105,20 @@ def metadata(camera: Camera) -> dict[str, Any]:
 
 
 def type_of(camera: Camera) -> str:
-    """The type: what is asked for, else electronic where lines are exposed in turn, else box."""
+    """Shutter type: the one given, else electronic with a rolling shutter, else box."""
     return camera.shutter_type or ("box" if camera.rolling_shutter is None else "electronic")
 
 
 def check(camera: Camera) -> None:
-    """Refuses what is no shutter, and rivals."""
+    """Checks the shutter parameters, and that they do not exclude each other."""
     SHUTTER.check(camera, "camera")
     given = {row.name for row in SHUTTER if getattr(camera, row.name) is not None}
     SHUTTER.refuse_rivals(given, "camera")
     kind = camera.shutter_type
     if kind == "rotary" and shutter_time(camera) > 1 / camera.fps:
         raise UsageError(
-            f"camera: shutter_type rotary: a disc is open for {1 / camera.fps:g} s at most "
-            f"at {camera.fps:g} frames per second, got {shutter_time(camera):g} s"
+            f"camera: shutter_type rotary: wanted at most {1 / camera.fps:g} s at "
+            f"{camera.fps:g} frames per second, got {shutter_time(camera):g} s"
         )
     _check_rolling(camera)
     _curve(camera)
@@ -151,7 +152,7 @@ def _check_rolling(camera: Camera) -> None:
 
 
 def scan(camera: Camera, resolution: tuple[int, int]) -> tuple[str, float]:
-    """Which lines come first (none: all at once), and the time from one to the next, s."""
+    """Scan order (none: all lines at once), and the time from one line to the next, s."""
     usual = {
         # Curtains fall, and the picture on the film is upside down.
         "focal_plane": RollingShutter("bottom", readout_time=CURTAIN_S),
@@ -206,7 +207,7 @@ def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
 
 
 def describe(camera: Camera, resolution: tuple[int, int]) -> str:
-    """One line for people, such as ``1/48 s, 180 deg at 24 fps, box``."""
+    """Describes the shutter in one line, such as ``1/48 s, 180 deg at 24 fps, box``."""
     time, kind = shutter_time(camera), type_of(camera)
     if time == 0:
         parts = ["0 s (frozen)"]

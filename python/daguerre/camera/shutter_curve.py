@@ -15,14 +15,14 @@ _MAX_BYTES = 1 << 20
 
 
 def read_curve(path: Path) -> list[tuple[float, float]]:
-    """Points (fraction of the time, opening) of a file with two columns.
+    """Reads points (fraction of the time, opening) from a file with two columns.
 
-    The columns are parted by commas, semicolons or blanks; lines with # are remarks, and the
-    first line may hold names. Times are in any unit: the first is where the exposure begins, the
-    last where it ends. Openings are in any unit, too: the largest is open.
+    Commas, semicolons or blanks separate the columns. Lines with # are comments, and the first line
+    may hold names. Times are in any unit: the exposure begins at the first and ends at the last.
+    Openings are in any unit: the largest is fully open.
 
     Raises:
-        InputError: The file cannot be read, or is no such table; the message names the line.
+        InputError: The file cannot be read, or is not such a table; the message names the line.
     """
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):  # it might never end

@@ -90,8 +90,8 @@ def calibrate(
     made = fit(name, model, **use)
     if made.largest > WELL:
         console.note(
-            f"note: {made.projection.model} is up to {made.largest:.3g} px off; --model all says "
-            "how well others fit"
+            f"note: {made.projection.model} is up to {made.largest:.3g} px off; --model all shows "
+            "how well other models fit"
         )
     _write(made, output, file_format or FORMATS[0], residuals)
     if map_flags.files:

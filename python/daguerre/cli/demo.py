@@ -41,7 +41,7 @@ def demo(
     words += ["--res", res, "--spp", str(spp), "--tone", "soft", "-o", str(folder / "demo.png")]
     if extras.missing("mitsuba_oidn"):
         words += ["-o", str(folder / "demo.exr")]
-        console.show(f"not denoised; that takes an extra: {extras.hint('mitsuba_oidn')}")
+        console.show(f"not denoised; denoising needs an extra: {extras.hint('mitsuba_oidn')}")
     else:
         words += ["--denoise", "--noisy", str(folder / "demo.exr")]
     console.show(shlex.join(["daguerre", *words]))

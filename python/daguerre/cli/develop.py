@@ -137,16 +137,16 @@ def _check(source: Path, outputs: list[Path]) -> None:
             raise UsageError(f"{path}: wanted another file than the one that is developed")
         check_writable(path)
         if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
-            raise UsageError(f"{path}: {source} is a raw file already; wanted a picture of it")
+            raise UsageError(f"{path}: wanted a picture format, as {source} is a raw file already")
 
 
 def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> None:
     """Film stands in the place of a sensor, and has a speed of its own."""
     for name in ("sensor", "iso"):
         if name in used:
-            raise UsageError(f"--stock: wanted without --{name}: film has a speed of its own")
+            raise UsageError(f"--stock and --{name}: wanted one of them, got both")
     if source.suffix.lower() != ".exr":
-        raise UsageError(f"--stock: {source} was taken already; wanted a frame, .exr")
+        raise UsageError(f"--stock: wanted a frame (.exr), got {source}, which is a photo already")
     for path in outputs:
         if path.suffix.lower() == ".dng":
             raise UsageError(f"{path}: film has no raw stage; wanted another format")
@@ -169,8 +169,8 @@ def _tell_speed(film: float, camera: float | None) -> None:
     stops = 0.0 if camera is None else math.log2(film / camera)
     if abs(stops) >= 0.5:
         console.note(
-            f"the film is of ISO {film:g}, the camera was set to ISO {camera:g}: {abs(stops):.1f} "
-            f"EV too {'much' if stops > 0 else 'little'} light; --ev {-stops:+.1f} makes up for it"
+            f"the film has ISO {film:g}, the camera was set to ISO {camera:g}: {abs(stops):.1f} EV "
+            f"too {'much' if stops > 0 else 'little'} light; --ev {-stops:+.1f} compensates for it"
         )
 
 
@@ -204,7 +204,7 @@ def _taken(frame: Frame, used: dict[str, Any], wanted: dict[str, Any]) -> Raw | 
 
 def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
     for name in used:
-        raise UsageError(f"--{name}: {path} was taken with a sensor and ISO of its own")
+        raise UsageError(f"--{name}: wanted a frame (.exr): {path} has its own sensor and ISO")
     from daguerre.development.camera_raw import read_shot
     from daguerre.development.develop import Recipe
 
@@ -217,7 +217,7 @@ def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
 def _save_dng(path: Path, taken: Any, source: Path) -> None:
     if not hasattr(taken, "mosaic"):
         raise UsageError(
-            f"{path}: {source} has no raw stage: wanted --sensor NAME, which takes the picture"
+            f"{path}: {source} has no raw data: wanted --sensor NAME, which makes them"
         )
     from daguerre.development.dng import size_note
 

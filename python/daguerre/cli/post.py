@@ -91,7 +91,7 @@ def _planned(words: list[str] | None, file: Path | None) -> list[Planned]:
         raise UsageError("post: wanted --effect or --recipe (see `daguerre post --list`)")
     planned, moved = in_order(planned)
     for name in moved:
-        console.note(f"{name} belongs to the film: it comes last")
+        console.note(f"{name} is an effect of the film: it is applied last")
     return planned
 
 

@@ -80,7 +80,7 @@ def expose(
         )
     if negative:
         share = negative / mosaic.size
-        notes.append(f"light was below 0 at {share:.2%} of the photosites, and taken for none")
+        notes.append(f"light was below 0 at {share:.2%} of the photosites, and is clipped to 0")
     notes += [*_source_note(frame, body, light), *_pitch_note(frame, body)]
     notes += _noise_note(frame, body, light)
     return Raw(
@@ -189,8 +189,8 @@ def _source_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
     if frame.channels is None or light.source == "channels":
         return []
     return [
-        f"the frame holds what {frame.metadata.get('sensor')} sees; that of {sensor.name} is made "
-        f"of its {'XYZ' if light.source == 'xyz' else light.source}"
+        f"the frame holds the channels of {frame.metadata.get('sensor')}; those of {sensor.name} "
+        f"are made from its {'XYZ' if light.source == 'xyz' else light.source}"
     ]
 
 
@@ -199,8 +199,9 @@ def _pitch_note(frame: Frame, sensor: Sensor) -> list[str]:
     if not pitch.size or abs(pitch[0] / sensor.pixel_pitch - 1) <= 0.01:
         return []
     return [
-        f"a pixel of the picture is {pitch[0]:.3g} um of the film, a photosite of {sensor.name} "
-        f"{sensor.pixel_pitch:.3g} um: noise is that of the photosites, as in a crop at 100 %"
+        f"a pixel of the picture is {pitch[0]:.3g} um wide on the film, a photosite of "
+        f"{sensor.name} {sensor.pixel_pitch:.3g} um: each pixel has the noise of one photosite, as "
+        "in a crop at 100 %"
     ]
 
 
@@ -210,8 +211,8 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
     if share <= NOISY_SHARE:
         return []
     return [
-        f"the render's own noise is larger than that of the photons in {share:.0%} of the pixels: "
-        "more samples would show the sensor's noise alone"
+        f"the render's own noise is larger than photon noise in {share:.0%} of the pixels: more "
+        "samples reduce it"
     ]
 
 

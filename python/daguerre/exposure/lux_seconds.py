@@ -26,7 +26,9 @@ def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
     """For frames that are exposed without a stop of their own; None: they have one."""
     if metadata.get("aperture") is not None or metadata.get("h0") is None:
         return None
-    return f"a pinhole has no stop: exposed as at f/{PINHOLE_F_STOP:g}; exposure_f_stop sets it"
+    return (
+        f"a pinhole has no f-stop: exposed as at f/{PINHOLE_F_STOP:g}; exposure_f_stop changes that"
+    )
 
 
 @guarded

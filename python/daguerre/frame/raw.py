@@ -91,7 +91,7 @@ class Raw:
             InputError: It is not known of a picture that was read from a file.
         """
         if self.luminance_exposure is None:
-            raise InputError("raw: exposure: not known of a picture that was read from a file")
+            raise InputError("raw: exposure: unknown, as the picture was read from a file")
         return self.luminance_exposure
 
     def electrons(self) -> NDArray[np.float32]:

@@ -122,8 +122,8 @@ class Categories:
         for rule in self.rules or ():
             if not any(fnmatchcase(name, rule.pattern) for name in names):
                 raise UsageError(
-                    f"{self.where}: {rule.pattern!r}: wanted a pattern of some node's name, got "
-                    f"none that has it{suggest(rule.pattern, names)}"
+                    f"{self.where}: {rule.pattern!r}: wanted a pattern that matches the name of a "
+                    f"node, got no match{suggest(rule.pattern, names)}"
                 )
 
 

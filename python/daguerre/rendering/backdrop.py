@@ -40,8 +40,8 @@ def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
         raise UsageError("background: plate: wanted a photograph (--plate), got none")
     if plate.camera is not None:
         raise UsageError(
-            "background: plate: wanted one by the camera that renders, got one with a camera of "
-            "its own (--plate-camera)"
+            "background: plate: wanted a photo by the camera that renders, got one with its own "
+            "camera (--plate-camera)"
         )
     (height, width), (wide, high) = plate.pixels.shape[:2], settings.film.resolution
     scale = min(wide / width, high / height, 1.0)

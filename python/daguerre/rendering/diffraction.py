@@ -158,7 +158,7 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
         if sensor.size and (sensor.shape[:1] != bands.shape[2:] or not np.isfinite(sensor).all()):
             raise ValueError("channels")
     except (ValueError, TypeError, KeyError) as error:
-        raise InputError(f"diffraction: damaged facts of pupils: {error}") from None
+        raise InputError(f"diffraction: damaged pupil data: {error}") from None
     sums = [(film.mean_xyz, band_colors(bands.shape[2]).astype(np.float32))]
     if sensor.size:
         sums.append((film.mean_channels, sensor))

@@ -222,13 +222,13 @@ class Drawing:
     def _out_of_memory(self) -> str:
         """Tells what to do where memory ended within a pass, whose sums are of no use."""
         kept = (
-            f"{self.checkpoint.path} keeps the samples before; --resume goes on, or "
+            f"{self.checkpoint.path} keeps the samples before; continue with --resume, or "
             if self.checkpoint.exists
             else ""
         )
         return (
             f"picture: memory: wanted more than there is while drawing; {kept}draw it in parts "
-            "(--crop), with fewer --threads, or beside less"
+            "(--crop), use fewer --threads, or stop other programs"
         )
 
     def _finish(self) -> None:

@@ -120,11 +120,11 @@ def _check_catchers(one: Prepared) -> None:
     for name in DARK:
         if check_paths(getattr(light, name), name) != 0:
             raise UsageError(
-                f"{name}: wanted off with catchers: the plate has that of its own lamps"
+                f"{name}: wanted off with catchers: the plate has the {name} of its own lights"
             )
     if one.settings.diffraction is not None or one.settings.film.bands:
         name = "bands" if one.settings.diffraction is None else "diffraction"
-        raise UsageError(f"{name}: wanted none with catchers, whose layers have colours alone")
+        raise UsageError(f"{name}: wanted none with catchers, whose layers hold only colours")
     if check_light_paths(light.light_paths) not in (None, OFF):
         raise UsageError("light_paths: wanted auto or off with catchers, got a number of paths")
 
@@ -162,7 +162,7 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
         return 0.0
     if name == "flare" and core.flare_maps_failed:
         off = f"{core.flare_map_error:.1%}"
-        notes.append(f"flare: maps of ghosts are off by {off}, wanted 1 %; paths draw all of them")
+        notes.append(f"flare: ghost maps are off by {off}, wanted 1 %; paths draw all ghosts")
     count = PER_PIXEL[name] * area((0, 0, *one.size)) if paths is None else paths
     setattr(core, name, count)
     return float(count)

@@ -108,7 +108,7 @@ class Loop:
         path = self.checkpoint.save_elsewhere(self.session)
         if path is not None:
             self._kept(path, rescued=True)
-            self.reporter.warning(f"--resume finds the samples when {path} is moved to {wanted}")
+            self.reporter.warning(f"to go on with --resume, move {path} to {wanted}")
         return path
 
     def _kept(self, path: Path, *, rescued: bool) -> None:

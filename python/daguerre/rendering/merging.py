@@ -49,7 +49,7 @@ def merge(
             first = replace(first, truth=one.truth, metadata=first.metadata | _truth_facts(one))
         if one.round is not None:
             raise MismatchError(
-                f"{one.path or 'pass'}: drawn with --noise, each pixel to its own count; "
+                f"{one.path or 'pass'}: drawn with --noise, so pixels differ in sample count; "
                 "wanted passes of --samples"
             )
         _check_overlap(ranges, one)

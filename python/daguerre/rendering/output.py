@@ -150,12 +150,12 @@ class Output:
 
             frame = denoise(frame)  # by means over the samples, blurred as the picture is
             if self.photograph.sensor is not None:
-                tell.note("denoised: the sensor's channels are fitted from the clean colours")
+                tell.note("denoised: the sensor's channels are fitted to the denoised colours")
         frame = session.with_truth(session.over_plate(frame))
         if cut := frame.metadata.get("mattes_cut"):
             tell.note(
-                f"cryptomatte: {cut['pixels']} pixels have more names than ranks, and lack up to "
-                f"{cut['share']:.2g} of coverage; more --cryptomatte-ranks keep them"
+                f"cryptomatte: {cut['pixels']} pixels have more names than ranks and lose up to "
+                f"{cut['share']:.2g} of coverage; more --cryptomatte-ranks keep it"
             )
         if DISPARITY in self.aovs:
             from .rig import disparity

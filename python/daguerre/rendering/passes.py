@@ -269,8 +269,8 @@ def _check_form(path: Path, header: Facts) -> None:
     form = header.get("daguerre:pass", 1)
     if form != FORM:
         raise InputError(
-            f"{path}: form of the pass: wanted {FORM}, got {short(form)}; "
-            f"it is of another version, this is daguerre {__version__}"
+            f"{path}: format of the pass: wanted {FORM}, got {short(form)}; "
+            f"another version wrote it, this is daguerre {__version__}"
         )
 
 

@@ -34,7 +34,7 @@ def check_together(values: Mapping[str, Any], named: Named = str) -> None:
         )
     if values["gt_lens"] == "chief" and values["gt_rays"] is not None:
         raise UsageError(
-            f"{named('gt_rays')}: the chief ray is one; wanted {named('gt_lens')} mean too"
+            f"{named('gt_rays')}: wanted {named('gt_lens')} mean too; a chief ray is single"
         )
     if values["noise"] is not None and values["spp"] == 1:
         raise UsageError(f"{named('spp')}: wanted 2 .. 2^31 with {named('noise')}, got 1")

@@ -64,7 +64,7 @@ def _projection(camera: Camera) -> str:
     for row in CAMERA:
         if LENS_ITSELF in row.needs and is_given(camera, row):
             way_out = f"; {row.name}=None takes it away" if row.default is None else ""
-            raise UsageError(f"camera: projection: wanted without {row.name}, got both{way_out}")
+            raise UsageError(f"camera: wanted either projection or {row.name}, got both{way_out}")
     return "projection"
 
 
@@ -109,7 +109,7 @@ def _check_together(camera: Camera, model: str) -> None:
         raise UsageError(f"camera: tilt: wanted at most {most:g} degrees, got {camera.tilt}")
     if model in TRACED and camera.aperture_image is not None and camera.shutter_type == "leaf":
         raise UsageError(
-            "camera: shutter_type leaf: the iris of an exact lens wanted blades, "
+            "camera: shutter_type leaf: wanted blades for the iris of an exact lens, "
             "got an aperture_image"
         )
     if camera.blades and camera.aperture_image is not None:

@@ -135,7 +135,7 @@ def _film_distance(camera: Camera, f: float, distance: float) -> float:
         return f
     if not distance * 1e3 > f:
         raise InputError(
-            f"camera: focus_distance: a {f:g} mm lens wanted more than {f * 1e-3:g} m, "
+            f"camera: focus_distance: wanted more than {f * 1e-3:g} m for a {f:g} mm lens, "
             f"got {distance:g} m"
         )
     film = f if math.isinf(distance) else f * distance * 1e3 / (distance * 1e3 - f)
@@ -158,7 +158,7 @@ def _from_pupil(total_m: float, f: float) -> float:
     total = total_m * 1e3
     if total < 4 * f:
         raise InputError(
-            f"camera: focus_distance from the sensor: a {f:g} mm lens wanted at least "
+            f"camera: focus_distance from the sensor: a {f:g} mm lens focuses no nearer than "
             f"{4e-3 * f:g} m, got {total_m:g} m"
         )
     image = (total - math.sqrt(total * (total - 4 * f))) / 2

@@ -168,8 +168,8 @@ def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
         )
     elif not chosen.traced and lens.squeeze != 1:
         notes.append(
-            f"{lens.name} is anamorphic: its {chosen.model} model has the focal length of the "
-            "height alone, and squeezes nothing"
+            f"{lens.name} is anamorphic: its {chosen.model} model has only the vertical focal "
+            "length and does not squeeze"
         )
     return notes
 

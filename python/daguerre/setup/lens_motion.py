@@ -182,8 +182,8 @@ class LensMotion:
         models = [lens.model for lens in made]
         if "polynomial" in models and "exact" in models:
             notes.append(
-                f"{models.count('exact')} of the {len(models)} states of the lens are not fitted "
-                "well enough: the exact lens draws them"
+                f"polynomials fit {models.count('exact')} of the {len(models)} states of the lens "
+                "too badly: the exact lens draws these"
             )
         return notes
 
@@ -247,7 +247,7 @@ class LensMotion:
 def _too_many(what: str, needed: int, most: int) -> list[str]:
     if needed <= most:
         return []
-    return [f"{what} change so much that {needed} states were wanted; {most} are taken"]
+    return [f"{what} change so much that they need {needed} states; {most} are used"]
 
 
 @dataclass(frozen=True)

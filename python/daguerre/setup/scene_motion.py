@@ -56,7 +56,7 @@ class MovingParts:
         if not keeps:
             self._notes.append(
                 f"mesh {mesh.name or index!r} moves too unevenly for {MAX_STEPS} steps: "
-                f"{len(steps)} show it, as far as they go"
+                f"{len(steps)} steps approximate it"
             )
         if len(steps) == 1:
             return steps[0]
@@ -64,7 +64,7 @@ class MovingParts:
             if not all(same_array(getattr(s, name), getattr(steps[0], name)) for s in steps):
                 raise InputError(
                     f"mesh {mesh.name or index!r}: {name}: changes while the shutter is open, "
-                    "which cannot be blurred; wanted one that stays, or a shutter time of 0"
+                    "which has no blur; wanted constant values, or a shutter time of 0"
                 )
         moved = {name: _stacked(steps, name) for name in ("positions", "normals", "tangents")}
         return replace(steps[0], **moved)
@@ -112,7 +112,7 @@ class MovingParts:
             where, many, most = self._crowded[0]
             others = len(self._crowded) - 1
             self._notes.append(
-                f"{where} has {many} keys while the shutter is open; {most} at most show it"
+                f"{where} has {many} keys while the shutter is open; at most {most} are used"
                 + (f" ({others} others likewise)" if others else "")
             )
 

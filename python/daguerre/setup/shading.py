@@ -100,7 +100,9 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
 def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
     """Factor on the environment's light, and its turn about +y, rad."""
     if environment.image is not image:
-        raise InputError("environment: image: wanted one that stays, got another later")
+        raise InputError(
+            "environment: image: wanted the same image at all times, got another later"
+        )
     color = (1.0, 1.0, 1.0)
     if environment.image is None:
         color = environment.color or (0.0, 0.0, 0.0)

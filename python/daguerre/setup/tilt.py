@@ -37,8 +37,8 @@ def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
     angle = math.degrees(math.acos(cosine(tilt_deg)))
     far = f"{hinge:.3g} mm" if hinge < 1000 else f"{hinge / 1000:.3g} m"
     return (
-        f"the lens is turned by {angle:.3g} deg: what is sharp is a plane that hinges on a line "
-        f"{far} from the lens"
+        f"the lens is tilted by {angle:.3g} deg: the plane of focus hinges on a line {far} from "
+        "the lens"
     )
 
 

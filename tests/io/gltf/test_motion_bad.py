@@ -68,7 +68,7 @@ BAD: dict[str, tuple[Callable[[], Any], str]] = {
     "scene at no time": (lambda: shoot(dg.Scene(time=math.nan)), "scene: time: wanted a number"),
     "time without digits": (
         lambda: shoot(scene_of(dg.keys([(0, move()), (1, move(1))])).at(1e17)),
-        r"scene: time: wanted one at which 0\.4 s can be told apart",
+        r"scene: time: wanted a time to which 0\.4 s can be added without loss",
     ),
     "shown by a word": (lambda: scene_of(shown="no"), "shown: wanted true or false, got 'no'"),
     "no matrix": (

@@ -12,7 +12,7 @@ TRACED = ("exact", "polynomial")
 MODELS = (*TRACED, "thick", *KINDS)
 
 #: It stands in the place of a lens: a projection takes no other (``setup/checks.py``).
-LENS_ITSELF = Need(MODELS, "wanted without a projection, got both")
+LENS_ITSELF = Need(MODELS, "wanted either it or a projection, got both")
 #: A projection leaves it aside: a flag that says it is refused, a scene file's value is not.
 OF_LENSES = Need(MODELS, "")
 #: An opening of some size: to make a lens a pinhole, and give it at once, is refused.
@@ -22,9 +22,9 @@ _QUOTED = " or ".join(map(repr, KINDS))
 WITHOUT_PRESCRIPTION = Need(
     ("ideal",),
     "a lens with a prescription has its own; "
-    f"wanted none with it (of a zoom: zoom), or an ideal lens (lens={_QUOTED})",
+    f"wanted none (for a zoom lens: zoom), or an ideal lens (lens={_QUOTED})",
 )
-PRESCRIPTION = Need(("prescription",), "wanted a lens with a prescription for it, got {kind}")
+PRESCRIPTION = Need(("prescription",), "wanted a lens with a prescription, got {kind}")
 ZOOM = Need(PRESCRIPTION.kinds, PRESCRIPTION.refusal + "; its focal_length may be any")
 ELEMENTS = Need(TRACED, "wanted lens_model exact, got {kind}, which has no elements")
 ROUGH = Need(
@@ -34,7 +34,7 @@ ROUGH = Need(
 _SURFACES = "wanted a lens with surfaces (lens_model exact), got {kind}: it is for "
 GHOSTS = Need(TRACED, _SURFACES + "ghosts")
 SCATTER = Need(TRACED, _SURFACES + "scattered light")
-FITTED = Need(("polynomial",), "wanted lens_model polynomial with it, got {kind}")
+FITTED = Need(("polynomial",), "wanted lens_model polynomial, got {kind}")
 APERTURE = Need(WITH_IRIS, "this {kind} lens takes f_stop instead")
 IDEAL = Need(("ideal",), APERTURE.refusal)
 T_STOP = Need(OPENING.kinds, "a pinhole has no t_stop")

@@ -187,10 +187,12 @@ class CalibrationFlags:
 
         notes = [*calibration.notes, *field_notes(calibration.projection)]
         if self.timeshift and not any(one.delay_s for one in self.found.values()):
-            notes.append("--timeshift: no camera has another timeshift_cam_imu than the first")
+            notes.append(
+                "--timeshift has no effect: all cameras have the timeshift_cam_imu of the first"
+            )
         if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
-                f"no --pixel-pitch: blur is that of a sensor {camera.sensor_size[0]:g} mm wide"
+                f"no --pixel-pitch: blur assumes a sensor {camera.sensor_size[0]:g} mm wide"
             )
         return notes
 
@@ -212,8 +214,8 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     if not names:
         first = next(iter(known))
         if len(known) > 1:
-            hint = ":all takes all, a name with # the picture of each frame"
-            console.note(f"{file} has {_some(known)}; {first} is taken ({hint})")
+            hint = ":all takes all; # in a name stands for the frame number"
+            console.note(f"{file} has {_some(known)}; using {first} ({hint})")
         return {first: known[first]}
     wanted = [names] if names in known else [name.strip() for name in names.split(",")]
     if twice := [name for name in wanted if wanted.count(name) > 1]:

@@ -27,7 +27,9 @@ class SettingsFlags(TableFlags):
         }
         bands, wanted = given.get("bands", DEFAULT["bands"]), waves["diffraction_bands"]
         if bands and wanted not in (Diffraction.bands, bands):
-            raise UsageError(f"--bands {bands} and --diffraction-bands {wanted}: wanted one number")
+            raise UsageError(
+                f"--bands and --diffraction-bands: wanted the same number, got {bands} and {wanted}"
+            )
         if given.get("diffraction"):
             given["diffraction"] = Diffraction(*waves.values())
         elif any(waves[row.name] != row.default for row in DIFFRACTION_ROWS):

@@ -147,6 +147,6 @@ def weak_region(fitted: LensFit) -> str | None:
     worst = max(z.film_um[0] for z in weak)
     return (
         f"note: the fit is off by more than {WORTH_TELLING:g} um RMS from {weak[0].low:.3g} to "
-        f"{weak[-1].high:.3g} mm off the middle, up to {worst:.2g} um: a higher --degree follows "
-        "the lens farther"
+        f"{weak[-1].high:.3g} mm off the middle, up to {worst:.2g} um: a higher --degree fits "
+        "better"
     )

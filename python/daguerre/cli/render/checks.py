@@ -21,7 +21,7 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
     from daguerre.frame.frame import TONES, check_format
 
     if not flags.paths and not maps.files:
-        raise UsageError("-o, --output: wanted a file, which only maps (--export-...) do without")
+        raise UsageError("-o, --output: wanted a picture or a map (--export-...), got neither")
     formats = [check_format(path, (".dng",)) for path in flags.paths]
     tone = flags.tone
     if tone not in TONES:
@@ -36,11 +36,14 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
         flags.preview,
     )
     if not formats and any(drawn):
-        raise UsageError("-o: wanted a file for the picture, since maps alone draw nothing")
+        raise UsageError(
+            "-o: wanted a picture for --aov, --samples, --noise, --denoise or --preview, got only "
+            "maps"
+        )
     if flags.samples and ".exr" not in formats:
-        raise UsageError("--samples: a pass keeps its sums in an .exr; got none with -o")
+        raise UsageError("--samples: wanted an .exr with -o for the sums of the pass, got none")
     if flags.noisy and not flags.denoise:
-        raise UsageError("--noisy: wanted --denoise too; without it -o has that picture")
+        raise UsageError("--noisy: wanted --denoise too; without it -o is that picture")
     for path in flags.noisy or ():
         check_format(path, (".dng",))
     if flags.denoise:
@@ -59,8 +62,8 @@ def check_samples(
     given = rows.given()
     if "noise" in given:
         raise UsageError(
-            "--noise and --samples: what is drawn for a noise depends on what was drawn before, "
-            "so it has no passes; wanted one of the two"
+            "--noise and --samples: wanted one of them, got both; adaptive sampling depends on the "
+            "samples before, so it has no passes"
         )
     samples = q.sample_range("--samples", flags.samples)
     TABLE["spp"].check(samples[1], f"--samples {flags.samples}")
@@ -68,12 +71,13 @@ def check_samples(
         raise UsageError(f"--samples {flags.samples}: wanted at most --spp {given['spp']}")
     if flags.denoise:
         raise UsageError(
-            "--samples and --denoise: denoise after merging, `daguerre merge --denoise`"
+            "--samples and --denoise: wanted one of them, got both; `daguerre merge --denoise` "
+            "denoises merged passes"
         )
     if found := [name for name in EXPOSED if name in groups]:
         raise UsageError(f"--samples: a pass is not exposed; wanted no --aov {','.join(found)}")
     if DISPARITY in groups:
-        raise UsageError("--samples: wanted no --aov disparity; depth comes through a pass")
+        raise UsageError("--samples: wanted no --aov disparity; a pass keeps --aov depth")
     return samples
 
 
@@ -99,7 +103,7 @@ def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
     if settings.film.overscan is None or not flags.paths:
         return
     if not any(path.suffix.lower() == ".exr" for path in flags.paths):
-        raise UsageError("--overscan: wanted an .exr with -o: pictures for the eye have none")
+        raise UsageError("--overscan: wanted an .exr with -o; other formats hold no overscan")
 
 
 def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
@@ -108,11 +112,11 @@ def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
     means = given.get("gt_lens", "chief") != "chief"
     if not groups and (means or ("gt_time" in given and maps.export_raymap is None)):
         flag = "--gt-time" if "gt_time" in given else "--gt-lens"
-        raise UsageError(f"{flag}: wanted channels to write, say --aov depth,motion")
+        raise UsageError(f"{flag}: wanted channels to write, such as --aov depth,motion")
     if "coverage" in groups and not means:
-        raise UsageError("--aov coverage: of the chief ray there is none; wanted --gt-lens mean")
+        raise UsageError("--aov coverage: wanted --gt-lens mean; chief rays have no coverage")
     if DISPARITY in groups and means:
-        raise UsageError("--aov disparity: wanted --gt-lens chief, as means have no one place")
+        raise UsageError("--aov disparity: wanted --gt-lens chief; means have no single position")
 
 
 def check_crop(film: Film) -> None:
@@ -137,9 +141,9 @@ def check_writable(output: Output) -> None:
     if len(set(names)) < len(names):
         raise UsageError("-o: the same file is named twice")
     if output.paths and output.checkpoint.resolve() in names:
-        raise UsageError(f"-o {output.checkpoint}: this name is kept for the checkpoint")
+        raise UsageError(f"-o {output.checkpoint}: this name is reserved for the checkpoint")
     if output.paths and output.preview.resolve() in names:
-        raise UsageError(f"-o {output.preview}: this name is kept for --preview")
+        raise UsageError(f"-o {output.preview}: this name is reserved for --preview")
     for path in output.written:
         check(path)
 

@@ -72,7 +72,7 @@ def coco_of(path: Path | None, categories: Path | None, plan: Plan) -> Labels:
     if not plan.flags.paths:
         raise UsageError("--coco: wanted a picture with -o, got maps alone")
     if plan.pictures[0].settings.film.overscan is not None:
-        raise UsageError("--coco and --overscan: wanted one of them: pictures have no overscan")
+        raise UsageError("--coco and --overscan: wanted one of them, got both")
     taken = {file.resolve() for picture in plan.pictures for file in picture.output.written}
     if path.resolve() in taken or (
         categories is not None and path.resolve() == categories.resolve()

@@ -43,6 +43,6 @@ def check_names(outputs: list[Path], frames: list[int] | None) -> None:
             raise UsageError(f"-o {path}: # stands for the number of a frame; wanted --frames")
         if frames is not None and len(frames) > 1 and not has_place:
             raise UsageError(
-                f"-o {path}: {len(frames)} frames wanted a name with #, "
+                f"-o {path}: wanted a name with # for {len(frames)} frames, "
                 f"such as {path.stem}.####{path.suffix}"
             )

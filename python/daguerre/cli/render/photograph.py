@@ -34,9 +34,11 @@ def photograph_of(
     """
     iso, sensor = changes.get("iso"), changes.get("sensor")
     if plate is not None and exposure is not None:
-        raise UsageError("--exposure auto and --like-plate: the plate has its ISO; wanted one")
+        raise UsageError(
+            "--exposure auto and --like-plate: wanted one of them, got both; the plate sets the ISO"
+        )
     if exposure is not None and iso is not None:
-        raise UsageError("--exposure auto chooses the ISO: wanted either it or --iso, got both")
+        raise UsageError("--exposure auto and --iso: wanted one of them, got both")
     if iso is not None and not iso > 0:
         raise UsageError(f"--iso: wanted a number above 0, got {iso:g}")
     if sensor is not None:

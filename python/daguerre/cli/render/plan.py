@@ -85,7 +85,7 @@ def _output(
     asked = (flags.exposure, flags.bracket, flags.look)
     photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
     if photograph.develops and flags.tone != "srgb":
-        raise UsageError(f"--tone {flags.tone}: these pictures are developed; wanted --look")
+        raise UsageError(f"--tone {flags.tone}: wanted --look, as these pictures are developed")
     is_pass = flags.samples is not None
     noisy = tuple(flags.noisy or ())
     return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)

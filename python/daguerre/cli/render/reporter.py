@@ -102,7 +102,7 @@ class ConsoleReporter(Reporter):
         console.note(f"noise {reached:.3g}, wanted {sampling.noise:g}")
         if reached > sampling.noise:
             console.warn(
-                f"--noise {sampling.noise:g} is not reached: --spp {sampling.most} ended it before"
+                f"--noise {sampling.noise:g} is not reached: --spp {sampling.most} stopped it first"
             )
 
     def stopped(self, result: Stopped) -> None:
